@@ -1,0 +1,19 @@
+# Flags that every target of the project shares: warnings are errors, sanitizers by one option.
+add_library(softgrip_flags INTERFACE)
+target_include_directories(softgrip_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(softgrip_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
+  -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough
+  # Bit-for-bit repeatable runs: no contraction of a*b+c that differs between compilers and call sites.
+  -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 reports null dereferences inside inlined standard containers under -O2.
+  target_compile_options(softgrip_flags INTERFACE -Wno-null-dereference)
+endif()
+if(SOFTGRIP_SANITIZE)
+  add_compile_options(-fsanitize=${SOFTGRIP_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${SOFTGRIP_SANITIZE})
+  if(SOFTGRIP_SANITIZE MATCHES "undefined")
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+endif()
