@@ -1,0 +1,117 @@
+#pragma once
+// Everything that happens in one tick between readings and commands: the seam between control and the loop.
+// The same object runs in softgripd, in `softgrip run`, in virtual time, in tests and in benchmarks.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "control/fault.h"
+#include "control/grip_result.h"
+#include "control/settings.h"
+#include "model/reading.h"
+
+namespace softgrip::control {
+
+/// Most channels of one rig. A bound, so that snapshots and rows are plain values of fixed size.
+inline constexpr std::size_t max_channels = 16;
+
+/// States of the supervisor, as status and recordings name them.
+enum class State : std::uint8_t {
+  starting,        ///< no valid reading from every channel yet; outputs as the phase `idle` says
+  idle,            ///< ready; nothing moves
+  resynchronising, ///< following the fingers to where they are before motion starts
+  running,         ///< a sequence runs
+  stopping,        ///< a sequence was stopped; the stop action is being carried out
+  faulted,         ///< latched; outputs as the rig file says for the phase in which the fault came
+};
+[[nodiscard]] const char* name_of(State state) noexcept;
+
+/// What the outside may ask of the controller; at most one per tick (the loop queues them).
+struct Request {
+  enum class Kind : std::uint8_t { none, start, stop, vent, acknowledge };
+  Kind kind = Kind::none;
+  std::uint32_t id = 0;                   ///< echoed in the events that answer it
+  const struct PreparedSequence* sequence = nullptr;  ///< for start; outlives its run
+};
+
+/// What the bus did since the last tick, as far as control must know.
+struct BusHealth {
+  bool connected = false;         ///< a session is up
+  FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
+  std::uint32_t consecutive_failures = 0;
+};
+
+struct TickInput {
+  model::Nanoseconds now = 0;
+  std::span<const model::Reading> readings;  ///< one per channel
+  BusHealth bus;
+  Request request;
+  bool emergency_stop = false;  ///< the level of the input, true = stop
+  bool interlock_open = false;  ///< a start is refused while true
+};
+
+/// One channel after a tick; a row of the recording.
+struct ChannelOutput {
+  double command_kpa = 0;      ///< what goes to the board: clamped and slew-limited
+  double reference_mm = 0;     ///< NaN while nothing is tracked
+  double displacement_mm = 0;  ///< the reading used
+  double pressure_kpa = 0;     ///< measured, or NaN
+  double feedforward_kpa = 0;
+  double feedback_kpa = 0;
+  double residual_mm = 0;  ///< reading minus the running model
+  double age_s = 0;        ///< of the reading
+  model::Validity validity = model::Validity::none_yet;
+  GripResult result = GripResult::none;
+  std::uint16_t step = 0;  ///< index in the sequence
+  bool saturated = false;
+  bool slewing = false;
+};
+
+/// Something worth telling, at most a few per tick.
+struct Event {
+  enum class Kind : std::uint8_t {
+    state_changed, fault_latched, fault_acknowledged, sequence_started, sequence_finished, step_started,
+    grip_result, request_refused, model_health_changed, reading_invalid, reading_valid,
+  };
+  Kind kind = Kind::state_changed;
+  std::uint8_t channel = 0xff;  ///< 0xff: the whole rig
+  std::uint16_t detail = 0;     ///< State, FaultCode, GripResult, step, RefusalCode or HealthState, by kind
+  std::uint32_t request = 0;    ///< the id of the request it answers, or 0
+  double value = 0;             ///< a number that goes with it (a residual, an age), or 0
+};
+
+struct TickOutput {
+  State state = State::starting;
+  FaultCode first_fault = FaultCode::none;  ///< the first that latched
+  std::size_t channel_count = 0;
+  std::array<ChannelOutput, max_channels> channels{};
+  std::size_t event_count = 0;
+  std::array<Event, 16> events{};
+  std::uint32_t events_lost = 0;  ///< that did not fit
+};
+
+/// The rig's control. Construction may allocate and throws nothing that is not std::bad_alloc: settings were
+/// checked by make_settings(). tick() allocates nothing, calls nothing of the system, cannot fail.
+class RigController {
+ public:
+  explicit RigController(const RigSettings& settings);
+  RigController(const RigController&) = delete;
+  RigController& operator=(const RigController&) = delete;
+  RigController(RigController&&) noexcept;
+  RigController& operator=(RigController&&) noexcept;
+  ~RigController();
+
+  /// One period of 1/settings.rate_hz.
+  void tick(const TickInput& input, TickOutput& output) noexcept;
+
+  /// The command of every channel for leaving the loop now (stop, signal, exception), by the phase it is in.
+  void safe_commands(std::span<double> commands_kpa) const noexcept;
+
+ private:
+  struct Parts;
+  Parts* parts_;
+};
+
+}  // namespace softgrip::control

@@ -1,0 +1,22 @@
+#pragma once
+// What a block says of a parameter, once: the YAML key, its check, the fit's bounds and scale, the manual.
+
+#include <string_view>
+
+namespace softgrip::model {
+
+/// One parameter of a block. `name` ends with the unit where there is one and is the YAML key, the JSON key
+/// and the name in reports. In a block with repeated parts (Kelvin-Voigt branches) `#` in the name stands
+/// for the part's number, counted from 1.
+struct ParameterSpec {
+  std::string_view name;
+  std::string_view unit;     ///< "" for a pure number
+  double default_value = 0;  ///< a value at which the block does something typical
+  double lower = 0;          ///< smallest allowed, itself allowed
+  double upper = 0;          ///< largest allowed, itself allowed
+  double scale = 1;          ///< a typical change, for the scaling of a fit
+  std::string_view meaning;  ///< one line
+  bool whole = false;        ///< only whole numbers (an exponent)
+};
+
+}  // namespace softgrip::model
