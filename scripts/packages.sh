@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Installs the packages of the given sections of packages.txt that are missing: packages.sh build [tests ...]
+set -euo pipefail
+here=$(dirname "$(realpath "$0")")
+
+wanted=()
+for section in "$@"; do
+  mapfile -t names < <(awk -v section="[$section]" '
+    /^\[/ {inside = ($1 == section); next}
+    inside {sub(/#.*/, ""); if (NF) print $1}' "$here/packages.txt")
+  [ ${#names[@]} -gt 0 ] || { echo "packages.sh: no section [$section] in packages.txt" >&2; exit 2; }
+  wanted+=("${names[@]}")
+done
+
+missing=()
+for name in "${wanted[@]}"; do
+  dpkg-query -W -f='${Status}' "$name" 2>/dev/null | grep -q 'install ok installed' || missing+=("$name")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+sudo=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "packages.sh: run as root, or install sudo. Missing: ${missing[*]}" >&2; exit 1; }
+  sudo=(sudo)
+fi
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}"
+apt=("${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=400)
+"${apt[@]}" update >/dev/null
+"${apt[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null
