@@ -5,7 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <string_view>
 
 #include "control/fault.h"
 #include "control/grip_result.h"
@@ -14,31 +16,30 @@
 
 namespace softgrip::control {
 
-/// Most channels of one rig. A bound, so that snapshots and rows are plain values of fixed size.
-inline constexpr std::size_t max_channels = 16;
+struct PreparedSequence;  // control/sequence.h
 
 /// States of the supervisor, as status and recordings name them.
 enum class State : std::uint8_t {
-  starting,        ///< no valid reading from every channel yet; outputs as the phase `idle` says
-  idle,            ///< ready; nothing moves
-  resynchronising, ///< following the fingers to where they are before motion starts
-  running,         ///< a sequence runs
-  stopping,        ///< a sequence was stopped; the stop action is being carried out
-  faulted,         ///< latched; outputs as the rig file says for the phase in which the fault came
+  starting,         ///< no valid reading from every channel yet; outputs as the phase `idle` says
+  idle,             ///< ready; nothing moves
+  resynchronising,  ///< following the fingers to where they are before motion starts
+  running,          ///< a sequence runs
+  stopping,         ///< a sequence was stopped; the stop action is being carried out
+  faulted,          ///< latched; outputs as the rig file says for the phase in which the fault came
 };
-[[nodiscard]] const char* name_of(State state) noexcept;
+[[nodiscard]] std::string_view name_of(State state) noexcept;
 
 /// What the outside may ask of the controller; at most one per tick (the loop queues them).
 struct Request {
   enum class Kind : std::uint8_t { none, start, stop, vent, acknowledge };
   Kind kind = Kind::none;
-  std::uint32_t id = 0;                   ///< echoed in the events that answer it
-  const struct PreparedSequence* sequence = nullptr;  ///< for start; outlives its run
+  std::uint32_t id = 0;                        ///< echoed in the events that answer it
+  const PreparedSequence* sequence = nullptr;  ///< for start; outlives its run
 };
 
 /// What the bus did since the last tick, as far as control must know.
 struct BusHealth {
-  bool connected = false;         ///< a session is up
+  bool connected = false;             ///< a session is up
   FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
   std::uint32_t consecutive_failures = 0;
 };
@@ -48,8 +49,9 @@ struct TickInput {
   std::span<const model::Reading> readings;  ///< one per channel
   BusHealth bus;
   Request request;
-  bool emergency_stop = false;  ///< the level of the input, true = stop
-  bool interlock_open = false;  ///< a start is refused while true
+  bool emergency_stop = false;       ///< the level of the input, true = stop
+  bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence
+  std::uint32_t slipped_cycles = 0;  ///< cycles that the loop lost just before this tick
 };
 
 /// One channel after a tick; a row of the recording.
@@ -64,6 +66,8 @@ struct ChannelOutput {
   double age_s = 0;        ///< of the reading
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
+  GripEvidence evidence = GripEvidence::none;  ///< on what the result rests
+  double deficit_mm = 0;   ///< how much less than its free-motion envelope the finger moved
   std::uint16_t step = 0;  ///< index in the sequence
   bool saturated = false;
   bool slewing = false;
@@ -72,8 +76,17 @@ struct ChannelOutput {
 /// Something worth telling, at most a few per tick.
 struct Event {
   enum class Kind : std::uint8_t {
-    state_changed, fault_latched, fault_acknowledged, sequence_started, sequence_finished, step_started,
-    grip_result, request_refused, model_health_changed, reading_invalid, reading_valid,
+    state_changed,
+    fault_latched,
+    fault_acknowledged,
+    sequence_started,
+    sequence_finished,
+    step_started,
+    grip_result,
+    request_refused,
+    model_health_changed,
+    reading_invalid,
+    reading_valid,
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = 0xff;  ///< 0xff: the whole rig
@@ -93,7 +106,7 @@ struct TickOutput {
 };
 
 /// The rig's control. Construction may allocate and throws nothing that is not std::bad_alloc: settings were
-/// checked by make_settings(). tick() allocates nothing, calls nothing of the system, cannot fail.
+/// checked by settings_problems(). tick() allocates nothing, calls nothing of the system, cannot fail.
 class RigController {
  public:
   explicit RigController(const RigSettings& settings);
@@ -111,7 +124,7 @@ class RigController {
 
  private:
   struct Parts;
-  Parts* parts_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace softgrip::control

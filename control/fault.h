@@ -1,0 +1,66 @@
+#pragma once
+// Faults: what latches. Codes are stable; they appear in events, recordings, metrics and the manual.
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace softgrip::control {
+
+/// The number is the stable code: 101 is "F101". Hundreds group them: 1 bus, 2 readings, 3 board and
+/// outputs, 4 model, 5 safety, 9 internal.
+enum class FaultCode : std::uint16_t {
+  none = 0,
+  bus_down = 101,              ///< no session, or no good exchange for too many cycles
+  bus_timed_out = 102,         ///< the board does not answer in time
+  bus_bad_reply = 103,         ///< replies that do not belong to the question
+  bus_exception = 104,         ///< the board refuses the function or the address
+  reading_stale = 201,         ///< readings stopped coming
+  reading_out_of_range = 202,  ///< outside the sensor's electrical range
+  sensor_error = 203,          ///< the sensor's or the board's own error code
+  reading_jumped = 204,        ///< moved faster than a finger can
+  reading_frozen = 205,        ///< did not change while the command moved
+  displacement_beyond_limits = 206,
+  readback_mismatch = 301,  ///< the board's output is not what was written
+  write_refused = 302,      ///< the board did not take the write
+  board_watchdog_tripped = 303,
+  model_unfit = 401,
+  emergency_stop = 501,
+  cycles_lost = 901,  ///< the loop lost more cycles at once than allowed
+  not_finite = 902,   ///< a command was not a finite number
+};
+
+/// What the manual and the events say of a fault.
+struct FaultInfo {
+  FaultCode code;
+  std::string_view id;       ///< "F101"
+  std::string_view name;     ///< "bus_down"
+  std::string_view meaning;  ///< one sentence
+  std::string_view cause;    ///< what it usually is
+  std::string_view remedy;   ///< what to do before acknowledging
+  std::string_view bound;    ///< within how many cycles it latches, in words of the rig file's keys
+};
+
+/// All faults in the order of their codes, without `none`.
+[[nodiscard]] std::span<const FaultInfo> all_faults() noexcept;
+/// Of one; for `none` and unknown numbers an entry with id "F000", name "none".
+[[nodiscard]] const FaultInfo& info_of(FaultCode code) noexcept;
+
+/// Why a request was refused.
+enum class RefusalCode : std::uint16_t {
+  none = 0,
+  faulted = 1,   ///< a fault is latched
+  not_idle = 2,  ///< a sequence runs, starts or is being stopped
+  interlock_open = 3,
+  emergency_stop = 4,
+  sequence_unfit = 5,    ///< no sequence, or one that was prepared for another rig
+  no_valid_reading = 6,  ///< a channel of the sequence has no valid reading
+  nothing_to_stop = 7,
+  nothing_to_acknowledge = 8,
+  cause_persists = 9,  ///< acknowledge while the cause of a latched fault is still there
+};
+/// "R01" ... and a name in snake_case.
+[[nodiscard]] std::string_view id_of(RefusalCode code) noexcept;
+[[nodiscard]] std::string_view name_of(RefusalCode code) noexcept;
+
+}  // namespace softgrip::control
