@@ -1,0 +1,22 @@
+#pragma once
+// The pressure that the model says a reference needs.
+
+#include <cstdint>
+
+namespace softgrip::control {
+
+enum class FeedforwardKind : std::uint8_t {
+  none,      ///< PID alone
+  bouc_wen,  ///< inverse of the Bouc-Wen element alone, in parallel with the PID (Zhang et al. 2025, section
+             ///< 5)
+  full_model,  ///< inverse of the whole chain: implicit solve, lead for lag, preview for delay
+};
+
+struct FeedforwardSettings {
+  FeedforwardKind kind = FeedforwardKind::none;
+  /// Time from the computation of a command until the board puts it out, beyond what the model's own valve
+  /// blocks say: the bus exchange, the board's conversion. full_model looks further ahead by it.
+  double extra_latency_s = 0;
+};
+
+}  // namespace softgrip::control

@@ -1,0 +1,72 @@
+#pragma once
+// What a channel shall do, known ahead: a short list of segments that can be asked for any time.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace softgrip::control {
+
+/// A reference at one moment. The unit is the channel mode's: mm when a displacement is tracked, kPa when a
+/// pressure is.
+struct ReferencePoint {
+  double value = 0;
+  double rate = 0;          ///< per s
+  double acceleration = 0;  ///< per s^2
+};
+
+/// Segments one after another; before the first and after the last it holds. Value, rate and acceleration
+/// are continuous over ramps and holds (quintic, minimum jerk); a sine starts with its acceleration at once.
+/// Plain value, no allocation. Times are seconds on the caller's clock.
+class Reference {
+ public:
+  static constexpr std::size_t capacity = 8;
+
+  /// Holds 0 from time 0.
+  Reference() noexcept = default;
+  /// Forgets everything and holds `value` from `time_s` on. To start from where the finger is: its reading.
+  void start(double time_s, double value) noexcept;
+
+  // Each of the next appends behind end_s() and returns false, changing nothing, when `capacity` segments
+  // lie in the future of the last forget_before().
+
+  /// Minimum-jerk ramp whose peak speed is `speed` (> 0, per s). After a cut() in motion it brakes first.
+  bool ramp_to(double value, double speed) noexcept;
+  /// Minimum-jerk ramp that takes `duration_s` (> 0).
+  bool ramp_for(double value, double duration_s) noexcept;
+  bool hold_for(double duration_s) noexcept;
+  /// mean - amplitude cos(2 pi f t) for `cycles`; ramp to mean - amplitude before it.
+  bool sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept;
+
+  /// Forgets what was to come after `time_s`. What is appended next goes on from there with value, rate and
+  /// acceleration unbroken. A feedforward that looks ahead has used the reference up to its preview already:
+  /// cut at now + preview to change one's mind without a step.
+  void cut(double time_s) noexcept;
+  /// Makes room: segments that ended before `time_s` are dropped; earlier times then return the value where
+  /// the first one left starts.
+  void forget_before(double time_s) noexcept;
+
+  [[nodiscard]] ReferencePoint at(double time_s) const noexcept;
+  /// When the last segment ends; from then on final_value() is held.
+  [[nodiscard]] double end_s() const noexcept;
+  [[nodiscard]] double final_value() const noexcept;
+
+ private:
+  enum class Shape : std::uint8_t { quintic, sine };
+  struct Segment {
+    Shape shape = Shape::quintic;
+    double start_s = 0;
+    double duration_s = 0;
+    /// quintic: coefficients of the powers of (t - start_s); sine: mean, amplitude, angular frequency
+    std::array<double, 6> c{};
+  };
+  [[nodiscard]] static ReferencePoint evaluate(const Segment& segment, double time_s) noexcept;
+  bool append_quintic(const ReferencePoint& from, double value, double duration_s) noexcept;
+
+  std::array<Segment, capacity> segments_{};
+  std::size_t count_ = 0;
+  double rest_from_s_ = 0;  ///< without segments: since when rest_value_ holds
+  double rest_value_ = 0;
+};
+
+}  // namespace softgrip::control
