@@ -41,8 +41,6 @@ struct DetectionSettings {
   double margin_mm = 0.6;
   /// RMSE of the models, if known (NaN: unknown). The margin must be at least three times as large.
   double model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
-  /// Weaker kind: measured pressure at least so far above what the free model needs for the reading.
-  double margin_kpa = 3;
 };
 
 /// How many cycles something may be wrong before it is a fault: the reaction bounds that the rig promises.
