@@ -1,0 +1,65 @@
+#pragma once
+// A bounded queue from one thread to another, without a lock: rows, events and requests.
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace softgrip::daemon {
+
+/// Single producer, single consumer. Neither side waits: push() refuses when there is no room, pop() takes
+/// what is there. Memory is allocated at construction only. T is a plain value.
+template <class T>
+class Ring {
+ public:
+  /// Room for at least `capacity` items (rounded up to a power of two).
+  explicit Ring(std::size_t capacity) : items_(std::bit_ceil(capacity)), mask_(items_.size() - 1) {}
+
+  [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
+
+  /// Producer: all of `items` in one piece, or none (false).
+  bool push(std::span<const T> items) noexcept {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    if (items.size() > capacity() - (tail - known_head_)) {
+      known_head_ = head_.load(std::memory_order_acquire);
+      if (items.size() > capacity() - (tail - known_head_)) return false;
+    }
+    for (std::size_t i = 0; i < items.size(); ++i) items_[(tail + i) & mask_] = items[i];
+    tail_.store(tail + items.size(), std::memory_order_release);
+    return true;
+  }
+  bool push(const T& item) noexcept { return push(std::span<const T>(&item, 1)); }
+
+  /// Consumer: moves up to items.size() items out and says how many.
+  std::size_t pop(std::span<T> items) noexcept {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    if (known_tail_ - head < items.size()) known_tail_ = tail_.load(std::memory_order_acquire);
+    const std::size_t count = std::min(items.size(), known_tail_ - head);
+    for (std::size_t i = 0; i < count; ++i) items[i] = items_[(head + i) & mask_];
+    head_.store(head + count, std::memory_order_release);
+    return count;
+  }
+  bool pop(T& item) noexcept { return pop(std::span<T>(&item, 1)) == 1; }
+
+  /// Either side: how many items wait; already outdated when it returns.
+  [[nodiscard]] std::size_t size() const noexcept {
+    const std::size_t head = head_.load(std::memory_order_acquire);
+    return tail_.load(std::memory_order_acquire) - head;
+  }
+
+ private:
+  static constexpr std::size_t cache_line = 64;
+
+  std::vector<T> items_;
+  std::size_t mask_;
+  // Each side keeps the other's position as last seen, so that most calls touch no shared line.
+  alignas(cache_line) std::atomic<std::size_t> head_{0};  // written by the consumer
+  std::size_t known_tail_ = 0;                            // the consumer's
+  alignas(cache_line) std::atomic<std::size_t> tail_{0};  // written by the producer
+  std::size_t known_head_ = 0;                            // the producer's
+};
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,47 @@
+#pragma once
+// A value whose copying can be interrupted half-way, so that tests of lock-free cells do not depend on luck.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <thread>
+
+namespace softgrip::daemon::testing {
+
+/// All words are equal in a value that was copied in one piece.
+class TornValue {
+ public:
+  TornValue() = default;
+  explicit TornValue(std::uint64_t number) { words_.fill(number); }
+  TornValue(const TornValue& other) : TornValue() { copy(other); }
+  TornValue& operator=(const TornValue& other) {
+    if (this != &other) copy(other);
+    return *this;
+  }
+
+  [[nodiscard]] std::uint64_t number() const noexcept { return words_.front(); }
+  [[nodiscard]] bool whole() const noexcept {
+    for (const std::uint64_t word : words_) {
+      if (word != words_.front()) return false;
+    }
+    return true;
+  }
+
+ private:
+  void copy(const TornValue& other) {
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      words_[i] = other.words_[i];
+      if (i == words_.size() / 2) std::this_thread::yield();
+    }
+  }
+
+  std::array<std::uint64_t, 8> words_{};
+};
+
+#if defined(__SANITIZE_THREAD__)
+inline constexpr bool thread_sanitizer = true;
+#else
+inline constexpr bool thread_sanitizer = false;
+#endif
+
+}  // namespace softgrip::daemon::testing
