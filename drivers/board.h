@@ -17,11 +17,11 @@ using model::Reading;
 /// How one exchange with the board ended.
 enum class BusStatus : std::uint8_t {
   ok,
-  disconnected,   ///< no session; reconnect() is due
-  timed_out,      ///< the transaction's own deadline passed
-  bad_reply,      ///< wrong unit id, length, transaction id or function; the session is poisoned
-  exception,      ///< the board answered with a Modbus exception
-  write_refused,  ///< the read-back says that the output did not follow
+  disconnected,      ///< no session; reconnect() is due
+  timed_out,         ///< the transaction's own deadline passed
+  bad_reply,         ///< wrong unit id, length, transaction id or function; the session is poisoned
+  exception,         ///< the board answered with a Modbus exception
+  write_refused,     ///< the read-back says that the output did not follow
   watchdog_tripped,  ///< the board's own watchdog holds the outputs at their safe value
 };
 [[nodiscard]] const char* name_of(BusStatus status) noexcept;
@@ -47,7 +47,7 @@ class Board {
   [[nodiscard]] virtual BusStatus exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
                                            std::chrono::nanoseconds deadline) noexcept = 0;
 
-  /// What exchange() last failed of, for the event log; a static text.
+  /// What connect() or exchange() last failed of, for the event log; valid until the next call of either.
   [[nodiscard]] virtual const char* detail() const noexcept { return ""; }
 
   /// One line for the start-up report: "ADAM-6024 at 127.0.0.1:502 unit 1".

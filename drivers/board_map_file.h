@@ -1,0 +1,19 @@
+#pragma once
+// Board files: YAML to BoardMap. Strict; all problems at once.
+
+#include <optional>
+#include <string>
+
+#include "drivers/board_map.h"
+#include "model/document/node.h"
+
+namespace softgrip::drivers {
+
+/// Reads a board map out of a parsed document. All errors are added to `problems`; nothing is returned then.
+[[nodiscard]] std::optional<BoardMap> read_board_map(const document::Document& document,
+                                                     document::Problems& problems);
+
+/// parse_file() and read_board_map().
+[[nodiscard]] std::optional<BoardMap> load_board_map(const std::string& path, document::Problems& problems);
+
+}  // namespace softgrip::drivers

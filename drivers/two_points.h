@@ -1,0 +1,24 @@
+#pragma once
+// A straight line through two calibration points: the only kind of scaling there is. Either slope sign.
+
+namespace softgrip::drivers {
+
+/// y over x through (x0, y0) and (x1, y1). A laser on 4-20 mA that is highest at the near end is simply
+/// {4, 85, 20, 15}. Usable if x0 != x1 (and y0 != y1 for the way back); loaders check that.
+struct TwoPoints {
+  double x0 = 0;
+  double y0 = 0;
+  double x1 = 1;
+  double y1 = 1;
+
+  [[nodiscard]] constexpr double y_at(double x) const noexcept {
+    return y0 + (x - x0) * ((y1 - y0) / (x1 - x0));
+  }
+  [[nodiscard]] constexpr double x_at(double y) const noexcept {
+    return x0 + (y - y0) * ((x1 - x0) / (y1 - y0));
+  }
+
+  bool operator==(const TwoPoints&) const = default;
+};
+
+}  // namespace softgrip::drivers
