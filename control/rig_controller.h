@@ -20,14 +20,18 @@ struct PreparedSequence;  // control/sequence.h
 
 /// States of the supervisor, as status and recordings name them.
 enum class State : std::uint8_t {
-  starting,         ///< no valid reading from every channel yet; outputs as the phase `idle` says
-  idle,             ///< ready; nothing moves
+  starting,  ///< no valid reading from every channel yet; commands at the lowest, or where a fault left them
+  idle,      ///< ready; nothing moves
   resynchronising,  ///< following the fingers to where they are before motion starts
   running,          ///< a sequence runs
   stopping,         ///< a sequence was stopped; the stop action is being carried out
   faulted,          ///< latched; outputs as the rig file says for the phase in which the fault came
 };
 [[nodiscard]] std::string_view name_of(State state) noexcept;
+
+/// How a sequence ended.
+enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
+[[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
 
 /// What the outside may ask of the controller; at most one per tick (the loop queues them).
 struct Request {
@@ -90,9 +94,10 @@ struct Event {
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = 0xff;  ///< 0xff: the whole rig
-  std::uint16_t detail = 0;     ///< State, FaultCode, GripResult, step, RefusalCode or HealthState, by kind
-  std::uint32_t request = 0;    ///< the id of the request it answers, or 0
-  double value = 0;             ///< a number that goes with it (a residual, an age), or 0
+  std::uint16_t detail =
+      0;  ///< State, FaultCode, GripResult, step, RefusalCode HealthState or SequenceEnd, by kind
+  std::uint32_t request = 0;  ///< the id of the request it answers, or 0
+  double value = 0;           ///< a number that goes with it (a residual, an age), or 0
 };
 
 struct TickOutput {

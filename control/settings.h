@@ -43,6 +43,18 @@ struct DetectionSettings {
   double model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// What the daemon knows of the world behind the bus. All explicit in the rig file.
+struct SafetySettings {
+  /// What stop, faults and leaving do, by the phase in which they come.
+  std::array<SafeAction, phase_count> safe_action{};
+  /// What an emergency stop does. `hold` only where its circuit does not vent by itself: a held command
+  /// would fill the fingers again when the circuit is reset.
+  SafeAction on_emergency_stop = SafeAction::vent;
+  /// The board puts its outputs to the lowest pressure by itself when nobody talks to it. Then faults of the
+  /// bus vent in every phase: a held command would fill the fingers again on reconnection.
+  bool board_vents_when_silent = true;
+};
+
 /// How many cycles something may be wrong before it is a fault: the reaction bounds that the rig promises.
 struct FaultSettings {
   std::uint32_t bus_down_cycles = 5;         ///< cycles in a row without a good exchange
@@ -59,8 +71,7 @@ struct FaultSettings {
 struct RigSettings {
   double rate_hz = 200;                   ///< of tick()
   std::vector<ChannelSettings> channels;  ///< 1 to max_channels, names unique
-  /// What stop, faults, emergency stop and leaving do, by the phase in which they come. All explicit.
-  std::array<SafeAction, phase_count> safe_action{};
+  SafetySettings safety;
   double rest_band_mm = 0.2;   ///< a finger is at rest when its readings stay within this band ...
   double rest_time_s = 0.3;    ///< ... for so long; a sequence starts from there
   double rest_timeout_s = 10;  ///< a start that finds no rest by then ends with ERROR
