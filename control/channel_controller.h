@@ -6,32 +6,17 @@
 #include <cstdint>
 #include <memory>
 
+#include "control/channel_demand.h"
 #include "control/channel_settings.h"
 #include "control/model_health.h"
-#include "control/reference.h"
 #include "model/reading.h"
 
 namespace softgrip::control {
 
-/// Seconds of the clock that Reference counts in: those of the readings' clock.
-[[nodiscard]] inline double seconds(model::Nanoseconds time) noexcept {
-  return static_cast<double>(time) * 1e-9;
-}
-
-/// What a channel does with its reference.
-enum class Mode : std::uint8_t {
-  hold,          ///< the command stays where it is
-  pressure,      ///< the reference is a pressure [kPa]: through the limits and out, no feedback
-  displacement,  ///< the reference is a displacement [mm]: feedforward plus PID
-};
-
 struct ChannelInput {
   model::Nanoseconds now = 0;  ///< the tick's place on the grid
   model::Reading reading;      ///< as the driver gave it
-  Mode mode = Mode::hold;
-  /// Not used in mode hold, where it may be null. To vent: mode pressure with a reference that holds the
-  /// lowest pressure; the limits make the ramp.
-  const Reference* reference = nullptr;
+  ChannelDemand demand;        ///< what the player or the supervisor asks
   /// Follow the finger to where it is: the difference between reading and model becomes the model's offset.
   /// Only at rest, before motion starts; see ChannelStep::synchronised.
   bool resynchronise = false;
