@@ -2,10 +2,7 @@
 // A parsed YAML document as plain located values. Parsing is strict: see parse().
 
 #include <cstddef>
-#include <memory>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "model/document/problem.h"
@@ -28,6 +25,7 @@ struct Node {
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
   bool quoted = false;         ///< the scalar stood in quotes: a string, never a number
+  bool refused = false;        ///< already reported or cut short: present, but not to be judged again
   std::vector<Node> items;     ///< of a sequence
   std::vector<Entry> entries;  ///< of a map, in the order of the text, keys unique
 };
@@ -42,17 +40,24 @@ struct Document {
   std::string file;
   std::string text;
   Node root;
+  /// False when parsing had to stop before the end: what is missing then may stand further down, so readers
+  /// do not report it.
+  bool complete = true;
 
   /// A problem at `at`, with the line's text filled in.
   [[nodiscard]] Problem problem(Location at, std::string message, std::string hint = {}) const;
 };
 
 /// Parses one YAML document. Refused, each with its place: anchors, aliases, tags, merge keys, duplicate
-/// keys, more than one document, anything beyond `bounds`, bytes that are not UTF-8, syntax errors.
-/// Problems are added to `problems`; the document is returned all the same, with what could be read.
-[[nodiscard]] Document parse(std::string file, std::string text, Problems& problems, const Bounds& bounds = {});
+/// keys, keys that are no plain word, directives, more than one document, anything beyond `bounds`, bytes
+/// that are not UTF-8, control characters, tabs as indentation, syntax errors. Problems are added to
+/// `problems`; the document is returned all the same, with what could be read: of a duplicate key the first,
+/// of a refused alias nothing.
+[[nodiscard]] Document parse(std::string file, std::string text, Problems& problems,
+                             const Bounds& bounds = {});
 
-/// Reads a whole file of at most `bounds.bytes` and parses it. A file that cannot be read is a problem at 1:1.
+/// Reads a whole file of at most `bounds.bytes` and parses it. A file that cannot be read is a problem at
+/// 1:1.
 [[nodiscard]] Document parse_file(const std::string& path, Problems& problems, const Bounds& bounds = {});
 
 }  // namespace softgrip::document

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace softgrip::document {
@@ -12,6 +13,8 @@ namespace softgrip::document {
 struct Location {
   int line = 1;
   int column = 1;
+
+  bool operator==(const Location&) const = default;
 };
 
 /// One thing that is wrong with a document.
@@ -23,22 +26,42 @@ struct Problem {
   std::string hint;       ///< what was probably meant, or empty
 };
 
-/// All problems of one or several documents, in the order in which they were found.
+/// All problems of one or several documents, in the order in which they were found. Errors and warnings are
+/// kept apart: a document with an error is refused, one with warnings is accepted and they are shown.
+/// Of each, the first `most` are kept and the others counted.
 class Problems {
  public:
-  void add(Problem problem) { list_.push_back(std::move(problem)); }
-  [[nodiscard]] bool empty() const noexcept { return list_.empty(); }
-  [[nodiscard]] std::size_t size() const noexcept { return list_.size(); }
-  [[nodiscard]] const std::vector<Problem>& list() const noexcept { return list_; }
+  static constexpr std::size_t most = 200;
 
-  /// One block per problem: `file:line:col: message`, the line, a caret under the column, the hint.
+  void add(Problem problem) { keep(errors_, std::move(problem)); }
+  void warn(Problem problem) { keep(warnings_, std::move(problem)); }
+
+  /// Of the errors alone.
+  [[nodiscard]] bool empty() const noexcept { return errors_.empty(); }
+  [[nodiscard]] std::size_t size() const noexcept { return errors_.size(); }
+  /// True when further errors are only counted: looking for more is wasted.
+  [[nodiscard]] bool full() const noexcept { return errors_.size() >= most; }
+  [[nodiscard]] const std::vector<Problem>& list() const noexcept { return errors_; }
+  [[nodiscard]] const std::vector<Problem>& warnings() const noexcept { return warnings_; }
+
+  /// One block per problem: `file:line:col: message` (`file:line:col: warning: message`), the line, a caret
+  /// under the column, the hint. Files in the order of their first problem, each by line. Ends with a line
+  /// break unless there is nothing to say.
   [[nodiscard]] std::string format() const;
 
  private:
-  std::vector<Problem> list_;
+  void keep(std::vector<Problem>& list, Problem&& problem);
+
+  std::vector<Problem> errors_;
+  std::vector<Problem> warnings_;
+  std::size_t left_out_ = 0;
 };
 
 /// The candidate nearest to `word` by edit distance, or empty when none is near enough to suggest.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `text` for a terminal: control characters and bytes that are not UTF-8 as \n, \t, \xNN; after `most` bytes
+/// of it comes "...".
+[[nodiscard]] std::string shown(std::string_view text, std::size_t most = 60);
 
 }  // namespace softgrip::document

@@ -20,8 +20,9 @@ struct Range {
 
 /// Reads one map. Each getter notes its key as known; finish() reports all others with the nearest known
 /// name, and recognises a known name that lacks its unit (`delay` for `delay_s`) or carries another one
-/// (`delay_ms`). Getters never throw: they add a problem and return a harmless value, so that all errors of
-/// a document are found in one pass.
+/// (`delay_ms`); a required key that is missing is reported there too, unless an unknown one explains it.
+/// Getters never throw: they add a problem and return a harmless value, so that all errors of a document are
+/// found in one pass.
 class MapReader {
  public:
   /// `what` names the map in messages ("channel 'left'"). A node that is no map is reported once.
@@ -44,7 +45,7 @@ class MapReader {
   /// `true` or `false`, nothing else.
   bool boolean(std::string_view key);
   std::optional<bool> optional_boolean(std::string_view key);
-  /// A text that is not empty.
+  /// A text of one line that is not empty.
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
   /// One of `choices`; returns its index (0 when there was a problem).
@@ -54,6 +55,9 @@ class MapReader {
   const Node* child(std::string_view key, bool required);
   /// The items of a sequence under a key (empty when absent; `required` makes that a problem).
   std::vector<const Node*> sequence(std::string_view key, bool required);
+  /// A required list of `count` numbers in `range`, as `at_v: [0, 10]`. Always returns `count` numbers.
+  std::vector<double> numbers(std::string_view key, std::size_t count, Range range);
+  std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, Range range);
 
   /// True if the key stands in the map. Does not count as reading it.
   [[nodiscard]] bool has(std::string_view key) const;
@@ -63,18 +67,32 @@ class MapReader {
   [[nodiscard]] Location where(std::string_view key) const;
   /// A problem of meaning that only the caller can see, at a key's value.
   void report(std::string_view key, std::string message, std::string hint = {});
-  /// Reports keys that nobody asked for. Further getters must not be called.
+  /// The same for what is allowed but probably not meant.
+  void warn(std::string_view key, std::string message, std::string hint = {});
+  /// Reports keys that nobody asked for and those that are missing. Further getters must not be called.
   void finish();
 
  private:
   const Node::Entry* find(std::string_view key);
-  void missing(std::string_view key);
+  const Node* need(std::string_view key);
+  void refuse(const Node& value, std::string_view key, const std::string& message, std::string hint);
+  double checked(std::string_view key, const Node* value, Range range);
+  std::int64_t checked_integer(std::string_view key, const Node* value, std::int64_t lower,
+                               std::int64_t upper);
+  bool checked_boolean(std::string_view key, const Node* value);
+  std::string checked_text(std::string_view key, const Node* value);
+  std::size_t checked_choice(std::string_view key, const Node* value,
+                             const std::vector<std::string>& choices);
+  std::vector<double> checked_numbers(std::string_view key, const Node* value, std::size_t count,
+                                      Range range);
+  void report_unknown(const Node::Entry& entry);
 
   const Document& document_;
   const Node& node_;
   Problems& problems_;
   std::string what_;
   std::vector<std::string> known_;
+  std::vector<std::string> missing_;
   bool finished_ = false;
 };
 
