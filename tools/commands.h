@@ -1,0 +1,14 @@
+#pragma once
+// The list of subcommands, in the order of `softgrip --help`: one line each, and the only such list.
+
+#include "tools/command.h"
+
+#define SOFTGRIP_COMMANDS(X)
+
+namespace softgrip::tools {
+
+#define SOFTGRIP_DECLARE(name) void add_##name(CLI::App& program, ExitCode& outcome);
+SOFTGRIP_COMMANDS(SOFTGRIP_DECLARE)
+#undef SOFTGRIP_DECLARE
+
+}  // namespace softgrip::tools
