@@ -1,0 +1,185 @@
+// blind-world: writes the logs of one world, and its truth elsewhere.
+//
+//   blind-world --seed N --out DIR --truth FILE [--cause ID[,ID]] [--strength X] [--poor] [--pressure]
+//               [--command CSV --log FILE]
+//
+// DIR gets log_1.csv ... in the project's log format and nothing else. With --command the same world answers
+// another command after its campaign and writes that one log.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+#include "strength.h"
+#include "waveforms.h"
+#include "world.h"
+
+namespace {
+
+struct Arguments {
+  std::uint64_t seed = 1;
+  std::string out, truth, cause, command, log;
+  double strength = 8;
+  bool poor = false, pressure = false, list = false;
+};
+
+Arguments arguments(int argc, char** argv) {
+  Arguments a;
+  for (int i = 1; i < argc; ++i) {
+    const std::string key = argv[i];
+    if (key == "--poor") {
+      a.poor = true;
+      continue;
+    }
+    if (key == "--pressure") {
+      a.pressure = true;
+      continue;
+    }
+    if (key == "--list") {
+      a.list = true;
+      continue;
+    }
+    if (i + 1 >= argc) throw std::invalid_argument("no value for " + key);
+    const std::string value = argv[++i];
+    if (key == "--seed")
+      a.seed = std::stoull(value);
+    else if (key == "--out")
+      a.out = value;
+    else if (key == "--truth")
+      a.truth = value;
+    else if (key == "--cause")
+      a.cause = value;
+    else if (key == "--strength")
+      a.strength = std::stod(value);
+    else if (key == "--command")
+      a.command = value;
+    else if (key == "--log")
+      a.log = value;
+    else
+      throw std::invalid_argument("unknown option " + key);
+  }
+  return a;
+}
+
+blind::Base scattered(std::uint64_t seed) {
+  blind::Base base;
+  std::mt19937_64 random(seed * 104729 + 3);
+  std::normal_distribution<double> percent(0, 0.04);
+  for (double* value : {&base.alpha, &base.beta, &base.gamma, &base.eta, &base.instantaneous, &base.fast_gain,
+                        &base.fast_tau, &base.slow_gain, &base.slow_tau})
+    *value *= 1 + percent(random);
+  return base;
+}
+
+void write_log(const std::string& path, const blind::LogInput& in, const blind::LogOutput& out,
+               const blind::Sensor& sensor, bool with_pressure, std::uint64_t seed) {
+  const auto y = blind::measured(out.displacement_mm, sensor.noise_mm, sensor.step_mm, seed);
+  const auto p = blind::measured(out.pressure_kpa, sensor.pressure_noise_kpa, 0, seed + 1);
+  std::ofstream file(path);
+  file << "time_s,pressure_command_kpa,displacement_mm" << (with_pressure ? ",pressure_kpa" : "")
+       << ",temperature_c,supply_kpa\n";
+  char row[256];
+  for (std::size_t k = 0; k < y.size(); ++k) {
+    std::snprintf(row, sizeof row, "%.6f,%.6f,%.4f", static_cast<double>(k) / in.rate_hz, in.command_kpa[k],
+                  y[k]);
+    file << row;
+    if (with_pressure) {
+      std::snprintf(row, sizeof row, ",%.4f", p[k]);
+      file << row;
+    }
+    std::snprintf(row, sizeof row, ",%.4f,%.3f\n", in.temperature_c[k], in.supply_kpa[k]);
+    file << row;
+  }
+  if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+std::vector<double> read_command(const std::string& path, double& rate_hz) {
+  std::ifstream file(path);
+  std::string line;
+  std::vector<double> time, command;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    double t = 0, u = 0;
+    if (std::sscanf(line.c_str(), "%lf,%lf", &t, &u) != 2) throw std::runtime_error("bad row in " + path);
+    time.push_back(t);
+    command.push_back(u);
+  }
+  if (time.size() < 2) throw std::runtime_error("too few rows in " + path);
+  rate_hz = 1 / (time[1] - time[0]);
+  return command;
+}
+
+void write_truth(const std::string& path, const Arguments& a, const blind::Effects& effects,
+                 const std::map<std::string, blind::Scaled>& scaled, const blind::Sensor& sensor) {
+  std::ofstream file(path);
+  file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << sensor.noise_mm
+       << ", \"effects\": {";
+  const char* comma = "";
+  for (const auto& [id, effect] : effects) {
+    file << comma << "\"" << id << "\": {\"excess_mm\": " << scaled.at(id).excess_mm
+         << ", \"reachable\": " << (scaled.at(id).reachable ? "true" : "false") << ", \"parameters\": {";
+    const char* inner = "";
+    for (const auto& [name, value] : effect) {
+      file << inner << "\"" << name << "\": " << value;
+      inner = ", ";
+    }
+    file << "}}";
+    comma = ", ";
+  }
+  file << "}}\n";
+  if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+int run(const Arguments& a) {
+  if (a.list) {
+    for (const auto& id : blind::library_ids()) std::cout << id << "\n";
+    for (const auto& id : blind::outside_ids()) std::cout << id << "\n";
+    return 0;
+  }
+  if (a.command.empty() && (a.out.empty() || a.truth.empty()))
+    throw std::invalid_argument("--out and --truth are needed");
+  const blind::Base base = scattered(a.seed);
+  const blind::Sensor sensor;
+  std::vector<blind::LogInput> logs = blind::draw_campaign(a.seed, a.poor);
+  blind::Effects effects;
+  std::map<std::string, blind::Scaled> scaled;
+  std::stringstream ids(a.cause);
+  for (std::string id; std::getline(ids, id, ',');) {
+    const auto rich = blind::draw_campaign(a.seed, false);
+    scaled[id] = blind::scale_to(id, a.strength * sensor.noise_mm, base, rich, a.seed);
+    effects[id] = scaled[id].effect;
+  }
+  if (!a.command.empty()) {
+    double rate_hz = 0, start_s = 0;
+    for (const auto& log : logs) start_s += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
+    auto command = read_command(a.command, rate_hz);
+    logs.push_back(blind::surrounded(std::move(command), rate_hz, start_s, a.seed));
+    const auto out = blind::simulate(base, effects, logs, a.seed);
+    write_log(a.log, logs.back(), out.back(), sensor, a.pressure, a.seed * 31 + 1000);
+    return 0;
+  }
+  std::filesystem::create_directories(a.out);
+  const auto outputs = blind::simulate(base, effects, logs, a.seed);
+  for (std::size_t i = 0; i < logs.size(); ++i)
+    write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], outputs[i], sensor, a.pressure,
+              a.seed * 31 + i * 2);
+  write_truth(a.truth, a, effects, scaled, sensor);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(arguments(argc, argv));
+  } catch (const std::exception& error) {
+    std::cerr << "blind-world: " << error.what() << "\n";
+    return 2;
+  }
+}

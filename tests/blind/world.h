@@ -1,0 +1,61 @@
+#pragma once
+// A world that may hide an effect: an actuator of its own, integrated by its own method at a fine step.
+// This program links nothing of the project. Its equations follow the vocabulary of causes, not the blocks.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace blind {
+
+/// The actuator without effects. Pressures in kPa, displacement in mm, time in s.
+struct Base {
+  double alpha = 0.35;           // mm/kPa
+  double beta = 0.20;            // mm/kPa
+  double gamma = 0.03;           // 1/kPa
+  double eta = 0.05;             // 1/kPa
+  double instantaneous = 0.003;  // 1/k0, mm/kPa
+  double fast_gain = 0.25, fast_tau = 0.4;
+  double slow_gain = 0.056, slow_tau = 13.7;
+};
+
+/// The hidden effects: id -> its numbers by name. Ids of the cause vocabulary, or of outside_ids().
+using Effect = std::map<std::string, double>;
+using Effects = std::map<std::string, Effect>;
+
+struct Sensor {
+  double noise_mm = 0.04;
+  double step_mm = 0.01;
+  double pressure_noise_kpa = 0.05;
+};
+
+/// What surrounds one log, one value per sample of the command.
+struct LogInput {
+  double rate_hz = 100;
+  std::vector<double> command_kpa;  // linear between samples
+  std::vector<double> temperature_c;
+  std::vector<double> supply_kpa;
+};
+
+struct LogOutput {
+  std::vector<double> pressure_kpa;     // true pressure at the actuator
+  std::vector<double> displacement_mm;  // before noise and quantisation
+};
+
+/// Simulates the logs of one campaign in order. Every log starts at rest; the largest load so far, age and
+/// drift run on from log to log. `step_s` is the integration step; it divides the sample period.
+std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
+                                std::uint64_t seed, double step_s = 0.0005);
+
+/// Noise, then quantisation; deterministic in the seed.
+std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed);
+
+const std::vector<std::string>& library_ids();
+const std::vector<std::string>& outside_ids();
+
+/// An effect's numbers at amplitude 0 < s <= 1 (1: the largest that is physical), the rest drawn by seed.
+/// `span_mm` and `campaign_s` are the campaign's displacement span and duration.
+Effect draw_effect(const std::string& id, double s, std::uint64_t seed, double span_mm, double campaign_s);
+
+}  // namespace blind
