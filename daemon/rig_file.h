@@ -1,0 +1,71 @@
+#pragma once
+// Rig files: everything softgripd must know of a rig, read once into plain values.
+// docs/reference/rig-file.md is the manual of the file; config/rig.yaml and config/rig_tcp.yaml are examples.
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "control/settings.h"
+#include "daemon/loop_settings.h"
+#include "daemon/real_time_settings.h"
+#include "daemon/recorder_settings.h"
+#include "daemon/socket_settings.h"
+#include "drivers/channel_wiring.h"
+#include "drivers/modbus_tcp_board.h"
+#include "drivers/simulated_board.h"
+#include "model/document/node.h"
+
+namespace softgrip::daemon {
+
+/// What a valve does when its power fails: a property of the valve, told at the start.
+enum class PowerLoss : std::uint8_t { vents, holds };
+
+/// What is known of a channel's valve besides its wiring.
+struct ValveFacts {
+  double range_min_kpa = 0;  ///< what the valve can control, whatever the limits allow
+  double range_max_kpa = 0;
+  PowerLoss on_power_loss = PowerLoss::vents;
+};
+
+/// A file that the rig depends on, as it was read: for hashes in the recording's provenance.
+struct InputFile {
+  enum class Role : std::uint8_t { rig, board, model, plant };
+  Role role = Role::rig;
+  std::string path;
+  std::string text;
+};
+
+/// A rig file. Valid ones come from load_rig(): the settings satisfy control::settings_problems(), every
+/// feedforward was accepted by control::check_feedforward(), the wiring fits the board.
+struct RigFile {
+  std::string name;
+  std::string path;                ///< as the user named it
+  control::RigSettings settings;   ///< channels in the order of the file
+  std::vector<ValveFacts> valves;  ///< one per channel
+  std::variant<drivers::SimulatedBoardSettings, drivers::ModbusTcpSettings> board;
+  /// The sentence by which the file accepts a board that does not vent by itself; empty: it has a watchdog.
+  std::string accept_no_watchdog;
+  LoopSettings loop;
+  ReconnectSettings reconnect;
+  RealTimeSettings real_time;
+  RecorderSettings recorder;  ///< paths made absolute or relative to the working directory
+  SocketSettings socket;
+  std::vector<InputFile> inputs;  ///< the rig file first, each file once
+};
+
+/// The sentence that `accept_no_watchdog` must hold, word by word.
+inline constexpr std::string_view no_watchdog_words =
+    "the outputs keep their last pressure when softgripd dies";
+
+/// Reads a rig out of a parsed document. Files that it names (board map, models) are found relative to the
+/// document's file; their own problems are added under their own names. Errors: nothing is returned.
+/// Warnings: `problems.warnings()`, and the rig is returned.
+[[nodiscard]] std::optional<RigFile> read_rig(const document::Document& document,
+                                              document::Problems& problems);
+
+/// parse_file() and read_rig().
+[[nodiscard]] std::optional<RigFile> load_rig(const std::string& path, document::Problems& problems);
+
+}  // namespace softgrip::daemon
