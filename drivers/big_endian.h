@@ -1,0 +1,19 @@
+#pragma once
+// Words in byte buffers, high byte first, as Modbus has them. The caller knows that `at + 1` is inside.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace softgrip::drivers {
+
+[[nodiscard]] inline std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
+  return static_cast<std::uint16_t>(bytes[at] << 8 | bytes[at + 1]);
+}
+
+inline void put_word(std::span<std::uint8_t> bytes, std::size_t at, std::uint16_t value) noexcept {
+  bytes[at] = static_cast<std::uint8_t>(value >> 8);
+  bytes[at + 1] = static_cast<std::uint8_t>(value & 0xff);
+}
+
+}  // namespace softgrip::drivers

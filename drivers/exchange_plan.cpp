@@ -1,0 +1,198 @@
+#include "drivers/exchange_plan.h"
+
+#include <modbus/modbus.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "drivers/modbus_request.h"
+
+namespace softgrip::drivers {
+namespace {
+
+/// Registers (or bits) [begin, end) that one function reads.
+struct Range {
+  std::uint8_t function = 0;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
+bool is_bits(std::uint8_t function) {
+  return function <= MODBUS_FC_READ_DISCRETE_INPUTS;
+}
+
+std::uint32_t most_readable(std::uint8_t function) {
+  return is_bits(function) ? max_read_bits : max_read_registers;
+}
+
+/// The smallest range of a block that holds all the numbers `indices`. What lies between belongs to the
+/// block, so the board serves it.
+Range covering(const RegisterBlock& block, const std::vector<std::size_t>& indices) {
+  const auto [first, last] = std::minmax_element(indices.begin(), indices.end());
+  return {block.function, block.address_of(*first),
+          static_cast<std::uint32_t>(block.address_of(*last) + words_of(block.kind))};
+}
+
+/// Registers of [begin, end) that no block of the map declares as readable by `function`.
+std::uint32_t undeclared(const BoardMap& map, std::uint8_t function, std::uint32_t begin, std::uint32_t end) {
+  std::vector<RegisterBlock> blocks{map.inputs.registers};
+  if (map.input_status.has_value()) blocks.push_back(map.input_status->registers);
+  if (map.read_back.has_value()) blocks.push_back(map.read_back->registers);
+  std::uint32_t count = 0;
+  for (std::uint32_t address = begin; address < end; ++address) {
+    const bool declared = std::any_of(blocks.begin(), blocks.end(), [&](const RegisterBlock& block) {
+      return block.function == function && address >= block.address &&
+             address < static_cast<std::uint32_t>(block.address) + block.registers();
+    });
+    if (!declared) ++count;
+  }
+  return count;
+}
+
+std::vector<ReadStep> merged(const BoardMap& map, std::vector<Range> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) {
+    return a.function != b.function ? a.function < b.function : a.begin < b.begin;
+  });
+  std::vector<Range> result;
+  for (const Range& range : ranges) {
+    if (!result.empty() && result.back().function == range.function) {
+      Range& last = result.back();
+      const std::uint32_t end = std::max(last.end, range.end);
+      const bool gap_allowed = range.begin <= last.end ||
+                               undeclared(map, range.function, last.end, range.begin) <= map.readable_gap;
+      if (gap_allowed && end - last.begin <= most_readable(range.function)) {
+        last.end = end;
+        continue;
+      }
+    }
+    result.push_back(range);
+  }
+  std::vector<ReadStep> steps;
+  for (const Range& range : result) {
+    steps.push_back({range.function, static_cast<std::uint16_t>(range.begin),
+                     static_cast<std::uint16_t>(range.end - range.begin)});
+  }
+  return steps;
+}
+
+std::vector<std::size_t> wired_inputs(const std::vector<ChannelWiring>& wiring) {
+  std::vector<std::size_t> inputs;
+  for (const ChannelWiring& channel : wiring) {
+    inputs.push_back(channel.displacement.input);
+    if (channel.pressure.has_value()) inputs.push_back(channel.pressure->input);
+  }
+  return inputs;
+}
+
+std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring) {
+  std::vector<std::size_t> outputs;
+  for (const ChannelWiring& channel : wiring) outputs.push_back(channel.valve.output);
+  return outputs;
+}
+
+std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<ChannelWiring>& wiring) {
+  const std::vector<std::size_t> inputs = wired_inputs(wiring);
+  std::vector<Range> ranges{covering(map.inputs.registers, inputs)};
+  if (map.input_status.has_value()) ranges.push_back(covering(map.input_status->registers, inputs));
+  if (map.read_back.has_value()) {
+    ranges.push_back(covering(map.read_back->registers, wired_outputs(wiring)));
+  }
+  if (map.watchdog.tripped.has_value()) {
+    const BoardWatchdog::Tripped& tripped = *map.watchdog.tripped;
+    ranges.push_back({tripped.function, tripped.address, tripped.address + 1U});
+  }
+  return merged(map, std::move(ranges));
+}
+
+/// Runs of neighbouring outputs. Encoded outputs stand in the order of their terminals.
+void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, ExchangePlan& plan) {
+  std::vector<std::size_t> order(wiring.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return wiring[a].valve.output < wiring[b].valve.output; });
+  const RegisterBlock& block = map.outputs.registers;
+  const std::uint16_t words = words_of(block.kind);
+  const std::uint16_t most = map.has_fc23 ? max_fc23_write_registers : max_write_registers;
+  for (const std::size_t channel : order) {
+    const std::uint16_t address = block.address_of(wiring[channel].valve.output);
+    plan.channels[channel].output_word = plan.output_words;
+    const bool continues = !plan.writes.empty() && block.function == MODBUS_FC_WRITE_MULTIPLE_REGISTERS &&
+                           plan.writes.back().address + plan.writes.back().count == address &&
+                           plan.writes.back().count + words <= most;
+    if (continues) {
+      plan.writes.back().count = static_cast<std::uint16_t>(plan.writes.back().count + words);
+    } else {
+      plan.writes.push_back({block.function, address, words, plan.output_words});
+    }
+    plan.output_words += words;
+  }
+}
+
+Slot slot_of(const std::vector<ReadStep>& reads, std::uint8_t function, std::uint16_t address) {
+  for (std::size_t step = 0; step < reads.size(); ++step) {
+    const ReadStep& read = reads[step];
+    if (read.function == function && address >= read.address && address < read.address + read.count) {
+      return {step, static_cast<std::size_t>(address - read.address)};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring) {
+  ExchangePlan plan;
+  plan.channels.resize(wiring.size());
+  if (wiring.empty()) return plan;
+  plan_writes(map, wiring, plan);
+  plan.reads = plan_reads(map, wiring);
+
+  const auto slot = [&](const RegisterBlock& block, std::size_t index) {
+    return slot_of(plan.reads, block.function, block.address_of(index));
+  };
+  for (std::size_t i = 0; i < wiring.size(); ++i) {
+    const ChannelWiring& channel = wiring[i];
+    ChannelSlots& slots = plan.channels[i];
+    slots.displacement = slot(map.inputs.registers, channel.displacement.input);
+    if (channel.pressure.has_value()) slots.pressure = slot(map.inputs.registers, channel.pressure->input);
+    if (map.input_status.has_value()) {
+      slots.displacement_status = slot(map.input_status->registers, channel.displacement.input);
+      if (channel.pressure.has_value()) {
+        slots.pressure_status = slot(map.input_status->registers, channel.pressure->input);
+      }
+    }
+    if (map.read_back.has_value()) slots.read_back = slot(map.read_back->registers, channel.valve.output);
+  }
+  if (map.watchdog.tripped.has_value()) {
+    plan.tripped = slot_of(plan.reads, map.watchdog.tripped->function, map.watchdog.tripped->address);
+  }
+  plan.sampling_read = plan.channels.front().displacement.step;
+  if (map.has_fc23) plan.combined_read = plan.sampling_read;
+  return plan;
+}
+
+std::string describe(const ExchangePlan& plan) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  for (std::size_t i = 0; i < plan.writes.size(); ++i) {
+    const WriteStep& write = plan.writes[i];
+    const bool combined = i == 0 && plan.combined_read.has_value();
+    std::string part = "FC" + std::to_string(combined ? MODBUS_FC_WRITE_AND_READ_REGISTERS : write.function) +
+                       " writes " + std::to_string(write.count) + " from " + std::to_string(write.address);
+    if (combined) {
+      const ReadStep& read = plan.reads[*plan.combined_read];
+      part += " and reads " + std::to_string(read.count) + " from " + std::to_string(read.address);
+    }
+    add(part);
+  }
+  for (std::size_t i = 0; i < plan.reads.size(); ++i) {
+    if (plan.combined_read == i) continue;
+    const ReadStep& read = plan.reads[i];
+    add("FC" + std::to_string(read.function) + " reads " + std::to_string(read.count) + " from " +
+        std::to_string(read.address));
+  }
+  return text;
+}
+
+}  // namespace softgrip::drivers

@@ -1,0 +1,48 @@
+#include "drivers/round_trip.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace softgrip::drivers {
+namespace {
+
+// Upper ends of what is usual: loopback 0.02-0.15 ms (measured), a switched network 1-10 ms (a common figure,
+// not measured here).
+constexpr double assumed_loopback_s = 0.15e-3;
+constexpr double assumed_network_s = 10e-3;
+
+bool is_loopback(const std::string& host) {
+  return host.rfind("127.", 0) == 0 || host == "::1";
+}
+
+std::string milliseconds(double seconds) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g ms", seconds * 1e3);
+  return text.data();
+}
+
+}  // namespace
+
+Board::Budget tcp_budget(std::size_t transactions, const std::string& plan, const std::string& host,
+                         const RoundTrip& measured) {
+  const bool known = measured.count() > 0;
+  const double assumed_s = is_loopback(host) ? assumed_loopback_s : assumed_network_s;
+  const double round_trip_s = known ? measured.slowest_s() : assumed_s;
+  Board::Budget budget;
+  budget.exchange_s = static_cast<double>(transactions) * round_trip_s;
+  const std::string source =
+      known ? "the slowest of " + std::to_string(measured.count()) + " measured when connecting"
+            : std::string("assumed for ") + (is_loopback(host) ? "loopback" : "a network") +
+                  ", not measured: not connected yet";
+  budget.explanation = "Modbus TCP, " + std::to_string(transactions) +
+                       (transactions == 1 ? " round trip" : " round trips") + " (" + plan + ") of " +
+                       milliseconds(round_trip_s) + " (" + source + "): " + milliseconds(budget.exchange_s);
+  if (budget.exchange_s > 0) {
+    budget.explanation +=
+        ", at most " + std::to_string(std::lround(std::floor(1 / budget.exchange_s))) + " Hz";
+  }
+  return budget;
+}
+
+}  // namespace softgrip::drivers
