@@ -5,18 +5,38 @@
 //
 //   template <class T> class ValveLag {
 //    public:
-//     static constexpr BlockInfo info{...};                      // id, station, kind, inverse, one line
-//     static constexpr std::array parameters{ParameterSpec{...}}; // its only declaration
-//     explicit ValveLag(std::span<const T> values, const Preparation&);
-//     void reset(const T& input);         // at rest: as if `input` had been there for ever
-//     T output() const;                   // where the block stands (displacement of an element, mm)
-//     template <class Next> void step(const Segment<T>& in, const Surroundings&, Next&& next);
+//     static constexpr BlockInfo info{...};                        // id, station, kind, inverse, one line
+//     static constexpr std::array parameters{ParameterSpec{...}};  // its only declaration
+//     ValveLag(std::span<const T> values, const Preparation&);
+//     void reset(const T& input);  // see "Rest"
+//     T output() const;            // where the block stands
+//     ... and by kind:
 //   };
 //
-// step() calls next(segment) one or more times; the durations of what it passes on sum to the duration of
-// what it got, the first `begin` is the last `end` of the step before, and each segment is monotone: a block
-// whose output turns inside a sample passes two. With its effect at zero a block passes on what it got
-// (the zero-limit), or, as an element, adds nothing.
+//   pressure, displacement:
+//     template <class Next> void step(const Segment<T>& in, const Surroundings&, Next&& next);
+//   element:
+//     Segment<T> step(const Segment<T>& in, const Surroundings&);
+//   reading:
+//     T sample(const T& displacement_mm, const T& duration_s, const Surroundings&);
+//   whose info.inverse is Inverse::implicit, besides, without touching the state, from where the block
+//   stands:
+//     element:                 U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const;
+//     pressure, displacement:  U peek(const T& duration_s, const U& end, const Surroundings&) const;
+//     (a template over U: double, or Dual<double> for the derivative with respect to the newest pressure)
+//
+// A step calls next(segment) one or more times; the durations of what it passes on sum to the duration of
+// what it got (a jump may be kept back by a delay), the first `begin` is the last `end` of the step before,
+// and a block whose output turns inside a sample passes two segments, so that Bouc-Wen sees the turn.
+// With its parameters at their neutral values a block passes on what it got; an element adds nothing.
+//
+// Rest. reset(input) puts a block where it stands after its input rose from 0 to `input` once and has been
+// held ever since: lags and creep settled, hysteresis on its first loading curve, the delay line filled.
+//
+// A block with repeated parts declares `repeated` (the parameters of one part, in order) and `max_parts`
+// besides. A block whose parameters must fit each other declares
+// `static std::string_view objection(std::span<const double> values)`, empty when they do.
+//
 // Blocks are copyable values; stepping allocates nothing once a block was prepared for a sample time.
 
 #include <array>
@@ -29,8 +49,8 @@
 
 namespace softgrip::model {
 
-/// Where a block stands. A chain's blocks are ordered by station; inside one, as the model file lists them,
-/// but by kind in the actuator: pressure blocks, then elements, then displacement blocks.
+/// Where a block stands. A chain's blocks are ordered by station and, inside one, by kind: pressure blocks,
+/// elements, displacement blocks, reading blocks; among equals, as the model file lists them.
 enum class Station : std::uint8_t { valve, actuator, load, sensor };
 
 /// What a block does to the signal that walks the chain.
@@ -38,12 +58,13 @@ enum class Kind : std::uint8_t {
   pressure,      ///< kPa in, kPa out, in series
   element,       ///< kPa in, mm out; all elements of a chain see the same pressure and their outputs add
   displacement,  ///< mm in, mm out, in series
+  reading,       ///< mm in, mm out, once per step at its end: what a sensor does to the value that is read
 };
 
 /// How the control side undoes a block.
 enum class Inverse : std::uint8_t {
   implicit,  ///< solved together with the actuator: output monotone in the newest pressure
-  lead,      ///< the derivative of the planned pressure
+  lead,      ///< the derivative of the planned signal
   preview,   ///< asking for the future value of the reference
   bound,     ///< no inverse: bounds the reference
   ignored,   ///< not to be inverted (noise, quantisation)
@@ -51,12 +72,13 @@ enum class Inverse : std::uint8_t {
 
 /// What a block says of itself.
 struct BlockInfo {
-  std::string_view id;     ///< YAML key, cause id
+  std::string_view id;  ///< YAML key, cause id
   Station station;
   Kind kind;
   Inverse inverse;
-  std::string_view title;  ///< "Transport delay"
+  std::string_view title;    ///< "Transport delay"
   std::string_view meaning;  ///< one line for the manual
+  bool repeatable = false;   ///< may stand in a chain more than once (two stops, two disturbances)
 };
 
 /// What a block may need to prepare itself, besides its parameters.
@@ -69,6 +91,18 @@ struct Preparation {
 [[nodiscard]] constexpr std::string_view name_of(Station station) {
   constexpr std::array<std::string_view, 4> names{"valve", "actuator", "load", "sensor"};
   return names[static_cast<std::size_t>(station)];
+}
+
+/// "pressure", "element", "displacement", "reading"
+[[nodiscard]] constexpr std::string_view name_of(Kind kind) {
+  constexpr std::array<std::string_view, 4> names{"pressure", "element", "displacement", "reading"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+/// "implicit", "lead", "preview", "bound", "ignored"
+[[nodiscard]] constexpr std::string_view name_of(Inverse inverse) {
+  constexpr std::array<std::string_view, 5> names{"implicit", "lead", "preview", "bound", "ignored"};
+  return names[static_cast<std::size_t>(inverse)];
 }
 
 }  // namespace softgrip::model

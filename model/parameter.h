@@ -1,6 +1,7 @@
 #pragma once
 // What a block says of a parameter, once: the YAML key, its check, the fit's bounds and scale, the manual.
 
+#include <limits>
 #include <string_view>
 
 namespace softgrip::model {
@@ -17,6 +18,9 @@ struct ParameterSpec {
   double scale = 1;          ///< a typical change, for the scaling of a fit
   std::string_view meaning;  ///< one line
   bool whole = false;        ///< only whole numbers (an exponent)
+  /// The value at which the block does nothing, when all its parameters that have one stand there;
+  /// NaN where the value does not matter then.
+  double neutral = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace softgrip::model

@@ -1,0 +1,121 @@
+#pragma once
+// Kelvin-Voigt creep with any number of branches in series with a spring:
+//   VE(s)/p(s) = 1/k0 + sum_i 1/(c_i s + k_i)
+
+#include <cstddef>
+#include <vector>
+
+#include "model/block.h"
+#include "model/exponential.h"
+#include "model/weight_cache.h"
+
+namespace softgrip::model {
+
+/// Exact for piecewise-parabolic pressure and any duration. k_i = 0 is a pure dashpot (no static gain).
+template <class T>
+class KelvinVoigt {
+ public:
+  static constexpr BlockInfo info{
+      "kelvin_voigt",
+      Station::actuator,
+      Kind::element,
+      Inverse::implicit,
+      "Kelvin-Voigt creep",
+      "A spring in series with branches of spring and dashpot: 1/k0 + sum 1/(c s + k)."};
+  static constexpr std::array parameters{ParameterSpec{"k0_kpa_per_mm", "kPa/mm", 300.0, 1e-3, 1e9, 50.0,
+                                                       "stiffness of the instantaneous spring", false, 1e9}};
+  static constexpr std::array repeated{
+      ParameterSpec{"k#_kpa_per_mm", "kPa/mm", 5.0, 0.0, 1e9, 2.0, "stiffness of branch #", false, 1e9},
+      ParameterSpec{"c#_kpa_s_per_mm", "kPa s/mm", 10.0, 1e-9, 1e9, 5.0,
+                    "damping of branch #; its time constant is c/k", false, 1e9}};
+  static constexpr std::size_t max_parts = 8;
+
+  KelvinVoigt(std::span<const T> values, const Preparation& preparation)
+      : compliance_(1.0 / values[0]), weights_((values.size() - 1) / 2) {
+    for (std::size_t i = 1; i + 1 < values.size(); i += 2)
+      branches_.push_back({values[i], values[i + 1], T(0.0)});
+    if (preparation.sample_time_s > 0) (void)weights(T(preparation.sample_time_s));
+  }
+
+  void reset(const T& input) {
+    for (Branch& branch : branches_) {
+      branch.x = value_of(branch.k) > 0.0 ? T(input / branch.k) : T(0.0);
+    }
+    pressure_ = input;
+    output_ = sum();
+  }
+
+  [[nodiscard]] T output() const { return output_; }
+  /// 1/k0: the part that follows the pressure at once [mm/kPa].
+  [[nodiscard]] const T& instantaneous_mm_per_kpa() const { return compliance_; }
+  /// How many branches.
+  [[nodiscard]] std::size_t branches() const { return branches_.size(); }
+
+  Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    const T begin = output_;
+    pressure_ = in.end;
+    T end = compliance_ * in.end;
+    if (is_zero(in.duration_s)) {
+      for (const Branch& branch : branches_) end += branch.x;
+      output_ = end;
+      return Segment<T>::straight(in.duration_s, begin, end);
+    }
+    const ExponentialWeights<T>* w = weights(in.duration_s);
+    const T bend = in.bend();
+    T mean = compliance_ * in.mean;
+    for (std::size_t i = 0; i < branches_.size(); ++i) {
+      T& x = branches_[i].x;
+      mean += w[i].mean(x, in, bend);
+      x = w[i].end(x, in, bend);
+      end += x;
+    }
+    output_ = end;
+    return {in.duration_s, begin, end, mean};
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const {
+    T fixed(0.0);
+    T slope = compliance_;
+    const ExponentialWeights<T>* kept = is_zero(duration_s) ? nullptr : weights_.find(duration_s);
+    for (std::size_t i = 0; i < branches_.size(); ++i) {
+      const Branch& branch = branches_[i];
+      fixed += branch.x;
+      if (is_zero(duration_s)) continue;
+      const ExponentialWeights<T> w = kept != nullptr ? kept[i] : branch.weights(duration_s);
+      fixed += w.end_begin * pressure_ - w.loss * branch.x - w.end_rise * pressure_;
+      slope += w.end_rise;
+    }
+    return fixed + slope * end_kpa;
+  }
+
+ private:
+  struct Branch {
+    T k, c;
+    T x;  // its displacement [mm]
+
+    [[nodiscard]] ExponentialWeights<T> weights(const T& duration_s) const {
+      return ExponentialWeights<T>::make(duration_s, T(k / c), T(1.0 / c));
+    }
+  };
+
+  [[nodiscard]] T sum() const {
+    T result = compliance_ * pressure_;
+    for (const Branch& branch : branches_) result += branch.x;
+    return result;
+  }
+
+  const ExponentialWeights<T>* weights(const T& duration_s) {
+    return weights_.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = branches_[i].weights(duration_s);
+    });
+  }
+
+  T compliance_;
+  T pressure_{0.0};
+  T output_{0.0};
+  std::vector<Branch> branches_;
+  WeightCache<T> weights_;
+};
+
+}  // namespace softgrip::model

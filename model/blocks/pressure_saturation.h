@@ -1,0 +1,38 @@
+#pragma once
+// The pressure stops below the command: the regulator's or the supply's ceiling.
+
+#include "model/block.h"
+#include "model/clip.h"
+
+namespace softgrip::model {
+
+/// p = min(command, limit).
+template <class T>
+class PressureSaturation {
+ public:
+  static constexpr BlockInfo info{"pressure_saturation", Station::valve,
+                                  Kind::pressure,        Inverse::bound,
+                                  "Pressure saturation", "The pressure stops below the command."};
+  static constexpr std::array parameters{ParameterSpec{"limit_kpa", "kPa", 100.0, 0.0, 10000.0, 5.0,
+                                                       "highest pressure the valve reaches", false, 10000.0}};
+
+  PressureSaturation(std::span<const T> values, const Preparation&) : limit_kpa_(values[0]) {}
+
+  void reset(const T& input) { output_ = lesser(input, limit_kpa_); }
+  [[nodiscard]] T output() const { return output_; }
+  [[nodiscard]] const T& limit_kpa() const { return limit_kpa_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    clip_above(in, limit_kpa_, [&](const Segment<T>& s) {
+      output_ = s.end;
+      next(s);
+    });
+  }
+
+ private:
+  T limit_kpa_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,45 @@
+#pragma once
+// The reading comes in steps: the converter's resolution.
+
+#include <cmath>
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// The nearest multiple of the step. Derivatives pass unchanged: those of the stairs would be useless.
+template <class T>
+class Quantisation {
+ public:
+  static constexpr BlockInfo info{"quantisation", Station::sensor,
+                                  Kind::reading,  Inverse::ignored,
+                                  "Quantisation", "The reading comes in steps: the converter's resolution."};
+  static constexpr std::array parameters{
+      ParameterSpec{"step_mm", "mm", 0.01, 0.0, 10.0, 0.01, "size of one step", false, 0.0}};
+
+  Quantisation(std::span<const T> values, const Preparation&) : step_mm_(value_of(values[0])) {}
+
+  void reset(const T& input) { output_ = rounded(input); }
+  [[nodiscard]] T output() const { return output_; }
+
+  T sample(const T& displacement_mm, const T&, const Surroundings&) {
+    return output_ = rounded(displacement_mm);
+  }
+
+ private:
+  [[nodiscard]] T rounded(const T& y) const {
+    if (step_mm_ <= 0.0) return y;
+    const double value = value_of(y);
+    const double step = step_mm_ * std::round(value / step_mm_);
+    if constexpr (std::is_arithmetic_v<T>) {
+      return step;
+    } else {
+      return y + (step - value);
+    }
+  }
+
+  double step_mm_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

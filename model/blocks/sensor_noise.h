@@ -1,0 +1,58 @@
+#pragma once
+// Random error of the reading, white or with a correlation time.
+
+#include <cmath>
+#include <cstdint>
+
+#include "model/block.h"
+#include "model/random.h"
+
+namespace softgrip::model {
+
+/// Normal noise of the given root mean square; with a correlation time, exp(-dt/tau) from one reading to the
+/// next (Ornstein-Uhlenbeck, exact for any dt). A step of zero duration does not draw.
+template <class T>
+class SensorNoise {
+ public:
+  static constexpr BlockInfo info{"sensor_noise",   Station::sensor, Kind::reading,
+                                  Inverse::ignored, "Sensor noise",  "Random error of the reading."};
+  static constexpr std::array parameters{
+      ParameterSpec{"rms_mm", "mm", 0.05, 0.0, 100.0, 0.05, "root mean square of the noise", false, 0.0},
+      ParameterSpec{"correlation_time_s", "s", 0.0, 0.0, 1000.0, 0.05,
+                    "time over which the noise forgets itself; 0: every reading anew"}};
+
+  SensorNoise(std::span<const T> values, const Preparation& preparation)
+      : rms_mm_(values[0]), correlation_time_s_(value_of(values[1])), seed_(preparation.seed) {}
+
+  void reset(const T& input) {
+    drawn_ = 0;
+    noise_ = 0.0;
+    output_ = input;
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  T sample(const T& displacement_mm, const T& duration_s, const Surroundings&) {
+    if (value_of(duration_s) > 0.0) draw(value_of(duration_s));
+    return output_ = displacement_mm + rms_mm_ * noise_;
+  }
+
+ private:
+  void draw(double duration_s) {
+    const double fresh = normal_at(seed_, drawn_);
+    if (drawn_++ == 0 || correlation_time_s_ <= 0.0) {
+      noise_ = fresh;
+      return;
+    }
+    const double kept = std::exp(-duration_s / correlation_time_s_);
+    noise_ = kept * noise_ + std::sqrt(1.0 - kept * kept) * fresh;
+  }
+
+  T rms_mm_;
+  double correlation_time_s_;
+  std::uint64_t seed_;
+  std::uint64_t drawn_ = 0;
+  double noise_ = 0.0;  // of rms 1
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

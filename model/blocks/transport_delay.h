@@ -1,0 +1,127 @@
+#pragma once
+// Dead time between command and pressure: a line that holds the last `delay_s` of the signal.
+
+#include <cstddef>
+#include <vector>
+
+#include "model/block.h"
+#include "model/number.h"
+
+namespace softgrip::model {
+
+/// Exact for piecewise-parabolic signals and any delay: a sample whose delayed stretch contains a kink passes
+/// on two segments, cut at the kink. Jumps arrive as jumps, at the start of the first step that ends after
+/// them. The output is differentiable in the delay.
+template <class T>
+class TransportDelay {
+ public:
+  static constexpr BlockInfo info{"transport_delay", Station::valve,
+                                  Kind::pressure,    Inverse::preview,
+                                  "Transport delay", "Dead time between command and pressure."};
+  static constexpr std::array parameters{
+      ParameterSpec{"delay_s", "s", 0.05, 0.0, 10.0, 0.05, "dead time", false, 0.0}};
+
+  TransportDelay(std::span<const T> values, const Preparation& preparation)
+      : delay_s_(values[0]), capacity_(initial_capacity(value_of(values[0]), preparation.sample_time_s)) {
+    line_.resize(capacity_);
+    reset(T(0.0));
+  }
+
+  void reset(const T& input) {
+    head_ = 0;
+    count_ = 0;
+    front_begin_ = input;
+    if (!is_zero(delay_s_)) push(Segment<T>::straight(delay_s_, input, input));
+  }
+
+  [[nodiscard]] T output() const { return front_begin_; }
+  [[nodiscard]] const T& delay_s() const { return delay_s_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    if (is_zero(delay_s_)) {
+      front_begin_ = in.end;
+      next(in);
+      return;
+    }
+    push(in);
+    T remaining = in.duration_s;
+    while (!is_zero(remaining) && count_ > 0) {
+      const Piece& front = line_[head_];
+      const Segment<T> whole{front.duration_s, front_begin_, front.end, front.mean};
+      if (ends_in(whole.duration_s, remaining)) {
+        pop();
+        remaining -= whole.duration_s;
+        next(whole);
+      } else if (ends_with(whole.duration_s, remaining)) {
+        pop();
+        next(Segment<T>{remaining, whole.begin, whole.end, whole.mean});
+        return;
+      } else {
+        const T fraction = remaining / whole.duration_s;
+        const Segment<T> first = whole.before(fraction);
+        const Segment<T> rest = whole.beyond(fraction);
+        line_[head_] = {whole.duration_s - remaining, rest.end, rest.mean};
+        front_begin_ = rest.begin;
+        next(Segment<T>{remaining, first.begin, first.end, first.mean});
+        return;
+      }
+    }
+  }
+
+ private:
+  struct Piece {
+    T duration_s;
+    T end;
+    T mean;
+  };
+
+  // Two pieces per sample (a jump and a ramp) and as many again when they are shorter than nominal.
+  static std::size_t initial_capacity(double delay_s, double sample_time_s) {
+    if (sample_time_s <= 0) return 64;
+    std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
+    std::size_t capacity = 64;
+    while (capacity < needed) capacity *= 2;
+    return capacity;
+  }
+
+  // Rounding must not decide on which side of a sample a kink or a jump falls: lengths that agree to 1e-9 are
+  // equal. With derivatives there is no snapping, they would be lost.
+  static constexpr double snap = std::is_arithmetic_v<T> ? 1e-9 : 0.0;
+  static bool ends_in(const T& piece_s, const T& remaining_s) {
+    const double piece = value_of(piece_s);
+    const double remaining = value_of(remaining_s);
+    return piece < remaining * (1.0 - snap) || (piece == 0.0 && remaining == 0.0);
+  }
+  static bool ends_with(const T& piece_s, const T& remaining_s) {
+    if constexpr (std::is_arithmetic_v<T>) return piece_s <= remaining_s * (1.0 + snap);
+    return same(piece_s, remaining_s);
+  }
+
+  void push(const Segment<T>& s) {
+    if (count_ == capacity_) grow();
+    line_[(head_ + count_) & (capacity_ - 1)] = {s.duration_s, s.end, s.mean};
+    ++count_;
+  }
+  void pop() {
+    front_begin_ = line_[head_].end;
+    head_ = (head_ + 1) & (capacity_ - 1);
+    --count_;
+  }
+  void grow() {
+    std::vector<Piece> larger(capacity_ * 2);
+    for (std::size_t i = 0; i < count_; ++i) larger[i] = line_[(head_ + i) & (capacity_ - 1)];
+    line_.swap(larger);
+    head_ = 0;
+    capacity_ *= 2;
+  }
+
+  T delay_s_;
+  T front_begin_{0.0};  // where the oldest piece begins: the output
+  std::size_t capacity_;
+  std::size_t head_ = 0;
+  std::size_t count_ = 0;
+  std::vector<Piece> line_;  // a ring; its size is a power of two
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,84 @@
+#pragma once
+// First-order lag of the regulator and the tube: tau p' = command - p.
+
+#include <cmath>
+
+#include "model/block.h"
+#include "model/exponential.h"
+#include "model/weight_cache.h"
+
+namespace softgrip::model {
+
+/// Exact for straight input, including the turn: where the output has its extremum inside a segment (the
+/// moment it meets the input), two segments are passed on.
+template <class T>
+class ValveLag {
+ public:
+  static constexpr BlockInfo info{"valve_lag",    Station::valve,
+                                  Kind::pressure, Inverse::lead,
+                                  "Valve lag",    "First-order lag of the regulator and the tube."};
+  static constexpr std::array parameters{
+      ParameterSpec{"time_constant_s", "s", 0.05, 0.0, 10.0, 0.05, "time constant", false, 0.0}};
+
+  ValveLag(std::span<const T> values, const Preparation& preparation)
+      : time_constant_s_(values[0]), weights_(1) {
+    if (preparation.sample_time_s > 0 && !passes()) (void)weights(T(preparation.sample_time_s));
+  }
+
+  void reset(const T& input) { output_ = input; }
+  [[nodiscard]] T output() const { return output_; }
+  [[nodiscard]] const T& time_constant_s() const { return time_constant_s_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    if (passes()) {
+      output_ = in.end;
+      next(in);
+      return;
+    }
+    if (is_zero(in.duration_s)) return;  // a jump of the input does not move the output yet
+    const ExponentialWeights<T>& w = weights(in.duration_s);
+    const T bend = in.bend();
+    const T begin = output_;
+    const T end = w.end(begin, in, bend);
+    output_ = end;
+    const T gap_begin = in.begin - begin;
+    const T gap_end = in.end - end;
+    if (value_of(gap_begin) * value_of(gap_end) < 0.0 && turns(in, begin, gap_begin, end, next)) return;
+    next(Segment<T>{in.duration_s, begin, end, w.mean(begin, in, bend)});
+  }
+
+ private:
+  [[nodiscard]] bool passes() const { return value_of(time_constant_s_) <= 0.0; }
+
+  const ExponentialWeights<T>& weights(const T& duration_s) {
+    return weights_.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
+      const T rate = 1.0 / time_constant_s_;
+      out[0] = ExponentialWeights<T>::make(duration_s, rate, rate);
+    })[0];
+  }
+
+  // The gap d = input - output obeys d' = r - d / tau on a straight input of slope r, so it closes after
+  // t = tau log(1 - d(0) / (r tau)), and there output = input. A turn within a millionth of either end is
+  // not worth a segment: what Bouc-Wen would see of it is of the order of its square.
+  template <class Next>
+  bool turns(const Segment<T>& in, const T& begin, const T& gap_begin, const T& end, Next&& next) const {
+    using std::log1p;
+    const T slope = (in.end - in.begin) / in.duration_s;
+    const T turn_s = time_constant_s_ * log1p(-gap_begin / (slope * time_constant_s_));
+    const T rest_s = in.duration_s - turn_s;
+    const double least_s = 1e-6 * value_of(in.duration_s);
+    if (!(value_of(turn_s) > least_s && value_of(rest_s) > least_s)) return false;
+    const T peak = in.begin + slope * turn_s;
+    next(Segment<T>{turn_s, begin, peak,
+                    (in.begin + peak) * 0.5 - time_constant_s_ * (peak - begin) / turn_s});
+    next(Segment<T>{rest_s, peak, end, (peak + in.end) * 0.5 - time_constant_s_ * (end - peak) / rest_s});
+    return true;
+  }
+
+  T time_constant_s_;
+  T output_{0.0};
+  WeightCache<T> weights_;
+};
+
+}  // namespace softgrip::model

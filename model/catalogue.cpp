@@ -1,0 +1,57 @@
+#include "model/catalogue.h"
+
+#include <array>
+#include <utility>
+
+#include "model/registry.h"
+
+namespace softgrip::model {
+namespace {
+
+template <class Block>
+Descriptor describe() {
+  Descriptor result{Block::info, Block::parameters, {}, 0, nullptr};
+  if constexpr (requires { Block::repeated; }) {
+    result.repeated = Block::repeated;
+    result.max_parts = Block::max_parts;
+  }
+  if constexpr (requires { Block::objection(std::span<const double>{}); })
+    result.objection = &Block::objection;
+  return result;
+}
+
+using Blocks = AnyBlock<double>;
+
+template <std::size_t... I>
+std::array<Descriptor, sizeof...(I)> describe_all(std::index_sequence<I...>) {
+  return {describe<std::variant_alternative_t<I, Blocks>>()...};
+}
+
+}  // namespace
+
+bool Descriptor::accepts(std::size_t value_count) const {
+  if (repeated.empty()) return value_count == parameters.size();
+  if (value_count < parameters.size() + repeated.size()) return false;
+  const std::size_t rest = value_count - parameters.size();
+  return rest % repeated.size() == 0 && rest / repeated.size() <= max_parts;
+}
+
+const ParameterSpec& Descriptor::spec(std::size_t index) const {
+  if (index < parameters.size()) return parameters[index];
+  return repeated[(index - parameters.size()) % repeated.size()];
+}
+
+std::span<const Descriptor> catalogue() {
+  static const auto all = describe_all(std::make_index_sequence<std::variant_size_v<Blocks>>{});
+  return all;
+}
+
+std::optional<std::size_t> find_block(std::string_view id) {
+  const std::span<const Descriptor> all = catalogue();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].info.id == id) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace softgrip::model

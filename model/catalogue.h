@@ -1,0 +1,35 @@
+#pragma once
+// What the blocks say of themselves, as plain data by index: for everything that lists, reads, writes or fits
+// blocks and need not step them. Filled from the list in registry.h.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// One block type.
+struct Descriptor {
+  BlockInfo info;
+  std::span<const ParameterSpec> parameters;  ///< the single ones
+  std::span<const ParameterSpec> repeated;    ///< of one part; empty for most blocks
+  std::size_t max_parts = 0;                  ///< most parts; at least one is required where there are any
+  /// Why these values do not fit each other, or empty. nullptr when any do.
+  std::string_view (*objection)(std::span<const double> values) = nullptr;
+
+  /// How many values a block of this type may have: parameters.size() + n repeated.size().
+  [[nodiscard]] bool accepts(std::size_t value_count) const;
+  /// The declaration of value `index` of a block.
+  [[nodiscard]] const ParameterSpec& spec(std::size_t index) const;
+};
+
+/// All block types, by BlockSpec::type.
+[[nodiscard]] std::span<const Descriptor> catalogue();
+
+/// The type with this id, or nothing.
+[[nodiscard]] std::optional<std::size_t> find_block(std::string_view id);
+
+}  // namespace softgrip::model

@@ -1,0 +1,11 @@
+#include "model/chain.h"
+
+#include "model/dual.h"
+
+namespace softgrip::model {
+
+template class Chain<double>;
+template double Chain<double>::peek(const double&, const double&, const Surroundings&) const;
+template Dual<double> Chain<double>::peek(const double&, const Dual<double>&, const Surroundings&) const;
+
+}  // namespace softgrip::model

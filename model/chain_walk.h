@@ -1,0 +1,184 @@
+#pragma once
+// How a Chain walks its blocks. Included by chain.h alone.
+
+#include <type_traits>
+#include <utility>
+
+#include "model/chain.h"
+
+namespace softgrip::model {
+namespace walk {
+
+template <class T, std::size_t I = 0>
+AnyBlock<T> make_block(std::size_t type, std::span<const T> values, const Preparation& preparation) {
+  if constexpr (I + 1 < std::variant_size_v<AnyBlock<T>>) {
+    if (type != I) return make_block<T, I + 1>(type, values, preparation);
+  }
+  return AnyBlock<T>(std::in_place_index<I>, values, preparation);
+}
+
+template <class Block>
+inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
+template <class Block>
+inline constexpr bool is_implicit = std::remove_cvref_t<Block>::info.inverse == Inverse::implicit;
+
+}  // namespace walk
+
+template <class T>
+Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_time_s, std::uint64_t seed)
+    : sample_time_s_(sample_time_s) {
+  blocks_.reserve(model.blocks.size());
+  std::vector<T> own;
+  std::size_t next = 0;
+  for (const BlockSpec& spec : model.blocks) {
+    const std::size_t count = spec.values.size();
+    std::span<const T> block_values;
+    if (values.empty()) {
+      own.assign(spec.values.begin(), spec.values.end());
+      block_values = own;
+    } else {
+      block_values = values.subspan(next, count);
+    }
+    next += count;
+    const Preparation preparation{sample_time_s, derived_seed(seed, blocks_.size())};
+    blocks_.push_back(walk::make_block<T>(spec.type, block_values, preparation));
+    const BlockInfo& info = catalogue()[spec.type].info;
+    const std::size_t behind = blocks_.size();
+    for (auto s = static_cast<std::size_t>(info.station); s < end_.size(); ++s) end_[s] = behind;
+    if (info.kind <= Kind::pressure) first_element_ = behind;
+    if (info.kind <= Kind::element) first_displacement_ = behind;
+    if (info.kind <= Kind::displacement) first_reading_ = behind;
+  }
+  reset(T(0.0));
+}
+
+template <class T>
+void Chain<T>::reset(const T& command) {
+  command_kpa_ = command;
+  T pressure = command;
+  T displacement(0.0);
+  if (end_[0] == 0) after_[0] = pressure;
+  for (Index i = 0; i < blocks_.size(); ++i) {
+    std::visit(
+        [&](auto& block) {
+          using Block = decltype(block);
+          if constexpr (walk::kind_of<Block> == Kind::pressure) {
+            block.reset(pressure);
+            pressure = block.output();
+          } else if constexpr (walk::kind_of<Block> == Kind::element) {
+            block.reset(pressure);
+            displacement += block.output();
+          } else {
+            block.reset(displacement);
+            displacement = block.output();
+          }
+        },
+        blocks_[i]);
+    if (i + 1 == end_[0]) after_[0] = pressure;
+    if (i + 1 >= first_displacement_ && i + 1 <= first_reading_) note_displacement(i + 1, displacement);
+  }
+  after_[3] = displacement;
+}
+
+template <class T>
+T Chain<T>::step(const T& duration_s, const T& command, const Surroundings& surroundings) {
+  T duration = duration_s;
+  if constexpr (std::is_arithmetic_v<T>) {
+    if (std::abs(duration - sample_time_s_) <= 1e-9 * sample_time_s_) duration = sample_time_s_;
+  }
+  const Segment<T> segment = Segment<T>::straight(duration, command_kpa_, command);
+  command_kpa_ = command;
+  walk_pressure(0, segment, surroundings);
+  walk_readings(duration, surroundings);
+  return after_[3];
+}
+
+template <class T>
+void Chain<T>::walk_pressure(Index i, const Segment<T>& segment, const Surroundings& surroundings) {
+  if (i == end_[0]) after_[0] = segment.end;
+  if (i == first_element_) {
+    walk_elements(segment, surroundings);
+    return;
+  }
+  std::visit(
+      [&](auto& block) {
+        if constexpr (walk::kind_of<decltype(block)> == Kind::pressure) {
+          block.step(segment, surroundings,
+                     [&](const Segment<T>& out) { walk_pressure(i + 1, out, surroundings); });
+        }
+      },
+      blocks_[i]);
+}
+
+template <class T>
+void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surroundings) {
+  Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};
+  for (Index i = first_element_; i < first_displacement_; ++i) {
+    std::visit(
+        [&](auto& block) {
+          if constexpr (walk::kind_of<decltype(block)> == Kind::element) {
+            const Segment<T> out = block.step(segment, surroundings);
+            sum.begin += out.begin;
+            sum.end += out.end;
+            sum.mean += out.mean;
+          }
+        },
+        blocks_[i]);
+  }
+  walk_displacement(first_displacement_, sum, surroundings);
+}
+
+template <class T>
+void Chain<T>::walk_displacement(Index i, const Segment<T>& segment, const Surroundings& surroundings) {
+  note_displacement(i, segment.end);
+  if (i == first_reading_) return;
+  std::visit(
+      [&](auto& block) {
+        if constexpr (walk::kind_of<decltype(block)> == Kind::displacement) {
+          block.step(segment, surroundings,
+                     [&](const Segment<T>& out) { walk_displacement(i + 1, out, surroundings); });
+        }
+      },
+      blocks_[i]);
+}
+
+template <class T>
+void Chain<T>::walk_readings(const T& duration_s, const Surroundings& surroundings) {
+  T value = at_sensor_;
+  for (Index i = first_reading_; i < blocks_.size(); ++i) {
+    std::visit(
+        [&](auto& block) {
+          if constexpr (walk::kind_of<decltype(block)> == Kind::reading) {
+            value = block.sample(value, duration_s, surroundings);
+          }
+        },
+        blocks_[i]);
+  }
+  after_[3] = value;
+}
+
+template <class T>
+template <class U>
+U Chain<T>::peek(const T& duration_s, const U& end_kpa, const Surroundings& surroundings) const {
+  U pressure = end_kpa;
+  U displacement(0.0);
+  for (Index i = 0; i < end_[2]; ++i) {
+    std::visit(
+        [&](const auto& block) {
+          using Block = decltype(block);
+          if constexpr (walk::is_implicit<Block>) {
+            if constexpr (walk::kind_of<Block> == Kind::pressure) {
+              pressure = block.peek(duration_s, pressure, surroundings);
+            } else if constexpr (walk::kind_of<Block> == Kind::element) {
+              displacement = displacement + block.peek(duration_s, pressure, surroundings);
+            } else {
+              displacement = block.peek(duration_s, displacement, surroundings);
+            }
+          }
+        },
+        blocks_[i]);
+  }
+  return displacement;
+}
+
+}  // namespace softgrip::model

@@ -1,0 +1,46 @@
+#pragma once
+// Clipping a monotone segment at a level, cut where it passes it.
+
+#include "model/segment.h"
+
+namespace softgrip::model {
+
+/// The smaller of two, decided on the values.
+template <class T>
+[[nodiscard]] T lesser(const T& x, const T& y) {
+  return value_of(y) < value_of(x) ? y : x;
+}
+
+/// The larger of two, decided on the values.
+template <class T>
+[[nodiscard]] T greater(const T& x, const T& y) {
+  return value_of(y) > value_of(x) ? y : x;
+}
+
+/// Passes on min(in, level), in two segments when `in` passes the level inside.
+template <class T, class Next>
+void clip_above(const Segment<T>& in, const T& level, Next&& next) {
+  const double top = value_of(level);
+  const double begin = value_of(in.begin);
+  const double end = value_of(in.end);
+  if (begin <= top && end <= top) {
+    next(in);
+  } else if (begin >= top && end >= top) {
+    next(Segment<T>{in.duration_s, level, level, level});
+  } else {
+    const T fraction = in.fraction_at(level);
+    if (end > top) {
+      Segment<T> rise = in.before(fraction);
+      rise.end = level;
+      next(rise);
+      next(Segment<T>{in.duration_s - rise.duration_s, level, level, level});
+    } else {
+      Segment<T> fall = in.beyond(fraction);
+      fall.begin = level;
+      next(Segment<T>{in.duration_s - fall.duration_s, level, level, level});
+      next(fall);
+    }
+  }
+}
+
+}  // namespace softgrip::model

@@ -1,0 +1,71 @@
+#pragma once
+// A number with one derivative carried along (forward mode): what an implicit solve needs for Newton's step.
+
+#include <cmath>
+
+namespace softgrip::model {
+
+/// Value `a` and derivative `v` with respect to whatever was seeded with v = 1.
+template <class S>
+struct Dual {
+  S a{};
+  S v{};
+
+  constexpr Dual() = default;
+  constexpr Dual(S value) : a(value) {}  // NOLINT(google-explicit-constructor): a constant is a number
+  constexpr Dual(S value, S derivative) : a(value), v(derivative) {}
+
+  constexpr Dual& operator+=(const Dual& y) { return *this = *this + y; }
+  constexpr Dual& operator-=(const Dual& y) { return *this = *this - y; }
+  constexpr Dual& operator*=(const Dual& y) { return *this = *this * y; }
+  constexpr Dual& operator/=(const Dual& y) { return *this = *this / y; }
+
+  friend constexpr Dual operator+(const Dual& x) { return x; }
+  friend constexpr Dual operator-(const Dual& x) { return {-x.a, -x.v}; }
+  friend constexpr Dual operator+(const Dual& x, const Dual& y) { return {x.a + y.a, x.v + y.v}; }
+  friend constexpr Dual operator-(const Dual& x, const Dual& y) { return {x.a - y.a, x.v - y.v}; }
+  friend constexpr Dual operator*(const Dual& x, const Dual& y) { return {x.a * y.a, x.v * y.a + x.a * y.v}; }
+  friend constexpr Dual operator/(const Dual& x, const Dual& y) {
+    const S quotient = x.a / y.a;
+    return {quotient, (x.v - quotient * y.v) / y.a};
+  }
+  friend constexpr Dual operator*(const Dual& x, const S& y) { return {x.a * y, x.v * y}; }
+  friend constexpr Dual operator*(const S& x, const Dual& y) { return {x * y.a, x * y.v}; }
+  friend constexpr Dual operator+(const Dual& x, const S& y) { return {x.a + y, x.v}; }
+  friend constexpr Dual operator+(const S& x, const Dual& y) { return {x + y.a, y.v}; }
+  friend constexpr Dual operator-(const Dual& x, const S& y) { return {x.a - y, x.v}; }
+  friend constexpr Dual operator-(const S& x, const Dual& y) { return {x - y.a, -y.v}; }
+  friend constexpr Dual operator/(const Dual& x, const S& y) { return {x.a / y, x.v / y}; }
+
+  // Comparisons look at the value alone, as decisions do.
+  friend constexpr bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }
+  friend constexpr bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }
+  friend constexpr bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }
+  friend constexpr bool operator>=(const Dual& x, const Dual& y) { return x.a >= y.a; }
+  friend constexpr bool operator==(const Dual& x, const Dual& y) { return x.a == y.a; }
+  friend constexpr bool operator!=(const Dual& x, const Dual& y) { return x.a != y.a; }
+
+  friend Dual exp(const Dual& x) {
+    const S e = std::exp(x.a);
+    return {e, e * x.v};
+  }
+  friend Dual expm1(const Dual& x) {
+    const S e = std::expm1(x.a);
+    return {e, (e + S(1)) * x.v};
+  }
+  friend Dual log(const Dual& x) { return {std::log(x.a), x.v / x.a}; }
+  friend Dual log1p(const Dual& x) { return {std::log1p(x.a), x.v / (S(1) + x.a)}; }
+  friend Dual sqrt(const Dual& x) {
+    const S root = std::sqrt(x.a);
+    return {root, x.v / (S(2) * root)};
+  }
+  friend Dual sin(const Dual& x) { return {std::sin(x.a), std::cos(x.a) * x.v}; }
+  friend Dual cos(const Dual& x) { return {std::cos(x.a), -std::sin(x.a) * x.v}; }
+  friend Dual tanh(const Dual& x) {
+    const S t = std::tanh(x.a);
+    return {t, (S(1) - t * t) * x.v};
+  }
+  friend Dual abs(const Dual& x) { return x.a < S(0) ? -x : x; }
+};
+
+}  // namespace softgrip::model

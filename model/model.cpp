@@ -1,0 +1,198 @@
+#include "model/model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/catalogue.h"
+#include "model/text.h"
+
+namespace softgrip::model {
+namespace {
+
+// Blocks are ordered by station, inside one by kind.
+int rank(const BlockInfo& info) {
+  return static_cast<int>(info.station) * 8 + static_cast<int>(info.kind);
+}
+
+const BlockInfo& info_of(const BlockSpec& block) {
+  return catalogue()[block.type].info;
+}
+
+void check_values(const BlockSpec& block, std::vector<std::string>& wrong) {
+  const Descriptor& descriptor = catalogue()[block.type];
+  const std::string id(descriptor.info.id);
+  if (!descriptor.accepts(block.values.size())) {
+    wrong.push_back(id + " has " + std::to_string(block.values.size()) + " values");
+    return;
+  }
+  const std::size_t before = wrong.size();
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    const ParameterSpec& spec = descriptor.spec(i);
+    const double value = block.values[i];
+    if (!(value >= spec.lower && value <= spec.upper)) {
+      wrong.push_back(id + "." + parameter_name(block, i) + " = " + to_text(value) + " is not in [" +
+                      to_text(spec.lower) + ", " + to_text(spec.upper) + "]");
+    } else if (spec.whole && value != std::round(value)) {
+      wrong.push_back(id + "." + parameter_name(block, i) + " = " + to_text(value) +
+                      " is not a whole number");
+    }
+  }
+  if (wrong.size() != before || descriptor.objection == nullptr) return;
+  const std::string_view objection = descriptor.objection(block.values);
+  if (!objection.empty()) wrong.push_back(id + ": " + std::string(objection));
+}
+
+void check_order(const Model& model, std::vector<std::string>& wrong) {
+  bool has_element = false;
+  for (std::size_t i = 0; i < model.blocks.size(); ++i) {
+    const BlockInfo& info = info_of(model.blocks[i]);
+    has_element = has_element || info.kind == Kind::element;
+    if (i > 0 && rank(info) < rank(info_of(model.blocks[i - 1]))) {
+      wrong.push_back(std::string(info.id) + " must stand before " +
+                      std::string(info_of(model.blocks[i - 1]).id));
+    }
+    const bool again =
+        std::any_of(model.blocks.begin(), model.blocks.begin() + static_cast<std::ptrdiff_t>(i),
+                    [&](const BlockSpec& b) { return b.type == model.blocks[i].type; });
+    if (again && !info.repeatable) wrong.push_back(std::string(info.id) + " stands in the chain twice");
+  }
+  if (!has_element) wrong.emplace_back("the actuator has no element that turns pressure into displacement");
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const Model& model) {
+  std::vector<std::string> wrong;
+  for (const BlockSpec& block : model.blocks) {
+    if (block.type >= catalogue().size()) {
+      return {"there is no block type " + std::to_string(block.type)};
+    }
+    check_values(block, wrong);
+  }
+  check_order(model, wrong);
+  return wrong;
+}
+
+BlockSpec default_block(std::size_t type, std::size_t parts) {
+  const Descriptor& descriptor = catalogue()[type];
+  BlockSpec block{type, {}};
+  for (const ParameterSpec& spec : descriptor.parameters) block.values.push_back(spec.default_value);
+  for (std::size_t part = 0; part < parts; ++part) {
+    for (const ParameterSpec& spec : descriptor.repeated) block.values.push_back(spec.default_value);
+  }
+  return block;
+}
+
+BlockSpec neutral_block(std::size_t type) {
+  BlockSpec block = default_block(type);
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    const double neutral = catalogue()[type].spec(i).neutral;
+    if (!std::isnan(neutral)) block.values[i] = neutral;
+  }
+  return block;
+}
+
+Model with_block(Model model, BlockSpec block) {
+  const int own = rank(info_of(block));
+  const auto behind = std::find_if(model.blocks.begin(), model.blocks.end(),
+                                   [own](const BlockSpec& b) { return rank(info_of(b)) > own; });
+  model.blocks.insert(behind, std::move(block));
+  return model;
+}
+
+Model without_block(Model model, std::size_t type) {
+  std::erase_if(model.blocks, [type](const BlockSpec& b) { return b.type == type; });
+  return model;
+}
+
+Model only(Model model, bool (*keep)(const BlockInfo& info)) {
+  std::erase_if(model.blocks, [keep](const BlockSpec& b) { return !keep(info_of(b)); });
+  return model;
+}
+
+std::optional<std::size_t> position_of(const Model& model, std::size_t type) {
+  for (std::size_t i = 0; i < model.blocks.size(); ++i) {
+    if (model.blocks[i].type == type) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> position_of(const Model& model, std::string_view id) {
+  const std::optional<std::size_t> type = find_block(id);
+  return type ? position_of(model, *type) : std::nullopt;
+}
+
+std::string parameter_name(const BlockSpec& block, std::size_t index) {
+  const Descriptor& descriptor = catalogue()[block.type];
+  std::string name(descriptor.spec(index).name);
+  const std::size_t mark = name.find('#');
+  if (mark != std::string::npos) {
+    const std::size_t part = (index - descriptor.parameters.size()) / descriptor.repeated.size();
+    name.replace(mark, 1, std::to_string(part + 1));
+  }
+  return name;
+}
+
+std::optional<std::size_t> find_parameter(const BlockSpec& block, std::string_view name) {
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    if (parameter_name(block, i) == name) return i;
+  }
+  return std::nullopt;
+}
+
+std::size_t parameter_count(const Model& model) {
+  std::size_t count = 0;
+  for (const BlockSpec& block : model.blocks) count += block.values.size();
+  return count;
+}
+
+ParameterPlace place_of(const Model& model, std::size_t flat_index) {
+  ParameterPlace place{0, flat_index};
+  while (place.value >= model.blocks[place.block].values.size()) {
+    place.value -= model.blocks[place.block].values.size();
+    ++place.block;
+  }
+  return place;
+}
+
+std::string parameter_path(const Model& model, std::size_t flat_index) {
+  const ParameterPlace place = place_of(model, flat_index);
+  const BlockSpec& block = model.blocks[place.block];
+  const auto same_type =
+      std::count_if(model.blocks.begin(), model.blocks.begin() + static_cast<std::ptrdiff_t>(place.block),
+                    [&](const BlockSpec& b) { return b.type == block.type; });
+  std::string path(info_of(block).id);
+  if (same_type > 0) path += "_" + std::to_string(same_type + 1);
+  return path + "." + parameter_name(block, place.value);
+}
+
+std::optional<std::size_t> find_path(const Model& model, std::string_view path) {
+  const std::size_t count = parameter_count(model);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (parameter_path(model, i) == path) return i;
+  }
+  return std::nullopt;
+}
+
+const ParameterSpec& parameter_spec(const Model& model, std::size_t flat_index) {
+  const ParameterPlace place = place_of(model, flat_index);
+  return catalogue()[model.blocks[place.block].type].spec(place.value);
+}
+
+std::vector<double> flat_values(const Model& model) {
+  std::vector<double> values;
+  values.reserve(parameter_count(model));
+  for (const BlockSpec& block : model.blocks)
+    values.insert(values.end(), block.values.begin(), block.values.end());
+  return values;
+}
+
+Model with_values(Model model, std::span<const double> values) {
+  std::size_t next = 0;
+  for (BlockSpec& block : model.blocks) {
+    for (double& value : block.values) value = values[next++];
+  }
+  return model;
+}
+
+}  // namespace softgrip::model

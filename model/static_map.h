@@ -1,0 +1,17 @@
+#pragma once
+// A segment seen through a function without memory.
+
+#include "model/segment.h"
+
+namespace softgrip::model {
+
+/// Ends mapped, mean by Simpson's rule over the parabola through the segment.
+/// @param begin  where the output stood (the map of in.begin, unless the map moves with time).
+template <class T, class Map>
+[[nodiscard]] Segment<T> mapped(const Segment<T>& in, Map&& map, const T& begin) {
+  const T end = map(in.end);
+  const T middle = map(in.at(T(0.5)));
+  return {in.duration_s, begin, end, (begin + end + middle * 4.0) * (1.0 / 6.0)};
+}
+
+}  // namespace softgrip::model

@@ -1,0 +1,52 @@
+#pragma once
+// Response weights kept for the durations that come again: the nominal sample time and the pieces a delay
+// cuts it into.
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "model/exponential.h"
+#include "model/number.h"
+
+namespace softgrip::model {
+
+/// The weights of `branches` responses for each of the last few durations, replaced in turn.
+template <class T>
+class WeightCache {
+ public:
+  explicit WeightCache(std::size_t branches) : branches_(branches), weights_(branches * slots) {}
+
+  /// The weights for a duration; `fill(span)` computes those of all branches when it is new.
+  template <class Fill>
+  const ExponentialWeights<T>* at(const T& duration_s, Fill&& fill) {
+    for (std::size_t slot = 0; slot < used_; ++slot) {
+      if (same(durations_[slot], duration_s)) return &weights_[slot * branches_];
+    }
+    const std::size_t slot = next_;
+    next_ = (next_ + 1) % slots;
+    if (used_ < slots) ++used_;
+    durations_[slot] = duration_s;
+    fill(std::span(weights_).subspan(slot * branches_, branches_));
+    return &weights_[slot * branches_];
+  }
+
+  /// The same without keeping anything: nothing when the duration is not kept.
+  [[nodiscard]] const ExponentialWeights<T>* find(const T& duration_s) const {
+    for (std::size_t slot = 0; slot < used_; ++slot) {
+      if (same(durations_[slot], duration_s)) return &weights_[slot * branches_];
+    }
+    return nullptr;
+  }
+
+ private:
+  static constexpr std::size_t slots = 4;
+  std::size_t branches_;
+  std::size_t used_ = 0;
+  std::size_t next_ = 0;
+  std::array<T, slots> durations_{};
+  std::vector<ExponentialWeights<T>> weights_;
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,76 @@
+// The chain against CVODE on the same piecewise-linear command: below 1e-6 mm at any sample time.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "model/chain.h"
+#include "model/signals.h"
+#include "tests/model/presets.h"
+#include "tests/model/reference.h"
+
+namespace softgrip::model::testing {
+namespace {
+
+Physics physics_of(const Model& model) {
+  Physics f;
+  f.delay_s = number(model, "transport_delay.delay_s");
+  f.lag_s = number(model, "valve_lag.time_constant_s");
+  f.alpha = number(model, "bouc_wen.alpha_mm_per_kpa");
+  f.beta = number(model, "bouc_wen.beta_mm_per_kpa");
+  f.gamma = number(model, "bouc_wen.gamma_per_kpa");
+  f.eta = number(model, "bouc_wen.eta_per_kpa");
+  f.exponent = static_cast<int>(number(model, "bouc_wen.exponent"));
+  f.k0 = number(model, "kelvin_voigt.k0_kpa_per_mm");
+  for (int i = 1; find_path(model, "kelvin_voigt.k" + std::to_string(i) + "_kpa_per_mm"); ++i) {
+    f.k.push_back(number(model, "kelvin_voigt.k" + std::to_string(i) + "_kpa_per_mm"));
+    f.c.push_back(number(model, "kelvin_voigt.c" + std::to_string(i) + "_kpa_s_per_mm"));
+  }
+  return f;
+}
+
+struct Case {
+  std::string model;
+  SignalName signal;
+  double rate_hz;
+};
+
+class ChainReference : public ::testing::TestWithParam<Case> {};
+
+double largest_error(const Model& model, SignalName signal, double rate_hz) {
+  const double dt = 1.0 / rate_hz;
+  const auto count = static_cast<std::size_t>(std::lround(duration_s(signal) * rate_hz)) + 1;
+  std::vector<double> command(count);
+  for (std::size_t i = 0; i < count; ++i) command[i] = value_kpa(signal, static_cast<double>(i) * dt);
+  const std::vector<double> expected = integrate(physics_of(model), command, dt);
+  Chain<double> chain(model, {}, dt);
+  double worst = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    worst = std::fmax(worst, std::fabs(chain.step(dt, command[i]) - expected[i]));
+  }
+  return worst;
+}
+
+TEST_P(ChainReference, AgreesWithinAMillionthOfAMillimetre) {
+  const Case& c = GetParam();
+  const double worst = largest_error(preset(c.model), c.signal, c.rate_hz);
+  RecordProperty("largest_error_mm", std::to_string(worst * 1e9) + " e-9");
+  EXPECT_LT(worst, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Presets, ChainReference,
+    ::testing::Values(Case{"zhang2025", SignalName::tp1, 1000}, Case{"zhang2025", SignalName::tp1, 200},
+                      Case{"zhang2025", SignalName::steps, 1000}, Case{"zhang2025", SignalName::steps, 200},
+                      Case{"bench_twin", SignalName::tp1, 1000}, Case{"bench_twin", SignalName::tp1, 200},
+                      Case{"bench_twin", SignalName::steps, 1000},
+                      Case{"bench_twin", SignalName::steps, 200}),
+    [](const auto& param) {
+      return param.param.model + "_" + std::string(name_of(param.param.signal)) + "_" +
+             std::to_string(static_cast<int>(param.param.rate_hz)) + "Hz";
+    });
+
+}  // namespace
+}  // namespace softgrip::model::testing

@@ -1,0 +1,26 @@
+#pragma once
+// The preset models, loaded from their files as users load them.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/model_file.h"
+
+namespace softgrip::model::testing {
+
+inline Model preset(const std::string& name) {
+  document::Problems problems;
+  const std::optional<Model> model =
+      load_model(std::string(SOFTGRIP_SOURCE_DIR) + "/config/models/" + name + ".yaml", problems);
+  if (!model) throw std::runtime_error(problems.format());
+  return *model;
+}
+
+/// One value of a model by its path.
+inline double number(const Model& model, std::string_view path) {
+  const auto index = find_path(model, path);
+  return index ? flat_values(model)[*index] : 0.0;
+}
+
+}  // namespace softgrip::model::testing
