@@ -1,5 +1,5 @@
 #pragma once
-// What a command may be. apply() is the only place where a pressure is clamped or slowed down.
+// What a command may be. limit() is the only place where a pressure is clamped or slowed down.
 
 namespace softgrip::control {
 
@@ -13,5 +13,28 @@ struct LimitSettings {
   double displacement_max_mm = 0;     ///< > displacement_min_mm; references are kept at or below
   double displacement_margin_mm = 0;  ///< >= 0; a reading further out than this beyond the range is a fault
 };
+
+/// A command within the limits, and what it took to get it there.
+struct LimitedCommand {
+  double command_kpa = 0;
+  bool saturated = false;  ///< what was wanted lies outside the pressure range
+  bool slewing = false;    ///< what was wanted is further from the last command than the slew limits allow
+  bool invalid = false;    ///< what was wanted is not a number: the last command is held
+};
+
+/// The command for `wanted_kpa` when `last_kpa` went out `elapsed_s` (>= 0) ago. It is always inside the
+/// pressure range, even when the last one was not; inside the range the slew limits hold as well.
+[[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
+                                   double elapsed_s) noexcept;
+
+/// A reference inside the displacement range.
+struct LimitedReference {
+  double reference_mm = 0;
+  bool clamped = false;
+};
+[[nodiscard]] LimitedReference limit_reference(const LimitSettings& limits, double reference_mm) noexcept;
+
+/// True if a reading is beyond the displacement range and its margin, or not a number.
+[[nodiscard]] bool displacement_beyond(const LimitSettings& limits, double displacement_mm) noexcept;
 
 }  // namespace softgrip::control

@@ -1,5 +1,11 @@
 #pragma once
 // PID in two degrees of freedom that knows which command really went out.
+//
+//   request = feedforward + kp (b r - y) + I - kd d(y filtered)/dt,   dI/dt = ki (r - y)
+//
+// Discretisation: the integral by the trapezoidal rule; the derivative ramp-invariant, that is exact for a
+// measurement that goes straight from sample to sample (Åström and Wittenmark, Computer-Controlled Systems,
+// 3rd ed. 1997, chapters 8.2 and 8.5; Åström and Hägglund, Advanced PID Control, 2006, chapter 13).
 
 #include <cstdint>
 
@@ -20,6 +26,53 @@ struct PidSettings {
   double setpoint_weight = 1;         ///< b: share of the reference in the proportional part, 0 to 1
   AntiWindup anti_windup = AntiWindup::back_calculation;
   double tracking_time_s = 0.5;  ///< of back_calculation; > 0
+};
+
+/// One PID controller. Call order in a tick: step() for the request, the limits, sent() with what went out.
+class Pid {
+ public:
+  Pid(const PidSettings& settings, double tick_s) noexcept;
+
+  /// The next step() continues `command_kpa` whatever its errors and feedforward are: the integrator takes
+  /// up the difference. For a start, a change from hold or pressure to displacement, a new feedforward.
+  void align(double command_kpa) noexcept;
+
+  /// The feedback part of the request [kPa]; the request is feedforward_kpa plus it. `error_reference_mm` is
+  /// the reference at the time at which `measurement_mm` was sampled.
+  [[nodiscard]] double step(double error_reference_mm, double measurement_mm,
+                            double feedforward_kpa) noexcept;
+
+  /// A tick without a usable measurement, or with the feedback held on purpose: the last feedback stands,
+  /// the integrator and the derivative rest.
+  [[nodiscard]] double hold(double feedforward_kpa) noexcept;
+
+  /// What the limits let out of the last request: the anti-windup acts on the difference, whether it comes
+  /// from the pressure range, from the slew limits or from a feedforward beyond them.
+  void sent(double command_kpa) noexcept;
+
+  /// New settings; the next step() gives, for the same error, the feedback it would have given before.
+  void change(const PidSettings& settings) noexcept;
+
+  [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }
+
+ private:
+  [[nodiscard]] double immediate_kpa(double reference_mm, double measurement_mm) const noexcept;
+
+  PidSettings settings_;
+  double tick_s_;
+  double filter_keep_ = 0;     ///< of the derivative, per tick
+  double tracking_share_ = 0;  ///< of the cut that back-calculation takes out per tick
+  double integral_kpa_ = 0;
+  double rate_mm_per_s_ = 0;  ///< filtered derivative of the measurement
+  double last_error_mm_ = 0;
+  double last_reference_mm_ = 0;
+  double last_measurement_mm_ = 0;
+  double feedback_kpa_ = 0;
+  double request_kpa_ = 0;
+  double increment_kpa_ = 0;  ///< what the integrator gained in the last step
+  double align_to_kpa_ = 0;
+  bool align_ = false;
+  bool fresh_ = true;  ///< there is no last measurement to differentiate or integrate from
 };
 
 }  // namespace softgrip::control

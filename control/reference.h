@@ -48,9 +48,10 @@ class Reference {
   /// caller's wish: the feedforward slows down to what the limits pass and says `out_of_reach` meanwhile.
   bool follow(const Curve& curve, double duration_s) noexcept;
 
-  /// Forgets what was to come after `time_s`. What is appended next goes on from there with value, rate and
-  /// acceleration unbroken. A feedforward that looks ahead has used the reference up to its preview already:
-  /// cut at now + preview to change one's mind without a step.
+  /// Forgets what was to come after `time_s` and ends there (holding until then if it ended before). What is
+  /// appended next goes on from there with value, rate and acceleration unbroken. A feedforward that looks
+  /// ahead has used the reference up to its preview already: cut at now + preview to change one's mind
+  /// without a step.
   void cut(double time_s) noexcept;
   /// Makes room: segments that ended before `time_s` are dropped; earlier times then return the value where
   /// the first one left starts.
@@ -72,7 +73,8 @@ class Reference {
     Curve curve;
   };
   [[nodiscard]] static ReferencePoint evaluate(const Segment& segment, double time_s) noexcept;
-  bool append_quintic(const ReferencePoint& from, double value, double duration_s) noexcept;
+  [[nodiscard]] ReferencePoint last_point() const noexcept;
+  Segment* append(Shape shape, double duration_s) noexcept;
 
   std::array<Segment, capacity> segments_{};
   std::size_t count_ = 0;
