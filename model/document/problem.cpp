@@ -85,12 +85,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-void Problems::keep(std::vector<Problem>& list, Problem&& problem) {
-  if (list.size() < most) {
-    list.push_back(std::move(problem));
-  } else {
-    ++left_out_;
-  }
+void Problems::add(Problem problem) {
+  ++error_count_;
+  if (errors_.size() < most) errors_.push_back(std::move(problem));
+}
+
+void Problems::warn(Problem problem) {
+  ++warning_count_;
+  if (warnings_.size() < most) warnings_.push_back(std::move(problem));
 }
 
 std::string Problems::format() const {
@@ -115,7 +117,8 @@ std::string Problems::format() const {
   });
   std::string out;
   for (const Item& item : items) append_problem(out, *item.problem, item.warning);
-  if (left_out_ > 0) out += "and " + std::to_string(left_out_) + " more\n";
+  const std::size_t left_out = error_count_ + warning_count_ - errors_.size() - warnings_.size();
+  if (left_out > 0) out += "and " + std::to_string(left_out) + " more\n";
   return out;
 }
 

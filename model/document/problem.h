@@ -33,14 +33,14 @@ class Problems {
  public:
   static constexpr std::size_t most = 200;
 
-  void add(Problem problem) { keep(errors_, std::move(problem)); }
-  void warn(Problem problem) { keep(warnings_, std::move(problem)); }
+  void add(Problem problem);
+  void warn(Problem problem);
 
-  /// Of the errors alone.
-  [[nodiscard]] bool empty() const noexcept { return errors_.empty(); }
-  [[nodiscard]] std::size_t size() const noexcept { return errors_.size(); }
+  /// Of the errors alone, those that are only counted included.
+  [[nodiscard]] bool empty() const noexcept { return error_count_ == 0; }
+  [[nodiscard]] std::size_t size() const noexcept { return error_count_; }
   /// True when further errors are only counted: looking for more is wasted.
-  [[nodiscard]] bool full() const noexcept { return errors_.size() >= most; }
+  [[nodiscard]] bool full() const noexcept { return error_count_ >= most; }
   [[nodiscard]] const std::vector<Problem>& list() const noexcept { return errors_; }
   [[nodiscard]] const std::vector<Problem>& warnings() const noexcept { return warnings_; }
 
@@ -50,11 +50,10 @@ class Problems {
   [[nodiscard]] std::string format() const;
 
  private:
-  void keep(std::vector<Problem>& list, Problem&& problem);
-
   std::vector<Problem> errors_;
   std::vector<Problem> warnings_;
-  std::size_t left_out_ = 0;
+  std::size_t error_count_ = 0;
+  std::size_t warning_count_ = 0;
 };
 
 /// The candidate nearest to `word` by edit distance, or empty when none is near enough to suggest.

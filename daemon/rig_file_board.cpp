@@ -1,0 +1,196 @@
+// The board of a rig file: one on Modbus TCP, or fingers simulated in process.
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <array>
+
+#include "daemon/rig_file_reader.h"
+#include "drivers/board_map_file.h"
+#include "model/document/number.h"
+
+namespace softgrip::daemon::rig_file {
+
+namespace {
+
+using document::Node;
+
+std::chrono::nanoseconds read_duration(MapReader& reader, std::string_view key, document::Range range) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(reader.number(key, range) * 1e9));
+}
+
+/// A numeric address: names would have to be resolved, which takes as long as it takes.
+std::string read_host(MapReader& reader) {
+  const std::string host = reader.text("host");
+  std::array<unsigned char, sizeof(in6_addr)> address{};
+  if (host.empty() || ::inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
+      ::inet_pton(AF_INET6, host.c_str(), address.data()) == 1) {
+    return host;
+  }
+  reader.report("host", "`host` must be a numeric address, found `" + document::shown(host) + "`",
+                host == "localhost" ? "write 127.0.0.1" : "names are not resolved");
+  return host;
+}
+
+std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
+  const std::size_t before = context.problems.size();
+  const auto document = named_document(context, reader, "map", InputFile::Role::board);
+  if (!document) return std::nullopt;
+  auto map = drivers::read_board_map(*document, context.problems);
+  if (context.problems.size() != before) map.reset();
+  return map;
+}
+
+/// An object between the fingers: a map, or `none` where it is pulled out.
+std::optional<drivers::PlantObject> read_object(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "object");
+  drivers::PlantObject object;
+  object.position_mm = reader.number("position_mm", {-1000, 1000});
+  object.yielding = reader.number("yielding", {0, 1});
+  return object;
+}
+
+/// Distinct seeds per channel from one number, by a step of SplitMix64 (Steele, Lea, Flood 2014).
+std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
+  std::uint64_t z = seed + (channel + 1) * 0x9E3779B97F4A7C15U;
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+  return z ^ (z >> 31U);
+}
+
+drivers::PlantSettings read_plant(Context& context, const Node& node, const std::string& name) {
+  MapReader reader(context.document, node, context.problems, "the plant of `" + name + "`");
+  drivers::PlantSettings plant;
+  if (const auto model = named_model(context, reader, "model", InputFile::Role::plant)) plant.model = *model;
+  plant.displacement_noise_mm = reader.number("displacement_noise_mm", {0, 100});
+  plant.pressure_noise_kpa = reader.number("pressure_noise_kpa", {0, 100});
+  if (const Node* object = reader.child("object", false)) plant.object = read_object(context, *object);
+  plant.sample_time_s = context.period_s();
+  return plant;
+}
+
+drivers::SimulatedChannel simulated_channel(const Context& context, std::size_t index) {
+  const drivers::ChannelWiring& wiring = context.wiring[index];
+  drivers::SimulatedChannel channel;
+  channel.name = wiring.name;
+  channel.measures_pressure = wiring.pressure.has_value();
+  channel.valve_max_kpa = context.rig.valves[index].range_max_kpa;
+  const drivers::InputWiring& sensor = wiring.displacement;
+  const double a = sensor.scaling.y_at(sensor.valid_min);
+  const double b = sensor.scaling.y_at(sensor.valid_max);
+  channel.sensor_min_mm = std::min(a, b);
+  channel.sensor_max_mm = std::max(a, b);
+  return channel;
+}
+
+using Event = drivers::SimulatedEvent;
+
+void read_line_fault(MapReader& reader, Event& event) {
+  event.kind = Event::Kind::line_fault;
+  using Kind = drivers::LineFault::Kind;
+  event.line.kind = static_cast<Kind>(reader.choice("line", {"free", "blocked", "leaking"}));
+  if (event.line.kind == Kind::leaking) event.line.share = reader.number("share", {0, 1});
+}
+
+void read_sensor_fault(MapReader& reader, Event& event) {
+  event.kind = Event::Kind::sensor_fault;
+  using Kind = drivers::SensorFault::Kind;
+  event.sensor.kind = static_cast<Kind>(reader.choice("sensor", {"good", "stuck", "offset", "out_of_range"}));
+  if (event.sensor.kind == Kind::offset) event.sensor.value_mm = reader.number("value_mm", {-1000, 1000});
+}
+
+void read_object_event(Context& context, MapReader& reader, Event& event) {
+  event.kind = Event::Kind::object;
+  const Node* const node = reader.child("object", true);
+  if (node == nullptr) return;
+  if (node->kind == Node::Kind::scalar && node->scalar == "none") return;
+  event.object = read_object(context, *node);
+}
+
+/// One of these keys says what happens.
+constexpr std::array<std::string_view, 5> happenings{"object", "line", "sensor", "bus", "writes"};
+
+Event read_event(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "an event");
+  Event event;
+  event.at_s = reader.number("at_s", {0, 1e7});
+  const auto count = std::count_if(happenings.begin(), happenings.end(),
+                                   [&](std::string_view key) { return reader.has(key); });
+  if (count != 1 && node.kind == Node::Kind::map) {
+    context.problems.add(context.document.problem(
+        node.at, "an event must have exactly one of `object`, `line`, `sensor`, `bus` and `writes`"));
+  }
+  if (reader.has("object")) read_object_event(context, reader, event);
+  if (reader.has("line")) read_line_fault(reader, event);
+  if (reader.has("sensor")) read_sensor_fault(reader, event);
+  if (reader.has("bus")) {
+    const std::size_t choice = reader.choice("bus", {"lost", "silent", "restored"});
+    event.kind = choice == 2 ? Event::Kind::bus_restored : Event::Kind::bus_lost;
+    event.status = choice == 1 ? drivers::BusStatus::timed_out : drivers::BusStatus::disconnected;
+  }
+  if (reader.has("writes")) {
+    event.kind = reader.choice("writes", {"refused", "taken"}) == 0 ? Event::Kind::write_refused
+                                                                    : Event::Kind::write_taken;
+  }
+  if (reader.has("channel")) {
+    std::vector<std::string> names;
+    for (const drivers::ChannelWiring& wiring : context.wiring) names.push_back(wiring.name);
+    event.channel = reader.choice("channel", names);
+  }
+  return event;
+}
+
+}  // namespace
+
+void read_modbus_board(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "modbus_tcp");
+  drivers::ModbusTcpSettings settings;
+  context.map = read_map(context, reader);
+  if (context.map) settings.map = *context.map;
+  settings.host = read_host(reader);
+  settings.port = static_cast<std::uint16_t>(reader.integer("port", 1, 65535));
+  settings.unit = static_cast<std::uint8_t>(reader.integer("unit", 0, 255));
+  RigFile& rig = context.rig;
+  rig.loop.exchange_deadline_s = reader.number("exchange_deadline_s", {1e-4, 1});
+  rig.reconnect.connect_deadline = read_duration(reader, "connect_deadline_s", {1e-3, 30});
+  rig.reconnect.first_pause = read_duration(reader, "first_pause_s", {1e-3, 60});
+  rig.reconnect.longest_pause = read_duration(reader, "longest_pause_s", {1e-3, 600});
+  if (reader.has("longest_pause_s") && rig.reconnect.longest_pause < rig.reconnect.first_pause) {
+    reader.report("longest_pause_s", "`longest_pause_s` must not be shorter than `first_pause_s`");
+  }
+  const double patience_s = rig.settings.faults.bus_down_cycles * context.period_s();
+  if (reader.has("exchange_deadline_s") && rig.loop.exchange_deadline_s >= patience_s) {
+    reader.warn("exchange_deadline_s",
+                "a single exchange that misses its deadline is already the fault bus_down",
+                "`bus_down_cycles` are over after " + document::written(patience_s) + " s");
+  }
+  rig.board = std::move(settings);
+}
+
+void read_simulated_board(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "simulated");
+  drivers::SimulatedBoardSettings settings;
+  const auto seed =
+      static_cast<std::uint64_t>(reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+  settings.watchdog_timeout_s = reader.number("watchdog_timeout_s", {0, 60});
+  const int output_bits = static_cast<int>(reader.integer("output_bits", 0, 24));
+  const int input_bits = static_cast<int>(reader.integer("input_bits", 0, 24));
+  if (const Node* plants = reader.child("plants", true)) {
+    MapReader plant_reader(context.document, *plants, context.problems, "plants");
+    for (std::size_t i = 0; i < context.wiring.size(); ++i) {
+      drivers::SimulatedChannel channel = simulated_channel(context, i);
+      channel.output_bits = output_bits;
+      channel.input_bits = input_bits;
+      const Node* const plant = channel.name.empty() ? nullptr : plant_reader.child(channel.name, true);
+      if (plant != nullptr) channel.plant = read_plant(context, *plant, channel.name);
+      channel.plant.seed = seed_of(seed, i);
+      settings.channels.push_back(std::move(channel));
+    }
+  }
+  for (const Node* event : reader.sequence("events", false)) {
+    settings.events.push_back(read_event(context, *event));
+  }
+  context.rig.board = std::move(settings);
+}
+
+}  // namespace softgrip::daemon::rig_file
