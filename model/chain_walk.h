@@ -34,7 +34,8 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
     const std::size_t count = spec.values.size();
     std::span<const T> block_values;
     if (values.empty()) {
-      own.assign(spec.values.begin(), spec.values.end());
+      own.clear();
+      for (const double value : spec.values) own.push_back(T(value));
       block_values = own;
     } else {
       block_values = values.subspan(next, count);

@@ -61,7 +61,8 @@ class BoucWen {
 
   void reset(const T& input) {
     hysteresis_ = T(0.0);
-    hysteresis_ = moved(T(input));
+    direction_ = value_of(input) < 0.0 ? -1.0 : 1.0;
+    hysteresis_ = moved(input, direction_);
     pressure_ = input;
     output_ = alpha_ * pressure_ - hysteresis_;
   }
@@ -70,9 +71,7 @@ class BoucWen {
   /// h [mm]
   [[nodiscard]] const T& hysteresis_mm() const { return hysteresis_; }
   /// dh/dp where the block stands, for a pressure that rises or falls from here [mm/kPa].
-  [[nodiscard]] T slope(bool rising) const {
-    return beta_ - leaving(value_of(hysteresis_), rising ? 1.0 : -1.0) * power(hysteresis_);
-  }
+  [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
   [[nodiscard]] const T& beta_mm_per_kpa() const { return beta_; }
 
@@ -81,13 +80,14 @@ class BoucWen {
     const T begin = output_;
     if (is_zero(change)) return {in.duration_s, begin, begin, begin};
     const T before = hysteresis_;
-    hysteresis_ = moved(change);
+    const double direction = direction_of(change);
+    hysteresis_ = moved(change, direction);
     pressure_ = in.end;
+    direction_ = direction;
     output_ = alpha_ * pressure_ - hysteresis_;
     // Mean of h over the segment: the cubic through both ends and their slopes, moved along by the bend of p.
-    const double direction = value_of(change) < 0 ? -1.0 : 1.0;
-    const T slope_before = beta_ - leaving(value_of(before), direction) * power(before);
-    const T slope_after = beta_ - leaving(value_of(hysteresis_), direction) * power(hysteresis_);
+    const T slope_before = slope_at(before, direction);
+    const T slope_after = slope_at(hysteresis_, direction);
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;
     const T mean_h = (before + hysteresis_) * 0.5 + change * (slope_before - slope_after) * (1.0 / 12.0) +
                      (slope_before + slope_after) * 0.5 * off_middle;
@@ -96,15 +96,25 @@ class BoucWen {
 
   template <class U>
   [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
-    return alpha_ * end_kpa - moved(end_kpa - pressure_);
+    const U change = end_kpa - pressure_;
+    return alpha_ * end_kpa - moved(change, direction_of(change));
   }
 
  private:
+  // +1 while the pressure rises, -1 while it falls. A change of value zero carries derivatives of the motion
+  // that led here.
+  template <class U>
+  [[nodiscard]] double direction_of(const U& change) const {
+    const double value = value_of(change);
+    return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : direction_;
+  }
+
   // gamma + eta s for the state h and the direction of the pressure. At h = 0 the state follows the pressure.
-  [[nodiscard]] T leaving(double h, double direction) const {
+  [[nodiscard]] const T& rate(double h, double direction) const {
     return h * direction >= 0.0 ? growing_ : shrinking_;
   }
 
+  // |h|^n
   template <class U>
   [[nodiscard]] U power(const U& h) const {
     const U magnitude = value_of(h) < 0.0 ? U(-h) : h;
@@ -120,10 +130,13 @@ class BoucWen {
     }
   }
 
+  [[nodiscard]] T slope_at(const T& h, double direction) const {
+    return beta_ - rate(value_of(h), direction) * power(h);
+  }
+
   // The state after a monotone change of the pressure from here.
   template <class U>
-  [[nodiscard]] U moved(const U& change) const {
-    const double direction = value_of(change) < 0.0 ? -1.0 : 1.0;
+  [[nodiscard]] U moved(const U& change, double direction) const {
     return exponent_ == 1 ? moved_linear(change, direction) : moved_in_steps(change, direction);
   }
 
@@ -131,7 +144,7 @@ class BoucWen {
   template <class U>
   [[nodiscard]] U moved_linear(const U& change, double direction) const {
     const double h0 = value_of(hysteresis_);
-    const T k = leaving(h0, direction) * (h0 * direction >= 0.0 ? direction : -direction);
+    const T k = rate(h0, direction) * (h0 * direction >= 0.0 ? direction : -direction);
     const U end = hysteresis_ + change * (beta_ - k * hysteresis_) * phi1(U(-k * change));
     if (h0 * value_of(end) >= 0.0) return end;
     // h passes zero after -h0/beta * log(1 + x)/x of pressure, x = -k h0 / beta; from there it starts anew.
@@ -144,68 +157,65 @@ class BoucWen {
 
   template <class U>
   [[nodiscard]] U moved_in_steps(const U& change, double direction) const {
+    const int steps = steps_for(std::abs(value_of(change)));
+    const U piece = change * (1.0 / steps);
     U h = U(hysteresis_);
-    U rest = change;
-    // Two passes at most: to the sign change of h, and from it.
-    for (int pass = 0; pass < 2; ++pass) {
-      const bool grows = value_of(h) * direction >= 0.0;
-      const T k = grows ? growing_ : shrinking_;
-      if (!grows) {
-        const U to_zero = pressure_to_zero(h, k);
-        if (value_of(to_zero) * direction < value_of(rest) * direction &&
-            value_of(to_zero) * direction >= 0.0) {
-          rest = rest - to_zero;
-          h = U(0.0);
-          continue;
-        }
+    for (int i = 0; i < steps; ++i) {
+      const T& k = rate(value_of(h), direction);
+      U next = runge_kutta(h, piece, k);
+      if (value_of(h) * value_of(next) < 0.0) {
+        next = runge_kutta(U(0.0), U(piece - to_zero(h, k) * direction), growing_);
       }
-      return integrated(h, rest, k);
+      h = next;
     }
     return h;
   }
 
-  // Integral of dh / (beta - k |h|^n) from h to 0; where the slope would vanish on the way, h never gets
-  // there.
+  // So many that n k |h|^(n-1) dp, the relative change of the slope, stays below 1/40 over one.
+  [[nodiscard]] int steps_for(double change_kpa) const {
+    constexpr int most = 100000;
+    const double beta = value_of(beta_);
+    const double growing = value_of(growing_);
+    const double start = std::abs(value_of(hysteresis_));
+    double largest = start + beta * change_kpa;
+    if (growing > 0.0) {
+      largest = std::fmin(largest, std::fmax(start, std::pow(beta / growing, 1.0 / exponent_)));
+    }
+    const double k = std::fmax(growing, std::abs(value_of(shrinking_)));
+    const double wanted = std::ceil(40.0 * exponent_ * k * std::pow(largest, exponent_ - 1) * change_kpa);
+    return wanted < 1.0 ? 1 : wanted > most ? most : static_cast<int>(wanted);
+  }
+
   template <class U>
-  [[nodiscard]] U pressure_to_zero(const U& h, const T& k) const {
-    const double toward = value_of(h) < 0.0 ? 1.0 : -1.0;
-    if (value_of(beta_) <= value_of(T(k * power(T(hysteresis_))))) return U(-toward * 1e300);
-    constexpr std::array<double, 5> nodes{0.046910077030668, 0.230765344947158, 0.5, 0.769234655052842,
-                                          0.953089922969332};
-    constexpr std::array<double, 5> weights{0.118463442528095, 0.239314335249683, 0.284444444444444,
-                                            0.239314335249683, 0.118463442528095};
+  [[nodiscard]] U runge_kutta(const U& h, const U& change, const T& k) const {
+    const U s1 = beta_ - k * power(h);
+    const U s2 = beta_ - k * power(U(h + change * s1 * 0.5));
+    const U s3 = beta_ - k * power(U(h + change * s2 * 0.5));
+    const U s4 = beta_ - k * power(U(h + change * s3));
+    return h + change * (s1 + 2.0 * s2 + 2.0 * s3 + s4) * (1.0 / 6.0);
+  }
+
+  // How much pressure takes a shrinking h to zero: the integral of dv / (beta - k v^n) over v from 0 to |h|,
+  // by Gauss-Legendre with five points.
+  template <class U>
+  [[nodiscard]] U to_zero(const U& h, const T& k) const {
+    constexpr std::array<double, 5> nodes{0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415,
+                                          0.9530899229693320};
+    constexpr std::array<double, 5> weights{0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
+                                            0.2393143352496832, 0.1184634425280945};
+    const U magnitude = value_of(h) < 0.0 ? U(-h) : h;
     U sum = U(0.0);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      sum = sum + weights[i] / (beta_ - k * power(U(h * nodes[i])));
+      sum = sum + weights[i] / (beta_ - k * power(U(magnitude * nodes[i])));
     }
-    return -h * sum;
-  }
-
-  template <class U>
-  [[nodiscard]] U integrated(const U& start, const U& change, const T& k) const {
-    const double largest = value_of(beta_) > 0.0
-                               ? std::abs(value_of(start)) + value_of(beta_) * std::abs(value_of(change))
-                               : std::abs(value_of(start));
-    const double steepness = exponent_ * std::abs(value_of(k)) * std::pow(largest, exponent_ - 1);
-    constexpr int most = 100000;
-    const double wanted = std::ceil(40.0 * steepness * std::abs(value_of(change)));
-    const int steps = wanted < 1.0 ? 1 : wanted > most ? most : static_cast<int>(wanted);
-    const U d = change * (1.0 / steps);
-    U h = start;
-    for (int i = 0; i < steps; ++i) {
-      const U s1 = beta_ - k * power(h);
-      const U s2 = beta_ - k * power(U(h + d * s1 * 0.5));
-      const U s3 = beta_ - k * power(U(h + d * s2 * 0.5));
-      const U s4 = beta_ - k * power(U(h + d * s3));
-      h = h + d * (s1 + 2.0 * s2 + 2.0 * s3 + s4) * (1.0 / 6.0);
-    }
-    return h;
+    return magnitude * sum;
   }
 
   T alpha_, beta_;
   T growing_;    // gamma + eta
   T shrinking_;  // gamma - eta
   int exponent_;
+  double direction_ = 1.0;
   T hysteresis_{0.0};
   T pressure_{0.0};
   T output_{0.0};

@@ -1,0 +1,84 @@
+// What a sample of a chain costs: a step, a trial of an inverse, with and without derivatives.
+
+#include <benchmark/benchmark.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "model/chain.h"
+#include "model/dual.h"
+#include "model/model_file.h"
+#include "model/signals.h"
+
+namespace softgrip::model {
+namespace {
+
+constexpr double dt = 1e-3;
+
+Model preset(const std::string& name) {
+  document::Problems problems;
+  const auto model =
+      load_model(std::string(SOFTGRIP_SOURCE_DIR) + "/config/models/" + name + ".yaml", problems);
+  if (!model) throw std::runtime_error(problems.format());
+  return *model;
+}
+
+std::vector<double> command() {
+  const auto count = static_cast<std::size_t>(duration_s(SignalName::tp1) / dt);
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i)
+    values[i] = value_kpa(SignalName::tp1, static_cast<double>(i + 1) * dt);
+  return values;
+}
+
+void step_chain(benchmark::State& state, const std::string& name) {
+  const std::vector<double> u = command();
+  Chain<double> chain(preset(name), {}, dt);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(chain.step(dt, u[i]));
+    if (++i == u.size()) i = 0;
+  }
+}
+
+void step_irregular(benchmark::State& state, const std::string& name) {
+  const std::vector<double> u = command();
+  Chain<double> chain(preset(name));
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(chain.step(dt * (1.0 + 1e-6 * static_cast<double>(i % 97)), u[i]));
+    if (++i == u.size()) i = 0;
+  }
+}
+
+template <class U>
+void peek_chain(benchmark::State& state, const std::string& name) {
+  const std::vector<double> u = command();
+  Chain<double> chain(preset(name), {}, dt);
+  for (std::size_t i = 0; i < 4321; ++i) chain.step(dt, u[i]);
+  double p = chain.pressure_kpa();
+  for (auto _ : state) {
+    p += 1e-6;
+    U trial(p);
+    if constexpr (!std::is_same_v<U, double>) trial.v = 1.0;
+    benchmark::DoNotOptimize(chain.peek(dt, trial));
+  }
+}
+
+void peek_value(benchmark::State& state, const std::string& name) {
+  peek_chain<double>(state, name);
+}
+void peek_derivative(benchmark::State& state, const std::string& name) {
+  peek_chain<Dual<double>>(state, name);
+}
+
+BENCHMARK_CAPTURE(step_chain, zhang2025, "zhang2025");
+BENCHMARK_CAPTURE(step_chain, bench_twin, "bench_twin");
+BENCHMARK_CAPTURE(step_irregular, zhang2025, "zhang2025");
+BENCHMARK_CAPTURE(step_irregular, bench_twin, "bench_twin");
+BENCHMARK_CAPTURE(peek_value, zhang2025, "zhang2025");
+BENCHMARK_CAPTURE(peek_derivative, zhang2025, "zhang2025");
+
+}  // namespace
+}  // namespace softgrip::model
