@@ -20,12 +20,14 @@ class Ring {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
 
-  /// Producer: all of `items` in one piece, or none (false).
-  bool push(std::span<const T> items) noexcept {
+  /// Producer: all of `items` in one piece, or none (false). Leaves room for `reserve` more, so that what
+  /// matters more still finds a place when what matters less does not.
+  bool push(std::span<const T> items, std::size_t reserve = 0) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
-    if (items.size() > capacity() - (tail - known_head_)) {
+    const std::size_t needed = items.size() + reserve;
+    if (needed > capacity() - (tail - known_head_)) {
       known_head_ = head_.load(std::memory_order_acquire);
-      if (items.size() > capacity() - (tail - known_head_)) return false;
+      if (needed > capacity() - (tail - known_head_)) return false;
     }
     for (std::size_t i = 0; i < items.size(); ++i) items_[(tail + i) & mask_] = items[i];
     tail_.store(tail + items.size(), std::memory_order_release);

@@ -181,7 +181,7 @@ bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, 
   return true;
 }
 
-Header read_header(std::string_view line, Reporter& report) {
+Header read_header(std::string_view line, const LogOptions& options, Reporter& report) {
   Header header;
   header.index.fill(-1);
   header.column.fill(1);
@@ -209,6 +209,7 @@ Header read_header(std::string_view line, Reporter& report) {
   }
   for (std::size_t k = 0; k < known_columns.size(); ++k) {
     if (!known_columns[k].required || header.index[k] >= 0) continue;
+    if (k == column_displacement && !options.need_readings) continue;
     const std::string near = document::nearest(known_columns[k].name, header.names);
     report.add("missing", {1, 1}, line, "column '" + std::string(known_columns[k].name) + "' is missing",
                near.empty() ? std::string() : "is it '" + near + "'?");
@@ -360,7 +361,7 @@ std::optional<Log> parse_log(const std::string& file, std::string_view text, Pro
     report.add("empty", {1, 1}, {}, "the log is empty");
     return std::nullopt;
   }
-  const Header header = read_header(lines.front(), report);
+  const Header header = read_header(lines.front(), options, report);
   if (report.any()) {
     report.finish();
     return std::nullopt;
@@ -375,6 +376,7 @@ std::optional<Log> parse_log(const std::string& file, std::string_view text, Pro
   for (std::size_t i = 1; i < lines.size(); ++i) {
     rows.read(lines[i], static_cast<int>(i) + 1, i + 1 == lines.size());
   }
+  if (header.index[column_displacement] < 0) log.displacement_mm.assign(log.size(), no_reading);
   check_channel(rows, header, options, lines.front(), report, log);
   log.name = std::filesystem::path(file).stem().string();
   if (!log.channel.empty()) log.name += "/" + log.channel;

@@ -64,6 +64,8 @@ struct LogOptions {
   std::size_t bytes = std::size_t{512} * 1024 * 1024;
   /// Refuse what cannot identify a model: a constant command, a dead sensor.
   bool require_motion = true;
+  /// False: only the command is used. Two samples, any distance between them and no displacement_mm will do.
+  bool need_readings = true;
   /// Refuse a log of which a larger share of the readings clips (1: never; less is only noted).
   double clipped_share_refused = 0.2;
 };

@@ -15,6 +15,7 @@ using document::Problems;
 
 /// A log of fewer samples says nothing about a model with ten parameters.
 constexpr std::size_t fewest_samples = 50;
+constexpr std::size_t fewest_command_samples = 2;
 /// Above these a unit was certainly mistaken: a soft finger moves at 20-60 kPa by some 10 mm.
 constexpr double largest_pressure_kpa = 5000;
 constexpr double largest_displacement_mm = 5000;
@@ -56,16 +57,18 @@ class Check {
       : log_(log), source_(source), problems_(problems), command_(extent_of(log.pressure_command_kpa)) {}
 
   void run(const LogOptions& options) {
-    if (log_.size() < fewest_samples) {
+    const std::size_t fewest = options.need_readings ? fewest_samples : fewest_command_samples;
+    if (log_.size() < fewest) {
       refuse(log_.size(), 1, std::to_string(log_.size()) + " samples",
-             "a log has at least " + std::to_string(fewest_samples));
+             "a log has at least " + std::to_string(fewest));
       return;
     }
     if (!time_increases()) return;
     sampling_ = sampling_of(log_);
     time_plausible();
-    intervals();
     magnitudes();
+    if (!options.need_readings) return;
+    intervals();
     missing_readings();
     if (options.require_motion) excitation();
     clipping(options.clipped_share_refused);

@@ -3,7 +3,7 @@
 
 #include "tools/command.h"
 
-#define SOFTGRIP_COMMANDS(X)
+#define SOFTGRIP_COMMANDS(X) X(simulate)
 
 namespace softgrip::tools {
 

@@ -1,0 +1,64 @@
+#pragma once
+// The bus thread: exchanges with the board in step with the loop, and rebuilds a lost session by itself.
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+#include "control/fault.h"
+#include "daemon/grid.h"
+#include "daemon/loop_settings.h"
+#include "daemon/statistics.h"
+#include "daemon/wires.h"
+#include "drivers/board.h"
+#include "drivers/clock.h"
+
+namespace softgrip::daemon {
+
+/// What a failed exchange means to the supervisor; none for ok.
+[[nodiscard]] control::FaultCode fault_of(drivers::BusStatus status) noexcept;
+
+/// The only one that talks to the board. It writes nothing before the loop has sent its first commands, which
+/// are safe ones. When the loop falls silent while the board is there, it writes the safe outputs that came
+/// with the last commands, reports cycles_lost, and goes back to the loop's commands only when these no
+/// longer move.
+class Bus {
+ public:
+  /// All references outlive the bus.
+  Bus(drivers::Board& board, const LoopSettings& loop, const ReconnectSettings& reconnect,
+      const drivers::Clock& clock, Wires& wires, BusStatistics& statistics) noexcept;
+
+  /// Steps on the grid until the last commands were confirmed or `leave_deadline` has passed since the loop
+  /// was told to leave.
+  void run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept;
+
+  /// One exchange, or one attempt to rebuild the session if it is due. `due` is when it should have begun.
+  void step(Nanoseconds due) noexcept;
+
+ private:
+  bool fetch_commands() noexcept;
+  bool ensure_session() noexcept;
+  void exchange() noexcept;
+  void note_failure(drivers::BusStatus status) noexcept;
+  void tell(BusEvent::Kind kind, drivers::BusStatus status, const char* detail = "") noexcept;
+  void publish() noexcept;
+
+  drivers::Board& board_;
+  const LoopSettings& loop_;
+  const ReconnectSettings& reconnect_;
+  const drivers::Clock& clock_;
+  Wires& wires_;
+  BusStatistics& statistics_;
+  std::size_t channels_;
+
+  BusReport report_;
+  bool commanded_ = false;     // the loop has sent something
+  bool session_ = false;       // connect() succeeded and nothing poisoned it since
+  bool told_failed_ = false;   // the log knows about the present failure
+  bool silent_ = false;        // the loop is not heard; safe outputs are written
+  std::uint32_t unheard_ = 0;  // steps since its last commands
+  Nanoseconds pause_ = 0;      // before the attempt after the next
+  Nanoseconds next_attempt_ = 0;
+};
+
+}  // namespace softgrip::daemon

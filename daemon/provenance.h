@@ -1,0 +1,31 @@
+#pragma once
+// Where a recording comes from: what run.json says besides events.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace softgrip::daemon {
+
+/// A file that shaped the run, by its content.
+struct SourceFile {
+  std::string role;  ///< "rig", "board", "model", "plant"
+  std::string path;
+  std::string sha256;
+};
+
+/// The same for all recordings of a daemon.
+struct Provenance {
+  std::string software_version;
+  std::string rig;  ///< its name
+  std::vector<SourceFile> files;
+  std::vector<std::string> channel_names;
+  bool measures_pressure = false;  ///< some channel does
+  double rate_hz = 0;
+  std::uint32_t decimation = 1;
+  std::optional<std::uint64_t> seed;  ///< of a simulated board
+  bool virtual_time = false;          ///< then nothing of the wall clock stands in a recording
+};
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,49 @@
+#pragma once
+// A board that answers as it is told and remembers what was written.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "drivers/board.h"
+#include "drivers/clock.h"
+
+namespace softgrip::daemon::testing {
+
+class ScriptedBoard final : public drivers::Board {
+ public:
+  ScriptedBoard(std::size_t channels, const drivers::Clock& clock) : channels_(channels), clock_(clock) {}
+
+  drivers::BusStatus next_connect = drivers::BusStatus::ok;
+  drivers::BusStatus next_exchange = drivers::BusStatus::ok;
+  std::vector<std::vector<double>> written;          ///< by good exchanges
+  std::vector<model::Nanoseconds> connect_attempts;  ///< when
+
+  [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }
+  [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {
+    connect_attempts.push_back(clock_.now());
+    return next_connect;
+  }
+  [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
+                                            std::span<drivers::Reading> readings,
+                                            std::chrono::nanoseconds) noexcept override {
+    if (next_exchange != drivers::BusStatus::ok) return next_exchange;
+    written.emplace_back(commands_kpa.begin(), commands_kpa.end());
+    for (drivers::Reading& reading : readings) {
+      reading.sampled_at = clock_.now();
+      reading.validity = model::Validity::valid;
+      ++reading.sequence;
+    }
+    return drivers::BusStatus::ok;
+  }
+  [[nodiscard]] const char* detail() const noexcept override { return "scripted"; }
+  [[nodiscard]] std::string describe() const override { return "scripted board"; }
+  [[nodiscard]] Budget budget() const override { return {}; }
+  [[nodiscard]] bool has_watchdog() const noexcept override { return false; }
+
+ private:
+  std::size_t channels_;
+  const drivers::Clock& clock_;
+};
+
+}  // namespace softgrip::daemon::testing

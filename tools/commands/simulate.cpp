@@ -1,0 +1,129 @@
+// softgrip simulate: a model's answer to a test signal or to the command of a log.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "model/model_file.h"
+#include "sysid/numbers.h"
+#include "tools/commands.h"
+#include "tools/output.h"
+#include "tools/simulation.h"
+
+namespace softgrip::tools {
+namespace {
+
+constexpr double default_rate_hz = 100;
+
+struct Options {
+  std::string model;
+  std::string input;
+  std::string out;
+  std::string channel;
+  std::optional<double> rate_hz;
+  SimulationSettings settings;
+  bool json = false;
+};
+
+std::string signal_names() {
+  std::string names;
+  for (const model::SignalName signal : model::all_signals()) {
+    if (!names.empty()) names += " ";
+    names += model::name_of(signal);
+  }
+  return names;
+}
+
+/// The command to answer to, or an exit code.
+tl::expected<sysid::Log, ExitCode> read_input(const Options& options) {
+  if (const auto signal = model::signal_named(options.input)) {
+    return sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
+  }
+  if (options.rate_hz) {
+    return tl::unexpected{fail(ExitCode::usage, "--rate-hz goes with a SIGNAL; a log has its own times")};
+  }
+  document::Problems problems;
+  sysid::LogOptions log_options;
+  log_options.channel = options.channel;
+  log_options.require_motion = false;
+  log_options.need_readings = false;
+  sysid::Campaign campaign = sysid::read_campaign({options.input}, problems, log_options);
+  if (campaign.unreadable) {
+    return tl::unexpected{
+        fail(ExitCode::io, problems.list().front().message + " (signals are " + signal_names() + ")")};
+  }
+  if (campaign.logs.empty()) return tl::unexpected{refuse(problems)};
+  sysid::Log log = std::move(campaign.logs.front());
+  // What was measured on a finger would pass for the model's.
+  log.pressure_kpa.clear();
+  log.others.clear();
+  return log;
+}
+
+void report(const Options& options, const model::Model& model, const sysid::Log& log) {
+  std::FILE* const stream = report_stream(options.out);
+  const double span_mm = sysid::span_mm(log);
+  const double duration_s = log.time_s.back() - log.time_s.front();
+  if (options.json) {
+    nlohmann::ordered_json json;
+    json["out"] = options.out;
+    json["model"] = model.name;
+    json["input"] = options.input;
+    json["samples"] = log.size();
+    json["duration_s"] = duration_s;
+    json["span_mm"] = span_mm;
+    json["noise_mm"] = options.settings.noise_mm;
+    json["seed"] = options.settings.seed;
+    std::fprintf(stream, "%s\n", json.dump().c_str());
+    return;
+  }
+  std::fprintf(stream, "%s answers %s: %zu samples, %s s, span %s mm, noise %s mm, seed %s -> %s\n",
+               model.name.c_str(), options.input.c_str(), log.size(), sysid::significant(duration_s).c_str(),
+               sysid::significant(span_mm).c_str(), sysid::significant(options.settings.noise_mm).c_str(),
+               std::to_string(options.settings.seed).c_str(), options.out.c_str());
+}
+
+ExitCode run(const Options& options) {
+  if (const auto code = unreadable(options.model)) return *code;
+  document::Problems problems;
+  const auto model = model::load_model(options.model, problems);
+  if (!model) return refuse(problems);
+  auto log = read_input(options);
+  if (!log) return log.error();
+  simulate(*model, options.settings, *log);
+  if (const auto written = write_output(options.out, sysid::format_log(*log)); !written) {
+    return fail(ExitCode::io, written.error());
+  }
+  report(options, *model, *log);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("simulate", "A model's answer to a test signal or to the command of a log");
+  command->add_option("--model", options->model, "Model file")->required();
+  command
+      ->add_option("--input", options->input,
+                   "SIGNAL (" + signal_names() + ") or a log (CSV, or a recording's folder)")
+      ->required();
+  command->add_option("--out", options->out, "Log to write ('-': standard output)")->required();
+  command
+      ->add_option("--noise-mm", options->settings.noise_mm,
+                   "Standard deviation of white noise on the reading")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_option("--seed", options->settings.seed, "Of all noise")->capture_default_str();
+  command->add_option("--rate-hz", options->rate_hz, "Samples per second of a SIGNAL [100]")
+      ->check(CLI::Range(0.1, 100000.0));
+  command->add_option("--channel", options->channel, "Which channel of a log with several");
+  command->add_flag("--json", options->json, "Say what was done as JSON");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools

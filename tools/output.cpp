@@ -1,0 +1,43 @@
+#include "tools/output.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "sysid/files.h"
+
+namespace softgrip::tools {
+namespace {
+
+/// True for what a rename would replace instead of writing into it.
+bool is_stream(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+         !std::filesystem::is_directory(status);
+}
+
+bool put(std::FILE* file, std::string_view text) {
+  return std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+}
+
+}  // namespace
+
+tl::expected<void, std::string> write_output(const std::string& path, std::string_view text) {
+  if (path != "-" && !is_stream(path)) return sysid::write_file(path, text);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened{
+      path == "-" ? nullptr : std::fopen(path.c_str(), "w"),
+      [](std::FILE* file) { return std::fclose(file); }};
+  std::FILE* const file = path == "-" ? stdout : opened.get();
+  if (file == nullptr || !put(file, text)) {
+    return tl::unexpected{"cannot write " + path + ": " + std::strerror(errno)};
+  }
+  return {};
+}
+
+std::FILE* report_stream(const std::string& path) {
+  return path == "-" || is_stream(path) ? stderr : stdout;
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,19 @@
+#pragma once
+// Where the output of a command goes.
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+#include <tl/expected.hpp>
+
+namespace softgrip::tools {
+
+/// Writes a file whole or not at all. "-" is the standard output, and what exists and is no regular file
+/// (/dev/stdout, a pipe) is written to as it is. The error is one sentence.
+[[nodiscard]] tl::expected<void, std::string> write_output(const std::string& path, std::string_view text);
+
+/// Where to say what was done: the standard output, unless the output itself goes there.
+[[nodiscard]] std::FILE* report_stream(const std::string& path);
+
+}  // namespace softgrip::tools

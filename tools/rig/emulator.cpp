@@ -1,0 +1,164 @@
+#include "tools/rig/emulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tools/rig/wire_fault.h"
+
+namespace softgrip::tools::rig {
+namespace {
+
+constexpr double seconds_per_nanosecond = 1e-9;
+
+std::vector<FaultSpec> with_object_out(std::vector<FaultSpec> faults) {
+  const bool there = std::any_of(faults.begin(), faults.end(),
+                                 [](const FaultSpec& fault) { return fault.name == Emulator::object_out; });
+  if (!there) {
+    FaultSpec fault;
+    fault.name = Emulator::object_out;
+    fault.kind = FaultKind::object_removed;
+    faults.push_back(fault);
+  }
+  return faults;
+}
+
+model::Nanoseconds interval_of(const FaultSpec& fault) {
+  return std::max<model::Nanoseconds>(1, std::llround(fault.interval_s * 1e9));
+}
+
+/// A jumping sensor is off in the first, third, ... interval.
+bool is_off(const FaultSpec& fault, model::Nanoseconds since, model::Nanoseconds now) {
+  return (now - since) / interval_of(fault) % 2 == 0;
+}
+
+}  // namespace
+
+Emulator::Emulator(EmulatorSettings settings)
+    : board_(settings.map), unit_(settings.unit), faults_(with_object_out(std::move(settings.faults))) {
+  fingers_.reserve(settings.wiring.size());
+  for (std::size_t i = 0; i < settings.wiring.size(); ++i) {
+    fingers_.emplace_back(std::move(settings.wiring[i]), settings.plants[i]);
+  }
+  take_commands();
+}
+
+void Emulator::advance(model::Nanoseconds now) {
+  while (now_ < now) {
+    move_to(next_stop(now));
+    const bool was_tripped = board_.tripped();
+    board_.advance(now_);
+    if (board_.tripped() && !was_tripped) {
+      ++watchdog_trips_;
+      take_commands();
+    }
+    // Also between changes: a jumping sensor toggles.
+    faults_.advance(now_);
+    apply_faults();
+    if (now_ % grid == 0 && observer_) observer_();
+  }
+}
+
+Reply Emulator::serve(model::Nanoseconds now, const Request& request) {
+  advance(now);
+  ++requests_;
+  const auto index = wire_fault();
+  if (index) faults_.count_reply(*index);
+  Bytes pdu{request.pdu[0]};
+  if (!index || carried_out(faults_.faults()[*index].kind)) {
+    if (request.unit != unit_) {
+      pdu = exception_reply(request.pdu[0], Exception::gateway_target_failed);
+    } else {
+      for (const Finger& finger : fingers_) finger.show(board_);
+      board_.ignore_writes(faults_.first_active(FaultKind::ignored_write).has_value());
+      pdu = board_.answer(now, request.pdu).pdu;
+      if (board_.commanded()) faults_.start(now);
+      take_commands();
+    }
+  }
+  return index ? spoiled_reply(faults_.faults()[*index], request, pdu) : good_reply(request, pdu);
+}
+
+bool Emulator::trigger(std::string_view name, model::Nanoseconds now) {
+  advance(now);
+  const bool found = faults_.trigger(name, now);
+  apply_faults();
+  return found;
+}
+
+bool Emulator::clear(std::string_view name, model::Nanoseconds now) {
+  advance(now);
+  const bool found = faults_.clear(name);
+  apply_faults();
+  return found;
+}
+
+void Emulator::set_object(const std::optional<drivers::PlantObject>& object) {
+  for (Finger& finger : fingers_) finger.set_object(object);
+  apply_faults();
+}
+
+model::Nanoseconds Emulator::next_stop(model::Nanoseconds now) const {
+  model::Nanoseconds stop = std::min(now, (now_ / grid + 1) * grid);
+  if (const auto due = board_.watchdog_due()) stop = std::min(stop, *due);
+  if (const auto change = faults_.next_change()) stop = std::min(stop, *change);
+  return std::max(stop, now_ + 1);
+}
+
+void Emulator::move_to(model::Nanoseconds moment) {
+  const double duration_s = static_cast<double>(moment - now_) * seconds_per_nanosecond;
+  for (Finger& finger : fingers_) finger.advance(duration_s);
+  now_ = moment;
+}
+
+std::optional<std::size_t> Emulator::wire_fault() const {
+  for (std::size_t i = 0; i < faults_.faults().size(); ++i) {
+    if (faults_.active(i) && on_the_wire(faults_.faults()[i].kind)) return i;
+  }
+  return std::nullopt;
+}
+
+void Emulator::take_commands() {
+  for (Finger& finger : fingers_) finger.take_command(board_);
+}
+
+void Emulator::apply_faults() {
+  for (std::size_t channel = 0; channel < fingers_.size(); ++channel) apply_faults(channel);
+}
+
+void Emulator::apply_faults(std::size_t channel) {
+  drivers::LineFault line;
+  drivers::SensorFault sensor;
+  bool object_there = true;
+  for (std::size_t i = 0; i < faults_.faults().size(); ++i) {
+    const FaultSpec& fault = faults_.faults()[i];
+    if (!faults_.active(i) || fault.channel.value_or(channel) != channel) continue;
+    switch (fault.kind) {
+      case FaultKind::sensor_stuck:
+        sensor = {drivers::SensorFault::Kind::stuck, 0};
+        break;
+      case FaultKind::sensor_jumping:
+        sensor = {};
+        if (is_off(fault, faults_.since(i), now_)) sensor = {drivers::SensorFault::Kind::offset, fault.by_mm};
+        break;
+      case FaultKind::sensor_out_of_range:
+        sensor = {drivers::SensorFault::Kind::out_of_range, 0};
+        break;
+      case FaultKind::line_blocked:
+        line = {drivers::LineFault::Kind::blocked, 0};
+        break;
+      case FaultKind::line_leaking:
+        line = {drivers::LineFault::Kind::leaking, fault.share};
+        break;
+      case FaultKind::object_removed:
+        object_there = false;
+        break;
+      default:
+        break;
+    }
+  }
+  fingers_[channel].set_faults(line, sensor);
+  fingers_[channel].place_object(object_there);
+}
+
+}  // namespace softgrip::tools::rig

@@ -1,0 +1,78 @@
+#pragma once
+// The rig in real time: board, fingers and what goes wrong with them, moved by the times at which requests
+// arrive. No sockets, no clock of its own.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "tools/rig/emulated_board.h"
+#include "tools/rig/fault_schedule.h"
+#include "tools/rig/finger.h"
+#include "tools/rig/reply.h"
+
+namespace softgrip::tools::rig {
+
+struct EmulatorSettings {
+  drivers::BoardMap map;
+  std::uint8_t unit = 1;  ///< requests to other units are answered with exception 11
+  std::vector<drivers::ChannelWiring> wiring;
+  std::vector<drivers::PlantSettings> plants;  ///< one per channel
+  std::vector<FaultSpec> faults;
+};
+
+class Emulator {
+ public:
+  /// Plants move in steps that end on this grid, at every request, and wherever something happens.
+  static constexpr model::Nanoseconds grid = 1'000'000;
+  /// A fault that always exists: triggered, it takes the object away.
+  static constexpr std::string_view object_out = "object_out";
+
+  /// The first moment is 0.
+  explicit Emulator(EmulatorSettings settings);
+
+  /// Moves on. Not before an earlier `now`.
+  void advance(model::Nanoseconds now);
+  /// A request that arrives at `now`, and what becomes of it.
+  [[nodiscard]] Reply serve(model::Nanoseconds now, const Request& request);
+  /// Whether new connections are let in.
+  [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
+
+  /// Begins or ends a fault. False: there is none of that name.
+  bool trigger(std::string_view name, model::Nanoseconds now);
+  bool clear(std::string_view name, model::Nanoseconds now);
+  /// Puts an object between the fingers (all channels), or none.
+  void set_object(const std::optional<drivers::PlantObject>& object);
+
+  /// Called at every point of the grid.
+  void on_grid(std::function<void()> observer) { observer_ = std::move(observer); }
+
+  [[nodiscard]] model::Nanoseconds now() const noexcept { return now_; }
+  [[nodiscard]] const std::vector<Finger>& fingers() const noexcept { return fingers_; }
+  [[nodiscard]] const EmulatedBoard& board() const noexcept { return board_; }
+  [[nodiscard]] const FaultSchedule& faults() const noexcept { return faults_; }
+  [[nodiscard]] std::uint64_t requests() const noexcept { return requests_; }
+  [[nodiscard]] std::uint64_t watchdog_trips() const noexcept { return watchdog_trips_; }
+
+ private:
+  [[nodiscard]] model::Nanoseconds next_stop(model::Nanoseconds now) const;
+  [[nodiscard]] std::optional<std::size_t> wire_fault() const;
+  void move_to(model::Nanoseconds moment);
+  void take_commands();
+  void apply_faults();
+  void apply_faults(std::size_t channel);
+
+  EmulatedBoard board_;
+  std::uint8_t unit_;
+  std::vector<Finger> fingers_;
+  FaultSchedule faults_;
+  std::function<void()> observer_;
+  model::Nanoseconds now_ = 0;
+  std::uint64_t requests_ = 0;
+  std::uint64_t watchdog_trips_ = 0;
+};
+
+}  // namespace softgrip::tools::rig

@@ -1,0 +1,43 @@
+#pragma once
+// One emulated finger on the board: its plant, and the terminals it is wired to.
+
+#include <optional>
+
+#include "drivers/channel_wiring.h"
+#include "drivers/plant.h"
+#include "tools/rig/emulated_board.h"
+
+namespace softgrip::tools::rig {
+
+class Finger {
+ public:
+  Finger(drivers::ChannelWiring wiring, const drivers::PlantSettings& settings);
+
+  [[nodiscard]] const std::string& name() const noexcept { return wiring_.name; }
+  [[nodiscard]] const drivers::Plant& plant() const noexcept { return plant_; }
+
+  /// Takes the pressure that the board's output asks for.
+  void take_command(const EmulatedBoard& board);
+  /// Moves on by `duration_s` under the held command.
+  void advance(double duration_s) noexcept { plant_.advance(duration_s); }
+  /// Puts what the sensors show on the board's inputs.
+  void show(EmulatedBoard& board) const;
+
+  /// Faults as they should be from now on; unchanged ones are left alone (a stuck sensor stays where it
+  /// stuck).
+  void set_faults(const drivers::LineFault& line, const drivers::SensorFault& sensor);
+  /// Puts the object of the settings there, or takes it away.
+  void place_object(bool there);
+  [[nodiscard]] bool has_object() const noexcept { return plant_.object().has_value(); }
+  /// What place_object() places.
+  void set_object(const std::optional<drivers::PlantObject>& object) noexcept { object_ = object; }
+
+ private:
+  drivers::ChannelWiring wiring_;
+  drivers::Plant plant_;
+  std::optional<drivers::PlantObject> object_;
+  drivers::LineFault line_;
+  drivers::SensorFault sensor_;
+};
+
+}  // namespace softgrip::tools::rig

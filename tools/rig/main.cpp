@@ -1,0 +1,146 @@
+// softgrip-rig: the emulator of a rig on Modbus TCP.
+
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <optional>
+
+#include "tools/command.h"
+#include "tools/rig/listener.h"
+#include "tools/rig/options.h"
+#include "tools/rig/server.h"
+#include "tools/rig/truth_log.h"
+
+namespace {
+
+using softgrip::tools::ExitCode;
+using softgrip::tools::fail;
+namespace rig = softgrip::tools::rig;
+
+void add_options(CLI::App& program, rig::Options& options) {
+  program.set_version_flag("--version", std::string{"softgrip-rig "} + SOFTGRIP_VERSION);
+  program
+      .add_option("--model", options.models, "What the fingers are: a model file for all, or one per channel")
+      ->required();
+  program.add_option("--board", options.board, "Board map: a file, or a name in config/boards")
+      ->capture_default_str();
+  auto* tcp = program.add_option("--tcp", options.port, "Port; 0 takes a free one and prints it")
+                  ->capture_default_str();
+  program.add_option("--rtu", options.rtu, "Serial device (not available yet)")->excludes(tcp);
+  program.add_option("--bind", options.bind, "Numeric address to listen on")->capture_default_str();
+  program.add_flag("--allow-network", options.allow_network, "Listen on an address that others can reach");
+  program.add_option("--unit", options.unit, "Unit id that is answered (default 1, or the rig file's)");
+  auto* channels =
+      program.add_option("--channels", options.channels, "Number of fingers")->capture_default_str();
+  program
+      .add_option("--rig", options.rig,
+                  "Rig file: board, unit id, channels and their scaling as softgripd has them")
+      ->excludes(channels);
+  program.add_option("--object", options.object,
+                     "Between the fingers: stone, screw or POSITION_MM[:YIELDING]");
+  program
+      .add_option("--object-out-at", options.object_out_at_s,
+                  "Pull it out so many seconds after the first command")
+      ->check(CLI::NonNegativeNumber);
+  program.add_option("--faults", options.faults, "What goes wrong, and when (YAML)");
+  program.add_option("--watchdog-s", options.watchdog_s, "The board's communication watchdog; 0: none")
+      ->check(CLI::NonNegativeNumber);
+  program.add_option("--noise-mm", options.noise_mm, "Standard deviation of the displacement sensor")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  program
+      .add_option("--pressure-noise-kpa", options.pressure_noise_kpa,
+                  "Standard deviation of the pressure monitor")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  program.add_option("--seed", options.seed, "Of all noise")->capture_default_str();
+  program.add_option("--truth", options.truth, "Write what really happened to this CSV file");
+  program.add_option("--truth-rate-hz", options.truth_rate_hz, "Rows per second and channel of --truth")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1000.0));
+  program.add_option("--control", options.control,
+                     "Take control commands on this Unix socket ('-': standard input)");
+  program.footer(
+      "Control commands: status, fault NAME, clear NAME, object out|back|stone|screw|POSITION_MM[:YIELDING], "
+      "quit.\n"
+      "SIGUSR1 pulls the object out. Ready once 'listening on ADDRESS:PORT' is printed.");
+}
+
+/// All signals that the server takes, as a descriptor; blocked for the whole process.
+rig::Descriptor take_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+  return rig::Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
+}
+
+ExitCode serve(const rig::Options& options, rig::Emulator& emulator, rig::TruthLog* truth) {
+  auto listener = rig::listen_tcp(options.bind, options.port);
+  if (!listener) return fail(ExitCode::io, listener.error());
+  rig::ServerSockets sockets;
+  sockets.modbus = std::move(listener->socket);
+  sockets.signals = take_signals();
+  sockets.standard_input = options.control == "-";
+  const bool control_socket = !options.control.empty() && !sockets.standard_input;
+  if (control_socket) {
+    auto control = rig::listen_unix(options.control);
+    if (!control) return fail(ExitCode::io, control.error());
+    sockets.control = std::move(*control);
+  }
+  rig::Server server(emulator, std::move(sockets));
+  std::printf("listening on %s:%u\n", options.bind.c_str(), unsigned{listener->port});
+  std::fflush(stdout);
+  server.run([&] {
+    if (truth != nullptr) truth->flush();
+  });
+  if (control_socket) ::unlink(options.control.c_str());
+  if (truth != nullptr && !truth->good()) return fail(ExitCode::io, "cannot write " + options.truth);
+  return ExitCode::done;
+}
+
+ExitCode run(const rig::Options& options) {
+  if (!options.rtu.empty()) return fail(ExitCode::usage, "--rtu is not available yet: use --tcp");
+  if (!rig::is_loopback(options.bind) && !options.allow_network) {
+    return fail(ExitCode::usage, "others could reach " + options.bind +
+                                     ", and Modbus knows no password: add --allow-network if that is wanted");
+  }
+  auto settings = rig::make_settings(options);
+  if (!settings) return settings.error();
+  rig::Emulator emulator(std::move(*settings));
+  std::optional<rig::TruthLog> truth;
+  if (!options.truth.empty()) {
+    const double decimation =
+        std::round(1e9 / static_cast<double>(rig::Emulator::grid) / options.truth_rate_hz);
+    truth.emplace(options.truth, static_cast<std::uint32_t>(decimation));
+    if (!truth->good()) return fail(ExitCode::io, "cannot write " + options.truth);
+    emulator.on_grid([&] { truth->add(emulator); });
+  }
+  return serve(options, emulator, truth ? &*truth : nullptr);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    CLI::App program{
+        "A rig in real time behind a Modbus TCP board: valve, fingers, object, watchdog, faults.",
+        "softgrip-rig"};
+    rig::Options options;
+    add_options(program, options);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    }
+    return static_cast<int>(run(options));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softgrip-rig: %s\n", error.what());
+  }
+  return static_cast<int>(ExitCode::failed);
+}

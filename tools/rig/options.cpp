@@ -1,0 +1,92 @@
+#include "tools/rig/options.h"
+
+#include <filesystem>
+
+#include "drivers/board_map_file.h"
+#include "model/model_file.h"
+#include "tools/command.h"
+#include "tools/rig/control.h"
+#include "tools/rig/wiring.h"
+
+namespace softgrip::tools::rig {
+namespace {
+
+// Distinct seeds of the channels' noise; any odd number does.
+constexpr std::uint64_t seed_step = 0x9e3779b97f4a7c15;
+
+/// A board file as the user named it: a path, or a name in one of the folders where board files are.
+std::string board_path(const std::string& board) {
+  if (board.find('/') != std::string::npos || board.ends_with(".yaml")) return board;
+  for (const char* folder : {"config/boards/", SOFTGRIP_CONFIG_DIR "/boards/"}) {
+    const std::string path = folder + board + ".yaml";
+    if (std::filesystem::exists(path)) return path;
+  }
+  return board;
+}
+
+std::vector<drivers::PlantSettings> make_plants(const Options& options, std::size_t channels,
+                                                document::Problems& problems) {
+  std::vector<drivers::PlantSettings> plants(channels);
+  for (std::size_t i = 0; i < channels; ++i) {
+    plants[i].displacement_noise_mm = options.noise_mm;
+    plants[i].pressure_noise_kpa = options.pressure_noise_kpa;
+    plants[i].seed = options.seed + i * seed_step;
+    if (!options.object.empty()) plants[i].object = object_named(options.object);
+  }
+  for (std::size_t i = 0; i < options.models.size(); ++i) {
+    const auto model = model::load_model(options.models[i], problems);
+    if (!model) continue;
+    for (std::size_t channel = i; channel < channels; channel += options.models.size()) {
+      plants[channel].model = *model;
+    }
+  }
+  return plants;
+}
+
+void set_watchdog(drivers::BoardWatchdog& watchdog, double timeout_s) {
+  using Kind = drivers::BoardWatchdog::Kind;
+  watchdog.kind = timeout_s > 0 ? Kind::communication_timeout : Kind::none;
+  watchdog.timeout_s = timeout_s;
+}
+
+void add_faults(const Options& options, EmulatorSettings& settings, document::Problems& problems) {
+  if (!options.faults.empty()) {
+    std::vector<std::string> names;
+    for (const drivers::ChannelWiring& channel : settings.wiring) names.push_back(channel.name);
+    const document::Document document = document::parse_file(options.faults, problems);
+    if (problems.empty()) settings.faults = read_faults(document, names, problems);
+  }
+  if (options.object_out_at_s) {
+    FaultSpec fault;
+    fault.name = Emulator::object_out;
+    fault.kind = FaultKind::object_removed;
+    fault.at_s = options.object_out_at_s;
+    settings.faults.push_back(std::move(fault));
+  }
+}
+
+}  // namespace
+
+tl::expected<EmulatorSettings, ExitCode> make_settings(const Options& options) {
+  if (!options.object.empty() && !object_named(options.object)) {
+    return tl::unexpected{
+        fail(ExitCode::usage,
+             "--object takes stone, screw or POSITION_MM[:YIELDING], not '" + options.object + "'")};
+  }
+  document::Problems problems;
+  EmulatorSettings settings;
+  const auto map = drivers::load_board_map(board_path(options.board), problems);
+  if (!map) return tl::unexpected{refuse(problems)};
+  settings.map = *map;
+  auto wiring = default_wiring(*map, options.channels);
+  if (!wiring) return tl::unexpected{fail(ExitCode::input_refused, wiring.error())};
+  settings.wiring = std::move(*wiring);
+  settings.unit = options.unit.value_or(settings.unit);
+  if (options.watchdog_s) set_watchdog(settings.map.watchdog, *options.watchdog_s);
+  settings.plants = make_plants(options, settings.wiring.size(), problems);
+  add_faults(options, settings, problems);
+  if (!problems.empty()) return tl::unexpected{refuse(problems)};
+  return settings;
+}
+
+}  // namespace softgrip::tools::rig

@@ -1,0 +1,41 @@
+#pragma once
+// What the user of softgrip-rig asked for, and the emulator that it makes.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "tools/exit_code.h"
+#include "tools/rig/emulator.h"
+
+namespace softgrip::tools::rig {
+
+struct Options {
+  std::vector<std::string> models;  ///< one for all channels, or one per channel
+  std::string board = "adam-6024";  ///< a file, or a name in config/boards
+  std::string rig;                  ///< rig file that says what is wired where; empty: default wiring
+  std::size_t channels = 2;         ///< without a rig file
+  std::optional<std::uint8_t> unit;
+  std::string bind = "127.0.0.1";
+  bool allow_network = false;
+  std::uint16_t port = 1502;
+  std::string rtu;
+  std::string object;
+  std::optional<double> object_out_at_s;
+  std::string faults;
+  std::string truth;
+  double truth_rate_hz = 1000;
+  std::optional<double> watchdog_s;  ///< in place of the board map's timeout; 0: no watchdog
+  double noise_mm = 0.03;
+  double pressure_noise_kpa = 0.1;
+  std::uint64_t seed = 1;
+  std::string control;  ///< path of a socket, "-" the standard input
+};
+
+/// Why the emulator cannot be made: all problems have been printed.
+[[nodiscard]] tl::expected<EmulatorSettings, ExitCode> make_settings(const Options& options);
+
+}  // namespace softgrip::tools::rig
