@@ -17,3 +17,7 @@ if(SOFTGRIP_SANITIZE)
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()
 endif()
+if(SOFTGRIP_FUZZERS)
+  # Coverage of all libraries steers the fuzzer; only its own targets get its main().
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()

@@ -21,3 +21,11 @@ function(softgrip_test name)
   target_compile_definitions(${name} PRIVATE SOFTGRIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name} PROPERTIES TIMEOUT 120 ${arg_PROPERTIES} DISCOVERY_TIMEOUT 60)
 endfunction()
+
+# softgrip_fuzzer(NAME FILES... [LINK ...])  a libFuzzer target; only with SOFTGRIP_FUZZERS
+function(softgrip_fuzzer name)
+  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
+  add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LINK})
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+endfunction()

@@ -97,20 +97,6 @@ void fit_sequences(const Read& read, document::Problems& problems) {
   }
 }
 
-bool same(const document::Problem& a, const document::Problem& b) {
-  return a.file == b.file && a.at == b.at && a.message == b.message;
-}
-
-/// A model that two rigs name, or that is checked itself too, was read more than once.
-std::vector<document::Problem> without_repeats(const std::vector<document::Problem>& list) {
-  std::vector<document::Problem> once;
-  for (const document::Problem& problem : list) {
-    const auto is_same = [&](const document::Problem& other) { return same(problem, other); };
-    if (std::none_of(once.begin(), once.end(), is_same)) once.push_back(problem);
-  }
-  return once;
-}
-
 std::size_t count_of(const std::vector<document::Problem>& list, const std::string& path) {
   const auto of_file = [&](const document::Problem& problem) { return problem.file == path; };
   return static_cast<std::size_t>(std::count_if(list.begin(), list.end(), of_file));
@@ -152,10 +138,8 @@ CheckReport check_files(std::span<const std::string> paths) {
     read_as(document, file, problems, read);
   }
   fit_sequences(read, problems);
-  for (document::Problem& problem : without_repeats(problems.list())) report.problems.add(std::move(problem));
-  for (document::Problem& problem : without_repeats(problems.warnings())) {
-    report.problems.warn(std::move(problem));
-  }
+  // A model that two rigs name, or that is checked itself too, was read more than once.
+  report.problems = problems.without_repeats();
   for (CheckedFile& file : report.files) {
     file.errors = count_of(report.problems.list(), file.path);
     file.warnings = count_of(report.problems.warnings(), file.path);

@@ -28,9 +28,9 @@ std::size_t count_digits(std::string_view text) {
 
 std::optional<Decimal> split(std::string_view text) {
   Decimal decimal;
-  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
-  decimal.digits = text;
-  if (!text.empty() && text[0] == '-' && decimal.digits.size() == text.size()) text.remove_prefix(1);
+  // from_chars knows no leading plus.
+  decimal.digits = text.starts_with('+') ? text.substr(1) : text;
+  if (text.starts_with('+') || text.starts_with('-')) text.remove_prefix(1);
   const std::size_t whole = count_digits(text);
   decimal.whole = text.substr(0, whole);
   text.remove_prefix(whole);

@@ -45,7 +45,9 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     Node node;
     node.at = begin(mark, "", anchor);
-    if (anchor == 0) node.at = empty_value_at(mark);
+    const bool is_key =
+        !frames_.empty() && frames_.back().node.kind == Node::Kind::map && !frames_.back().has_key;
+    if (anchor == 0 && !is_key) node.at = empty_value_at(mark);
     place(std::move(node));
   }
 
@@ -65,6 +67,10 @@ class TreeBuilder final : public YAML::EventHandler {
     node.at = begin(mark, tag, anchor);
     node.scalar = value;
     node.quoted = tag == "!";
+    if (!is_closed(mark)) {
+      refuse(node.at, "a quote is opened here but never closed", "");
+      throw Abandoned{};
+    }
     place(std::move(node));
   }
 
@@ -130,6 +136,24 @@ class TreeBuilder final : public YAML::EventHandler {
       refuse(at, "a tag (`!name`) is not accepted here", "remove it; the key decides the type");
     }
     return at;
+  }
+
+  /// False if a quoted text starts at `mark` and goes on to the end of the file, which the parser accepts
+  /// after a line break.
+  [[nodiscard]] bool is_closed(const YAML::Mark& mark) const {
+    const std::string& text = document_.text;
+    auto position = static_cast<std::size_t>(std::max(mark.pos, 0));
+    if (position >= text.size() || (text[position] != '"' && text[position] != '\'')) return true;
+    const char quote = text[position];
+    for (++position; position < text.size(); ++position) {
+      if (quote == '"' && text[position] == '\\') {
+        ++position;
+      } else if (text[position] == quote) {
+        if (quote == '"' || position + 1 >= text.size() || text[position + 1] != quote) return true;
+        ++position;
+      }
+    }
+    return false;
   }
 
   /// Of a value that is not there the parser names the place of what comes next, perhaps lines below. Go

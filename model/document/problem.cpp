@@ -95,6 +95,20 @@ void Problems::warn(Problem problem) {
   if (warnings_.size() < most) warnings_.push_back(std::move(problem));
 }
 
+Problems Problems::without_repeats() const {
+  Problems result;
+  const auto copy = [](const std::vector<Problem>& from, std::vector<Problem>& to) {
+    for (const Problem& problem : from) {
+      if (std::find(to.begin(), to.end(), problem) == to.end()) to.push_back(problem);
+    }
+  };
+  copy(errors_, result.errors_);
+  copy(warnings_, result.warnings_);
+  result.error_count_ = error_count_ - (errors_.size() - result.errors_.size());
+  result.warning_count_ = warning_count_ - (warnings_.size() - result.warnings_.size());
+  return result;
+}
+
 std::string Problems::format() const {
   struct Item {
     std::size_t file;

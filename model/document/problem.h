@@ -24,6 +24,8 @@ struct Problem {
   std::string line_text;  ///< the line itself, without its line break (empty where there is none)
   std::string message;    ///< what is wrong, one sentence
   std::string hint;       ///< what was probably meant, or empty
+
+  bool operator==(const Problem&) const = default;
 };
 
 /// All problems of one or several documents, in the order in which they were found. Errors and warnings are
@@ -48,6 +50,9 @@ class Problems {
   /// under the column, the hint. Files in the order of their first problem, each by line. Ends with a line
   /// break unless there is nothing to say.
   [[nodiscard]] std::string format() const;
+
+  /// The same without repetitions: a file that was read more than once has the same problems each time.
+  [[nodiscard]] Problems without_repeats() const;
 
  private:
   std::vector<Problem> errors_;
