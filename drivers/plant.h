@@ -21,9 +21,13 @@ struct PlantObject {
 
 /// What is wrong with the pneumatic line.
 struct LineFault {
-  enum class Kind : std::uint8_t { none, blocked, leaking };
+  enum class Kind : std::uint8_t {
+    none,
+    blocked,  ///< commands have no effect any more: the finger stays at the pressure it has
+    leaking,  ///< a share of every command is lost
+  };
   Kind kind = Kind::none;
-  double share = 0;  ///< leaking: share of the pressure that is lost, 0 to 1
+  double share = 0;  ///< leaking: 0 to 1
 };
 
 /// What is wrong with the displacement sensor.

@@ -22,12 +22,12 @@ struct SimulatedEvent {
     object,         ///< `object` stands there from now on; none: it is pulled out
     line_fault,     ///< `line`
     sensor_fault,   ///< `sensor`
-    bus_lost,       ///< every exchange ends with `status`; the session is lost if that is `disconnected`
-    bus_restored,   ///< connect() works again
-    write_refused,  ///< outputs keep their value from now on
+    bus_lost,       ///< every exchange ends with `status`; while that is `disconnected`, connect() fails too
+    bus_restored,   ///< exchanges work again, after a connect() if the status was one that ends the session
+    write_refused,  ///< outputs keep their value; an exchange that asks for another one says so
     write_taken,    ///< and follow again
   };
-  /// Which channel; all of them.
+  /// All channels.
   static constexpr std::size_t every_channel = static_cast<std::size_t>(-1);
 
   double at_s = 0;  ///< since the first exchange
@@ -43,17 +43,18 @@ struct SimulatedChannel {
   std::string name;
   PlantSettings plant;
   bool measures_pressure = false;
-  double valve_max_kpa = 0;  ///< what full scale of the output means; commands beyond are refused
+  double valve_max_kpa = 0;  ///< full scale of the output, above 0; commands outside [0, this] are refused
   double sensor_min_mm = 0;  ///< measuring range of the sensor; beyond it readings are out of range
   double sensor_max_mm = 0;
   int output_bits = 0;  ///< over [0, valve_max_kpa]; 0: not quantised
-  int input_bits = 0;   ///< over the measuring range; 0: not quantised
+  int input_bits =
+      0;  ///< over the measuring range, and over [0, valve_max_kpa] for pressure; 0: not quantised
 };
 
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
   std::vector<SimulatedEvent> events;  ///< in any order
-  /// Outputs go to 0 when no exchange came for so long [s]; 0: no watchdog.
+  /// Outputs go to 0 when no exchange came for so long [s], and stay there until connect(); 0: no watchdog.
   double watchdog_timeout_s = 0;
 };
 

@@ -61,6 +61,8 @@ class Chain {
   [[nodiscard]] std::size_t size() const noexcept { return blocks_.size(); }
   /// Access for the control side, which inverts block by block.
   [[nodiscard]] const AnyBlock<T>& block(std::size_t index) const { return blocks_[index]; }
+  /// For a simulation whose surroundings change while it runs: another contact in the place of one.
+  [[nodiscard]] AnyBlock<T>& block(std::size_t index) { return blocks_[index]; }
   /// The first block of type Block (BoucWen<T>, ...), or nullptr.
   template <class Block>
   [[nodiscard]] const Block* find() const noexcept {
