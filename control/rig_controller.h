@@ -96,8 +96,9 @@ struct Event {
   std::uint8_t channel = 0xff;  ///< 0xff: the whole rig
   std::uint16_t detail =
       0;  ///< State, FaultCode, GripResult, step, RefusalCode HealthState or SequenceEnd, by kind
-  std::uint32_t request = 0;  ///< the id of the request it answers, or 0
-  double value = 0;           ///< a number that goes with it (a residual, an age), or 0
+  std::uint32_t request = 0;                   ///< the id of the request it answers, or 0
+  double value = 0;                            ///< a number that goes with it (a deficit, an age), or 0
+  GripEvidence evidence = GripEvidence::none;  ///< of grip_result: on what it rests
 };
 
 struct TickOutput {

@@ -51,6 +51,7 @@ struct Target {
   enum class Quantity : std::uint8_t { displacement_mm, pressure_kpa };
   Quantity quantity = Quantity::pressure_kpa;
   double value = 0;
+  bool lowest = false;    ///< the lowest command of the channel instead of value
   double speed = 0;       ///< 0: duration_s counts
   double duration_s = 0;  ///< 0 with speed 0: as fast as the limits allow
 };
@@ -66,26 +67,32 @@ struct Verify {
 /// A point of a piecewise linear profile.
 struct Point {
   double time_s = 0;
-  double value = 0;  ///< mm or kPa
+  double pressure_kpa = 0;
   bool operator==(const Point&) const = default;
 };
 
-/// Value over time of a track or pressure step: one of points, a sine or a test signal, `cycles` times.
+/// Pressure over time of a pressure step: points or a test signal, `cycles` times.
 struct Profile {
-  enum class Shape : std::uint8_t { points, sine, signal };
-  Shape shape = Shape::points;
   std::vector<Point> points;  ///< times from 0, not decreasing; a jump is two points at one time
-  double mean = 0;            ///< of the sine: mean - amplitude cos(2 pi f t), which starts at its lowest
-  double amplitude = 0;
-  double frequency_hz = 0;
-  model::SignalName signal = model::SignalName::tp1;
-  double scale = 1;  ///< of the signal
+  std::optional<model::SignalName> signal;  ///< instead of points
+  double scale = 1;                         ///< of the signal
   std::uint32_t cycles = 1;
 };
+/// Of one cycle [s].
+[[nodiscard]] double cycle_s(const Profile& profile) noexcept;
 /// Of all cycles [s].
 [[nodiscard]] double duration_s(const Profile& profile) noexcept;
-/// The profile at `time_s` since its start; its first value before, its last after. Allocates nothing.
+/// The profile at `time_s` since its start; its first value before, its last after; at a jump the value
+/// after it. Allocates nothing.
 [[nodiscard]] double value_at(const Profile& profile, double time_s) noexcept;
+
+/// Displacement over time of a track step: mean - amplitude cos(2 pi f t), which starts at its lowest.
+struct Sine {
+  double mean_mm = 0;
+  double amplitude_mm = 0;
+  double frequency_hz = 0;
+  std::uint32_t cycles = 1;
+};
 
 /// One step as written.
 struct Step {
@@ -94,8 +101,9 @@ struct Step {
   document::Location at;
   std::vector<std::string> channels;   ///< empty: those of the sequence
   Target target;                       ///< of move, grip, release
-  Profile profile;                     ///< of track, pressure
-  double settle_s = 0;                 ///< waited after the ramp or the profile
+  Sine sine;                           ///< of track
+  Profile profile;                     ///< of pressure
+  double settle_s = 0;                 ///< waited after the ramp
   std::optional<double> tolerance_mm;  ///< of move: within it for settle_s, or the step fails at timeout_s
   Verify verify;                       ///< of grip
   double hold_s = 0;

@@ -1,0 +1,142 @@
+#include "control/fault_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrip::control {
+
+namespace {
+
+FaultCode code_of(model::Validity validity) noexcept {
+  switch (validity) {
+    case model::Validity::valid:
+      return FaultCode::none;
+    case model::Validity::none_yet:
+    case model::Validity::stale:
+      return FaultCode::reading_stale;
+    case model::Validity::out_of_range:
+      return FaultCode::reading_out_of_range;
+    case model::Validity::sensor_error:
+      return FaultCode::sensor_error;
+    case model::Validity::jumped:
+      return FaultCode::reading_jumped;
+    case model::Validity::frozen:
+      return FaultCode::reading_frozen;
+  }
+  return FaultCode::sensor_error;
+}
+
+/// The board itself says so: no need to wait for more of the same.
+bool said_by_board(FaultCode code) noexcept {
+  return code == FaultCode::write_refused || code == FaultCode::board_watchdog_tripped;
+}
+
+}  // namespace
+
+FaultMonitor::FaultMonitor(const RigSettings& settings)
+    : settings_(settings.faults), channels_(settings.channels.size()) {
+  const auto ring =
+      static_cast<std::size_t>(std::ceil(settings.faults.readback_delay_s * settings.rate_hz)) + 2;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    sighted_.push_back(settings.channels[i].displacement_used);
+    channels_[i].sent_kpa.assign(ring, settings.channels[i].limits.pressure_min_kpa);
+  }
+}
+
+Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelStep> steps,
+                            bool starting) noexcept {
+  cause_present_ = input.emergency_stop;
+  Fault first;
+  const auto note = [&first](const Fault& fault) {
+    if (first.code == FaultCode::none) {
+      first = fault;
+    }
+  };
+  if (input.emergency_stop) {
+    note({FaultCode::emergency_stop, whole_rig, 0});
+  }
+  note(bus(input.bus, starting));
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    note(channel(i, input, steps[i], starting));
+  }
+  if (settings_.slipped_cycles > 0 && input.slipped_cycles >= settings_.slipped_cycles) {
+    note({FaultCode::cycles_lost, whole_rig, static_cast<double>(input.slipped_cycles)});
+  }
+  return first;
+}
+
+Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
+  const bool good = bus.connected && bus.consecutive_failures == 0 && bus.fault == FaultCode::none;
+  bus_cycles_ = good ? 0 : bus_cycles_ + 1;
+  cause_present_ = cause_present_ || !good;
+  if (good || (starting && !said_by_board(bus.fault))) {
+    return {};
+  }
+  const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
+  if (said_by_board(code) || bus_cycles_ >= settings_.bus_down_cycles) {
+    return {code, whole_rig, static_cast<double>(bus_cycles_)};
+  }
+  return {};
+}
+
+Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const ChannelStep& step,
+                            bool starting) noexcept {
+  Channel& channel = channels_[index];
+  const auto number = static_cast<std::uint8_t>(index);
+  if (step.request_invalid) {
+    return {FaultCode::not_finite, number, 0};
+  }
+  const Fault of_reading = sighted_[index] ? reading(channel, number, step, starting) : Fault{};
+  const double readback = input.readings[index].command_readback_kpa;
+  const bool off = bus_good() && std::isfinite(readback) && readback_off(channel, readback);
+  channel.readback_cycles = off ? channel.readback_cycles + 1 : 0;
+  cause_present_ = cause_present_ || channel.invalid_cycles > 0 || channel.beyond_cycles > 0 || off;
+  if (of_reading.code != FaultCode::none) {
+    return of_reading;
+  }
+  if (off && channel.readback_cycles >= settings_.readback_cycles) {
+    return {FaultCode::readback_mismatch, number, readback};
+  }
+  if (settings_.model_unfit_is_fault && step.health_changed && step.health == HealthState::unfit) {
+    return {FaultCode::model_unfit, number, step.health_rms_mm};
+  }
+  return {};
+}
+
+Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelStep& step,
+                            bool starting) const noexcept {
+  const bool silent = step.validity == model::Validity::none_yet || step.validity == model::Validity::stale;
+  const bool invalid = step.validity != model::Validity::valid && !(starting && silent);
+  channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
+  channel.beyond_cycles = step.displacement_beyond ? channel.beyond_cycles + 1 : 0;
+  if (invalid && channel.invalid_cycles >= settings_.invalid_reading_cycles) {
+    return {code_of(step.validity), index, step.age_s};
+  }
+  if (channel.beyond_cycles >= settings_.displacement_cycles) {
+    return {FaultCode::displacement_beyond_limits, index, step.displacement_mm};
+  }
+  return {};
+}
+
+/// Off is what agrees with no command of the window; the newest one is the usual answer.
+bool FaultMonitor::readback_off(const Channel& channel, double readback_kpa) const noexcept {
+  const std::size_t newest = (ring_at_ == 0 ? channel.sent_kpa.size() : ring_at_) - 1;
+  if (std::abs(readback_kpa - channel.sent_kpa[newest]) <= settings_.readback_tolerance_kpa) {
+    return false;
+  }
+  const auto [lowest, highest] = std::minmax_element(channel.sent_kpa.begin(), channel.sent_kpa.end());
+  return readback_kpa < *lowest - settings_.readback_tolerance_kpa ||
+         readback_kpa > *highest + settings_.readback_tolerance_kpa;
+}
+
+void FaultMonitor::sent(std::size_t channel, double command_kpa) noexcept {
+  channels_[channel].sent_kpa[ring_at_] = command_kpa;
+}
+
+void FaultMonitor::end_tick() noexcept {
+  if (!channels_.empty() && ++ring_at_ == channels_.front().sent_kpa.size()) {
+    ring_at_ = 0;
+  }
+}
+
+}  // namespace softgrip::control

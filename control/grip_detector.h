@@ -1,0 +1,68 @@
+#pragma once
+// Is there something between the fingers? One evidence for approach by pressure and by displacement: how
+// much less the finger moved than the free model, run on the commands that were really sent, says it would
+// have. Hysteresis and creep are in that model, so the evidence holds while the pressure changes and creeps.
+
+#include <cstdint>
+
+namespace softgrip::control {
+
+/// What a channel knows in one tick, as far as sequences need it.
+struct ChannelView {
+  bool sighted = true;         ///< the channel uses its displacement at all
+  bool valid = false;          ///< the reading of the displacement can be used
+  double displacement_mm = 0;  ///< the last valid one
+  double deficit_mm = 0;       ///< running free model minus reading, at the time of the reading; NaN: unknown
+  double pressure_kpa = 0;     ///< measured, or NaN
+  double command_kpa = 0;      ///< last sent
+  double lowest_kpa = 0;       ///< lowest command
+  double preview_s = 0;        ///< how far ahead the feedforward has used the reference
+};
+
+/// Whether a finger touches something, with hysteresis: from a deficit of `margin_mm` on, until it is below
+/// half of that.
+class Contact {
+ public:
+  explicit Contact(double margin_mm) noexcept : margin_mm_(margin_mm) {}
+  void reset() noexcept { touching_ = false; }
+  void observe(const ChannelView& view) noexcept;
+  [[nodiscard]] bool touching() const noexcept { return touching_; }
+
+ private:
+  double margin_mm_;
+  bool touching_ = false;
+};
+
+/// Asks for an evidence that lasts a whole window. Samples that say nothing (invalid readings) start it anew.
+class EvidenceWindow {
+ public:
+  enum class Verdict : std::uint8_t { pending, verified, refuted };
+  void start(double time_s, double window_s) noexcept;
+  /// The evidence held for the whole window: verified; held at no time of a whole window: refuted.
+  Verdict observe(double time_s, bool usable, bool evidence) noexcept;
+
+ private:
+  double window_s_ = 0;
+  double since_s_ = 0;  ///< since when the evidence has been what it is
+  bool any_ = false;
+  bool evidence_ = false;
+};
+
+/// Watches that something is still held: at the end of every interval the mean of the evidence over it must
+/// not be below the least. What is lost is told at most two intervals after it went. Intervals without one
+/// usable sample say nothing.
+class HoldWatch {
+ public:
+  void start(double time_s, double interval_s, double least) noexcept;
+  /// True once, when the interval that just ended says that it is lost.
+  bool observe(double time_s, bool usable, double evidence) noexcept;
+
+ private:
+  double interval_s_ = 0;
+  double least_ = 0;
+  double end_s_ = 0;
+  double sum_ = 0;
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace softgrip::control
