@@ -15,7 +15,7 @@ enum class FeedforwardKind : std::uint8_t {
 struct FeedforwardSettings {
   FeedforwardKind kind = FeedforwardKind::none;
   /// Time from the computation of a command until the board puts it out, beyond what the model's own valve
-  /// blocks say: the bus exchange, the board's conversion. full_model looks further ahead by it.
+  /// blocks say: the bus exchange, the board's conversion. full_model looks further ahead by it. 0 to 1.
   double extra_latency_s = 0;
 };
 

@@ -16,7 +16,7 @@ struct Refusal {
 };
 
 /// Checks that `settings.kind` can be computed for `model` over the working range (0 to pressure_max_kpa,
-/// every hysteresis state reachable in it) at ticks of `tick_s`. A refusal names the block or the numbers.
+/// every hysteresis state reachable in it). A refusal names the block or the numbers.
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);

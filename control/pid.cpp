@@ -10,6 +10,7 @@ Pid::Pid(const PidSettings& settings, double tick_s) noexcept : settings_(settin
 
 void Pid::align(double command_kpa) noexcept {
   align_ = true;
+  held_ = false;
   fresh_ = true;
   rate_mm_per_s_ = 0;
   align_to_kpa_ = command_kpa;
@@ -46,9 +47,9 @@ double Pid::step(double error_reference_mm, double measurement_mm, double feedfo
 }
 
 double Pid::hold(double feedforward_kpa) noexcept {
-  if (align_) {
-    // No measurement yet: the integrator alone carries the command, step() aligns again when there is one.
+  if (align_ && !held_) {
     feedback_kpa_ = align_to_kpa_ - feedforward_kpa;
+    held_ = true;
   }
   increment_kpa_ = 0;
   fresh_ = true;
@@ -57,6 +58,7 @@ double Pid::hold(double feedforward_kpa) noexcept {
 }
 
 void Pid::sent(double command_kpa) noexcept {
+  if (align_) align_to_kpa_ = command_kpa;
   const double cut_kpa = command_kpa - request_kpa_;
   // Without an integral part nothing would ever bring back what the anti-windup put in.
   if (cut_kpa == 0 || settings_.ki_kpa_per_mm_s == 0) return;

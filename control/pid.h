@@ -43,7 +43,8 @@ class Pid {
                             double feedforward_kpa) noexcept;
 
   /// A tick without a usable measurement, or with the feedback held on purpose: the last feedback stands,
-  /// the integrator and the derivative rest.
+  /// the integrator and the derivative rest. After align(), it is what continues the command; the step() that
+  /// comes then continues in its turn.
   [[nodiscard]] double hold(double feedforward_kpa) noexcept;
 
   /// What the limits let out of the last request: the anti-windup acts on the difference, whether it comes
@@ -72,6 +73,7 @@ class Pid {
   double increment_kpa_ = 0;  ///< what the integrator gained in the last step
   double align_to_kpa_ = 0;
   bool align_ = false;
+  bool held_ = false;  ///< hold() has taken up what align() wants
   bool fresh_ = true;  ///< there is no last measurement to differentiate or integrate from
 };
 

@@ -29,9 +29,13 @@ std::array<double, 6> quintic_to_rest(const ReferencePoint& from, double value, 
 }  // namespace
 
 void Reference::start(double time_s, double value) noexcept {
+  start(time_s, ReferencePoint{value, 0, 0});
+}
+
+void Reference::start(double time_s, const ReferencePoint& point) noexcept {
   count_ = 0;
   rest_from_s_ = time_s;
-  rest_value_ = value;
+  rest_ = point;
 }
 
 ReferencePoint Reference::evaluate(const Segment& segment, double time_s) noexcept {
@@ -54,7 +58,7 @@ ReferencePoint Reference::evaluate(const Segment& segment, double time_s) noexce
 }
 
 ReferencePoint Reference::last_point() const noexcept {
-  if (count_ == 0) return {rest_value_, 0, 0};
+  if (count_ == 0) return rest_;
   const Segment& last = segments_[count_ - 1];
   return evaluate(last, last.start_s + last.duration_s);
 }
@@ -66,7 +70,7 @@ ReferencePoint Reference::at(double time_s) const noexcept {
     if (time_s <= segment.start_s + segment.duration_s) return evaluate(segment, time_s);
     return {evaluate(segment, segment.start_s + segment.duration_s).value, 0, 0};
   }
-  if (count_ == 0) return {rest_value_, 0, 0};
+  if (count_ == 0) return {rest_.value, 0, 0};
   return {evaluate(segments_[0], segments_[0].start_s).value, 0, 0};
 }
 
@@ -136,7 +140,7 @@ bool Reference::follow(const Curve& curve, double duration_s) noexcept {
 
 void Reference::cut(double time_s) noexcept {
   while (count_ > 0 && segments_[count_ - 1].start_s >= time_s) {
-    rest_value_ = evaluate(segments_[count_ - 1], segments_[count_ - 1].start_s).value;
+    rest_ = {evaluate(segments_[count_ - 1], segments_[count_ - 1].start_s).value, 0, 0};
     --count_;
   }
   if (count_ == 0) {

@@ -33,6 +33,8 @@ class Reference {
   Reference() noexcept = default;
   /// Forgets everything and holds `value` from `time_s` on. To start from where the finger is: its reading.
   void start(double time_s, double value) noexcept;
+  /// The same in motion: what is appended first takes over its rate and acceleration.
+  void start(double time_s, const ReferencePoint& point) noexcept;
 
   // Each of the next appends behind end_s() and returns false, changing nothing, when `capacity` segments
   // lie in the future of the last forget_before().
@@ -78,8 +80,8 @@ class Reference {
 
   std::array<Segment, capacity> segments_{};
   std::size_t count_ = 0;
-  double rest_from_s_ = 0;  ///< without segments: since when rest_value_ holds
-  double rest_value_ = 0;
+  double rest_from_s_ = 0;  ///< without segments: since when rest_ holds
+  ReferencePoint rest_{};
 };
 
 }  // namespace softgrip::control

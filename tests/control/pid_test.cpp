@@ -107,12 +107,14 @@ TEST(Pid, AnAlignedStartContinuesTheCommand) {
   EXPECT_NEAR(next, 31.7 + 8 * tick_s * 17, 1e-9);
 }
 
-TEST(Pid, AlignWaitsForAMeasurement) {
+TEST(Pid, AlignWaitsForAMeasurementWhileTheFeedforwardGoesOn) {
   Pid pid(typical, tick_s);
   pid.align(25);
   EXPECT_NEAR(10 + pid.hold(10), 25, 1e-12);
-  EXPECT_NEAR(11 + pid.hold(11), 25, 1e-12);
-  EXPECT_NEAR(11 + pid.step(4, 9, 11), 25, 1e-12);
+  pid.sent(25);
+  EXPECT_NEAR(11 + pid.hold(11), 26, 1e-12);
+  pid.sent(26);
+  EXPECT_NEAR(11 + pid.step(4, 9, 11), 26, 1e-12);
 }
 
 TEST(Pid, AGainChangeDoesNotStepTheCommand) {

@@ -1,0 +1,56 @@
+#pragma once
+// The model of a channel run beside the finger on the command that was really sent.
+
+#include <cstddef>
+#include <vector>
+
+#include "model/chain.h"
+#include "model/model.h"
+
+namespace softgrip::control {
+
+/// Dead times commute with everything that does not change with time, so they are taken out of the chain: it
+/// runs without them, ahead of the finger, and the past is looked up. That makes a delay of any length one
+/// look-up, and gives the feedforward the state in which its plan begins.
+class RunningModel {
+ public:
+  /// @param extra_latency_s  from the computation of a command to the board's output.
+  /// @param longest_age_s  of a reading that will be asked for; older ones get the oldest prediction kept.
+  RunningModel(const model::Model& model, double tick_s, double extra_latency_s, double longest_age_s);
+
+  /// At rest under `command_kpa`.
+  void reset(double command_kpa) noexcept;
+
+  /// One tick of `command_kpa` held.
+  void advance(double command_kpa) noexcept;
+
+  /// The reading that the model expects `age_s` ago [mm]. Straight between ticks.
+  [[nodiscard]] double reading_mm(double age_s) const noexcept;
+
+  /// How far the chain runs ahead of the finger: dead times and extra latency [s].
+  [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
+  /// Pressure at the actuator, ahead_s() from now [kPa].
+  [[nodiscard]] double pressure_kpa() const noexcept { return pressure_kpa_; }
+  /// Everything behind the valve, ahead_s() from now.
+  [[nodiscard]] const model::Chain<double>& body() const noexcept { return body_; }
+
+ private:
+  void remember(double reading_mm) noexcept;
+
+  double tick_s_;
+  double ahead_s_;
+  bool has_valve_;
+  model::Chain<double> valve_;
+  model::Chain<double> body_;
+  double pressure_kpa_ = 0;
+  std::vector<double> past_mm_;  ///< a ring, one entry per tick, newest at newest_
+  std::size_t newest_ = 0;
+};
+
+/// The sum of the model's dead times [s].
+[[nodiscard]] double dead_time_s(const model::Model& model);
+/// The model without dead times and without what is only noise.
+[[nodiscard]] model::Model valve_of(const model::Model& model);
+[[nodiscard]] model::Model body_of(const model::Model& model);
+
+}  // namespace softgrip::control
