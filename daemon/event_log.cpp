@@ -62,15 +62,23 @@ void describe_refusal(const Event& event, EventEntry& entry) {
 void describe_health(const Event& event, EventEntry& entry) {
   const auto health = static_cast<control::HealthState>(event.detail);
   entry.code = control::name_of(health);
-  entry.text = fmt::format("The model is now {} (statistic {:.3g}).", entry.code, event.value);
+  entry.text = fmt::format("The model is now {} (residual {:.3g} mm RMS).", entry.code, event.value);
   const bool good = health == control::HealthState::healthy || health == control::HealthState::unknown;
   entry.severity = good ? Severity::information : Severity::warning;
 }
 
-void describe_sequence(const char* what, const control::PreparedSequence* sequence, EventEntry& entry) {
+std::string quoted_name(const control::PreparedSequence* sequence) {
+  return sequence != nullptr ? fmt::format(" '{}'", sequence->name) : std::string();
+}
+
+void describe_start(const control::PreparedSequence* sequence, EventEntry& entry) {
   entry.code = sequence != nullptr ? sequence->name : "";
-  entry.text = sequence != nullptr ? fmt::format("The sequence {} {}.", sequence->name, what)
-                                   : fmt::format("The sequence {}.", what);
+  entry.text = fmt::format("The sequence{} begins.", quoted_name(sequence));
+}
+
+void describe_end(const Event& event, const control::PreparedSequence* sequence, EventEntry& entry) {
+  entry.code = control::name_of(static_cast<control::SequenceEnd>(event.detail));
+  entry.text = fmt::format("The sequence{} ended: {}.", quoted_name(sequence), entry.code);
 }
 
 }  // namespace
@@ -94,10 +102,10 @@ EventEntry describe(const Event& event, const std::vector<std::string>& channel_
       describe_acknowledged(event, entry);
       break;
     case Kind::sequence_started:
-      describe_sequence("begins", sequence, entry);
+      describe_start(sequence, entry);
       break;
     case Kind::sequence_finished:
-      describe_sequence("ended", sequence, entry);
+      describe_end(event, sequence, entry);
       break;
     case Kind::step_started:
       describe_step(event, sequence, entry);

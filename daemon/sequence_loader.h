@@ -1,0 +1,36 @@
+#pragma once
+// Sequences for the loop: found, read, fitted to the rig, all before the loop hears of them.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <tl/expected.hpp>
+
+#include "control/settings.h"
+#include "daemon/sequence_shelf.h"
+#include "model/document/problem.h"
+
+namespace softgrip::daemon {
+
+class SequenceLoader {
+ public:
+  /// `directory`: where names given by clients are looked up. `rig` outlives the loader.
+  SequenceLoader(const control::RigSettings& rig, std::string directory);
+
+  using Result = tl::expected<std::shared_ptr<const LoadedSequence>, document::Problems>;
+  /// A file, wherever it is: what the user of the daemon's own command line named.
+  [[nodiscard]] Result load_file(const std::string& path) const;
+  /// A file in the directory; `name` may leave the ending `.yaml` out, and may not lead out of the directory.
+  [[nodiscard]] Result load_named(const std::string& name) const;
+  /// The text itself; `name` stands for a file name in messages.
+  [[nodiscard]] Result load_text(const std::string& name, const std::string& text) const;
+
+ private:
+  [[nodiscard]] Result fit(std::optional<control::Sequence> sequence, document::Problems problems) const;
+
+  const control::RigSettings& rig_;
+  std::string directory_;
+};
+
+}  // namespace softgrip::daemon

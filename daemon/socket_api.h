@@ -1,0 +1,71 @@
+#pragma once
+// The commands of the socket API: what a client's line leads to. Knows no sockets.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/client_request.h"
+#include "daemon/sequence_loader.h"
+#include "daemon/service.h"
+#include "daemon/status_json.h"
+
+namespace softgrip::daemon {
+
+/// Names a connection; never used twice.
+using ClientId = std::uint64_t;
+
+/// All calls come from one thread, the one that calls Service.
+class SocketApi {
+ public:
+  /// How lines reach a client; the line ends with a line break. `skippable`: not sent if the client has not
+  /// yet read the last ones.
+  using Send = std::function<void(ClientId client, std::string_view line, bool skippable)>;
+
+  SocketApi(StatusSources sources, const SequenceLoader& loader, const EventLog& events, Send send);
+
+  /// One line of a client, without its line break.
+  void on_line(ClientId client, std::string_view line, Nanoseconds now);
+  /// The client is gone.
+  void on_closed(ClientId client);
+  /// Sends what is due: answers of the loop, watched states. Returns when to call again at the latest.
+  Nanoseconds on_time(Nanoseconds now);
+
+ private:
+  struct Asked {  // of the loop
+    ClientId client = 0;
+    std::optional<std::uint64_t> id;
+    Nanoseconds give_up = 0;
+  };
+  struct Watch {
+    std::optional<std::uint64_t> id;
+    Nanoseconds period = 0;
+    Nanoseconds due = 0;
+  };
+
+  void start(ClientId client, const ClientRequest& request, Nanoseconds now);
+  void ask(ClientId client, const ClientRequest& request, control::Request::Kind kind,
+           std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
+  void answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer);
+  void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
+  void tell_events(ClientId client, const ClientRequest& request);
+  void ok(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& result);
+  void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
+
+  StatusSources sources_;
+  const SequenceLoader& loader_;
+  const EventLog& events_;
+  Send send_;
+  std::map<std::uint32_t, Asked> asked_;  // by the request's id in the loop
+  std::map<ClientId, Watch> watches_;
+};
+
+/// The line that refuses a client before it could say anything, or for what cannot be parsed.
+[[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
+                                     std::string_view message);
+
+}  // namespace softgrip::daemon
