@@ -23,8 +23,9 @@ namespace softgrip::model {
 ///
 /// The command is piecewise linear: step(dt, u) takes it from where it was to `u` over `dt`. A held output
 /// of a board is step(0, u) followed by step(dt, u). Within that convention Bouc-Wen (exponent 1),
-/// Kelvin-Voigt, delay and lag are exact for any dt; behind a lag, Bouc-Wen with the exact turning points and
-/// Kelvin-Voigt with the exact mean of the pressure.
+/// Kelvin-Voigt, delay and lag are exact for any dt. Behind a lag Bouc-Wen sees the exact turning points and
+/// Kelvin-Voigt the parabola with the exact mean: below 1e-6 mm while dt does not exceed the lag's time
+/// constant and the command does not jump, below 1e-8 mm at a tenth of it.
 template <class T>
 class Chain {
  public:

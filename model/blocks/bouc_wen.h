@@ -15,8 +15,9 @@ namespace softgrip::model {
 
 /// For exponent 1, dh/dp is linear between sign changes of h: stepped in closed form, exact for any step
 /// size, at most one sign change per monotone step. For the others, classical Runge-Kutta in sub-steps of the
-/// pressure so short that the relative change of the slope over one stays below 1/40 (local error about
-/// 1e-10 of h), cut at the sign change, whose place is an integral over h taken by Gauss-Legendre.
+/// pressure so short that the relative change of the slope over one stays below 1/100 (local error about
+/// 1e-11 of h), cut at the sign change, whose place is an integral over h taken by Gauss-Legendre. The mean
+/// of a segment is exact to the fourth power of its pressure change (1e-7 mm at 0.5 kPa).
 ///
 /// gamma and eta carry the unit 1/(kPa mm^(exponent-1)): 1/kPa for exponent 1, which the names state.
 template <class T>
@@ -171,19 +172,23 @@ class BoucWen {
     return h;
   }
 
-  // So many that n k |h|^(n-1) dp, the relative change of the slope, stays below 1/40 over one.
+  // So many that over one n k |h|^(n-1) dp, the relative change of the slope, stays below 1/100, and h moves
+  // by at most 1/40 of where it levels off.
   [[nodiscard]] int steps_for(double change_kpa) const {
     constexpr int most = 100000;
     const double beta = value_of(beta_);
     const double growing = value_of(growing_);
-    const double start = std::abs(value_of(hysteresis_));
-    double largest = start + beta * change_kpa;
+    double largest = std::abs(value_of(hysteresis_)) + beta * change_kpa;
+    double wanted = 1.0;
     if (growing > 0.0) {
-      largest = std::fmin(largest, std::fmax(start, std::pow(beta / growing, 1.0 / exponent_)));
+      const double level = std::pow(beta / growing, 1.0 / exponent_);
+      largest = std::fmin(largest, std::fmax(std::abs(value_of(hysteresis_)), level));
+      wanted = 40.0 * beta * change_kpa / level;
     }
     const double k = std::fmax(growing, std::abs(value_of(shrinking_)));
-    const double wanted = std::ceil(40.0 * exponent_ * k * std::pow(largest, exponent_ - 1) * change_kpa);
-    return wanted < 1.0 ? 1 : wanted > most ? most : static_cast<int>(wanted);
+    wanted =
+        std::ceil(std::fmax(wanted, 100.0 * exponent_ * k * std::pow(largest, exponent_ - 1) * change_kpa));
+    return wanted > most ? most : wanted < 1.0 ? 1 : static_cast<int>(wanted);
   }
 
   template <class U>

@@ -72,5 +72,30 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(static_cast<int>(param.param.rate_hz)) + "Hz";
     });
 
+// The other exponents, on the twin without its delay (so that jumps of the slope are sampled), with gamma and
+// eta scaled so that the state levels off at the same size.
+TEST(ChainReferenceExponents, AgreeAtOneKilohertz) {
+  for (const int exponent : {2, 3, 4}) {
+    Model model = preset("bench_twin");
+    std::vector<double>& v = model.blocks[*position_of(model, "bouc_wen")].values;
+    const double level = v[1] / (v[2] + v[3]);
+    v[2] *= std::pow(level, 1 - exponent);
+    v[3] *= std::pow(level, 1 - exponent);
+    v[4] = exponent;
+    EXPECT_LT(largest_error(model, SignalName::tp1, 1000), 1e-6) << exponent;
+    EXPECT_LT(largest_error(model, SignalName::tp2, 200), 1e-6) << exponent;
+  }
+}
+
+TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
+  for (const double delay : {0.0004, 0.1237}) {
+    Model model = preset("bench_twin");
+    model.blocks[0].values[0] = delay;
+    EXPECT_LT(largest_error(model, SignalName::tp1, 1000), 1e-6) << delay;
+    EXPECT_LT(largest_error(model, SignalName::steps, 200), 1e-6) << delay;
+    EXPECT_LT(largest_error(model, SignalName::sp1, 200), 1e-6) << delay;
+  }
+}
+
 }  // namespace
 }  // namespace softgrip::model::testing

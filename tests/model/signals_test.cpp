@@ -1,0 +1,82 @@
+#include "model/signals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+namespace softgrip::model {
+namespace {
+
+TEST(Signals, NamesGoBothWays) {
+  EXPECT_EQ(all_signals().size(), 6u);
+  for (const SignalName signal : all_signals()) EXPECT_EQ(signal_named(name_of(signal)), signal);
+  EXPECT_FALSE(signal_named("tp3"));
+  EXPECT_FALSE(signal_named(""));
+}
+
+TEST(Signals, StartAndEndAtZeroAndStayWithinSixtyKilopascal) {
+  for (const SignalName signal : all_signals()) {
+    const double end = duration_s(signal);
+    EXPECT_EQ(value_kpa(signal, 0), 0);
+    EXPECT_EQ(value_kpa(signal, end), 0);
+    EXPECT_EQ(value_kpa(signal, -1), 0);
+    EXPECT_EQ(value_kpa(signal, end + 1), 0);
+    EXPECT_EQ(value_kpa(signal, std::nan("")), 0);
+    double peak = 0;
+    double steepest = 0;
+    for (int i = 1; i * 1e-3 <= end; ++i) {
+      const double value = value_kpa(signal, i * 1e-3);
+      ASSERT_GE(value, 0);
+      peak = std::fmax(peak, value);
+      steepest = std::fmax(steepest, std::fabs(value - value_kpa(signal, (i - 1) * 1e-3)) * 1e3);
+    }
+    EXPECT_LE(peak, 60);
+    EXPECT_GE(peak, 50);
+    EXPECT_LE(steepest, 61) << "no jumps: " << name_of(signal);
+    EXPECT_NEAR(value_kpa(signal, end - 1e-9), 0, 1e-6);
+  }
+}
+
+TEST(Signals, TwoCyclesAreTheSame) {
+  for (const SignalName signal : {SignalName::tp1, SignalName::tp2, SignalName::sp1, SignalName::sp2}) {
+    const double cycle = duration_s(signal) / 2;
+    for (double t = 0.05; t < cycle; t += 0.1) {
+      ASSERT_NEAR(value_kpa(signal, t), value_kpa(signal, t + cycle), 1e-9);
+    }
+  }
+}
+
+TEST(Signals, TrianglesAndSinusoidsShareTheirPeaks) {
+  for (const auto& [triangle, sinusoid] :
+       {std::pair{SignalName::tp1, SignalName::sp1}, std::pair{SignalName::tp2, SignalName::sp2}}) {
+    EXPECT_EQ(duration_s(triangle), duration_s(sinusoid));
+    std::multiset<int> peaks;
+    double last = 0, before = 0;
+    for (int i = 1; i * 1e-3 < duration_s(triangle); ++i) {
+      const double value = value_kpa(triangle, i * 1e-3);
+      if (last > before && last > value) {
+        peaks.insert(static_cast<int>(std::lround(last)));
+        EXPECT_NEAR(value_kpa(sinusoid, (i - 1) * 1e-3), last, 1e-3);
+      }
+      before = last;
+      last = value;
+    }
+    EXPECT_EQ(peaks.size(), 10u);
+    EXPECT_EQ(std::set<int>(peaks.begin(), peaks.end()).size(), 5u) << "five amplitudes in a cycle";
+  }
+}
+
+TEST(Signals, CornersLieOnTheGridsOfOneKilohertzAndTwoHundredHertz) {
+  // A signal sampled at 200 Hz and joined by straight lines is the same signal.
+  for (const SignalName signal : {SignalName::tp1, SignalName::tp2, SignalName::steps, SignalName::hold}) {
+    for (int i = 0; (i + 1) * 5e-3 <= duration_s(signal); ++i) {
+      const double a = value_kpa(signal, i * 5e-3), b = value_kpa(signal, (i + 1) * 5e-3);
+      ASSERT_NEAR(value_kpa(signal, (i + 0.4) * 5e-3), a + 0.4 * (b - a), 1e-9)
+          << name_of(signal) << " " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::model
