@@ -2,8 +2,10 @@
 // Rig files: everything softgripd must know of a rig, read once into plain values.
 // docs/reference/rig-file.md is the manual of the file; config/rig.yaml and config/rig_tcp.yaml are examples.
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -45,6 +47,7 @@ struct RigFile {
   control::RigSettings settings;   ///< channels in the order of the file
   std::vector<ValveFacts> valves;  ///< one per channel
   std::variant<drivers::SimulatedBoardSettings, drivers::ModbusTcpSettings> board;
+  std::optional<std::uint64_t> seed;  ///< of a simulated board, as written
   /// The sentence by which the file accepts a board that does not vent by itself; empty: it has a watchdog.
   std::string accept_no_watchdog;
   LoopSettings loop;

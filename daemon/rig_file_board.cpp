@@ -172,6 +172,7 @@ void read_simulated_board(Context& context, const Node& node) {
   drivers::SimulatedBoardSettings settings;
   const auto seed =
       static_cast<std::uint64_t>(reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+  context.rig.seed = seed;
   settings.watchdog_timeout_s = reader.number("watchdog_timeout_s", {0, 60});
   const int output_bits = static_cast<int>(reader.integer("output_bits", 0, 24));
   const int input_bits = static_cast<int>(reader.integer("input_bits", 0, 24));

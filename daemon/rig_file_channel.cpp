@@ -69,7 +69,7 @@ void read_feedforward(Context& context, MapReader& reader, control::ChannelSetti
       static_cast<control::FeedforwardKind>(reader.choice("feedforward", {"none", "bouc_wen", "full_model"}));
   // A command waits for the bus thread, which lags the loop by this.
   const double lag_s = context.rig.loop.bus_offset_fraction * context.period_s();
-  channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 10}).value_or(lag_s);
+  channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 1}).value_or(lag_s);
 }
 
 void read_wiring(Context& context, MapReader& reader, const std::string& who,
