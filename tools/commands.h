@@ -3,7 +3,11 @@
 
 #include "tools/command.h"
 
-#define SOFTGRIP_COMMANDS(X) X(simulate)
+// clang-format off
+#define SOFTGRIP_COMMANDS(X) \
+  X(simulate)                \
+  // end of the list
+// clang-format on
 
 namespace softgrip::tools {
 

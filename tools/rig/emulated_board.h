@@ -22,7 +22,7 @@ class EmulatedBoard {
   [[nodiscard]] const drivers::BoardMap& map() const noexcept { return map_; }
 
   /// The answer to a request that arrives at `now`. Not before an earlier `now`.
-  [[nodiscard]] Registers::Answer answer(model::Nanoseconds now, std::span<const std::uint8_t> pdu);
+  Registers::Answer answer(model::Nanoseconds now, std::span<const std::uint8_t> pdu);
 
   /// Lets the watchdog act if it is due by `now`.
   void advance(model::Nanoseconds now);

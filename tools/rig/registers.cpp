@@ -72,9 +72,8 @@ Registers::Answer Registers::read_registers(std::span<const std::uint8_t> pdu, b
   const std::uint16_t first = word_at(pdu, 1);
   const std::size_t count = word_at(pdu, 3);
   if (count < 1 || count > max_read) return refused(pdu, Exception::illegal_value);
-  if (!readable(first, count, holding)) return refused(pdu, Exception::illegal_address);
   Bytes reply{pdu[0], static_cast<std::uint8_t>(2 * count)};
-  append_values(reply, first, count, holding);
+  if (!append_values(reply, first, count, holding)) return refused(pdu, Exception::illegal_address);
   return {std::move(reply), false};
 }
 
@@ -134,23 +133,26 @@ Registers::Answer Registers::read_write(std::span<const std::uint8_t> pdu) {
       pdu[9] != 2 * write_count || pdu.size() != 10 + 2 * write_count) {
     return refused(pdu, Exception::illegal_value);
   }
-  if (!readable(read_first, read_count, true) || !writable(write_first, write_count)) {
+  Bytes reply{pdu[0], static_cast<std::uint8_t>(2 * read_count)};
+  if (!writable(write_first, write_count) || !append_values(reply, read_first, read_count, true)) {
     return refused(pdu, Exception::illegal_address);
   }
   // The specification writes before it reads.
   store(write_first, pdu.subspan(10));
-  Bytes reply{pdu[0], static_cast<std::uint8_t>(2 * read_count)};
+  reply.resize(2);
   append_values(reply, read_first, read_count, true);
   return {std::move(reply), true};
 }
 
-bool Registers::readable(std::uint16_t first, std::size_t count, bool holding) const {
-  for (std::size_t address = first; address < first + count; ++address) {
-    if (address > 0xffff) return false;
-    const auto key = static_cast<std::uint16_t>(address);
-    if (holding ? !holding_.contains(key) : !input_.contains(key)) return false;
-  }
-  return true;
+std::optional<std::uint16_t> Registers::value_of(std::size_t address, bool holding) const {
+  if (address > 0xffff) return std::nullopt;
+  const auto key = static_cast<std::uint16_t>(address);
+  const auto held = holding_.find(key);
+  const auto in = input_.find(key);
+  const bool use_holding = held != holding_.end() && (holding || in == input_.end());
+  if (use_holding) return held->second.value;
+  if (in != input_.end()) return in->second;
+  return std::nullopt;
 }
 
 bool Registers::writable(std::uint16_t first, std::size_t count) const {
@@ -161,11 +163,13 @@ bool Registers::writable(std::uint16_t first, std::size_t count) const {
   return true;
 }
 
-void Registers::append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const {
+bool Registers::append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const {
   for (std::size_t address = first; address < first + count; ++address) {
-    const auto key = static_cast<std::uint16_t>(address);
-    append_word(pdu, holding ? holding_.at(key).value : input_.at(key));
+    const auto value = value_of(address, holding);
+    if (!value) return false;
+    append_word(pdu, *value);
   }
+  return true;
 }
 
 void Registers::store(std::uint16_t first, std::span<const std::uint8_t> data) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 
@@ -35,7 +36,8 @@ enum class Exception : std::uint8_t {
 [[nodiscard]] Bytes exception_reply(std::uint8_t function, Exception code);
 
 /// A bank of registers. An address that was not defined is answered with an exception, never with a zero:
-/// a client that asks for the wrong address must not believe that the board is alive.
+/// a client that asks for the wrong address must not believe that the board is alive. Like the ADAM-6000, it
+/// reads an address that only one of the two tables has (holding, input) with either function code.
 class Registers {
  public:
   enum class Access : std::uint8_t { read_only, read_write };
@@ -62,7 +64,7 @@ class Registers {
     bool wrote = false;  ///< the request changed registers or wrote the same values again
   };
   /// The answer to one request PDU (at least one byte). A request is carried out whole or not at all.
-  [[nodiscard]] Answer answer(std::span<const std::uint8_t> pdu);
+  Answer answer(std::span<const std::uint8_t> pdu);
 
  private:
   struct Holding {
@@ -76,9 +78,10 @@ class Registers {
   Answer write_single(std::span<const std::uint8_t> pdu);
   Answer write_multiple(std::span<const std::uint8_t> pdu);
   Answer read_write(std::span<const std::uint8_t> pdu);
-  [[nodiscard]] bool readable(std::uint16_t first, std::size_t count, bool holding) const;
+  [[nodiscard]] std::optional<std::uint16_t> value_of(std::size_t address, bool holding) const;
   [[nodiscard]] bool writable(std::uint16_t first, std::size_t count) const;
-  void append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const;
+  /// Appends values; false if one of the addresses is not there.
+  bool append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const;
   void store(std::uint16_t first, std::span<const std::uint8_t> data);
 
   std::map<std::uint16_t, Holding> holding_;

@@ -1,0 +1,93 @@
+// softgrip check: what is wrong with configuration files, all of it at once.
+
+#include "daemon/check.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/commands.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  bool json = false;
+};
+
+nlohmann::ordered_json to_json(const document::Problem& problem, const char* severity) {
+  nlohmann::ordered_json json;
+  json["file"] = problem.file;
+  json["line"] = problem.at.line;
+  json["column"] = problem.at.column;
+  json["severity"] = severity;
+  json["message"] = problem.message;
+  json["hint"] = problem.hint;
+  json["line_text"] = problem.line_text;
+  return json;
+}
+
+void print_json(const daemon::CheckReport& report) {
+  nlohmann::ordered_json json;
+  json["accepted"] = report.accepted();
+  json["files"] = nlohmann::ordered_json::array();
+  for (const daemon::CheckedFile& file : report.files) {
+    nlohmann::ordered_json entry;
+    entry["path"] = file.path;
+    entry["kind"] = daemon::name_of(file.kind);
+    entry["name"] = file.name;
+    entry["errors"] = file.errors;
+    entry["warnings"] = file.warnings;
+    json["files"].push_back(std::move(entry));
+  }
+  json["problems"] = nlohmann::ordered_json::array();
+  for (const auto& problem : report.problems.list()) json["problems"].push_back(to_json(problem, "error"));
+  for (const auto& problem : report.problems.warnings())
+    json["problems"].push_back(to_json(problem, "warning"));
+  std::printf("%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+}
+
+void print_text(const daemon::CheckReport& report) {
+  std::fputs(report.problems.format().c_str(), stderr);
+  for (const daemon::CheckedFile& file : report.files) {
+    std::printf("%s: %s", document::shown(file.path, 400).c_str(),
+                std::string(daemon::name_of(file.kind)).c_str());
+    if (!file.name.empty()) std::printf(" '%s'", document::shown(file.name).c_str());
+    if (file.errors > 0) {
+      std::printf(": %zu %s\n", file.errors, file.errors == 1 ? "error" : "errors");
+    } else {
+      std::printf(": ok%s\n", file.warnings > 0 ? ", with warnings" : "");
+    }
+  }
+}
+
+ExitCode run(const Options& options) {
+  const daemon::CheckReport report = daemon::check_files(options.files);
+  options.json ? print_json(report) : print_text(report);
+  const bool all_there = std::all_of(options.files.begin(), options.files.end(), [](const std::string& path) {
+    return ::access(path.c_str(), R_OK) == 0;
+  });
+  if (!all_there) return ExitCode::io;
+  return report.accepted() ? ExitCode::done : ExitCode::input_refused;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("check", "What is wrong with rigs, boards, models and sequences");
+  command
+      ->add_option("FILE", options->files,
+                   "Files of any of these kinds; sequences are fitted to the rigs among them")
+      ->required();
+  command->add_flag("--json", options->json, "The findings as JSON");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
