@@ -5,6 +5,7 @@
 #include <exception>
 #include <string>
 
+#include "model/document/version.h"
 #include "tools/commands.h"
 
 namespace {
@@ -13,7 +14,8 @@ using softgrip::tools::ExitCode;
 
 int run(int argc, char** argv) {
   CLI::App program{"Soft pneumatic grippers: run them, and keep their model honest.", "softgrip"};
-  program.set_version_flag("--version", std::string{"softgrip "} + SOFTGRIP_VERSION);
+  program.set_version_flag("--version",
+                           std::string{"softgrip "}.append(softgrip::document::software_version()));
   program.require_subcommand(1);
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or input refused, 4 I/O,\n"

@@ -10,6 +10,7 @@
 #include <exception>
 #include <optional>
 
+#include "model/document/version.h"
 #include "tools/command.h"
 #include "tools/rig/listener.h"
 #include "tools/rig/options.h"
@@ -23,14 +24,14 @@ using softgrip::tools::fail;
 namespace rig = softgrip::tools::rig;
 
 void add_options(CLI::App& program, rig::Options& options) {
-  program.set_version_flag("--version", std::string{"softgrip-rig "} + SOFTGRIP_VERSION);
+  program.set_version_flag("--version",
+                           std::string{"softgrip-rig "}.append(softgrip::document::software_version()));
   program
       .add_option("--model", options.models, "What the fingers are: a model file for all, or one per channel")
       ->required();
   program.add_option("--board", options.board, "Board map: a file, or a name in config/boards")
       ->capture_default_str();
-  auto* tcp = program.add_option("--tcp", options.port, "Port; 0 takes a free one and prints it")
-                  ->capture_default_str();
+  auto* tcp = program.add_option("--tcp", options.port, "Port; 0 takes a free one [1502, or the rig file's]");
   program.add_option("--rtu", options.rtu, "Serial device (not available yet)")->excludes(tcp);
   program.add_option("--bind", options.bind, "Numeric address to listen on")->capture_default_str();
   program.add_flag("--allow-network", options.allow_network, "Listen on an address that others can reach");
@@ -80,8 +81,9 @@ rig::Descriptor take_signals() {
   return rig::Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
 }
 
-ExitCode serve(const rig::Options& options, rig::Emulator& emulator, rig::TruthLog* truth) {
-  auto listener = rig::listen_tcp(options.bind, options.port);
+ExitCode serve(const rig::Options& options, std::uint16_t port, rig::Emulator& emulator,
+               rig::TruthLog* truth) {
+  auto listener = rig::listen_tcp(options.bind, port);
   if (!listener) return fail(ExitCode::io, listener.error());
   rig::ServerSockets sockets;
   sockets.modbus = std::move(listener->socket);
@@ -110,18 +112,19 @@ ExitCode run(const rig::Options& options) {
     return fail(ExitCode::usage, "others could reach " + options.bind +
                                      ", and Modbus knows no password: add --allow-network if that is wanted");
   }
-  auto settings = rig::make_settings(options);
-  if (!settings) return settings.error();
-  rig::Emulator emulator(std::move(*settings));
+  auto setup = rig::make_setup(options);
+  if (!setup) return setup.error();
+  rig::Emulator emulator(std::move(setup->emulator));
   std::optional<rig::TruthLog> truth;
   if (!options.truth.empty()) {
     const double decimation =
         std::round(1e9 / static_cast<double>(rig::Emulator::grid) / options.truth_rate_hz);
     truth.emplace(options.truth, static_cast<std::uint32_t>(decimation));
     if (!truth->good()) return fail(ExitCode::io, "cannot write " + options.truth);
+    truth->add(emulator);
     emulator.on_grid([&] { truth->add(emulator); });
   }
-  return serve(options, emulator, truth ? &*truth : nullptr);
+  return serve(options, setup->port, emulator, truth ? &*truth : nullptr);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "daemon/rig_file.h"
 #include "drivers/board_map_file.h"
 #include "model/model_file.h"
 #include "tools/command.h"
@@ -65,28 +66,69 @@ void add_faults(const Options& options, EmulatorSettings& settings, document::Pr
   }
 }
 
+/// Board, unit and wiring as softgripd has them.
+tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
+  if (const auto code = unreadable(path)) return tl::unexpected{*code};
+  document::Problems problems;
+  const auto rig = daemon::load_rig(path, problems);
+  if (!rig) return tl::unexpected{refuse(problems)};
+  const auto* modbus = std::get_if<drivers::ModbusTcpSettings>(&rig->board);
+  if (modbus == nullptr) {
+    return tl::unexpected{fail(ExitCode::input_refused,
+                               path + ": this rig is simulated in process, there is no board to emulate")};
+  }
+  Setup setup;
+  setup.emulator.map = modbus->map;
+  setup.emulator.wiring = modbus->wiring;
+  setup.emulator.unit = modbus->unit;
+  setup.port = modbus->port;
+  return setup;
+}
+
+tl::expected<Setup, ExitCode> setup_of_board(const Options& options) {
+  const std::string path = board_path(options.board);
+  if (const auto code = unreadable(path)) return tl::unexpected{*code};
+  document::Problems problems;
+  const auto map = drivers::load_board_map(path, problems);
+  if (!map) return tl::unexpected{refuse(problems)};
+  auto wiring = default_wiring(*map, options.channels);
+  if (!wiring) return tl::unexpected{fail(ExitCode::input_refused, wiring.error())};
+  Setup setup;
+  setup.emulator.map = *map;
+  setup.emulator.wiring = std::move(*wiring);
+  return setup;
+}
+
+/// The first input file that cannot be opened.
+std::optional<ExitCode> any_unreadable(const Options& options) {
+  std::vector<std::string> files = options.models;
+  if (!options.faults.empty()) files.push_back(options.faults);
+  for (const std::string& file : files) {
+    if (const auto code = unreadable(file)) return code;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-tl::expected<EmulatorSettings, ExitCode> make_settings(const Options& options) {
+tl::expected<Setup, ExitCode> make_setup(const Options& options) {
   if (!options.object.empty() && !object_named(options.object)) {
     return tl::unexpected{
         fail(ExitCode::usage,
              "--object takes stone, screw or POSITION_MM[:YIELDING], not '" + options.object + "'")};
   }
+  if (const auto code = any_unreadable(options)) return tl::unexpected{*code};
+  auto setup = options.rig.empty() ? setup_of_board(options) : setup_of_rig(options.rig);
+  if (!setup) return setup;
+  EmulatorSettings& emulator = setup->emulator;
+  emulator.unit = options.unit.value_or(emulator.unit);
+  setup->port = options.port.value_or(setup->port);
+  if (options.watchdog_s) set_watchdog(emulator.map.watchdog, *options.watchdog_s);
   document::Problems problems;
-  EmulatorSettings settings;
-  const auto map = drivers::load_board_map(board_path(options.board), problems);
-  if (!map) return tl::unexpected{refuse(problems)};
-  settings.map = *map;
-  auto wiring = default_wiring(*map, options.channels);
-  if (!wiring) return tl::unexpected{fail(ExitCode::input_refused, wiring.error())};
-  settings.wiring = std::move(*wiring);
-  settings.unit = options.unit.value_or(settings.unit);
-  if (options.watchdog_s) set_watchdog(settings.map.watchdog, *options.watchdog_s);
-  settings.plants = make_plants(options, settings.wiring.size(), problems);
-  add_faults(options, settings, problems);
+  emulator.plants = make_plants(options, emulator.wiring.size(), problems);
+  add_faults(options, emulator, problems);
   if (!problems.empty()) return tl::unexpected{refuse(problems)};
-  return settings;
+  return setup;
 }
 
 }  // namespace softgrip::tools::rig

@@ -21,7 +21,7 @@ struct Options {
   std::optional<std::uint8_t> unit;
   std::string bind = "127.0.0.1";
   bool allow_network = false;
-  std::uint16_t port = 1502;
+  std::optional<std::uint16_t> port;  ///< default: the rig file's, or 1502
   std::string rtu;
   std::string object;
   std::optional<double> object_out_at_s;
@@ -35,7 +35,13 @@ struct Options {
   std::string control;  ///< path of a socket, "-" the standard input
 };
 
-/// Why the emulator cannot be made: all problems have been printed.
-[[nodiscard]] tl::expected<EmulatorSettings, ExitCode> make_settings(const Options& options);
+/// What the program runs.
+struct Setup {
+  EmulatorSettings emulator;
+  std::uint16_t port = 1502;
+};
+
+/// The error is an exit code: all problems have been printed.
+[[nodiscard]] tl::expected<Setup, ExitCode> make_setup(const Options& options);
 
 }  // namespace softgrip::tools::rig
