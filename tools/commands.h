@@ -5,6 +5,7 @@
 
 // clang-format off
 #define SOFTGRIP_COMMANDS(X) \
+  X(check)                   \
   X(simulate)                \
   // end of the list
 // clang-format on
