@@ -7,7 +7,22 @@ namespace softgrip::control {
 
 namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
+/// How much of the past reference is kept: feedback compares a reading with the reference of its time.
+constexpr double kept_s = 1;
 using Mode = ChannelDemand::Mode;
+
+/// False when the reference is full.
+bool append_ramp(Reference& reference, const Target& target, double value) noexcept {
+  if (target.speed > 0) {
+    return reference.ramp_to(value, target.speed);
+  }
+  if (target.duration_s > 0) {
+    return reference.ramp_for(value, target.duration_s);
+  }
+  reference.start(reference.end_s(), value);
+  return true;
+}
+
 }  // namespace
 
 void ChannelPlayer::reset() noexcept {
@@ -54,7 +69,7 @@ void ChannelPlayer::begin(const Step& step, double time_s, const ChannelView& vi
       stage_ = Stage::watch;
       break;
     case StepKind::track:
-      displacement_.forget_before(time_s);
+      displacement_.forget_before(time_s - kept_s);
       displacement_.cut(time_s + view.preview_s);
       displacement_.sine(step.sine.mean_mm, step.sine.amplitude_mm, step.sine.frequency_hz, step.sine.cycles);
       stage_end_s_ = displacement_.end_s();
@@ -81,7 +96,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
     mode_ = Mode::pressure;
     pressure_kpa_ = view.command_kpa;
   } else if (mode_ == Mode::displacement) {
-    reference.forget_before(time_s);
+    reference.forget_before(time_s - kept_s);
     start_value_ = reference.at(time_s).value;
     reference.cut(time_s + view.preview_s);
   } else {
@@ -90,12 +105,9 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
     start_value_ = view.displacement_mm;
     mode_ = Mode::displacement;
   }
-  if (target.speed > 0) {
-    reference.ramp_to(value, target.speed);
-  } else if (target.duration_s > 0) {
-    reference.ramp_for(value, target.duration_s);
-  } else {
-    reference.start(time_s, value);
+  if (!append_ramp(reference, target, value)) {
+    reference.forget_before(time_s);  // many short steps: give up the past
+    append_ramp(reference, target, value);
   }
   ramp_end_s_ = reference.end_s();
 }

@@ -135,7 +135,7 @@ struct RigController::Parts {
 
   void carry_out(const Orders& orders, double time_s, EventList& events) noexcept {
     if (orders.interrupt) {
-      player.interrupt(orders.end, events);
+      player.interrupt(orders.end, supervisor.venting(), events);
     }
     if (orders.clear_answers) {
       player.acknowledge(orders.acknowledged_by, events);

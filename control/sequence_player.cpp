@@ -168,12 +168,15 @@ void SequencePlayer::stop_playing() noexcept {
   sequence_ = nullptr;
 }
 
-void SequencePlayer::interrupt(SequenceEnd end, EventList& events) noexcept {
+void SequencePlayer::interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept {
+  const bool releasing = sequence_ != nullptr && now().step.kind == StepKind::release;
+  const std::uint32_t half_released = releasing ? now().channels & ~venting : 0;
   if (sequence_ != nullptr) {
     answer_the_rest(events);
   }
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if (end == SequenceEnd::faulted && channels_[i].result() == GripResult::holding) {
+    const bool unsure = end == SequenceEnd::faulted || (half_released & bit(i)) != 0;
+    if (unsure && channels_[i].result() == GripResult::holding) {
       answer(i, GripResult::error, GripEvidence::none, events);
     }
   }

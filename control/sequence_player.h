@@ -30,9 +30,9 @@ class SequencePlayer {
   /// One tick of the running sequence.
   Outcome tick(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
 
-  /// The sequence ends from outside. Channels without an answer get ERROR; a fault turns HOLDING into ERROR
-  /// too, since nobody can vouch for it any more.
-  void interrupt(SequenceEnd end, EventList& events) noexcept;
+  /// The sequence ends from outside. Channels without an answer get ERROR. So do those that were HOLDING,
+  /// when nobody can vouch for it any more: after a fault, or half released and not `venting`.
+  void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
   /// No sequence runs: re-verifies what is still held.
   void idle_tick(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
   /// What these channels held was let go by a vent: HOLDING becomes RELEASED.

@@ -1,0 +1,329 @@
+// Every fault in every phase: latched within its bound, outputs as chosen, nothing moves again by itself.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include "tests/control/rig_fixture.h"
+
+namespace softgrip::control {
+namespace {
+
+struct FaultCase {
+  const char* name;
+  FaultCode code;
+  std::uint32_t bound_cycles;
+  std::function<void(SimulatedRig&)> inject;
+  std::function<void(SimulatedRig&)> mend;
+  bool always_vents = false;
+};
+
+std::function<void(SimulatedRig&)> validity(std::optional<model::Validity> value) {
+  return [value](SimulatedRig& rig) { rig.fault[1].validity = value; };
+}
+
+const RigSettings& base() {
+  static const RigSettings settings = [] {
+    RigSettings rig = two_finger_settings();
+    rig.faults.slipped_cycles = 10;
+    return rig;
+  }();
+  return settings;
+}
+
+std::vector<FaultCase> fault_cases() {
+  const FaultSettings& f = base().faults;
+  const auto nothing = [](SimulatedRig&) {};
+  return {
+      {"wire_cut", FaultCode::bus_timed_out, f.bus_down_cycles,
+       [](SimulatedRig& rig) { rig.wire_cut = true; }, [](SimulatedRig& rig) { rig.wire_cut = false; }, true},
+      {"bus_exception", FaultCode::bus_exception, f.bus_down_cycles,
+       [](SimulatedRig& rig) { rig.bus_fault = FaultCode::bus_exception; },
+       [](SimulatedRig& rig) { rig.bus_fault = FaultCode::none; }, true},
+      {"board_watchdog", FaultCode::board_watchdog_tripped, 1,
+       [](SimulatedRig& rig) { rig.bus_fault = FaultCode::board_watchdog_tripped; },
+       [](SimulatedRig& rig) { rig.bus_fault = FaultCode::none; }, true},
+      {"write_refused", FaultCode::write_refused, 1,
+       [](SimulatedRig& rig) { rig.bus_fault = FaultCode::write_refused; },
+       [](SimulatedRig& rig) { rig.bus_fault = FaultCode::none; }},
+      {"stale", FaultCode::reading_stale, f.invalid_reading_cycles + 1, validity(model::Validity::stale),
+       validity(std::nullopt)},
+      {"out_of_range", FaultCode::reading_out_of_range, f.invalid_reading_cycles + 1,
+       validity(model::Validity::out_of_range), validity(std::nullopt)},
+      {"sensor_error", FaultCode::sensor_error, f.invalid_reading_cycles + 1,
+       validity(model::Validity::sensor_error), validity(std::nullopt)},
+      {"jumped", FaultCode::reading_jumped, f.invalid_reading_cycles + 1,
+       [](SimulatedRig& rig) { rig.fault[1].offset_mm = 14; },
+       [](SimulatedRig& rig) { rig.fault[1].offset_mm = 0; }},
+      {"readback", FaultCode::readback_mismatch, f.readback_cycles,
+       [](SimulatedRig& rig) { rig.fault[0].readback_offset_kpa = 12; },
+       [](SimulatedRig& rig) { rig.fault[0].readback_offset_kpa = 0; }},
+      {"emergency_stop", FaultCode::emergency_stop, 1, [](SimulatedRig& rig) { rig.emergency_stop = true; },
+       [](SimulatedRig& rig) { rig.emergency_stop = false; }, true},
+      {"cycles_lost", FaultCode::cycles_lost, 1, [](SimulatedRig& rig) { rig.slipped_cycles = 10; }, nothing},
+  };
+}
+
+struct PhaseCase {
+  const char* name;
+  Phase phase;
+  int step;  ///< of pick_stone; -1: idle
+  double into_s;
+};
+const std::vector<PhaseCase> phase_cases{{"idle", Phase::idle, -1, 0.5},
+                                         {"approaching", Phase::closing, 0, 0.3},
+                                         {"gripping", Phase::closing, 1, 0.7},
+                                         {"holding", Phase::holding, 2, 1.0},
+                                         {"releasing", Phase::releasing, 3, 0.2}};
+
+using Parameters = std::tuple<std::size_t, std::size_t, SafeAction>;
+
+class FaultReaction : public testing::TestWithParam<Parameters> {
+ protected:
+  /// A rig with a stone, in the phase, about to break.
+  void reach(SimulatedRig& rig, const PhaseCase& phase) {
+    rig.stone(12);
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    if (phase.step >= 0) {
+      rig.request(Request::Kind::start, &pick);
+      ASSERT_TRUE(rig.run_until_step(static_cast<std::uint16_t>(phase.step), 30));
+    }
+    rig.run(phase.into_s);
+    ASSERT_NE(rig.output().state, State::faulted);
+  }
+
+  RigSettings settings = base();
+  PreparedSequence pick = example_sequence("pick_stone", settings);
+};
+
+TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
+  const auto [which, when, action] = GetParam();
+  const FaultCase fault = fault_cases()[which];
+  const PhaseCase& phase = phase_cases[when];
+  settings.safety.safe_action.fill(action == SafeAction::vent ? SafeAction::hold : SafeAction::vent);
+  settings.safety.safe_action[static_cast<std::size_t>(phase.phase)] = action;
+  SimulatedRig rig(settings);
+  ASSERT_NO_FATAL_FAILURE(reach(rig, phase));
+
+  const double before_kpa = rig.output().channels[0].command_kpa;
+  fault.inject(rig);
+  std::uint32_t cycles = 0;
+  while (rig.output().state != State::faulted && cycles < 100) {
+    rig.tick();
+    ++cycles;
+  }
+  EXPECT_LE(cycles, fault.bound_cycles);
+  EXPECT_EQ(rig.output().first_fault, fault.code);
+  const double at_latch_kpa = rig.output().channels[0].command_kpa;
+  EXPECT_NEAR(at_latch_kpa, before_kpa, 10) << "no more than a few cycles of motion";
+  if (phase.step >= 0) {
+    EXPECT_EQ(rig.result(0), GripResult::error);
+  }
+
+  rig.run(1);  // SimulatedRig checks that no command rises meanwhile
+  const bool vents = fault.always_vents || action == SafeAction::vent;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(rig.board_kpa(i), vents ? 0 : at_latch_kpa, 1.5);
+  }
+  std::array<double, 2> safe{};
+  rig.controller().safe_commands(safe);
+  EXPECT_EQ(safe[0], rig.output().channels[0].command_kpa);
+
+  fault.mend(rig);
+  rig.run(1);
+  EXPECT_EQ(rig.output().state, State::faulted);
+  EXPECT_EQ(rig.output().first_fault, fault.code);
+  rig.request(Request::Kind::start, &pick);
+  rig.tick();
+  const auto refused = rig.answer(Event::Kind::request_refused);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::faulted));
+
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::fault_acknowledged));
+  const double rest_kpa = rig.output().channels[0].command_kpa;
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.run(2);
+  EXPECT_EQ(rig.output().state, State::idle);
+  EXPECT_EQ(rig.output().channels[0].command_kpa, rest_kpa) << "acknowledging moves nothing";
+  EXPECT_EQ(rig.result(0), GripResult::none);
+
+  if (rest_kpa > 0) {  // a held finger: what it holds is unknown, so it is vented before it grips anew
+    rig.request(Request::Kind::vent);
+    ASSERT_TRUE(rig.run_until(State::idle, 2));
+  }
+  rig.run(15);
+  rig.request(Request::Kind::start, &pick);
+  ASSERT_TRUE(rig.run_until(State::running, 12));
+  ASSERT_TRUE(rig.run_until(State::idle, 60));
+  EXPECT_EQ(rig.result(0), GripResult::released);
+}
+
+std::string case_name(const testing::TestParamInfo<Parameters>& test) {
+  return std::string(fault_cases()[std::get<0>(test.param)].name) + "_while_" +
+         phase_cases[std::get<1>(test.param)].name + "_" + std::string(name_of(std::get<2>(test.param)));
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFaultsInAllPhases, FaultReaction,
+                         testing::Combine(testing::Range<std::size_t>(0, fault_cases().size()),
+                                          testing::Range<std::size_t>(0, phase_cases.size()),
+                                          testing::Values(SafeAction::vent, SafeAction::hold)),
+                         case_name);
+
+class SingleFault : public testing::Test {
+ protected:
+  void start(SimulatedRig& rig, const PreparedSequence& sequence) {
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &sequence);
+    ASSERT_TRUE(rig.run_until(State::running, 5));
+  }
+  RigSettings settings = base();
+};
+
+TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
+  SimulatedRig rig(settings);
+  const PreparedSequence track = example_sequence("track_sine", settings);
+  start(rig, track);
+  rig.fault[0].frozen_mm = rig.output().channels[0].displacement_mm;
+  ASSERT_TRUE(rig.run_until(State::faulted, 5));
+  EXPECT_EQ(rig.output().first_fault, FaultCode::reading_frozen);
+}
+
+TEST_F(SingleFault, ADisplacementThatDriftsBeyondTheLimits) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  while (rig.output().state != State::faulted && rig.fault[1].offset_mm < 60) {
+    rig.fault[1].offset_mm += 0.2;
+    rig.tick();
+  }
+  EXPECT_EQ(rig.output().first_fault, FaultCode::displacement_beyond_limits);
+  const LimitSettings& limits = settings.channels[1].limits;
+  EXPECT_NEAR(rig.fault[1].offset_mm, limits.displacement_max_mm + limits.displacement_margin_mm, 1.5);
+}
+
+TEST_F(SingleFault, AnUnfitModelIsAFaultOnlyWhereTheRigFileSaysSo) {
+  for (const bool is_fault : {true, false}) {
+    settings.faults.model_unfit_is_fault = is_fault;
+    SimulatedRig rig(settings);
+    const PreparedSequence track = example_sequence("track_sine", settings);
+    start(rig, track);
+    ASSERT_TRUE(rig.run_until_step(1, 10));
+    for (int i = 0; i < 4000 && rig.output().state == State::running; ++i) {
+      rig.fault[0].offset_mm = std::min(6.0, rig.fault[0].offset_mm + 0.05);
+      rig.tick();
+    }
+    EXPECT_EQ(rig.output().first_fault, is_fault ? FaultCode::model_unfit : FaultCode::none);
+    EXPECT_GT(rig.count(Event::Kind::model_health_changed), 0U);
+  }
+}
+
+TEST_F(SingleFault, ACommandThatIsNoNumberNeverLeaves) {
+  settings.channels[0].pid.kp_kpa_per_mm = std::numeric_limits<double>::quiet_NaN();
+  SimulatedRig rig(settings);  // checks that every command is finite and within its limits
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  const PreparedSequence track = example_sequence("track_sine", settings);
+  rig.request(Request::Kind::start, &track);
+  ASSERT_TRUE(rig.run_until(State::faulted, 5));
+  EXPECT_EQ(rig.output().first_fault, FaultCode::not_finite);
+}
+
+TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
+  settings.safety.safe_action.fill(SafeAction::hold);
+  SimulatedRig rig(settings);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  rig.stone(12);
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until_step(2, 20));
+  rig.fault[0].validity = model::Validity::sensor_error;
+  ASSERT_TRUE(rig.run_until(State::faulted, 1));
+  rig.run(0.5);
+  EXPECT_GT(rig.board_kpa(0), 20) << "held, as the settings say";
+  rig.emergency_stop = true;
+  rig.run(1);
+  EXPECT_EQ(rig.output().first_fault, FaultCode::sensor_error);
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U);
+  EXPECT_EQ(rig.board_kpa(0), 0) << "a later fault can only turn a hold into a vent";
+}
+
+TEST_F(SingleFault, AcknowledgingIsRefusedWhileTheCauseIsThere) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.emergency_stop = true;
+  rig.run(0.1);
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  const auto refused = rig.answer(Event::Kind::request_refused);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::cause_persists));
+  rig.emergency_stop = false;
+  rig.run(0.5);
+  EXPECT_EQ(rig.output().state, State::faulted) << "the refused request is not remembered: an edge is needed";
+}
+
+TEST_F(SingleFault, AnAcknowledgementBeforeTheFaultDoesNotCount) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::request_refused));
+  rig.emergency_stop = true;
+  rig.tick();
+  rig.emergency_stop = false;
+  rig.run(1);
+  EXPECT_EQ(rig.output().state, State::faulted);
+}
+
+TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
+  for (const bool board_vents : {true, false}) {
+    settings.safety.safe_action.fill(SafeAction::hold);
+    settings.safety.board_vents_when_silent = board_vents;
+    SimulatedRig rig(settings);
+    rig.board_vents = board_vents;
+    rig.stone(12);
+    const PreparedSequence pick = example_sequence("pick_stone", settings);
+    start(rig, pick);
+    ASSERT_TRUE(rig.run_until_step(2, 20));
+    const double held_kpa = rig.board_kpa(0);
+    rig.wire_cut = true;
+    rig.run(2);
+    EXPECT_NEAR(rig.board_kpa(0), board_vents ? 0 : held_kpa, 1);
+    const double at_reconnection_kpa = rig.board_kpa(0);
+    rig.wire_cut = false;
+    rig.run(2);
+    EXPECT_NEAR(rig.board_kpa(0), at_reconnection_kpa, 1) << "reconnection moves nothing";
+  }
+}
+
+TEST_F(SingleFault, SilenceAtPowerUpIsNoFault) {
+  SimulatedRig rig(settings);
+  rig.wire_cut = true;
+  rig.run(5);
+  EXPECT_EQ(rig.output().state, State::starting);
+  rig.wire_cut = false;
+  EXPECT_TRUE(rig.run_until(State::idle, 0.1));
+}
+
+TEST_F(SingleFault, ABriefDropoutIsBridged) {
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until_step(1, 20));
+  for (int i = 0; i < 30; ++i) {
+    rig.fault[0].validity = model::Validity::out_of_range;
+    rig.run((settings.faults.invalid_reading_cycles - 1) / settings.rate_hz);
+    rig.fault[0].validity.reset();
+    rig.run(2 / settings.rate_hz);
+  }
+  EXPECT_EQ(rig.output().first_fault, FaultCode::none);
+  ASSERT_TRUE(rig.run_until_step(2, 20));
+  EXPECT_EQ(rig.result(0), GripResult::holding);
+}
+
+}  // namespace
+}  // namespace softgrip::control

@@ -1,0 +1,218 @@
+// Requests in every state: what they do, what refuses them, and that each is answered in its tick.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/control/rig_fixture.h"
+
+namespace softgrip::control {
+namespace {
+
+class Requests : public testing::Test {
+ protected:
+  void expect_refused(SimulatedRig& rig, RefusalCode code) {
+    rig.tick();
+    const auto refused = rig.answer(Event::Kind::request_refused);
+    ASSERT_TRUE(refused) << "expected " << name_of(code);
+    EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(code)) << "expected " << name_of(code);
+  }
+  void start(SimulatedRig& rig, const PreparedSequence& sequence) {
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &sequence);
+    ASSERT_TRUE(rig.run_until(State::running, 5));
+  }
+
+  RigSettings settings = two_finger_settings();
+  PreparedSequence pick = example_sequence("pick_stone", settings);
+};
+
+TEST_F(Requests, StartIsRefusedWithItsReason) {
+  SimulatedRig rig(settings);
+  rig.wire_cut = true;
+  rig.request(Request::Kind::start, &pick);
+  expect_refused(rig, RefusalCode::no_valid_reading);
+  rig.wire_cut = false;
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+
+  rig.request(Request::Kind::start, nullptr);
+  expect_refused(rig, RefusalCode::sequence_unfit);
+  RigSettings other = settings;
+  other.channels[0].limits.pressure_max_kpa = 50;
+  const PreparedSequence foreign = example_sequence("pick_stone", other);
+  rig.request(Request::Kind::start, &foreign);
+  expect_refused(rig, RefusalCode::sequence_unfit);
+
+  rig.interlock_open = true;
+  rig.request(Request::Kind::start, &pick);
+  expect_refused(rig, RefusalCode::interlock_open);
+  rig.interlock_open = false;
+
+  rig.fault[1].validity = model::Validity::out_of_range;
+  rig.tick();
+  rig.request(Request::Kind::start, &pick);
+  expect_refused(rig, RefusalCode::no_valid_reading);
+  rig.fault[1].validity.reset();
+  rig.tick();
+
+  rig.request(Request::Kind::start, &pick);
+  ASSERT_TRUE(rig.run_until(State::running, 5));
+  rig.request(Request::Kind::start, &pick);
+  expect_refused(rig, RefusalCode::not_idle);
+  rig.request(Request::Kind::stop);
+  rig.tick();
+  rig.request(Request::Kind::start, &pick);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::request_refused) || rig.output().state == State::idle ||
+              rig.output().state == State::resynchronising);
+}
+
+TEST_F(Requests, StopAndAcknowledgeNeedSomethingToActOn) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::stop);
+  expect_refused(rig, RefusalCode::nothing_to_stop);
+  rig.request(Request::Kind::acknowledge);
+  expect_refused(rig, RefusalCode::nothing_to_acknowledge);
+  rig.emergency_stop = true;
+  rig.tick();
+  rig.request(Request::Kind::stop);
+  expect_refused(rig, RefusalCode::faulted);
+}
+
+TEST_F(Requests, StopActsAsThePhaseSays) {
+  struct Case {
+    int step;
+    Phase phase;
+    GripResult held;    ///< result after a stop that holds
+    GripResult vented;  ///< result after a stop that vents
+  };
+  for (const Case& test : {Case{0, Phase::closing, GripResult::error, GripResult::error},
+                           Case{1, Phase::closing, GripResult::error, GripResult::error},
+                           Case{2, Phase::holding, GripResult::holding, GripResult::released},
+                           Case{3, Phase::releasing, GripResult::error, GripResult::released}}) {
+    for (const SafeAction action : {SafeAction::vent, SafeAction::hold}) {
+      SCOPED_TRACE("step " + std::to_string(test.step) + " " + std::string(name_of(action)));
+      settings.safety.safe_action.fill(action == SafeAction::vent ? SafeAction::hold : SafeAction::vent);
+      settings.safety.safe_action[static_cast<std::size_t>(test.phase)] = action;
+      SimulatedRig rig(settings);
+      rig.stone(12);
+      start(rig, pick);
+      ASSERT_TRUE(rig.run_until_step(static_cast<std::uint16_t>(test.step), 20));
+      rig.run(0.1);
+      rig.request(Request::Kind::stop);
+      rig.tick();
+      EXPECT_TRUE(rig.answer(Event::Kind::state_changed));
+      const double at_stop_kpa = rig.output().channels[0].command_kpa;
+      ASSERT_TRUE(rig.output().state == State::idle || rig.run_until(State::idle, 2));
+      rig.run(0.05);
+      EXPECT_NEAR(rig.board_kpa(0), action == SafeAction::vent ? 0 : at_stop_kpa, 1e-9);
+      EXPECT_EQ(rig.result(0), action == SafeAction::vent ? test.vented : test.held);
+      const auto finished = std::find_if(rig.events.begin(), rig.events.end(), [](const Event& event) {
+        return event.kind == Event::Kind::sequence_finished;
+      });
+      ASSERT_NE(finished, rig.events.end());
+      EXPECT_EQ(finished->detail, static_cast<std::uint16_t>(SequenceEnd::stopped));
+    }
+  }
+}
+
+TEST_F(Requests, AStopWhileLookingForRestEndsTheStart) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &pick);
+  ASSERT_TRUE(rig.run_until(State::resynchronising, 1));
+  rig.request(Request::Kind::stop);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.run(2);
+  EXPECT_EQ(rig.output().state, State::idle);
+  EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
+}
+
+TEST_F(Requests, VentWorksFromEverywhere) {
+  SimulatedRig rig(settings);
+  rig.request(Request::Kind::vent);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::state_changed));
+  settings.safety.safe_action.fill(SafeAction::hold);
+  settings.safety.on_emergency_stop = SafeAction::hold;
+  for (const bool faulted : {false, true}) {
+    SimulatedRig gripping(settings);
+    gripping.stone(12);
+    start(gripping, pick);
+    ASSERT_TRUE(gripping.run_until_step(2, 20));
+    if (faulted) {
+      gripping.emergency_stop = true;
+      gripping.run(0.5);
+      EXPECT_GT(gripping.board_kpa(0), 20);
+    }
+    gripping.request(Request::Kind::vent);
+    gripping.tick();
+    EXPECT_TRUE(gripping.answer(Event::Kind::state_changed));
+    gripping.run(1);
+    EXPECT_EQ(gripping.board_kpa(0), 0);
+    EXPECT_EQ(gripping.output().state, faulted ? State::faulted : State::idle);
+    EXPECT_EQ(gripping.result(0), faulted ? GripResult::error : GripResult::released);
+  }
+}
+
+TEST_F(Requests, AnOpenedInterlockStopsOnlySequencesThatSaySo) {
+  const PreparedSequence screw = example_sequence("pick_screw", settings);
+  for (const bool always : {false, true}) {
+    const PreparedSequence& sequence = always ? screw : pick;
+    SimulatedRig rig(settings);
+    rig.stone(12);
+    start(rig, sequence);
+    ASSERT_TRUE(rig.run_until_step(1, 20));
+    rig.interlock_open = true;
+    rig.run(1);
+    EXPECT_EQ(rig.output().state, always ? State::idle : State::running);
+    EXPECT_EQ(rig.output().first_fault, FaultCode::none);
+  }
+}
+
+TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &pick);
+  const double began = rig.time_s();
+  for (bool up = false; rig.time_s() - began < settings.rest_timeout_s + 1; up = !up) {
+    rig.fault[0].offset_mm = up ? 0.5 : -0.5;  // somebody shakes it
+    rig.run(0.1);
+    ASSERT_NE(rig.output().state, State::running);
+  }
+  EXPECT_EQ(rig.output().state, State::idle);
+  EXPECT_EQ(rig.result(0), GripResult::error);
+  EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
+}
+
+TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
+  SimulatedRig rig(settings);
+  rig.fault[0].offset_mm = 1.5 * settings.detection.margin_mm;
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &pick);
+  rig.run(settings.rest_timeout_s + 1);
+  EXPECT_EQ(rig.output().state, State::idle);
+  EXPECT_EQ(rig.result(0), GripResult::error);
+  const PreparedSequence track = example_sequence("track_sine", settings);
+  rig.request(Request::Kind::start, &track);
+  EXPECT_TRUE(rig.run_until(State::running, 2)) << "a study does not need it";
+}
+
+TEST_F(Requests, LeavingTheLoopIsSafeInEveryPhase) {
+  settings.safety.safe_action = {SafeAction::vent, SafeAction::vent, SafeAction::hold, SafeAction::vent};
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  start(rig, pick);
+  std::array<double, 2> safe{};
+  for (std::uint16_t step = 0; step < 4; ++step) {
+    ASSERT_TRUE(rig.run_until_step(step, 20));
+    rig.run(0.1);
+    rig.controller().safe_commands(safe);
+    const bool holds = step == 2;
+    EXPECT_EQ(safe[0], holds ? rig.output().channels[0].command_kpa : 0) << "step " << step;
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::control

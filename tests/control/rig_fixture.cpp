@@ -1,0 +1,159 @@
+#include "tests/control/rig_fixture.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrip::control {
+
+namespace {
+constexpr double stone_yields = 0.1;  // share of the free motion that is left beyond the stone
+constexpr double noise_mm = 0.03;
+constexpr double board_watchdog_s = 0.5;
+constexpr double hand_mm_per_s = 200;
+}  // namespace
+
+SimulatedRig::SimulatedRig(const RigSettings& settings, std::uint64_t seed)
+    : settings_(settings), controller_(settings), readings_(settings.channels.size()), random_(seed) {
+  for (std::size_t i = 0; i < settings.channels.size(); ++i) {
+    plants_.push_back({model::Chain<double>(twin(), {}, 1 / settings.rate_hz), 0, 0});
+  }
+}
+
+void SimulatedRig::stone(std::optional<double> position_mm) {
+  pulling_out_ = !position_mm;
+  stone_mm_ = position_mm ? position_mm : stone_mm_;
+}
+
+void SimulatedRig::request(Request::Kind kind, const PreparedSequence* sequence) {
+  request_ = {kind, next_request_++, sequence};
+}
+
+void SimulatedRig::step_plants() {
+  const bool tripped = wire_cut && board_vents && silent_s_ > board_watchdog_s;
+  for (std::size_t i = 0; i < plants_.size(); ++i) {
+    Plant& plant = plants_[i];
+    if (!wire_cut) {
+      plant.board_kpa = output_.channels[i].command_kpa;
+    } else if (tripped) {
+      plant.board_kpa = settings_.channels[i].limits.pressure_min_kpa;
+    }
+    plant.chain.step(0, plant.board_kpa);
+    plant.chain.step(1 / settings_.rate_hz, plant.board_kpa);
+    const double free = plant.chain.reading_mm();
+    plant.true_mm = stone_mm_ && free > *stone_mm_ ? *stone_mm_ + stone_yields * (free - *stone_mm_) : free;
+  }
+  if (pulling_out_ && stone_mm_) {
+    *stone_mm_ += hand_mm_per_s / settings_.rate_hz;
+  }
+  silent_s_ = wire_cut ? silent_s_ + 1 / settings_.rate_hz : 0;
+}
+
+void SimulatedRig::read() {
+  failures_ = wire_cut ? failures_ + 1 : 0;
+  if (wire_cut) {
+    return;
+  }
+  std::normal_distribution<double> noise(0, noise_mm);
+  for (std::size_t i = 0; i < plants_.size(); ++i) {
+    model::Reading& reading = readings_[i];
+    const OfChannel& broken = fault[i];
+    reading.displacement_mm =
+        broken.frozen_mm.value_or(plants_[i].true_mm + noise(random_) + broken.offset_mm);
+    reading.pressure_kpa = broken.no_pressure ? std::nan("") : plants_[i].chain.pressure_kpa();
+    reading.command_readback_kpa = plants_[i].board_kpa + broken.readback_offset_kpa;
+    reading.sampled_at = now_;
+    ++reading.sequence;
+    reading.validity = broken.validity.value_or(model::Validity::valid);
+  }
+}
+
+const TickOutput& SimulatedRig::tick() {
+  if (!first_) {
+    now_ += static_cast<model::Nanoseconds>(std::llround(1e9 / settings_.rate_hz));
+    step_plants();
+  }
+  read();
+  TickInput input;
+  input.now = now_;
+  input.readings = readings_;
+  input.bus = {!wire_cut, wire_cut ? FaultCode::bus_timed_out : bus_fault, failures_};
+  input.request = request_;
+  input.emergency_stop = emergency_stop;
+  input.interlock_open = interlock_open;
+  input.slipped_cycles = slipped_cycles;
+  slipped_cycles = 0;
+  request_ = {};
+  const TickOutput before = output_;
+  controller_.tick(input, output_);
+  check_commands(before);
+  EXPECT_EQ(output_.events_lost, 0U);
+  events.insert(events.end(), output_.events.begin(),
+                output_.events.begin() + static_cast<long>(output_.event_count));
+  first_ = false;
+  return output_;
+}
+
+/// Always: inside the pressure range, inside the slew limits; never up when faulted.
+void SimulatedRig::check_commands(const TickOutput& before) {
+  constexpr double rounding = 1e-9;
+  for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
+    const LimitSettings& limits = settings_.channels[i].limits;
+    const double command = output_.channels[i].command_kpa;
+    ASSERT_TRUE(std::isfinite(command)) << "at " << time_s();
+    EXPECT_GE(command, limits.pressure_min_kpa);
+    EXPECT_LE(command, limits.pressure_max_kpa);
+    const double from = first_ ? limits.pressure_min_kpa : before.channels[i].command_kpa;
+    EXPECT_LE(command - from, limits.slew_up_kpa_per_s / settings_.rate_hz + rounding) << "at " << time_s();
+    EXPECT_GE(command - from, -limits.slew_down_kpa_per_s / settings_.rate_hz - rounding)
+        << "at " << time_s();
+    if (output_.state == State::faulted || output_.state == State::starting || output_.state == State::idle ||
+        output_.state == State::stopping) {
+      EXPECT_LE(command, from + rounding) << "at " << time_s() << " in " << name_of(output_.state);
+    }
+  }
+}
+
+void SimulatedRig::run(double seconds) {
+  const auto ticks = static_cast<int>(std::lround(seconds * settings_.rate_hz));
+  for (int i = 0; i < ticks; ++i) {
+    tick();
+  }
+}
+
+bool SimulatedRig::run_until(State state, double seconds) {
+  const double end = time_s() + seconds;
+  while (time_s() < end) {
+    if (tick().state == state) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool SimulatedRig::run_until_step(std::uint16_t step, double seconds) {
+  const double end = time_s() + seconds;
+  while (time_s() < end) {
+    if (tick().state == State::running && output_.channels[0].step == step) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::size_t SimulatedRig::count(Event::Kind kind) const {
+  return static_cast<std::size_t>(
+      std::count_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == kind; }));
+}
+
+std::optional<Event> SimulatedRig::answer(Event::Kind kind) const {
+  for (auto event = events.rbegin(); event != events.rend(); ++event) {
+    if (event->kind == kind && event->request == last_request()) {
+      return *event;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,95 @@
+#pragma once
+// A rig for tests: two fingers of the bench twin behind a board without delay, an optional stone between
+// them, and every fault that a test may want.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "control/rig_controller.h"
+#include "control/sequence.h"
+#include "control/settings.h"
+#include "model/chain.h"
+#include "tests/control/settings_fixture.h"
+
+namespace softgrip::control {
+
+/// A rig that is controlled: plants, board, controller, in virtual time.
+class SimulatedRig {
+ public:
+  explicit SimulatedRig(const RigSettings& settings, std::uint64_t seed = 1);
+
+  /// A stone stops both fingers at `position_mm`. Nothing: it is pulled out, at a hand's speed.
+  void stone(std::optional<double> position_mm);
+
+  // Faults; each stays until it is taken back.
+  bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time
+  bool board_vents = true;  ///< its watchdog puts the outputs to the lowest pressure
+  bool emergency_stop = false;
+  bool interlock_open = false;
+  std::uint32_t slipped_cycles = 0;  ///< for the next tick only
+  FaultCode bus_fault = FaultCode::none;
+  struct OfChannel {
+    std::optional<model::Validity> validity;  ///< the driver says so
+    double offset_mm = 0;                     ///< added to the reading
+    std::optional<double> frozen_mm;          ///< the reading stays here
+    double readback_offset_kpa = 0;
+    bool no_pressure = false;  ///< the monitor is gone: NaN
+  };
+  std::array<OfChannel, 2> fault;
+
+  /// For the next tick only.
+  void request(Request::Kind kind, const PreparedSequence* sequence = nullptr);
+  /// One period; all invariants of the commands are checked.
+  const TickOutput& tick();
+  void run(double seconds);
+  /// Ticks until the state is `state`, at most `seconds`; false if it never was.
+  bool run_until(State state, double seconds);
+  /// Ticks until the step with this index runs, at most `seconds`.
+  bool run_until_step(std::uint16_t step, double seconds);
+
+  [[nodiscard]] const TickOutput& output() const { return output_; }
+  [[nodiscard]] const RigController& controller() const { return controller_; }
+  [[nodiscard]] double time_s() const { return static_cast<double>(now_) * 1e-9; }
+  [[nodiscard]] double plant_mm(std::size_t channel) const { return plants_[channel].true_mm; }
+  [[nodiscard]] double board_kpa(std::size_t channel) const { return plants_[channel].board_kpa; }
+  [[nodiscard]] GripResult result(std::size_t channel) const { return output_.channels[channel].result; }
+  [[nodiscard]] std::uint32_t last_request() const { return next_request_ - 1; }
+
+  /// All events so far.
+  std::vector<Event> events;
+  [[nodiscard]] std::size_t count(Event::Kind kind) const;
+  /// The last event of a kind that answers the last request, if any.
+  [[nodiscard]] std::optional<Event> answer(Event::Kind kind) const;
+
+ private:
+  struct Plant {
+    model::Chain<double> chain;
+    double board_kpa = 0;
+    double true_mm = 0;
+  };
+  void step_plants();
+  void read();
+  void check_commands(const TickOutput& before);
+
+  RigSettings settings_;
+  RigController controller_;
+  std::vector<Plant> plants_;
+  std::vector<model::Reading> readings_;
+  std::mt19937_64 random_;
+  std::optional<double> stone_mm_;
+  bool pulling_out_ = false;
+  model::Nanoseconds now_ = 1'000'000'000;
+  double silent_s_ = 0;
+  std::uint32_t failures_ = 0;
+  std::uint32_t next_request_ = 1;
+  Request request_;
+  TickOutput output_;
+  bool first_ = true;
+};
+
+}  // namespace softgrip::control
