@@ -90,16 +90,17 @@ class BoardReader {
   }
 
   void scaling(MapReader& in, TerminalBlock& block) {
+    const std::size_t before = problems_.size();
     const std::vector<double> raw = in.numbers("at_raw", 2, {});
     const bool milliampere = in.has("is_ma");
     block.unit = milliampere ? ElectricalUnit::milliampere : ElectricalUnit::volt;
     const std::string_view key = milliampere ? "is_ma" : "is_v";
     const std::vector<double> electrical = in.numbers(key, 2, {-1000, 1000});
     block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
-    if (in.has("at_raw") && raw[0] == raw[1]) in.report("at_raw", "the two scaling points must differ");
-    if (in.has(key) && electrical[0] == electrical[1]) {
-      in.report(key, "the two scaling points must differ");
-    }
+    // What was refused already is not complained of twice.
+    if (problems_.size() != before || !in.has("at_raw") || !in.has(key)) return;
+    if (raw[0] == raw[1]) in.report("at_raw", "the two scaling points must differ");
+    if (electrical[0] == electrical[1]) in.report(key, "the two scaling points must differ");
   }
 
   void converter(MapReader& in, TerminalBlock& block) {
@@ -204,7 +205,10 @@ class BoardReader {
   void watchdog(const Node& node) {
     MapReader in(document_, node, problems_, "the watchdog");
     BoardWatchdog& watchdog = map_.watchdog;
-    if (in.choice("kind", {"none", "communication_timeout"}) == 0) return;
+    const std::size_t before = problems_.size();
+    if (in.choice("kind", {"communication_timeout", "none"}) == 1) return;
+    // A misspelt kind: the other keys say whether it was to be a watchdog.
+    if (problems_.size() != before && in.keys().size() <= 1) return;
     watchdog.kind = BoardWatchdog::Kind::communication_timeout;
     watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
     const bool volt = map_.outputs.unit == ElectricalUnit::volt;
@@ -232,6 +236,7 @@ class BoardReader {
       if (code.has_value()) functions.push_back(static_cast<std::uint8_t>(*code));
     }
     const std::uint8_t used = map_.has_fc23 ? std::uint8_t{23} : map_.outputs.registers.function;
+    if (used < fc_write_register) return;  // reported where it stands
     if (std::find(functions.begin(), functions.end(), used) == functions.end()) {
       in.report("functions",
                 "the outputs are written by function " + std::to_string(used) + ", which does not feed it");
