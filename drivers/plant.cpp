@@ -17,6 +17,10 @@ using Contact = model::Contact<double>;
 constexpr double out_of_reach_mm = 1000;
 constexpr double most_stiffening = 1e6;
 
+// A chain takes what a lag makes of a jump for a parabola; over 5 ms that costs the twin 2e-8 mm, over half a
+// second 0.1 mm.
+constexpr double longest_step_s = 5e-3;
+
 Contact contact_for(const std::optional<PlantObject>& object) {
   if (!object.has_value()) return {std::array{out_of_reach_mm, 0.0}, {}};
   const double stiffening = object->yielding > 0 ? 1 / object->yielding - 1 : most_stiffening;
@@ -103,7 +107,8 @@ void Plant::advance(double duration_s) noexcept {
   if (!(duration_s > 0)) return;
   // A held output: the jump first, then time passes under it.
   if (parts.chain.command_kpa() != parts.applied_kpa) parts.chain.step(0, parts.applied_kpa);
-  parts.chain.step(duration_s, parts.applied_kpa);
+  const double pieces = std::max(1.0, std::ceil(duration_s / longest_step_s - 1e-6));
+  for (double i = 0; i < pieces; ++i) parts.chain.step(duration_s / pieces, parts.applied_kpa);
   ++parts.samples;
   parts.sense();
 }
@@ -135,8 +140,6 @@ void Plant::set_object(const std::optional<PlantObject>& object) noexcept {
   const double output = place.output();
   place = contact_for(object);
   place.reset(output);
-  parts.chain.step(0, parts.chain.command_kpa());
-  parts.sense();
 }
 
 const std::optional<PlantObject>& Plant::object() const noexcept {

@@ -80,7 +80,7 @@ class Plant {
   /// True while the sensor is out of range: reading_mm() means nothing.
   [[nodiscard]] bool sees_nothing() const noexcept;
 
-  /// Puts an object there, or takes it away. The finger follows at once.
+  /// Puts an object there, or takes it away. The finger follows with the next advance().
   void set_object(const std::optional<PlantObject>& object) noexcept;
   [[nodiscard]] const std::optional<PlantObject>& object() const noexcept;
   void set_fault(const LineFault& fault) noexcept;

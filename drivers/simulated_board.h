@@ -33,9 +33,9 @@ struct SimulatedEvent {
   double at_s = 0;  ///< since the first exchange
   Kind kind = Kind::object;
   std::size_t channel = every_channel;
-  std::optional<PlantObject> object;
-  LineFault line;
-  SensorFault sensor;
+  std::optional<PlantObject> object = std::nullopt;
+  LineFault line = {};
+  SensorFault sensor = {};
   BusStatus status = BusStatus::disconnected;
 };
 
