@@ -6,11 +6,21 @@
 #include <optional>
 #include <string_view>
 
+#include "model/dual.h"
+
 namespace softgrip::control {
 namespace {
 
-/// How long the difference between model and reference at the start of tracking takes to fade out.
+/// How long a difference between plan and reference takes to fade out at least.
 constexpr double fade_s = 0.5;
+/// What the reference may turn by from tick to tick before it is called a jump; a corner between 50 mm/s up
+/// and 50 mm/s down at 200 Hz is as much.
+constexpr double jump_mm = 0.5;
+/// Peak acceleration and peak speed of a minimum-jerk move of unit length in unit time.
+constexpr double peak_acceleration = 5.774;
+constexpr double peak_speed = 1.875;
+/// A plan that differs from what the reference needs by more than this is called out of reach.
+constexpr double late_kpa = 1e-6;
 
 /// The value of a parameter of the first block with that id, or nothing.
 std::optional<double> value_in(const model::Model& model, std::string_view id, std::string_view parameter) {
@@ -52,7 +62,15 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
       lag_s_(value_in(model, "valve_lag", "time_constant_s").value_or(0)),
       lag_share_(lag_s_ > 0 ? -std::expm1(-tick_s / lag_s_) : 1),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
-      inverse_(body_of(model), tick_s) {}
+      inverse_(body_of(model), tick_s) {
+  // What follows the pressure at once moves with its slew; what creeps accelerates with it.
+  const model::Chain<double> body(body_of(model), {}, tick_s);
+  const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
+  const double after_tick = body.peek(tick_s, model::Dual<double>(0, 1)).v;
+  const double slew = std::min(limits.slew_up_kpa_per_s, limits.slew_down_kpa_per_s);
+  easy_mm_per_s_ = at_once * slew;
+  easy_mm_per_s2_ = 2 * (after_tick - at_once) / tick_s * slew;
+}
 
 ReferencePoint FullModelFeedforward::target(const FeedforwardQuery& query) const noexcept {
   const double then_s = query.time_s + preview_s_;
@@ -63,42 +81,73 @@ ReferencePoint FullModelFeedforward::target(const FeedforwardQuery& query) const
   return point;
 }
 
-FullModelFeedforward::Bracket FullModelFeedforward::bracket() const noexcept {
+double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
   const double now = inverse_.pressure_kpa();
-  // Where the lowest and the highest command would bring the pressure, and no faster than the slew.
-  const double lowest = now + lag_share_ * (limits_.pressure_min_kpa - now);
-  const double highest = now + lag_share_ * (limits_.pressure_max_kpa - now);
-  const double lower = std::max(lowest, now - limits_.slew_down_kpa_per_s * tick_s_);
-  const double upper = std::min({highest, ceiling_kpa_, now + limits_.slew_up_kpa_per_s * tick_s_});
-  return {std::min(lower, upper), upper};
+  double next = wanted_kpa;
+  if (lag_s_ > 0) {
+    // The way that is left when the pressure has moved along with what it is wanted to be.
+    const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
+                                    limits_.slew_up_kpa_per_s * tick_s_);
+    const double left = wanted_kpa - now - along;
+    const double brake = (left > 0 ? limits_.slew_down_kpa_per_s : limits_.slew_up_kpa_per_s) / lag_s_;
+    const double stoppable = tick_s_ * std::sqrt(2 * brake * std::abs(left));
+    if (std::abs(left) > stoppable) next = now + along + std::copysign(stoppable, left);
+  }
+  last_wanted_kpa_ = wanted_kpa;
+  const double ideal = lag_s_ > 0 ? now + (next - now) / lag_share_ : 0.5 * (now + next);
+  return limit(limits_, ideal, command_kpa_, tick_s_).command_kpa;
 }
 
-double FullModelFeedforward::command_for(double pressure_kpa) const noexcept {
+double FullModelFeedforward::pressure_under(double command_kpa) const noexcept {
   const double now = inverse_.pressure_kpa();
-  if (lag_s_ > 0) return now + (pressure_kpa - now) / lag_share_;
-  return 0.5 * (now + pressure_kpa);
+  const double next = lag_s_ > 0 ? now + lag_share_ * (command_kpa - now) : 2 * command_kpa - now;
+  return std::min(next, ceiling_kpa_);
 }
 
 void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQuery& query,
                                  double command_kpa) noexcept {
   inverse_.take_over(running.body(), running.pressure_kpa());
+  command_kpa_ = command_kpa;
+  last_wanted_kpa_ = running.pressure_kpa();
   // Left alone, the pressure goes on toward the command; where the model then is, the fade begins.
   const double before_mm = inverse_.displacement_mm();
-  const double now_kpa = inverse_.pressure_kpa();
-  const double alone_mm = inverse_.displacement_at(now_kpa + lag_share_ * (command_kpa - now_kpa));
+  const double alone_mm = inverse_.displacement_at(pressure_under(command_kpa));
   const ReferencePoint wanted = target(query);
-  fade_.start(query.time_s + preview_s_,
-              {alone_mm - wanted.value, (alone_mm - before_mm) / tick_s_ - wanted.rate, 0});
-  (void)fade_.ramp_for(0, fade_s);
+  fade_from(alone_mm, (alone_mm - before_mm) / tick_s_, wanted, query.time_s + preview_s_);
+  last_displacement_mm_ = before_mm;
+  last_target_mm_ = {wanted.value, wanted.value};
+}
+
+void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per_s, const ReferencePoint& to,
+                                     double then_s) noexcept {
+  const double difference_mm = displacement_mm - to.value;
+  const double distance_mm = std::abs(difference_mm);
+  // Either is enough: an element that follows at once, or one that creeps.
+  const double by_speed_s = peak_speed * distance_mm / easy_mm_per_s_;
+  const double by_acceleration_s = std::sqrt(peak_acceleration * distance_mm / easy_mm_per_s2_);
+  fade_.start(then_s, {difference_mm, speed_mm_per_s - to.rate, 0});
+  (void)fade_.ramp_for(0, std::max(fade_s, std::min(by_speed_s, by_acceleration_s)));
 }
 
 FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexcept {
-  const double wanted_mm = target(query).value + fade_.at(query.time_s + preview_s_).value;
-  const Bracket within = bracket();
-  const auto solution = inverse_.solve(wanted_mm, within.lower_kpa, within.upper_kpa);
-  const double command_kpa = command_for(solution.pressure_kpa);
-  inverse_.advance(solution.pressure_kpa);
-  return {std::clamp(command_kpa, limits_.pressure_min_kpa, limits_.pressure_max_kpa), !solution.reached};
+  const double then_s = query.time_s + preview_s_;
+  const ReferencePoint wanted = target(query);
+  const double now_mm = inverse_.displacement_mm();
+  if (std::abs(wanted.value - 2 * last_target_mm_[0] + last_target_mm_[1]) > jump_mm) {
+    const double going_mm = now_mm - last_displacement_mm_;
+    fade_from(now_mm + going_mm, going_mm / tick_s_, wanted, then_s);
+    last_target_mm_[0] = wanted.value;
+  }
+  last_target_mm_ = {wanted.value, last_target_mm_[0]};
+  last_displacement_mm_ = now_mm;
+
+  const auto solution =
+      inverse_.solve(wanted.value + fade_.at(then_s).value, limits_.pressure_min_kpa, ceiling_kpa_);
+  command_kpa_ = command_toward(solution.pressure_kpa);
+  const double next_kpa = pressure_under(command_kpa_);
+  inverse_.advance(next_kpa);
+  const bool late = std::abs(next_kpa - solution.pressure_kpa) > late_kpa;
+  return {command_kpa_, late || !solution.reached};
 }
 
 Feedforward::Feedforward(const model::Model& model, const FeedforwardSettings& settings,

@@ -1,6 +1,7 @@
 #pragma once
 // The feedforwards themselves; their settings are in control/feedforward.h.
 
+#include <array>
 #include <variant>
 
 #include "control/actuator_inverse.h"
@@ -53,17 +54,17 @@ class BoucWenFeedforward {
 
 /// The whole chain undone from right to left. The pressure at the actuator is planned ahead: each tick adds
 /// the pressure at which everything behind the valve reaches the reference one tick plus all dead time from
-/// now, the last tick's plan being the truth so far. From the plan follows the command:
+/// now, the plan so far being the truth. From the plan follows the command:
 ///
 ///   behind a lag:  u = p[k-1] + (p[k] - p[k-1]) / (1 - exp(-T/tau)), held for the tick: the exact inverse of
 ///                  a first-order lag under a held input, so lead and the hold's half sample are one;
 ///   without one:   u = (p[k-1] + p[k]) / 2, the middle of the stretch, for the same half sample.
 ///
-/// The derivative in the lead is one of the plan, which carries no sensor noise. The plan stays inside what
-/// a command inside the pressure range can do and moves no faster than the slew limits, so it does not wind
-/// up: where the reference is out of reach it stays at the bound, says so, keeps the state that the bound
-/// gives, and goes on from there. A corner of the reference makes the lead jump by tau times the change of
-/// slope, which the limits' slew then rounds; the error that leaves fades with tau.
+/// The derivative in the lead is one of the plan, which carries no sensor noise. The command stays inside the
+/// pressure range and the slew limits, and the plan is what such a command does, so it does not wind up:
+/// where the reference is out of reach the plan goes as far as it can, says so, and goes on from there.
+/// Behind a lag a command that must slew cannot stop the pressure at once; the plan then nears the reference
+/// no faster than it can brake (constant deceleration slew/tau), so that a jump is reached without ringing.
 class FullModelFeedforward {
  public:
   FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,
@@ -75,21 +76,26 @@ class FullModelFeedforward {
   [[nodiscard]] double preview_s() const noexcept { return preview_s_; }
 
  private:
-  struct Bracket {
-    double lower_kpa, upper_kpa;
-  };
   [[nodiscard]] ReferencePoint target(const FeedforwardQuery& query) const noexcept;
-  [[nodiscard]] Bracket bracket() const noexcept;
-  [[nodiscard]] double command_for(double pressure_kpa) const noexcept;
+  void fade_from(double displacement_mm, double speed_mm_per_s, const ReferencePoint& to,
+                 double then_s) noexcept;
+  [[nodiscard]] double command_toward(double wanted_kpa) noexcept;
+  [[nodiscard]] double pressure_under(double command_kpa) const noexcept;
 
   LimitSettings limits_;
   double tick_s_;
   double ceiling_kpa_;  ///< highest pressure that the model's valve lets through
   double lag_s_;
-  double lag_share_;  ///< of the way to the command that the lag goes in a tick; 1 without a lag
+  double lag_share_;  ///< of the way to the command that the lag goes in a tick
   double preview_s_;
   ActuatorInverse inverse_;
-  Reference fade_;  ///< of the difference at enter(), on the reference's clock
+  double command_kpa_ = 0;                  ///< the last one
+  double last_wanted_kpa_ = 0;              ///< the pressure that the reference needed in the last tick
+  double easy_mm_per_s2_;                   ///< acceleration of the finger that the slew limits pass
+  double easy_mm_per_s_;                    ///< speed of the finger that they pass
+  std::array<double, 2> last_target_mm_{};  ///< newest first
+  double last_displacement_mm_ = 0;         ///< of the plan, one tick before
+  Reference fade_;  ///< of the difference after enter() or a jump, on the reference's clock
 };
 
 /// One of them.
