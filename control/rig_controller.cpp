@@ -235,6 +235,8 @@ struct RigController::Parts {
       to.step = player.step();
       to.saturated = from.saturated;
       to.slewing = from.slewing;
+      to.health = from.health;
+      to.health_rms_mm = from.health_rms_mm;
     }
   }
 

@@ -11,6 +11,7 @@
 
 #include "control/fault.h"
 #include "control/grip_result.h"
+#include "control/model_health.h"
 #include "control/settings.h"
 #include "model/reading.h"
 
@@ -75,6 +76,8 @@ struct ChannelOutput {
   std::uint16_t step = 0;  ///< index in the sequence
   bool saturated = false;
   bool slewing = false;
+  HealthState health = HealthState::unknown;  ///< of the model
+  double health_rms_mm = 0;                   ///< of the residual, by which a model is unfit
 };
 
 /// Something worth telling, at most a few per tick.

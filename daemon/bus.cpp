@@ -11,10 +11,11 @@ using drivers::BusStatus;
 
 namespace {
 
-/// After these the board may still send what belongs to an old question: the session is not used again.
+/// After these the board may still send what belongs to an old question, or waits for the greeting that only
+/// a new session brings: the session is not used again.
 bool loses_session(BusStatus status) noexcept {
   return status == BusStatus::disconnected || status == BusStatus::timed_out ||
-         status == BusStatus::bad_reply;
+         status == BusStatus::bad_reply || status == BusStatus::watchdog_tripped;
 }
 
 }  // namespace

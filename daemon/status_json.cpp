@@ -47,6 +47,8 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"evidence", control::name_of(channel.evidence)},
           {"saturated", channel.saturated},
           {"slewing", channel.slewing},
+          {"health", control::name_of(channel.health)},
+          {"health_rms_mm", number(channel.health_rms_mm)},
           {"limits",
            {{"pressure_min_kpa", settings.limits.pressure_min_kpa},
             {"pressure_max_kpa", settings.limits.pressure_max_kpa},

@@ -131,7 +131,7 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
   command(12, 0, true);
   step();
   for (const BusStatus status :
-       {BusStatus::exception, BusStatus::write_refused, BusStatus::watchdog_tripped}) {
+       {BusStatus::exception, BusStatus::write_refused}) {
     board_.next_exchange = status;
     step();
     EXPECT_TRUE(wires_.bus.value().health.connected);
