@@ -1,0 +1,163 @@
+// What one channel costs per tick: the whole controller and its parts. The budget is 1 us of CPU for a tick
+// of two fingers with everything, so about 350 ns for a channel here.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "control/actuator_inverse.h"
+#include "control/channel_controller.h"
+#include "control/running_model.h"
+#include "model/model_file.h"
+
+namespace {
+
+using namespace softgrip;  // NOLINT(google-build-using-namespace)
+
+constexpr double tick_s = 0.005;
+constexpr model::Nanoseconds tick_ns = 5'000'000;
+
+model::Model twin() {
+  document::Problems problems;
+  const auto model = model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems);
+  if (!model) {
+    std::fputs(problems.format().c_str(), stderr);
+    std::exit(1);
+  }
+  return *model;
+}
+
+control::ChannelSettings settings_for(control::FeedforwardKind kind) {
+  control::ChannelSettings settings;
+  settings.model = twin();
+  settings.pid = {0.5, 3, 0.01, 0.02, 1, control::AntiWindup::back_calculation, 0.3};
+  settings.feedforward.kind = kind;
+  settings.limits = {0, 60, 400, 400, 0, 25, 1};
+  return settings;
+}
+
+/// A finger that is the model, recorded once, so that the benchmark measures the controller alone.
+struct Tape {
+  explicit Tape(const control::ChannelSettings& settings) {
+    reference.start(0, 0);
+    (void)reference.hold_for(0.2);
+    (void)reference.ramp_for(6, 2);
+    (void)reference.sine(13, 7, 0.1, 3);
+    control::ChannelController controller(settings, tick_s);
+    model::Chain<double> finger(settings.model, {}, tick_s);
+    input.demand.mode = control::ChannelDemand::Mode::displacement;
+    input.demand.reference = &reference;
+    for (int k = 1; k * tick_s < reference.end_s(); ++k) {
+      next(k, finger.reading_mm());
+      const double command = controller.tick(input).command_kpa;
+      finger.step(0, command);
+      readings_mm.push_back(finger.reading_mm());
+      finger.step(tick_s, command);
+    }
+  }
+  void next(int k, double displacement_mm) {
+    input.now = k * tick_ns;
+    input.demand.time_s = k * tick_s;
+    input.reading.displacement_mm = displacement_mm + (k % 2 == 0 ? 0.01 : -0.01);
+    input.reading.sampled_at = input.now - tick_ns;
+    input.reading.sequence = static_cast<std::uint32_t>(k);
+    input.reading.validity = model::Validity::valid;
+  }
+  control::Reference reference;
+  control::ChannelInput input;
+  std::vector<double> readings_mm;
+};
+
+void channel(benchmark::State& state) {
+  const auto settings = settings_for(static_cast<control::FeedforwardKind>(state.range(0)));
+  Tape tape(settings);
+  control::ChannelController controller(settings, tick_s);
+  int k = 1;
+  for (auto _ : state) {
+    if (k == static_cast<int>(tape.readings_mm.size())) {
+      state.PauseTiming();
+      controller.start(0);
+      k = 1;
+      state.ResumeTiming();
+    }
+    tape.next(k, tape.readings_mm[static_cast<std::size_t>(k)]);
+    benchmark::DoNotOptimize(controller.tick(tape.input));
+    ++k;
+  }
+}
+BENCHMARK(channel)->ArgName("feedforward")->Arg(0)->Arg(1)->Arg(2);
+
+// Each tick of two fingers by itself, for the percentiles.
+void two_channels_percentiles(benchmark::State& state) {
+  const auto settings = settings_for(control::FeedforwardKind::full_model);
+  Tape tape(settings);
+  std::array<control::ChannelController, 2> controllers{control::ChannelController(settings, tick_s),
+                                                        control::ChannelController(settings, tick_s)};
+  std::vector<double> times_ns;
+  times_ns.reserve(1 << 22);
+  int k = 1;
+  for (auto _ : state) {
+    if (k == static_cast<int>(tape.readings_mm.size())) {
+      for (auto& controller : controllers) controller.start(0);
+      k = 1;
+    }
+    tape.next(k, tape.readings_mm[static_cast<std::size_t>(k)]);
+    const auto start = std::chrono::steady_clock::now();
+    for (auto& controller : controllers) benchmark::DoNotOptimize(controller.tick(tape.input));
+    const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - start;
+    if (times_ns.size() < times_ns.capacity()) times_ns.push_back(took.count());
+    ++k;
+  }
+  std::sort(times_ns.begin(), times_ns.end());
+  const auto at = [&](double share) {
+    return times_ns[static_cast<std::size_t>(share * static_cast<double>(times_ns.size() - 1))];
+  };
+  state.counters["p50_ns"] = at(0.5);
+  state.counters["p99_ns"] = at(0.99);
+  state.counters["p99.9_ns"] = at(0.999);
+}
+BENCHMARK(two_channels_percentiles);
+
+void running_model(benchmark::State& state) {
+  control::RunningModel model(twin(), tick_s, 0, 0.05);
+  double t = 0;
+  for (auto _ : state) {
+    t += 0.01;
+    model.advance(20 + t);
+    if (t > 20) t = 0;
+    benchmark::DoNotOptimize(model.reading_mm(0.005));
+  }
+}
+BENCHMARK(running_model);
+
+void actuator_inverse(benchmark::State& state) {
+  control::ActuatorInverse inverse(control::body_of(twin()), tick_s);
+  control::Reference reference;
+  reference.start(0, 0);
+  (void)reference.ramp_for(6, 2);
+  (void)reference.sine(13, 7, 0.1, 1000);
+  double t = 0;
+  for (auto _ : state) {
+    t += tick_s;
+    const auto solution = inverse.solve(reference.at(t).value, 0, 60);
+    inverse.advance(solution.pressure_kpa);
+  }
+}
+BENCHMARK(actuator_inverse);
+
+void reference_at(benchmark::State& state) {
+  control::Reference reference;
+  reference.start(0, 0);
+  (void)reference.ramp_for(6, 2);
+  (void)reference.sine(13, 7, 0.1, 1000);
+  double t = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(reference.at(t += tick_s));
+}
+BENCHMARK(reference_at);
+
+}  // namespace
