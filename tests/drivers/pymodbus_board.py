@@ -1,0 +1,84 @@
+"""A board served by pymodbus: an implementation of Modbus that shares nothing with the one under test.
+
+Speaks with the test over stdin and stdout, one JSON object per line:
+  {"set": [table, address, [values]]}     table: holding, input, coil
+  {"get": [table, address, count]}        answered {"values": [...]}
+  {"writes": true}                        answered {"writes": [[table, address, [values]], ...]} since last time
+First line printed: {"port": N}.
+"""
+
+import asyncio
+import json
+import logging
+import sys
+import threading
+
+from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
+from pymodbus.server.async_io import ModbusTcpServer
+
+TABLES = {"coil": 1, "input": 4, "holding": 3}
+WRITTEN_BY = {5: "coil", 15: "coil", 6: "holding", 16: "holding", 22: "holding", 23: "holding"}
+
+
+class Board(ModbusSlaveContext):
+    """Registers that note what clients write."""
+
+    def __init__(self):
+        def block():
+            return ModbusSequentialDataBlock(0, [0] * 65536)
+
+        super().__init__(di=block(), co=block(), hr=block(), ir=block(), zero_mode=True)
+        self.writes = []
+        self.local = threading.local()
+
+    def setValues(self, fc_as_hex, address, values):  # noqa: N802 (pymodbus names it)
+        if not getattr(self.local, "own", False):
+            self.writes.append([WRITTEN_BY.get(fc_as_hex, str(fc_as_hex)), address, [int(v) for v in values]])
+        super().setValues(fc_as_hex, address, values)
+
+
+def answer(board, line):
+    """What a line of the test asks for, or nothing."""
+    request = json.loads(line)
+    if "set" in request:
+        table, address, values = request["set"]
+        board.local.own = True
+        board.setValues(TABLES[table], address, values)
+        board.local.own = False
+        return {"done": True}
+    if "get" in request:
+        table, address, count = request["get"]
+        return {"values": [int(v) for v in board.getValues(TABLES[table], address, count)]}
+    writes, board.writes = board.writes, []
+    return {"writes": writes}
+
+
+def talk(board, loop):
+    """Serves the test until it closes its end."""
+    for line in sys.stdin:
+        print(json.dumps(answer(board, line)), flush=True)
+    loop.call_soon_threadsafe(loop.stop)
+
+
+async def start(board):
+    """Listens on a free port."""
+    context = ModbusServerContext(slaves={1: board}, single=False)
+    server = ModbusTcpServer(context, address=("127.0.0.1", 0), allow_reuse_address=True)
+    asyncio.ensure_future(server.serve_forever())
+    await server.serving
+    return server.server.sockets[0].getsockname()[1]
+
+
+def main():
+    logging.disable(logging.CRITICAL)  # sessions that end are what these tests are about
+    loop = asyncio.new_event_loop()
+    asyncio.set_event_loop(loop)
+    board = Board()
+    port = loop.run_until_complete(start(board))
+    print(json.dumps({"port": port}), flush=True)
+    threading.Thread(target=talk, args=(board, loop), daemon=True).start()
+    loop.run_forever()
+
+
+if __name__ == "__main__":
+    main()
