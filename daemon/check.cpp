@@ -28,7 +28,7 @@ const std::array<Signature, 4>& signatures() {
                 {"address_base", "word_order", "inputs", "outputs", "fc23", "readable_gap", "input_status",
                  "read_back", "watchdog", "setup"}},
       Signature{FileKind::model, {"valve", "actuator", "load", "sensor"}},
-      Signature{FileKind::sequence, {"steps", "about", "interlock"}},
+      Signature{FileKind::sequence, {"steps", "about", "interlock", "channels"}},
   };
   return all;
 }

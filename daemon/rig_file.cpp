@@ -30,6 +30,13 @@ std::string nearest_file(const std::string& named, const std::string& path) {
   return near.empty() ? std::string{} : std::filesystem::path(named).replace_filename(near).string();
 }
 
+/// Why a file cannot be read, as errno; 0: it can.
+int reading_error(const std::string& path) {
+  if (::access(path.c_str(), R_OK) != 0) return errno;
+  std::error_code error;
+  return std::filesystem::is_directory(path, error) ? EISDIR : 0;
+}
+
 void remember(Context& context, InputFile::Role role, const document::Document& document) {
   const auto same = [&](const InputFile& input) { return input.path == document.file; };
   std::vector<InputFile>& inputs = context.rig.inputs;
@@ -68,8 +75,7 @@ std::optional<document::Document> named_document(Context& context, MapReader& re
   const std::string named = reader.text(key);
   if (named.empty()) return std::nullopt;
   const std::string path = resolved(context, named);
-  if (::access(path.c_str(), R_OK) != 0) {
-    const int error = errno;
+  if (const int error = reading_error(path); error != 0) {
     const std::string near = error == ENOENT ? nearest_file(named, path) : std::string{};
     reader.report(key,
                   "`" + std::string(key) + "` names `" + document::shown(path, 200) +
@@ -133,6 +139,7 @@ std::optional<RigFile> read_rig(const document::Document& document, document::Pr
   MapReader top(document, document.root, problems, "the rig");
   rig.name = read_name(top, "name");
   rig.settings.rate_hz = top.number("rate_hz", {1, 10'000});
+  context.rate_known = top.good("rate_hz");
   read_loop(context, top);
   read_faults(context, top);
   read_board_and_channels(context, top);

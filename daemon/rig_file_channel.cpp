@@ -45,7 +45,7 @@ control::LimitSettings read_limits(Context& context, const Node& node, const std
   limits.displacement_max_mm = reader.number("displacement_max_mm", any_displacement_mm);
   limits.displacement_margin_mm = reader.number("displacement_margin_mm", {0, 1000});
   const auto ordered = [&](std::string_view lower, double least, std::string_view upper, double most) {
-    if (reader.has(lower) && reader.has(upper) && most <= least) {
+    if (reader.good(lower) && reader.good(upper) && most <= least) {
       reader.report(upper, "`" + std::string(upper) + "` must be above `" + std::string(lower) + "`");
     }
   };
@@ -104,12 +104,14 @@ struct Shared {
 
 void read_own_or_shared(Context& context, MapReader& reader, const std::string& who, const Shared& shared,
                         control::ChannelSettings& channel) {
+  // In a document that was cut short the shared maps may stand further down.
+  const bool judge = context.document.complete && !reader.keys().empty();
   const Node* const plausibility = reader.child("plausibility", false);
   if (plausibility != nullptr) {
     channel.plausibility = read_plausibility(context, *plausibility);
   } else if (shared.plausibility) {
     channel.plausibility = *shared.plausibility;
-  } else {
+  } else if (judge) {
     reader.report("plausibility", who + " has no `plausibility`, and neither has the rig",
                   "put `plausibility` at the top of the file to share it");
   }
@@ -118,7 +120,7 @@ void read_own_or_shared(Context& context, MapReader& reader, const std::string& 
     channel.health = read_model_health(context, *health);
   } else if (shared.health) {
     channel.health = *shared.health;
-  } else {
+  } else if (judge) {
     reader.report("model_health", who + " has no `model_health`, and neither has the rig",
                   "put `model_health` at the top of the file to share it");
   }
@@ -132,11 +134,11 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
 
 void read_channel(Context& context, const Node& node, const Shared& shared) {
   const std::size_t before = context.problems.size();
-  MapReader reader(context.document, node, context.problems,
-                   "channel " + std::to_string(context.rig.settings.channels.size() + 1));
+  const std::string number = "channel " + std::to_string(context.rig.settings.channels.size() + 1);
+  MapReader reader(context.document, node, context.problems, number);
   control::ChannelSettings channel;
   channel.name = read_channel_name(context, reader);
-  const std::string who = "channel `" + channel.name + "`";
+  const std::string who = channel.name.empty() ? number : "channel `" + channel.name + "`";
   const auto model = named_model(context, reader, "model", InputFile::Role::model);
   if (model) channel.model = *model;
   read_feedforward(context, reader, channel);

@@ -1,7 +1,5 @@
 // What only the whole rig shows.
 
-#include <cmath>
-
 #include "daemon/rig_file_reader.h"
 #include "model/document/number.h"
 
@@ -57,10 +55,14 @@ void check_budget(Context& context, MapReader& top) {
   if (settings == nullptr) return;
   const drivers::Board::Budget budget = drivers::ModbusTcpBoard(*settings).budget();
   if (budget.exchange_s <= context.period_s()) return;
-  top.report("rate_hz",
-             "the bus cannot exchange " + written(context.rig.settings.rate_hz) +
-                 " times a second: " + budget.explanation,
-             "at most " + written(std::floor(1 / budget.exchange_s)) + " Hz");
+  const std::string message = "the bus cannot exchange " + written(context.rig.settings.rate_hz) +
+                              " times a second: " + budget.explanation;
+  if (context.accept_over_budget) {
+    top.warn("rate_hz", message);
+  } else {
+    top.report("rate_hz", message,
+               "lower the rate, or accept slips of the bus: `accept_over_budget: true` under `modbus_tcp`");
+  }
 }
 
 }  // namespace

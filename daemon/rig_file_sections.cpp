@@ -119,7 +119,7 @@ void read_detection(Context& context, MapReader& top) {
   const auto rmse = reader.optional_number("model_rmse_mm", {0, 1000});
   if (!rmse) return;
   detection.model_rmse_mm = *rmse;
-  if (detection.margin_mm < 3 * *rmse) {
+  if (reader.good("margin_mm") && reader.good("model_rmse_mm") && detection.margin_mm < 3 * *rmse) {
     reader.report("margin_mm", "`margin_mm` must be at least three times `model_rmse_mm`",
                   "at least " + document::written(3 * *rmse) + ", or identify a better model");
   }
@@ -133,7 +133,7 @@ void read_rest(Context& context, MapReader& top) {
   settings.rest_band_mm = reader.number("band_mm", {0.001, 100});
   settings.rest_time_s = reader.number("time_s", {0.001, 600});
   settings.rest_timeout_s = reader.number("timeout_s", {0.001, 3600});
-  if (settings.rest_timeout_s <= settings.rest_time_s) {
+  if (reader.good("time_s") && reader.good("timeout_s") && settings.rest_timeout_s <= settings.rest_time_s) {
     reader.report("timeout_s", "`timeout_s` must be longer than `time_s`");
   }
 }
@@ -212,7 +212,7 @@ control::PlausibilitySettings read_plausibility(Context& context, const Node& no
   settings.frozen_after_s = reader.number("frozen_after_s", {0.001, 3600});
   settings.frozen_band_mm = reader.number("frozen_band_mm", {0, 1000});
   settings.frozen_command_kpa = reader.number("frozen_command_kpa", {0.001, 10'000});
-  if (reader.has("max_age_s") && settings.max_age_s <= context.period_s()) {
+  if (context.rate_known && reader.good("max_age_s") && settings.max_age_s <= context.period_s()) {
     reader.report(
         "max_age_s",
         "`max_age_s` must be longer than a cycle, which is " + document::written(context.period_s()) + " s",

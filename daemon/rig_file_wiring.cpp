@@ -39,7 +39,7 @@ drivers::TwoPoints read_scaling(MapReader& reader, const std::string& at_key, st
   const auto at = reader.numbers(at_key, 2, electrical);
   const auto is = reader.numbers(is_key, 2, is_range);
   const auto distinct = [&](std::string_view key, const std::vector<double>& pair) {
-    if (reader.has(key) && pair[0] == pair[1]) {
+    if (reader.good(key) && pair[0] == pair[1]) {
       reader.report(key, "the two points of `" + std::string(key) + "` must differ",
                     "a straight line goes through two points");
       return false;
@@ -48,7 +48,7 @@ drivers::TwoPoints read_scaling(MapReader& reader, const std::string& at_key, st
   };
   const bool at_good = distinct(at_key, at);
   const bool is_good = distinct(is_key, is);
-  if (!at_good || !is_good || !reader.has(at_key) || !reader.has(is_key)) return {};
+  if (!at_good || !is_good || !reader.good(at_key) || !reader.good(is_key)) return {};
   return {at[0], is[0], at[1], is[1]};
 }
 
@@ -56,7 +56,7 @@ drivers::TwoPoints read_scaling(MapReader& reader, const std::string& at_key, st
 std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key,
                           std::map<std::size_t, document::Location>& used) {
   const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
-  if (!reader.has(key)) return terminal;
+  if (!reader.good(key)) return terminal;
   const auto [first, fresh] = used.try_emplace(terminal, reader.where(key));
   if (!fresh) {
     report_repeated(reader, key, "the " + std::string(key) + " " + std::to_string(terminal), first->second);
@@ -81,7 +81,7 @@ void check_unit(Context& context, MapReader& reader, const ElectricalKey& key,
 /// What of the electrical range counts as a reading.
 void read_validity(MapReader& reader, const std::string& valid_key, drivers::InputWiring& wiring) {
   const auto valid = reader.numbers(valid_key, 2, electrical);
-  if (reader.has(valid_key) && valid[0] >= valid[1]) {
+  if (reader.good(valid_key) && valid[0] >= valid[1]) {
     reader.report(valid_key, "the first number of `" + valid_key + "` must be the smaller one");
   }
   wiring.valid_min = valid[0];
@@ -178,7 +178,7 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   const auto range = reader.numbers("range_kpa", 2, {-200, 10'000});
   facts.range_min_kpa = range[0];
   facts.range_max_kpa = range[1];
-  if (reader.has("range_kpa") && range[0] >= range[1]) {
+  if (reader.good("range_kpa") && range[0] >= range[1]) {
     reader.report("range_kpa", "the first number of `range_kpa` must be the smaller one");
   }
   facts.on_power_loss = static_cast<PowerLoss>(reader.choice("on_power_loss", {"vents", "holds"}));

@@ -25,7 +25,7 @@ struct Node {
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
   bool quoted = false;         ///< the scalar stood in quotes: a string, never a number
-  bool refused = false;        ///< already reported or cut short: present, but not to be judged again
+  bool refused = false;        ///< already reported or cut short: present, not to be judged again
   std::vector<Node> items;     ///< of a sequence
   std::vector<Entry> entries;  ///< of a map, in the order of the text, keys unique
 };

@@ -150,7 +150,11 @@ std::string found(const Node& node) {
 }
 
 std::string written(double number) {
+  constexpr std::size_t short_enough = 10;
   std::array<char, 32> buffer{};
+  const auto fixed =
+      std::to_chars(buffer.data(), buffer.data() + short_enough, number, std::chars_format::fixed);
+  if (fixed.ec == std::errc{}) return {buffer.data(), fixed.ptr};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr;
   return {buffer.data(), end};
 }

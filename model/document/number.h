@@ -28,7 +28,7 @@ struct Parsed {
 /// What a node is, for "found ...": "a list", "a map", "nothing", "`text`".
 [[nodiscard]] std::string found(const Node& node);
 
-/// A number as text, the fewest digits that read back to it, for messages.
+/// A number as text that reads back to it, without an exponent where that is short: for messages.
 [[nodiscard]] std::string written(double number);
 
 }  // namespace softgrip::document

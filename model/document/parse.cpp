@@ -75,8 +75,9 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value /*style*/) override {
+                       YAML::EmitterStyle::value style) override {
     open(Node::Kind::sequence, begin(mark, tag, anchor));
+    frames_.back().flow = style == YAML::EmitterStyle::Flow;
   }
   void OnSequenceEnd() override { close(); }
 
@@ -97,10 +98,17 @@ class TreeBuilder final : public YAML::EventHandler {
       if (is_key) {
         frames_.pop_back();
       } else {
-        frames_.back().node.refused = frames_.back().node.kind == Node::Kind::sequence;
+        // Of `[1, 2` nobody knows how it goes on; items of a block list are whole.
+        frames_.back().node.refused = frames_.back().flow;
         close();
       }
     }
+  }
+
+  /// Before a key that is none the parser took the key's words for more of the last value.
+  void distrust_last_value() {
+    if (frames_.empty() || frames_.back().node.entries.empty()) return;
+    frames_.back().node.entries.back().value.refused = true;
   }
 
   [[nodiscard]] Location last_at() const { return last_at_; }
@@ -108,6 +116,7 @@ class TreeBuilder final : public YAML::EventHandler {
  private:
   struct Frame {
     Node node;
+    bool flow = false;       // of a sequence: `[...]`
     bool has_key = false;    // of a map: the key was read, its value comes next
     bool key_wanted = true;  // of a map: the key was not refused
     std::string key;
@@ -262,6 +271,7 @@ void parse_into(Document& document, Problems& problems, const Bounds& bounds) {
   } catch (const Abandoned&) {
   } catch (const YAML::ParserException& error) {
     const Location at = place_of(error, builder);
+    builder.distrust_last_value();
     SyntaxMessage message = syntax_message(document, error.msg, builder.open_node(), at);
     problems.add(document.problem(at, std::move(message.message), std::move(message.hint)));
   } catch (const YAML::Exception& error) {

@@ -87,6 +87,7 @@ const Node* MapReader::need(std::string_view key) {
 
 void MapReader::refuse(const Node& value, std::string_view key, const std::string& message,
                        std::string hint) {
+  bad_.emplace_back(key);
   problems_.add(document_.problem(value.at, quoted(key) + " " + message, std::move(hint)));
 }
 
@@ -220,7 +221,7 @@ std::vector<const Node*> MapReader::sequence(std::string_view key, bool required
   std::vector<const Node*> items;
   const Node* const value = child(key, required);
   if (value == nullptr) return items;
-  if (value->kind != Node::Kind::sequence && value->refused) return items;
+  if (value->refused) return items;
   if (value->kind != Node::Kind::sequence) {
     refuse(*value, key, "must be a list, found " + found(*value), "put `- ` before each item");
     return items;
@@ -263,6 +264,12 @@ bool MapReader::has(std::string_view key) const {
                      [&](const Node::Entry& entry) { return entry.key == key; });
 }
 
+bool MapReader::good(std::string_view key) const {
+  if (std::find(bad_.begin(), bad_.end(), key) != bad_.end()) return false;
+  return std::any_of(node_.entries.begin(), node_.entries.end(),
+                     [&](const Node::Entry& entry) { return entry.key == key && !entry.value.refused; });
+}
+
 std::vector<std::string> MapReader::keys() const {
   std::vector<std::string> result;
   result.reserve(node_.entries.size());
@@ -279,6 +286,7 @@ Location MapReader::where(std::string_view key) const {
 
 void MapReader::report(std::string_view key, std::string message, std::string hint) {
   const Node::Entry* const entry = find(key);
+  bad_.emplace_back(key);
   problems_.add(
       document_.problem(entry == nullptr ? node_.at : entry->value.at, std::move(message), std::move(hint)));
 }

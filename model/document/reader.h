@@ -61,6 +61,9 @@ class MapReader {
 
   /// True if the key stands in the map. Does not count as reading it.
   [[nodiscard]] bool has(std::string_view key) const;
+  /// True if the key stands in the map and its getter found nothing wrong: what a check of several keys
+  /// together asks first.
+  [[nodiscard]] bool good(std::string_view key) const;
   /// All keys in the order of the text.
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Where a key stands, or the map itself.
@@ -93,6 +96,7 @@ class MapReader {
   std::string what_;
   std::vector<std::string> known_;
   std::vector<std::string> missing_;
+  std::vector<std::string> bad_;  // keys whose value was refused
   bool finished_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <optional>
 
 namespace softgrip::document {
 
@@ -35,6 +36,19 @@ SyntaxMessage misplaced(const Document& document, const Node* open, Location at,
     result.hint = "keys and items of one level start in the same column";
   }
   return result;
+}
+
+/// A key that starts in another column than the keys of its map, or nothing.
+std::optional<SyntaxMessage> misaligned(const Document& document, const Node* open, Location at) {
+  if (open == nullptr || open->kind != Node::Kind::map || at.line <= open->at.line) return std::nullopt;
+  const std::string_view first = line_of(document.text, open->at.line);
+  const auto start = static_cast<std::size_t>(open->at.column) - 1;
+  if (start >= first.size() || first[start] == '{') return std::nullopt;
+  const std::size_t column = line_of(document.text, at.line).find_first_not_of(' ');
+  if (column == std::string_view::npos || column == start) return std::nullopt;
+  return SyntaxMessage{"this key starts in column " + std::to_string(column + 1) +
+                           ", the keys of its map start in column " + std::to_string(open->at.column),
+                       "keys of one level start in the same column"};
 }
 
 struct Translation {
@@ -97,6 +111,9 @@ SyntaxMessage syntax_message(const Document& document, std::string_view said, co
   if (said == "illegal map value" && glued_above) {
     return {"this is not a key: the line above has no `: ` and goes on here",
             "a space is missing after the colon in line " + std::to_string(at.line - 1)};
+  }
+  if (said == "illegal map value") {
+    if (auto message = misaligned(document, open, at)) return *message;
   }
   for (const Translation& translation : translations) {
     if (said.substr(0, translation.said.size()) == translation.said) {

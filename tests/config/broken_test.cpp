@@ -1,0 +1,61 @@
+// Broken configurations, each with all that must be said of it: broken/NAME.yaml is named after what it
+// guards, NAME.expected holds the messages, NAME.also names a file to be checked together with it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "daemon/check.h"
+
+namespace softgrip::daemon {
+namespace {
+
+const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/config";
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> result;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "broken")) {
+    if (entry.path().extension() == ".yaml") result.push_back(entry.path().stem().string());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// Checked from tests/config, so that messages carry short names.
+CheckReport check(const std::string& name) {
+  std::filesystem::current_path(folder);
+  std::vector<std::string> paths{"broken/" + name + ".yaml"};
+  std::istringstream also(text_of("broken/" + name + ".also"));
+  for (std::string path; std::getline(also, path);) paths.push_back(path);
+  return check_files(paths);
+}
+
+class Broken : public testing::TestWithParam<std::string> {};
+
+TEST_P(Broken, SaysAllThatIsWrong) {
+  const CheckReport report = check(GetParam());
+  EXPECT_FALSE(report.accepted());
+  EXPECT_EQ(report.problems.format(), text_of("broken/" + GetParam() + ".expected"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Configurations, Broken, testing::ValuesIn(names()),
+                         [](const auto& parameter) { return parameter.param; });
+
+TEST(BrokenConfigurations, AreManyAndOftenBrokenInSeveralPlaces) {
+  std::size_t several = 0;
+  for (const std::string& name : names()) several += check(name).problems.size() >= 3 ? 1U : 0U;
+  EXPECT_GE(names().size(), 20U);
+  EXPECT_GE(several, 10U);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

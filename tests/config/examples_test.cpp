@@ -1,0 +1,62 @@
+// The configurations that are shipped: accepted without a warning, and fit for each other.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "daemon/check.h"
+
+namespace softgrip::daemon {
+namespace {
+
+std::vector<std::string> shipped() {
+  std::vector<std::string> paths;
+  const std::filesystem::path config = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config";
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(config)) {
+    if (entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+TEST(Examples, AreAccepted) {
+  const CheckReport report = check_files(shipped());
+  EXPECT_TRUE(report.accepted());
+  EXPECT_EQ(report.problems.format(), "");
+  for (const CheckedFile& file : report.files) {
+    EXPECT_NE(file.kind, FileKind::unknown) << file.path;
+    EXPECT_FALSE(file.name.empty()) << file.path;
+  }
+}
+
+TEST(Examples, OfEveryKindAreThere) {
+  const CheckReport report = check_files(shipped());
+  for (const FileKind kind : {FileKind::rig, FileKind::board_map, FileKind::model, FileKind::sequence}) {
+    const auto of_kind = [&](const CheckedFile& file) { return file.kind == kind; };
+    EXPECT_GE(std::count_if(report.files.begin(), report.files.end(), of_kind), 2) << name_of(kind);
+  }
+}
+
+TEST(Check, AFileGivenTwiceIsReadOnce) {
+  const std::string path = std::string(SOFTGRIP_SOURCE_DIR) + "/config/rig.yaml";
+  EXPECT_EQ(check_files(std::vector<std::string>{path, path}).files.size(), 1U);
+}
+
+TEST(Check, CountsErrorsOfEachFileAlone) {
+  const std::string broken = std::string(SOFTGRIP_SOURCE_DIR) + "/tests/config/broken/";
+  const CheckReport report =
+      check_files(std::vector<std::string>{broken + "files_broken.yaml", broken + "model.yaml"});
+  EXPECT_EQ(report.files[0].errors, 0U);
+  EXPECT_EQ(report.files[1].errors, 5U);
+  EXPECT_FALSE(report.accepted());
+}
+
+TEST(Check, AMissingFileIsAProblem) {
+  const CheckReport report = check_files(std::vector<std::string>{"/nonexistent.yaml"});
+  ASSERT_EQ(report.problems.size(), 1U);
+  EXPECT_EQ(report.problems.list()[0].message, "the file cannot be read: No such file or directory");
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,186 @@
+// What the shipped rigs are read into, and that nothing in them may be absent or wrong unnoticed.
+
+#include "daemon/rig_file.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <set>
+
+namespace softgrip::daemon {
+namespace {
+
+using document::Document;
+using document::Node;
+using document::Problems;
+
+std::string shipped(const std::string& name) {
+  return std::string(SOFTGRIP_SOURCE_DIR) + "/config/" + name;
+}
+
+RigFile loaded(const std::string& name) {
+  Problems problems;
+  std::optional<RigFile> rig = load_rig(shipped(name), problems);
+  EXPECT_TRUE(rig.has_value()) << problems.format();
+  return rig.value_or(RigFile{});
+}
+
+TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
+  const RigFile rig = loaded("rig_tcp.yaml");
+  EXPECT_EQ(rig.name, "bench");
+  EXPECT_EQ(rig.settings.rate_hz, 200);
+  ASSERT_EQ(rig.settings.channels.size(), 2U);
+  const control::ChannelSettings& left = rig.settings.channels[0];
+  EXPECT_EQ(left.name, "left");
+  EXPECT_EQ(left.model.name, "bench_twin");
+  EXPECT_EQ(left.feedforward.kind, control::FeedforwardKind::full_model);
+  EXPECT_DOUBLE_EQ(left.feedforward.extra_latency_s, 0.25 * 0.005);
+  EXPECT_EQ(left.pid.anti_windup, control::AntiWindup::back_calculation);
+  EXPECT_EQ(left.limits.pressure_max_kpa, 60);
+  EXPECT_EQ(left.limits.slew_down_kpa_per_s, 600);
+  EXPECT_EQ(left.limits.displacement_min_mm, -1);
+  EXPECT_EQ(left.plausibility.max_age_s, 0.05);
+  EXPECT_EQ(left.health.unfit_mm, 3);
+  EXPECT_TRUE(left.pressure_measured);
+  EXPECT_TRUE(left.displacement_used);
+  EXPECT_EQ(rig.settings.safety.safe_action[2], control::SafeAction::hold);
+  EXPECT_EQ(rig.settings.safety.safe_action[1], control::SafeAction::vent);
+  EXPECT_TRUE(rig.settings.safety.board_vents_when_silent);
+  EXPECT_EQ(rig.settings.faults.readback_cycles, 10U);
+  EXPECT_EQ(rig.settings.rest_timeout_s, 10);
+  EXPECT_EQ(rig.valves[1].range_max_kpa, 100);
+  EXPECT_EQ(rig.valves[1].on_power_loss, PowerLoss::vents);
+  const auto& board = std::get<drivers::ModbusTcpSettings>(rig.board);
+  EXPECT_EQ(board.host, "127.0.0.1");
+  EXPECT_EQ(board.port, 1502);
+  EXPECT_EQ(board.map.name, "ADAM-6024");
+  ASSERT_EQ(board.wiring.size(), 2U);
+  EXPECT_EQ(board.wiring[1].valve.output, 1U);
+  EXPECT_EQ(board.wiring[1].displacement.scaling, (drivers::TwoPoints{0, -5, 10, 45}));
+  EXPECT_EQ(board.wiring[1].displacement.valid_max, 9.9);
+  EXPECT_EQ(board.wiring[1].pressure->input, 5U);
+  EXPECT_EQ(rig.reconnect.longest_pause, std::chrono::seconds(2));
+  EXPECT_EQ(rig.real_time.cpus, (std::vector<int>{1}));
+  EXPECT_EQ(rig.socket.mode, 0660U);
+  EXPECT_EQ(rig.recorder.mode, RecorderSettings::Mode::sequences);
+  EXPECT_EQ(rig.inputs.size(), 3U);
+  EXPECT_EQ(rig.seed, std::nullopt);
+}
+
+TEST(RigFile, OfTheSimulatedRigHoldsItsPlants) {
+  const RigFile rig = loaded("rig.yaml");
+  const auto& board = std::get<drivers::SimulatedBoardSettings>(rig.board);
+  ASSERT_EQ(board.channels.size(), 2U);
+  EXPECT_EQ(board.channels[0].plant.model.name, "bench_twin");
+  EXPECT_EQ(board.channels[0].plant.object->position_mm, 12);
+  EXPECT_EQ(board.channels[0].plant.sample_time_s, 0.005);
+  EXPECT_NE(board.channels[0].plant.seed, board.channels[1].plant.seed);
+  EXPECT_EQ(board.channels[0].valve_max_kpa, 100);
+  EXPECT_DOUBLE_EQ(board.channels[0].sensor_max_mm, 44.5);
+  EXPECT_TRUE(board.channels[0].measures_pressure);
+  EXPECT_EQ(board.watchdog_timeout_s, 0.5);
+  EXPECT_EQ(rig.seed, 1U);
+}
+
+TEST(RigFile, PathsAreRelativeToTheFile) {
+  std::filesystem::current_path("/");
+  const RigFile rig = loaded("rig.yaml");
+  EXPECT_EQ(rig.socket.sequence_directory, shipped("sequences"));
+  EXPECT_EQ(rig.recorder.directory, "/tmp/softgrip-runs");
+  std::filesystem::current_path(shipped(""));
+  Problems problems;
+  const auto here = load_rig("rig.yaml", problems);
+  ASSERT_TRUE(here.has_value()) << problems.format();
+  EXPECT_EQ(here->socket.sequence_directory, "sequences");
+}
+
+/// Calls `use(owner, index, path)` for every entry of every map below `node`.
+using Use = std::function<void(Node&, std::size_t, const std::string&)>;
+void for_each_entry(Node& node, const std::string& path, const Use& use) {
+  for (std::size_t i = 0; i < node.entries.size(); ++i) {
+    const std::string below = path + node.entries[i].key;
+    use(node, i, below);
+    for_each_entry(node.entries[i].value, below + ".", use);
+  }
+  for (Node& item : node.items) for_each_entry(item, path + "-.", use);
+}
+
+/// Where a document without its entry at `path` is refused, with the problems; nothing if it is accepted.
+std::optional<std::string> refusal(const Document& document) {
+  Problems problems;
+  if (read_rig(document, problems)) return std::nullopt;
+  return problems.format();
+}
+
+class EveryKey : public testing::TestWithParam<std::string> {
+ protected:
+  EveryKey() : document_(document::parse_file(shipped(GetParam()), problems_)) {}
+  Problems problems_;
+  Document document_;
+};
+
+TEST_P(EveryKey, IsNeededOrKnownToBeOptional) {
+  const std::set<std::string> optional{"board.simulated.plants.left.object",
+                                       "board.simulated.plants.right.object", "channels.-.pressure_monitor",
+                                       "real_time.cpu_dma_latency_us"};
+  std::set<std::string> accepted;
+  Node original = document_.root;
+  for_each_entry(original, "", [&](Node& owner, std::size_t index, const std::string& path) {
+    const Node::Entry taken = owner.entries[index];
+    owner.entries.erase(owner.entries.begin() + static_cast<std::ptrdiff_t>(index));
+    document_.root = original;
+    const auto refused = refusal(document_);
+    owner.entries.insert(owner.entries.begin() + static_cast<std::ptrdiff_t>(index), taken);
+    if (!refused) {
+      accepted.insert(path);
+    } else {
+      EXPECT_NE(refused->find("`" + taken.key + "`"), std::string::npos) << path << "\n" << *refused;
+    }
+  });
+  for (const std::string& path : accepted) EXPECT_TRUE(optional.contains(path)) << path;
+}
+
+TEST_P(EveryKey, IsRefusedWhenItsValueIsNonsense) {
+  Node original = document_.root;
+  for_each_entry(original, "", [&](Node& owner, std::size_t index, const std::string& path) {
+    const Node taken = owner.entries[index].value;
+    Node nonsense;
+    nonsense.kind = Node::Kind::scalar;
+    nonsense.at = taken.at;
+    nonsense.scalar = "non sense/..";
+    // Any text is a path.
+    const std::set<std::string> free{"recorder.directory", "socket.path", "socket.sequence_directory"};
+    if (free.contains(path)) nonsense.scalar.clear();
+    owner.entries[index].value = nonsense;
+    document_.root = original;
+    Problems problems;
+    EXPECT_FALSE(read_rig(document_, problems).has_value()) << path;
+    const auto there = [&](const document::Problem& problem) { return problem.at == taken.at; };
+    EXPECT_TRUE(std::any_of(problems.list().begin(), problems.list().end(), there)) << path << "\n"
+                                                                                    << problems.format();
+    owner.entries[index].value = taken;
+  });
+}
+
+TEST_P(EveryKey, IsRefusedWhenItIsUnknown) {
+  Node original = document_.root;
+  for_each_entry(original, "", [&](Node& owner, std::size_t index, const std::string& path) {
+    const std::string taken = owner.entries[index].key;
+    owner.entries[index].key += "_x";
+    document_.root = original;
+    const auto refused = refusal(document_);
+    ASSERT_TRUE(refused.has_value()) << path;
+    EXPECT_NE(refused->find("unknown key `" + taken + "_x`"), std::string::npos) << path << "\n" << *refused;
+    owner.entries[index].key = taken;
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, EveryKey, testing::Values("rig.yaml", "rig_tcp.yaml"),
+                         [](const auto& parameter) {
+                           return parameter.param == "rig.yaml" ? "simulated" : "modbus";
+                         });
+
+}  // namespace
+}  // namespace softgrip::daemon
