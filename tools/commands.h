@@ -7,6 +7,13 @@
 #define SOFTGRIP_COMMANDS(X) \
   X(check)                   \
   X(simulate)                \
+  X(status)                  \
+  X(watch)                   \
+  X(start)                   \
+  X(stop)                    \
+  X(vent)                    \
+  X(acknowledge)             \
+  X(events)                  \
   // end of the list
 // clang-format on
 

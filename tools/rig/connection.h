@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "tools/rig/descriptor.h"
+#include "tools/descriptor.h"
 #include "tools/rig/mbap.h"
 #include "tools/rig/reply.h"
 

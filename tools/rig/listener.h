@@ -6,7 +6,7 @@
 
 #include <tl/expected.hpp>
 
-#include "tools/rig/descriptor.h"
+#include "tools/descriptor.h"
 
 namespace softgrip::tools::rig {
 

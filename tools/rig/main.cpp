@@ -73,12 +73,12 @@ void add_options(CLI::App& program, rig::Options& options) {
 }
 
 /// All signals that the server takes, as a descriptor; blocked for the whole process.
-rig::Descriptor take_signals() {
+softgrip::tools::Descriptor take_signals() {
   sigset_t set;
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
   sigprocmask(SIG_BLOCK, &set, nullptr);
-  return rig::Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
+  return softgrip::tools::Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
 }
 
 ExitCode serve(const rig::Options& options, std::uint16_t port, rig::Emulator& emulator,

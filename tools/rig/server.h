@@ -8,7 +8,7 @@
 #include <string>
 
 #include "tools/rig/connection.h"
-#include "tools/rig/descriptor.h"
+#include "tools/descriptor.h"
 #include "tools/rig/emulator.h"
 
 namespace softgrip::tools::rig {

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace softgrip::tools::rig {
+namespace softgrip::tools {
 
 class Descriptor {
  public:
@@ -29,4 +29,4 @@ class Descriptor {
   int number_ = -1;
 };
 
-}  // namespace softgrip::tools::rig
+}  // namespace softgrip::tools

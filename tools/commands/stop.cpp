@@ -1,0 +1,13 @@
+// softgrip stop: ends the running sequence.
+
+#include "tools/commands.h"
+#include "tools/daemon_command.h"
+
+namespace softgrip::tools {
+
+void add_stop(CLI::App& program, ExitCode& outcome) {
+  add_plain_request(program, outcome, "stop",
+                    "Ends the running sequence as the rig file's safe_action says for its phase", "stopping");
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,13 @@
+// softgrip vent: the pressure goes down, whatever runs.
+
+#include "tools/commands.h"
+#include "tools/daemon_command.h"
+
+namespace softgrip::tools {
+
+void add_vent(CLI::App& program, ExitCode& outcome) {
+  add_plain_request(program, outcome, "vent", "Ends what runs and vents all channels: a held part drops",
+                    "venting");
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,51 @@
+#pragma once
+// A connection to softgripd's socket: one JSON object per line each way (docs/reference/socket-api.md).
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+#include <tl/expected.hpp>
+
+#include "tools/descriptor.h"
+#include "tools/exit_code.h"
+
+namespace softgrip::tools {
+
+/// Where softgripd listens unless told otherwise: $SOFTGRIP_SOCKET, or the packaged service's path.
+[[nodiscard]] std::string default_socket_path();
+
+/// Why a request came to nothing, for the user, and what the program exits with.
+struct ClientFailure {
+  ExitCode code = ExitCode::io;
+  std::string message;
+};
+
+class DaemonClient {
+ public:
+  /// The failure says what to do when no daemon is there.
+  [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
+
+  /// Sends a request and returns the `result` of its answer. Refusals of the daemon are failures with
+  /// ExitCode::state_refused, refused sequences with ExitCode::input_refused.
+  [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> ask(
+      const nlohmann::ordered_json& request);
+
+  /// The next line that the daemon sends by itself (a watched state); nothing when `patience` ends first.
+  [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
+      std::chrono::milliseconds patience);
+
+  /// For poll().
+  [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
+
+ private:
+  DaemonClient(Descriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
+  [[nodiscard]] ClientFailure gone() const;
+
+  Descriptor socket_;
+  std::string path_;
+  std::string pending_;
+};
+
+}  // namespace softgrip::tools

@@ -1,0 +1,13 @@
+#pragma once
+// Events of the daemon as lines for people.
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace softgrip::tools {
+
+/// "   12.340 s  warning  left: NO PART ..." of an event as the socket API tells it.
+[[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
+
+}  // namespace softgrip::tools
