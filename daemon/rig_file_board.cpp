@@ -166,7 +166,7 @@ void read_modbus_board(Context& context, const Node& node) {
                 "a single exchange that misses its deadline is already the fault bus_down",
                 "`bus_down_cycles` are over after " + document::written(patience_s) + " s");
   }
-  context.accept_over_budget = reader.optional_boolean("accept_over_budget").value_or(false);
+  rig.accept_over_budget = reader.optional_boolean("accept_over_budget").value_or(false);
   rig.board = std::move(settings);
 }
 

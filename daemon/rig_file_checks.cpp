@@ -50,19 +50,18 @@ void check_watchdog_time(Context& context, MapReader& top) {
   }
 }
 
+/// Before the board was asked its round trip is an assumption, which refuses nothing.
 void check_budget(Context& context, MapReader& top) {
   const auto* const settings = std::get_if<drivers::ModbusTcpSettings>(&context.rig.board);
-  if (settings == nullptr) return;
+  if (settings == nullptr || context.rig.accept_over_budget) return;
   const drivers::Board::Budget budget = drivers::ModbusTcpBoard(*settings).budget();
   if (budget.exchange_s <= context.period_s()) return;
-  const std::string message = "the bus cannot exchange " + written(context.rig.settings.rate_hz) +
-                              " times a second: " + budget.explanation;
-  if (context.accept_over_budget) {
-    top.warn("rate_hz", message);
-  } else {
-    top.report("rate_hz", message,
-               "lower the rate, or accept slips of the bus: `accept_over_budget: true` under `modbus_tcp`");
-  }
+  top.warn(
+      "rate_hz",
+      "the bus may not be fast enough for " + written(context.rig.settings.rate_hz) +
+          " exchanges a second: " + budget.explanation,
+      "softgripd measures it when it connects and refuses to start if it does not fit, unless `modbus_tcp` "
+      "says `accept_over_budget: true`");
 }
 
 }  // namespace

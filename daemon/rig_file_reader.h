@@ -25,8 +25,7 @@ struct Context {
   std::map<std::size_t, document::Location> outputs;
   std::map<std::string, std::optional<model::Model>> models;  ///< by path: each file is read once
 
-  bool accept_over_budget = false;  ///< a bus that is too slow is a warning
-  bool rate_known = false;          ///< rate_hz was good: what is compared with a cycle can be
+  bool rate_known = false;  ///< rate_hz was good: what is compared with a cycle can be
 
   [[nodiscard]] double period_s() const { return 1 / rig.settings.rate_hz; }
 };

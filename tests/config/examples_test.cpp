@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
 
 #include "daemon/check.h"
 
@@ -36,6 +39,28 @@ TEST(Examples, OfEveryKindAreThere) {
     const auto of_kind = [&](const CheckedFile& file) { return file.kind == kind; };
     EXPECT_GE(std::count_if(report.files.begin(), report.files.end(), of_kind), 2) << name_of(kind);
   }
+}
+
+/// All keys below a node, but for those that the file's author chose.
+void collect_keys(const document::Node& node, std::set<std::string>& keys) {
+  for (const document::Node::Entry& entry : node.entries) {
+    if (entry.key != "left" && entry.key != "right") keys.insert(entry.key);
+    collect_keys(entry.value, keys);
+  }
+  for (const document::Node& item : node.items) collect_keys(item, keys);
+}
+
+TEST(Examples, UseOnlyKeysThatTheManualDescribes) {
+  const std::string root = SOFTGRIP_SOURCE_DIR;
+  std::ostringstream manual;
+  manual << std::ifstream(root + "/docs/reference/rig-file.md").rdbuf();
+  std::set<std::string> keys;
+  document::Problems problems;
+  for (const char* const name : {"rig.yaml", "rig_tcp.yaml", "rig_service.yaml"}) {
+    collect_keys(document::parse_file(root + "/config/" + name, problems).root, keys);
+  }
+  EXPECT_GE(keys.size(), 70U);
+  for (const std::string& key : keys) EXPECT_NE(manual.str().find(key + "`"), std::string::npos) << key;
 }
 
 TEST(Check, AFileGivenTwiceIsReadOnce) {

@@ -96,6 +96,28 @@ TEST(RigFile, PathsAreRelativeToTheFile) {
   EXPECT_EQ(here->socket.sequence_directory, "sequences");
 }
 
+TEST(RigFile, ARateThatTheBusMayNotKeepIsAWarningUntilItIsAccepted) {
+  Problems parsing;
+  Document document = document::parse_file(shipped("rig_tcp.yaml"), parsing);
+  for (Node::Entry& entry : document.root.entries) {
+    if (entry.key == "rate_hz") entry.value.scalar = "5000";
+  }
+  Problems problems;
+  EXPECT_TRUE(read_rig(document, problems).has_value()) << problems.format();
+  EXPECT_NE(problems.format().find("warning: the bus may not be fast enough for 5000 exchanges a second"),
+            std::string::npos)
+      << problems.format();
+  Node yes;
+  yes.kind = Node::Kind::scalar;
+  yes.scalar = "true";
+  document.root.entries[2].value.entries[0].value.entries.push_back({"accept_over_budget", {}, yes});
+  Problems accepted;
+  const auto rig = read_rig(document, accepted);
+  ASSERT_TRUE(rig.has_value()) << accepted.format();
+  EXPECT_TRUE(rig->accept_over_budget);
+  EXPECT_EQ(accepted.format().find("fast enough"), std::string::npos);
+}
+
 /// Calls `use(owner, index, path)` for every entry of every map below `node`.
 using Use = std::function<void(Node&, std::size_t, const std::string&)>;
 void for_each_entry(Node& node, const std::string& path, const Use& use) {

@@ -1,0 +1,121 @@
+// `softgrip check` as a user runs it: every broken configuration is refused with exit code 3 and says all of
+// what broken/NAME.expected holds.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace {
+
+const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/config";
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;
+  std::string errors;
+};
+
+/// A folder of this process, removed at its end.
+const std::filesystem::path& scratch() {
+  struct Folder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("softgrip_check_" + std::to_string(::getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    ~Folder() { std::filesystem::remove_all(path); }
+  };
+  static const Folder folder_of_process;
+  return folder_of_process.path;
+}
+
+/// Runs `softgrip check ARGUMENTS` in tests/config.
+Outcome check(const std::string& arguments) {
+  const std::string out = (scratch() / "out").string();
+  const std::string err = (scratch() / "err").string();
+  const std::string command = "cd '" + folder.string() + "' && '" SOFTGRIP_PROGRAM "' check " + arguments +
+                              " >'" + out + "' 2>'" + err + "' </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> result;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "broken")) {
+    if (entry.path().extension() == ".yaml") result.push_back(entry.path().stem().string());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+/// The file and those that are checked together with it.
+std::string arguments_of(const std::string& name) {
+  std::string arguments = "broken/" + name + ".yaml";
+  std::istringstream also(text_of(folder / "broken" / (name + ".also")));
+  for (std::string path; std::getline(also, path);) arguments += " " + path;
+  return arguments;
+}
+
+TEST(Check, RefusesEveryBrokenConfigurationWithAllOfItsErrors) {
+  EXPECT_GE(names().size(), 20U);
+  for (const std::string& name : names()) {
+    const Outcome outcome = check(arguments_of(name));
+    EXPECT_EQ(outcome.exit_code, 3) << name;
+    EXPECT_EQ(outcome.errors, text_of(folder / "broken" / (name + ".expected"))) << name;
+  }
+}
+
+TEST(Check, SaysTheSameInJson) {
+  for (const std::string& name : names()) {
+    const Outcome outcome = check("--json " + arguments_of(name));
+    EXPECT_EQ(outcome.exit_code, 3) << name;
+    const auto json = nlohmann::json::parse(outcome.output, nullptr, false);
+    ASSERT_TRUE(json.is_object()) << name << "\n" << outcome.output;
+    EXPECT_FALSE(json["accepted"].get<bool>()) << name;
+    const std::string expected = text_of(folder / "broken" / (name + ".expected"));
+    for (const auto& problem : json["problems"]) {
+      const std::string place = problem["file"].get<std::string>() + ":" +
+                                std::to_string(problem["line"].get<int>()) + ":" +
+                                std::to_string(problem["column"].get<int>()) + ": ";
+      EXPECT_NE(expected.find(place), std::string::npos) << name << " " << place;
+    }
+  }
+}
+
+TEST(Check, AcceptsWhatIsShipped) {
+  const Outcome outcome = check(
+      "../../config/rig.yaml ../../config/rig_tcp.yaml ../../config/boards/*.yaml "
+      "../../config/models/*.yaml ../../config/sequences/*.yaml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+}
+
+TEST(Check, RefusesAFileThatIsTooLarge) {
+  const std::filesystem::path path = scratch() / "large.yaml";
+  std::ofstream(path) << "name: large\n# " << std::string(300'000, 'x') << "\n";
+  const Outcome outcome = check("'" + path.string() + "'");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.errors.find("the file is larger than 262144 bytes"), std::string::npos) << outcome.errors;
+}
+
+TEST(Check, AFileThatIsNotThereIsNotAConfigurationRefused) {
+  const Outcome outcome = check("absent.yaml");
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_NE(outcome.errors.find("absent.yaml:1:1: the file cannot be read"), std::string::npos);
+}
+
+TEST(Check, NeedsAFile) {
+  EXPECT_EQ(check("").exit_code, 2);
+}
+
+}  // namespace
