@@ -12,6 +12,16 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
+// Fixed here, so that the arithmetic of the tests does not move with the defaults.
+ModelHealthSettings short_intervals() {
+  ModelHealthSettings settings;
+  settings.model_error_mm = 0.2;
+  settings.correlation_time_s = 1;
+  settings.interval_s = 0.5;
+  settings.unfit_mm = 3;
+  return settings;
+}
+
 // The residual that the settings call healthy, sample by sample.
 class HealthyResidual {
  public:
@@ -70,7 +80,7 @@ TEST(ModelHealth, ThresholdIsTheInverseOfTheRunLength) {
 
 TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
   for (const double correlation_s : {0.2, 1.0, 5.0}) {
-    ModelHealthSettings settings;
+    ModelHealthSettings settings = short_intervals();
     settings.correlation_time_s = correlation_s;
     HealthyResidual residual(settings, 3);
     ResidualWhitener whitener(settings);
@@ -94,7 +104,7 @@ TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
 
 // The rate that is stated is the rate that comes, on a residual that is autocorrelated sample by sample.
 TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
-  ModelHealthSettings settings;
+  ModelHealthSettings settings = short_intervals();
   settings.false_alarm_interval_s = 100;  // 200 intervals: short, so that alarms can be counted
   settings.unfit_mm = 1e9;
   double seconds = 0;
@@ -114,7 +124,7 @@ TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
 
 // Without the whitening the same threshold would cry wolf: why it is there.
 TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
-  ModelHealthSettings settings;
+  ModelHealthSettings settings = short_intervals();
   settings.correlation_time_s = 5;
   const double threshold = cusum_threshold(0.5, 2000);
   double intervals = 0;
@@ -134,7 +144,7 @@ TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
 }
 
 TEST(ModelHealth, FindsAnAgeingFinger) {
-  ModelHealthSettings settings;  // one false alarm in 1000 h
+  const ModelHealthSettings settings = short_intervals();  // one false alarm in 1000 h
   HealthyResidual residual(settings, 5);
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 12000; ++i) health.observe(residual.next());
@@ -152,7 +162,7 @@ TEST(ModelHealth, FindsAnAgeingFinger) {
 }
 
 TEST(ModelHealth, ALargeResidualIsUnfitAndSaysSoOnce) {
-  ModelHealthSettings settings;
+  const ModelHealthSettings settings = short_intervals();
   ModelHealth health(settings, tick_s);
   int changes = 0;
   for (int i = 0; i < 2000; ++i) changes += health.observe(4) ? 1 : 0;
@@ -166,7 +176,7 @@ TEST(ModelHealth, ALargeResidualIsUnfitAndSaysSoOnce) {
 }
 
 TEST(ModelHealth, GapsAreNotCounted) {
-  ModelHealthSettings settings;
+  const ModelHealthSettings settings = short_intervals();
   ModelHealth health(settings, tick_s);
   for (int i = 0; i < 10000; ++i) health.skip();
   EXPECT_EQ(health.state(), HealthState::unknown);
