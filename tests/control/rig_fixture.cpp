@@ -14,10 +14,10 @@ constexpr double board_watchdog_s = 0.5;
 constexpr double hand_mm_per_s = 200;
 }  // namespace
 
-SimulatedRig::SimulatedRig(const RigSettings& settings, std::uint64_t seed)
+SimulatedRig::SimulatedRig(const RigSettings& settings, std::uint64_t seed, const model::Model& truth)
     : settings_(settings), controller_(settings), readings_(settings.channels.size()), random_(seed) {
   for (std::size_t i = 0; i < settings.channels.size(); ++i) {
-    plants_.push_back({model::Chain<double>(twin(), {}, 1 / settings.rate_hz), 0, 0});
+    plants_.push_back({model::Chain<double>(truth, {}, 1 / settings.rate_hz), 0, 0});
   }
 }
 
@@ -86,7 +86,9 @@ const TickOutput& SimulatedRig::tick() {
   slipped_cycles = 0;
   request_ = {};
   const TickOutput before = output_;
+  around_tick(true);
   controller_.tick(input, output_);
+  around_tick(false);
   check_commands(before);
   EXPECT_EQ(output_.events_lost, 0U);
   events.insert(events.end(), output_.events.begin(),

@@ -21,7 +21,9 @@ namespace softgrip::control {
 /// A rig that is controlled: plants, board, controller, in virtual time.
 class SimulatedRig {
  public:
-  explicit SimulatedRig(const RigSettings& settings, std::uint64_t seed = 1);
+  /// The plants are `truth`; the controller believes what the settings say.
+  explicit SimulatedRig(const RigSettings& settings, std::uint64_t seed = 1,
+                        const model::Model& truth = twin());
 
   /// A stone stops both fingers at `position_mm`. Nothing: it is pulled out, at a hand's speed.
   void stone(std::optional<double> position_mm);
@@ -41,6 +43,9 @@ class SimulatedRig {
     bool no_pressure = false;  ///< the monitor is gone: NaN
   };
   std::array<OfChannel, 2> fault;
+
+  /// Called with true just before and false just after every RigController::tick.
+  void (*around_tick)(bool begins) = [](bool) {};
 
   /// For the next tick only.
   void request(Request::Kind kind, const PreparedSequence* sequence = nullptr);

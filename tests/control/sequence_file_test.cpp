@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -152,6 +154,18 @@ INSTANTIATE_TEST_SUITE_P(
             "name: x\nchannels: [a, a]\nsteps:\n  - hold: {hold_s: 1, reverify_every_s: 1, on_fail: vent}\n",
             2, "listed twice"}),
     [](const auto& broken) { return broken.param.what; });
+
+TEST(SequenceFile, TheExampleOfTheManualIsOne) {
+  std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/sequence-file.md");
+  const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::size_t begin = manual.find("```yaml\n");
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t text = begin + 8;
+  document::Problems problems;
+  const auto sequence = read(manual.substr(text, manual.find("```", text) - text), problems);
+  ASSERT_TRUE(sequence) << problems.format();
+  EXPECT_TRUE(prepare(*sequence, two_finger_settings(), problems)) << problems.format();
+}
 
 TEST(SequenceFile, AllErrorsComeAtOnce) {
   document::Problems problems;

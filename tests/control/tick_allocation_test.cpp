@@ -1,0 +1,85 @@
+// tick() allocates nothing, in any state: operator new is counted while it runs.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "tests/control/rig_fixture.h"
+
+namespace {
+thread_local bool counting = false;
+thread_local std::size_t allocations = 0;
+
+void* counted(std::size_t size) {
+  allocations += counting ? 1U : 0U;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) {
+    return memory;
+  }
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) {
+  return counted(size);
+}
+void* operator new[](std::size_t size) {
+  return counted(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace softgrip::control {
+namespace {
+
+TEST(TickAllocation, TheHookCounts) {
+  counting = true;
+  delete new int(1);
+  counting = false;
+  EXPECT_EQ(allocations, 1U);
+}
+
+TEST(TickAllocation, NoneInAnyState) {
+  const RigSettings settings = two_finger_settings();
+  SimulatedRig rig(settings);
+  rig.around_tick = [](bool begins) { counting = begins; };
+  rig.stone(12);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  const PreparedSequence track = example_sequence("track_sine", settings);
+  const PreparedSequence profile = example_sequence("pressure_staircase", settings);
+  allocations = 0;
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  for (const PreparedSequence* sequence : {&pick, &track, &profile}) {
+    rig.request(Request::Kind::start, sequence);
+    ASSERT_TRUE(rig.run_until(State::running, 12));
+    rig.run(20);
+    rig.request(Request::Kind::stop);
+    rig.run(15);
+  }
+  rig.request(Request::Kind::start, &pick);
+  ASSERT_TRUE(rig.run_until_step(2, 30));
+  rig.stone(std::nullopt);
+  rig.run(2);
+  rig.wire_cut = true;
+  rig.run(2);
+  rig.wire_cut = false;
+  rig.run(1);
+  rig.request(Request::Kind::acknowledge);
+  rig.run(1);
+  EXPECT_EQ(rig.output().state, State::idle);
+  EXPECT_GT(rig.count(Event::Kind::fault_latched), 0U);
+  EXPECT_EQ(allocations, 0U);
+}
+
+}  // namespace
+}  // namespace softgrip::control
