@@ -297,12 +297,19 @@ class FileReader {
   Problems& problems_;
 };
 
+/// Parsing goes on after an error, so that what is left can look sound.
+bool refused(const Document& document, const Problems& problems) {
+  return !document.complete ||
+         std::any_of(problems.list().begin(), problems.list().end(),
+                     [&](const document::Problem& problem) { return problem.file == document.file; });
+}
+
 }  // namespace
 
 std::optional<Sequence> read_sequence(const document::Document& document, document::Problems& problems) {
   const std::size_t before = problems.size();
   Sequence sequence = FileReader(document, problems).sequence();
-  if (problems.size() != before) {
+  if (problems.size() != before || refused(document, problems)) {
     return std::nullopt;
   }
   return sequence;

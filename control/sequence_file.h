@@ -9,7 +9,8 @@
 
 namespace softgrip::control {
 
-/// Reads a sequence out of a parsed document. All errors are added to `problems`; nothing is returned then.
+/// Reads a sequence out of a parsed document. All errors are added to `problems`; nothing is returned then,
+/// nor when parsing had refused a part of the document.
 [[nodiscard]] std::optional<Sequence> read_sequence(const document::Document& document,
                                                     document::Problems& problems);
 

@@ -155,6 +155,16 @@ INSTANTIATE_TEST_SUITE_P(
             2, "listed twice"}),
     [](const auto& broken) { return broken.param.what; });
 
+TEST(SequenceFile, ADocumentThatParsingRefusedIsNone) {
+  for (const char* text : {"name: x\nsteps:\n  - pressure: {signal: tp1}\n  - hold: [",
+                           "name: &a x\nsteps:\n  - pressure: {signal: tp1}\n",
+                           "name: x\nsteps:\n  - pressure: {signal: tp1, scale: !!float 1}\n"}) {
+    document::Problems problems;
+    EXPECT_FALSE(read(text, problems)) << text;
+    EXPECT_FALSE(problems.empty());
+  }
+}
+
 TEST(SequenceFile, TheExampleOfTheManualIsOne) {
   std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/sequence-file.md");
   const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

@@ -1,0 +1,104 @@
+// What a whole tick of a rig costs: two fingers on full_model and PID, sequence, supervisor, fault monitor.
+// Only RigController::tick is timed; the plants step outside.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include "control/rig_controller.h"
+#include "control/sequence_file.h"
+#include "model/chain.h"
+#include "model/model_file.h"
+
+namespace {
+
+using namespace softgrip;  // NOLINT(google-build-using-namespace)
+
+template <class Value>
+Value or_exit(const std::optional<Value>& value, const document::Problems& problems) {
+  if (!value) {
+    std::fputs(problems.format().c_str(), stderr);
+    std::exit(1);
+  }
+  return *value;
+}
+
+control::RigSettings settings(double rate_hz) {
+  document::Problems problems;
+  control::ChannelSettings channel;
+  channel.model =
+      or_exit(model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems), problems);
+  channel.pid = {0.5, 3, 0.01, 0.02, 1, control::AntiWindup::back_calculation, 0.3};
+  channel.feedforward.kind = control::FeedforwardKind::full_model;
+  channel.limits = {0, 60, 300, 600, -1, 35, 2};
+  channel.pressure_measured = true;
+  control::RigSettings rig;
+  rig.rate_hz = rate_hz;
+  for (const char* name : {"left", "right"}) {
+    channel.name = name;
+    rig.channels.push_back(channel);
+  }
+  return rig;
+}
+
+/// The sine of config/sequences/track_sine.yaml, again and again.
+void rig_tick(benchmark::State& state) {
+  const control::RigSettings rig = settings(static_cast<double>(state.range(0)));
+  const double period_s = 1 / rig.rate_hz;
+  document::Problems problems;
+  const auto sequence = or_exit(
+      control::load_sequence(SOFTGRIP_SOURCE_DIR "/config/sequences/track_sine.yaml", problems), problems);
+  const auto track = or_exit(control::prepare(sequence, rig, problems), problems);
+  control::RigController controller(rig);
+  std::vector<model::Chain<double>> fingers(2, model::Chain<double>(rig.channels[0].model, {}, period_s));
+  std::vector<model::Reading> readings(2);
+  control::TickInput input;
+  control::TickOutput output;
+  input.readings = readings;
+  input.bus.connected = true;
+  std::vector<double> times_ns;
+  times_ns.reserve(1 << 22);
+  const auto one_period = [&] {
+    input.now += std::llround(1e9 * period_s);
+    for (std::size_t i = 0; i < 2; ++i) {
+      readings[i].displacement_mm = fingers[i].reading_mm() + (readings[i].sequence % 2 == 0 ? 0.01 : -0.01);
+      readings[i].command_readback_kpa = output.channels[i].command_kpa;
+      readings[i].sampled_at = input.now;
+      readings[i].validity = model::Validity::valid;
+      ++readings[i].sequence;
+    }
+    input.request = {};
+    if (output.state == control::State::idle) input.request = {control::Request::Kind::start, 1, &track};
+    const auto start = std::chrono::steady_clock::now();
+    controller.tick(input, output);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    for (std::size_t i = 0; i < 2; ++i) {
+      fingers[i].step(0, output.channels[i].command_kpa);
+      fingers[i].step(period_s, output.channels[i].command_kpa);
+    }
+    return took.count();
+  };
+  while (output.state != control::State::running) one_period();
+  for (auto _ : state) {
+    const double took_s = one_period();
+    state.SetIterationTime(took_s);
+    if (times_ns.size() < times_ns.capacity()) times_ns.push_back(1e9 * took_s);
+  }
+  std::sort(times_ns.begin(), times_ns.end());
+  const auto at = [&](double share) {
+    return times_ns[static_cast<std::size_t>(share * static_cast<double>(times_ns.size() - 1))];
+  };
+  state.counters["p50_ns"] = at(0.5);
+  state.counters["p99_ns"] = at(0.99);
+  state.counters["p99.9_ns"] = at(0.999);
+}
+BENCHMARK(rig_tick)->ArgName("rate_hz")->Arg(200)->Arg(1000)->UseManualTime();
+
+}  // namespace
