@@ -61,7 +61,8 @@ struct Range {
 /// Draws one chart, its upper left corner at (0, top).
 class Painter {
  public:
-  Painter(const Chart& chart, double top) : chart_(chart), top_(top) {
+  /// @param left  where the axes begin [px]: at least left_margin().
+  Painter(const Chart& chart, double top, double left) : chart_(chart), top_(top), left_(left) {
     for (const Series& s : chart.series) {
       for (const double value : s.x) x_range_.include(value, chart.x.logarithmic);
       for (const double value : s.y) y_range_.include(value, chart.y.logarithmic);
@@ -72,6 +73,14 @@ class Painter {
       const bool horizontal = mark.direction == Mark::Direction::horizontal;
       (horizontal ? y_range_ : x_range_).include(mark.at, (horizontal ? chart.y : chart.x).logarithmic);
     }
+  }
+
+  /// Room for the widest number of the axis.
+  [[nodiscard]] double left_margin() const {
+    const Scale trial(chart_.y, y_range_.lowest, y_range_.highest, 100, 0, true);
+    double widest = 0;
+    for (const Tick& tick : trial.ticks(6)) widest = std::max(widest, text_width(tick.text));
+    return widest + (chart_.y.label.empty() ? 12 : 30);
   }
 
   std::string draw() {
@@ -99,10 +108,6 @@ class Painter {
 
  private:
   void lay_out() {
-    const Scale trial(chart_.y, y_range_.lowest, y_range_.highest, 100, 0, true);
-    double widest = 0;
-    for (const Tick& tick : trial.ticks(6)) widest = std::max(widest, text_width(tick.text));
-    left_ = widest + (chart_.y.label.empty() ? 12 : 30);
     right_ = chart_.width - 14;
     const bool has_head = !chart_.title.empty() || has_legend();
     upper_ = top_ + (has_head ? 26 : 10);
@@ -126,7 +131,7 @@ class Painter {
 
   void grid(const Scale& x, const Scale& y) {
     const int most_x = std::max(2, static_cast<int>((right_ - left_) / 75));
-    const int most_y = std::max(2, static_cast<int>((lower_ - upper_) / 34));
+    const int most_y = std::max(3, static_cast<int>((lower_ - upper_) / 34));
     for (const Tick& tick : y.ticks(most_y)) {
       line(left_, y.px(tick.at), right_, y.px(tick.at), grid_colour);
       words(left_ - 6, y.px(tick.at) + 4, "end", tick.text);
@@ -223,13 +228,14 @@ class Painter {
   }
 
   void draw_mark(const Mark& mark, const Scale& x, const Scale& y) {
+    constexpr std::string_view halo = " paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"3\"";
     constexpr std::string_view dashes = " stroke-dasharray=\"2 3\"";
     if (mark.direction == Mark::Direction::horizontal) {
       line(left_, y.px(mark.at), right_, y.px(mark.at), text_colour, dashes);
-      if (!mark.label.empty()) words(right_ - 4, y.px(mark.at) - 4, "end", mark.label);
+      if (!mark.label.empty()) words(right_ - 4, y.px(mark.at) - 4, "end", mark.label, halo);
     } else {
       line(x.px(mark.at), upper_, x.px(mark.at), lower_, text_colour, dashes);
-      if (!mark.label.empty()) words(x.px(mark.at) + 4, upper_ + 11, "start", mark.label);
+      if (!mark.label.empty()) words(x.px(mark.at) + 4, upper_ + 11, "start", mark.label, halo);
     }
   }
 
@@ -257,9 +263,9 @@ class Painter {
 
   const Chart& chart_;
   double top_;
+  double left_;
   Range x_range_;
   Range y_range_;
-  double left_ = 0;
   double right_ = 0;
   double upper_ = 0;  ///< y of the upper edge [px], smaller than lower_
   double lower_ = 0;
@@ -283,10 +289,12 @@ std::string to_svg(const std::vector<Chart>& stacked) {
                     "\" font-family=\"system-ui,sans-serif\" font-size=\"" + fixed(font_px, 0) +
                     "\"><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>"
                     "<g fill=\"none\" stroke-linejoin=\"round\">";
+  double left = 0;
+  for (const Chart& chart : stacked) left = std::max(left, Painter(chart, 0, 0).left_margin());
   double top = 0;
   for (Chart chart : stacked) {
     chart.width = width;
-    svg += Painter(chart, top).draw();
+    svg += Painter(chart, top, left).draw();
     top += chart.height;
   }
   return svg + "</g></svg>\n";

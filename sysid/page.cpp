@@ -1,5 +1,6 @@
 #include "sysid/page.h"
 
+#include "model/document/version.h"
 #include "sysid/markup.h"
 
 namespace softgrip::sysid {
@@ -48,7 +49,7 @@ std::string_view class_of(Tone tone) {
 }  // namespace
 
 std::string software_version() {
-  return "softgrip " SOFTGRIP_VERSION;
+  return "softgrip " + std::string(document::software_version());
 }
 
 Page::Page(std::string title, std::string verdict, Tone tone)

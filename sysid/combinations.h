@@ -1,0 +1,25 @@
+#pragma once
+// What a finger shows of its parameters: sums and ratios that data can tell where the parameters alone are
+// not told apart (alpha and 1/k0 enter only as their sum).
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+
+namespace softgrip::sysid {
+
+/// A number that follows from a model.
+struct Combination {
+  std::string name;  ///< with its unit
+  std::string unit;
+  std::string formula;  ///< for people
+  double scale = 0;     ///< what counts as small: an interval below it is narrow whatever the value
+  std::function<double(const model::Model&)> value;
+};
+
+/// Those that make sense for the blocks of this model.
+[[nodiscard]] std::vector<Combination> combinations_of(const model::Model& model);
+
+}  // namespace softgrip::sysid

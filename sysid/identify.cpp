@@ -1,0 +1,372 @@
+#include "sysid/identify.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "model/catalogue.h"
+#include "sysid/estimates.h"
+#include "sysid/minimise.h"
+#include "sysid/numbers.h"
+#include "sysid/parallel.h"
+#include "sysid/profile.h"
+#include "sysid/separable_search.h"
+#include "sysid/start_points.h"
+#include "sysid/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+/// A search that ends within this of the best RMSE has reached it.
+constexpr double reached_share = 1e-3;
+/// A start far from the best after this many iterations of the cheap search is not worth more.
+constexpr int search_iterations = 60;
+constexpr int chain_search_iterations = 40;
+
+/// Hides the readings after the fitted share of a record.
+void hold_out(Record& record, double fit_share) {
+  const auto last = static_cast<std::size_t>(fit_share * static_cast<double>(record.size()));
+  record.readings = 0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (i >= last) record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+    if (std::isfinite(record.reading_mm[i])) ++record.readings;
+  }
+}
+
+/// Which values of the model are free, by flat index.
+struct FreeIndices {
+  std::vector<std::size_t> flat;
+  bool k0_kept = false;  ///< although it was not asked for: alpha and 1/k0 enter as their sum
+};
+
+tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
+                                                    const IdentifyOptions& options) {
+  for (const auto* list : {&options.fixed, &options.free}) {
+    for (const std::string& path : *list) {
+      if (!model::find_path(model, path)) return Failure("the model has no parameter '" + path + "'");
+    }
+  }
+  const auto listed = [](const std::vector<std::string>& list, const std::string& path) {
+    return std::find(list.begin(), list.end(), path) != list.end();
+  };
+  const std::string alpha = "bouc_wen.alpha_mm_per_kpa";
+  const bool alpha_free = model::find_path(model, alpha) && !listed(options.fixed, alpha) &&
+                          (options.free.empty() || listed(options.free, alpha));
+  FreeIndices free;
+  for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
+    const std::string path = model::parameter_path(model, i);
+    if (model::parameter_spec(model, i).whole || listed(options.fixed, path)) continue;
+    if (!options.free.empty() && !listed(options.free, path)) continue;
+    if (path == "kelvin_voigt.k0_kpa_per_mm" && alpha_free) {
+      free.k0_kept = true;
+      continue;
+    }
+    free.flat.push_back(i);
+  }
+  return free;
+}
+
+/// Puts the branches into the order of time constants that the start had.
+void order_branches(const model::Model& like, FitPoint& point) {
+  const auto position = model::position_of(point.model, "kelvin_voigt");
+  if (!position) return;
+  std::vector<double>& v = point.model.blocks[*position].values;
+  const std::vector<double> wanted = branch_time_constants_s(like);
+  const std::vector<double> found = branch_time_constants_s(point.model);
+  std::vector<std::size_t> rank_wanted(wanted.size()), rank_found(found.size());
+  const auto ranks = [](const std::vector<double>& values, std::vector<std::size_t>& order) {
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  };
+  ranks(wanted, rank_wanted);
+  ranks(found, rank_found);
+  const std::vector<double> old = v;
+  const std::vector<StartState> old_starts = point.starts;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::size_t to = rank_wanted[i];
+    const std::size_t from = rank_found[i];
+    v[1 + 2 * to] = old[1 + 2 * from];
+    v[2 + 2 * to] = old[2 + 2 * from];
+    for (std::size_t r = 0; r < point.starts.size(); ++r) {
+      point.starts[r].unsettled_mm[to] = old_starts[r].unsettled_mm[from];
+    }
+  }
+}
+
+/// Reports progress from several threads, one at a time.
+class Reporter {
+ public:
+  Reporter(const IdentifyOptions& options, std::size_t starts)
+      : options_(options), progress_{0, starts, std::numeric_limits<double>::infinity()} {}
+  void finished(double rmse_mm) {
+    const std::lock_guard lock(mutex_);
+    ++progress_.done;
+    progress_.best_rmse_mm = std::min(progress_.best_rmse_mm, rmse_mm);
+    if (options_.progress) options_.progress(progress_);
+  }
+
+ private:
+  const IdentifyOptions& options_;
+  std::mutex mutex_;
+  Progress progress_;
+};
+
+/// How many samples a first look at many starts needs; more only cost time.
+constexpr std::size_t samples_of_a_look = 6000;
+
+/// Every start is searched to its end on thinned records; those that end where no other did, and not far
+/// above the best, go on from there on all samples.
+std::vector<SearchResult> search_separable(const SeparableSearch& full, const FitSpace& space,
+                                           const std::vector<Record>& records,
+                                           const std::vector<FitPoint>& starts,
+                                           const IdentifyOptions& options) {
+  std::size_t samples = 0;
+  for (const Record& record : records) samples += record.size();
+  const std::size_t stride = starts.size() > 1 ? samples / samples_of_a_look : 1;
+  std::vector<Record> thin;
+  for (const Record& record : records) thin.push_back(stride > 1 ? thinned_record(record, stride) : record);
+  const SeparableSearch look = *SeparableSearch::make(thin, space);
+  Reporter reporter(options, starts.size());
+  std::vector<SearchResult> results(starts.size());
+  parallel_for(starts.size(), options.threads, [&](std::size_t i) {
+    results[i] = look.run(starts[i], search_iterations);
+    order_branches(starts.front().model, results[i].point);
+    reporter.finished(results[i].rmse_mm);
+  });
+  if (stride <= 1) return results;
+
+  constexpr double not_far = 1.3;
+  constexpr double same_place = 0.02;  // in the fit's scale
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const SearchResult& r : results) lowest = std::min(lowest, r.rmse_mm);
+  std::vector<std::size_t> leaders;  // one for each place
+  std::vector<std::size_t> leader_of(starts.size());
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const std::vector<double> z = space.z(results[i].point);
+    const auto leader = std::find_if(leaders.begin(), leaders.end(), [&](std::size_t j) {
+      const std::vector<double> other = space.z(results[j].point);
+      double distance = 0;
+      for (std::size_t k = 0; k < z.size(); ++k) distance = std::max(distance, std::abs(z[k] - other[k]));
+      return distance < same_place;
+    });
+    leader_of[i] = leader == leaders.end() ? i : *leader;
+    if (leader == leaders.end()) leaders.push_back(i);
+  }
+  std::erase_if(leaders, [&](std::size_t i) { return results[i].rmse_mm > not_far * lowest; });
+  parallel_for(leaders.size(), options.threads, [&](std::size_t i) {
+    results[leaders[i]] = full.run(results[leaders[i]].point, search_iterations);
+  });
+  for (std::size_t i = 0; i < starts.size(); ++i) results[i] = results[leader_of[i]];
+  return results;
+}
+
+/// Searches from all starts; the results in their order.
+std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record>& records,
+                                 const std::vector<FitPoint>& starts, const IdentifyOptions& options) {
+  if (const auto separable = SeparableSearch::make(records, space)) {
+    return search_separable(*separable, space, records, starts, options);
+  }
+  std::vector<SearchResult> results(starts.size());
+  Reporter reporter(options, starts.size());
+  const auto residuals = residuals_for(records, space);
+  parallel_for(starts.size(), options.threads, [&](std::size_t i) {
+    MinimiseOptions coarse;
+    coarse.most_iterations = starts.size() > 1 ? chain_search_iterations : 1;
+    coarse.tolerance = 1e-6;
+    const Minimum minimum = minimise(*residuals, space.z(starts[i]), coarse);
+    results[i] = {space.point(minimum.z), minimum.rmse_mm, minimum.iterations, minimum.converged};
+    reporter.finished(results[i].rmse_mm);
+  });
+  return results;
+}
+
+/// 2.5 standard deviations of what the residuals are without their tails.
+double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) {
+  std::vector<double> r(residuals.count());
+  if (!residuals.evaluate(z, r, {}) || r.empty()) return std::numeric_limits<double>::infinity();
+  for (double& value : r) value = std::abs(value);
+  const auto middle = r.begin() + static_cast<long>(r.size() / 2);
+  std::nth_element(r.begin(), middle, r.end());
+  return std::max(2.5 * *middle / 0.6745, 1e-9);
+}
+
+/// The work of one exponent.
+class Run {
+ public:
+  Run(std::vector<Record> records, model::Model start, const IdentifyOptions& options)
+      : options_(options), start_(std::move(start)) {
+    result_.records = std::move(records);
+  }
+
+  tl::expected<Identification, std::string> go() {
+    const auto free = free_indices(start_, options_);
+    if (!free) return Failure(free.error());
+    const FitSpace space(start_, result_.records, free->flat);
+    const FitPoint given{start_, rest_starts(start_, result_.records)};
+    std::vector<FitPoint> starts;
+    for (const model::Model& point : options_.start_points) starts.push_back({point, given.starts});
+    if (starts.empty())
+      starts = draw_starts(space, given, result_.records, std::max<std::size_t>(1, options_.starts),
+                           options_.seed);
+    std::vector<SearchResult> found = search(space, result_.records, starts, options_);
+    const auto best =
+        std::min_element(found.begin(), found.end(),
+                         [](const SearchResult& a, const SearchResult& b) { return a.rmse_mm < b.rmse_mm; });
+    if (!std::isfinite(best->rmse_mm)) return Failure("the model's answer is not finite from any start");
+    for (const SearchResult& each : found) result_.multistart.rmse_mm.push_back(each.rmse_mm);
+    order_branches(start_, best->point);
+    polish(best->point, *free);
+    return std::move(result_);
+  }
+
+ private:
+  void polish(const FitPoint& from, const FreeIndices& free) {
+    const auto residuals = residuals_for(result_.records, FitSpace(from.model, result_.records, free.flat));
+    std::vector<double> z = residuals->space().z(from);
+    MinimiseOptions options;
+    Minimum minimum = minimise(*residuals, z, options);
+    // The scale of the tails and the fit depend on each other: twice settles it.
+    for (int pass = 0; pass < 2 && options_.robust; ++pass) {
+      options.huber_mm = result_.huber_mm = huber_width_mm(*residuals, minimum.z);
+      minimum = minimise(*residuals, minimum.z, options);
+    }
+    const FitPoint point = residuals->space().point(minimum.z);
+    result_.fitted = point.model;
+    result_.rmse_mm = minimum.rmse_mm;
+    result_.iterations = minimum.iterations;
+    result_.converged = minimum.converged;
+    const Uncertainty uncertainty = uncertainty_at(*residuals, minimum.z, options.huber_mm);
+    const FittedPoint fit{*residuals, minimum.z, uncertainty};
+    result_.parameters = parameter_estimates(fit);
+    result_.starts = start_estimates(fit);
+    result_.combinations = combination_estimates(fit);
+    result_.loose = uncertainty.loose;
+    result_.noise = uncertainty.noise;
+    if (options_.profile) {
+      add_profiles(*residuals, minimum.z, uncertainty, options.huber_mm, options_.threads,
+                   result_.parameters);
+    }
+    if (free.k0_kept) name_the_sum(result_.parameters);
+    for (std::size_t k = 0; k < result_.records.size(); ++k) {
+      const Record& record = result_.records[k];
+      result_.scores.push_back(score_of(result_.fitted, record, point.starts[k], record.reading_mm));
+    }
+    MultiStart& multistart = result_.multistart;
+    multistart.starts = multistart.rmse_mm.size();
+    const double lowest = *std::min_element(multistart.rmse_mm.begin(), multistart.rmse_mm.end());
+    const auto reached =
+        std::count_if(multistart.rmse_mm.begin(), multistart.rmse_mm.end(),
+                      [&](double rmse_mm) { return rmse_mm <= lowest * (1 + reached_share) + 1e-6; });
+    multistart.share_at_best = static_cast<double>(reached) / static_cast<double>(multistart.starts);
+  }
+
+  const IdentifyOptions& options_;
+  model::Model start_;
+  Identification result_;
+};
+
+/// Another exponent with a hysteresis of about the same size: gamma and eta act on h^n instead of h.
+model::Model with_exponent(model::Model model, int exponent) {
+  const auto position = model::position_of(model, "bouc_wen");
+  if (!position) return model;
+  std::vector<double>& v = model.blocks[*position].values;
+  const double limit_mm = std::max(v[1], 1e-6) / std::max(v[2] + v[3], 1e-6);
+  const double change = std::pow(limit_mm, v[4] - exponent);
+  v[2] *= change;
+  v[3] *= change;
+  v[4] = exponent;
+  return model;
+}
+
+/// The whole model again: the fitted blocks with their new numbers, the others as they were.
+model::Model put_back(const model::Model& start, const model::Model& fitted) {
+  model::Model whole = start;
+  std::size_t next = 0;  // the fitted blocks are some of the start's, in order
+  for (model::BlockSpec& block : whole.blocks) {
+    if (next < fitted.blocks.size() && fitted.blocks[next].type == block.type) {
+      block.values = fitted.blocks[next++].values;
+    }
+  }
+  return whole;
+}
+
+void add_warnings(Identification& result) {
+  if (!result.converged) result.warnings.emplace_back("the last minimisation stopped before it converged");
+  for (const Estimate& e : result.combinations) {
+    if (e.name == "beta_over_instantaneous_gain" && e.value > 1) {
+      result.warnings.push_back("beta / (alpha + 1/k0) = " + significant(e.value, 3) +
+                                " is above 1: the model moves the wrong way first and cannot be inverted; a "
+                                "latency in the data is the "
+                                "usual cause, run softgrip diagnose");
+    }
+  }
+  for (const Record& record : result.records) {
+    if (record.start_unknown) {
+      result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");
+    } else if (record.offset_free) {
+      result.warnings.push_back(record.name +
+                                " does not read 0 at its start: an offset of the sensor was estimated");
+    }
+  }
+  if (result.noise.lag1_correlation > 0.5) {
+    result.warnings.push_back("the residuals are correlated (" +
+                              significant(result.noise.lag1_correlation, 3) +
+                              " from sample to sample): " + fixed(result.noise.effective_samples, 0) +
+                              " independent samples' worth of data");
+  }
+  if (result.multistart.starts >= 5 && result.multistart.share_at_best < 0.2) {
+    result.warnings.push_back(
+        "only " + fixed(100 * result.multistart.share_at_best, 0) +
+        " % of the starts reached the best fit: there may be a better one, try --starts");
+  }
+}
+
+}  // namespace
+
+tl::expected<Identification, std::string> identify(const std::vector<Log>& logs, const model::Model& start,
+                                                   const IdentifyOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  if (logs.empty()) return Failure("no logs to identify from");
+  std::vector<Record> whole = make_records(logs, options.record);
+  std::vector<Record> records = whole;
+  if (options.fit_share < 1) {
+    for (Record& record : records) hold_out(record, options.fit_share);
+  }
+  const model::Model fitted_part = deterministic_part(start, options.record.drive);
+  if (const auto wrong = model::validate(fitted_part); !wrong.empty()) return Failure(wrong.front());
+
+  std::vector<int> exponents = options.exponents;
+  if (exponents.empty()) exponents.push_back(0);
+  std::optional<Identification> best;
+  std::vector<std::pair<int, double>> tried;
+  for (const int exponent : exponents) {
+    const model::Model& from = best ? best->fitted : fitted_part;
+    auto result = Run(records, exponent == 0 ? from : with_exponent(from, exponent), options).go();
+    if (!result) return Failure(result.error());
+    if (exponent != 0) tried.emplace_back(exponent, result->rmse_mm);
+    // A sharper exponent must earn its place.
+    constexpr double worth = 0.99;
+    if (!best || result->rmse_mm < worth * best->rmse_mm) best = std::move(*result);
+  }
+  best->exponent_rmse_mm = std::move(tried);
+  best->model = put_back(start, best->fitted);
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    best->fast_noise_mm = std::max(best->fast_noise_mm, fast_noise_mm(whole[k]));
+    if (options.fit_share >= 1) continue;
+    std::vector<double> rest = whole[k].reading_mm;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      if (std::isfinite(best->records[k].reading_mm[i])) rest[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    best->held_out.push_back(score_of(best->fitted, whole[k], best->scores[k].start, rest));
+  }
+  add_warnings(*best);
+  best->wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return std::move(*best);
+}
+
+}  // namespace softgrip::sysid

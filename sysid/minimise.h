@@ -1,0 +1,35 @@
+#pragma once
+// Least squares with bounds from a given point, by Ceres' trust region.
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sysid/residuals.h"
+
+namespace softgrip::sysid {
+
+struct MinimiseOptions {
+  int most_iterations = 60;
+  /// Residuals beyond it count linearly instead of by their square (Huber); infinity: never.
+  double huber_mm = std::numeric_limits<double>::infinity();
+  /// Index of a parameter that keeps its value.
+  std::optional<std::size_t> held;
+  /// Relative change of the cost at which the search ends.
+  double tolerance = 1e-10;
+};
+
+struct Minimum {
+  std::vector<double> z;
+  double rmse_mm = 0;  ///< of the residuals as they are, without Huber
+  double cost = 0;     ///< half the sum of squares, beyond huber_mm the linear part
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// @param z  the start, brought within the bounds first.
+[[nodiscard]] Minimum minimise(const Residuals& residuals, std::vector<double> z,
+                               const MinimiseOptions& options = {});
+
+}  // namespace softgrip::sysid
