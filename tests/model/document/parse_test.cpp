@@ -133,7 +133,11 @@ TEST(Parse, SyntaxErrorsSayWhatWasOpen) {
             (Lines{"2:2: the list `[...]` that starts at 1:4 is not closed here: expected `,` or `]`"}));
   EXPECT_EQ(problems_of("a: {b: 1\n"),
             (Lines{"2:1: the map `{...}` that starts at 1:4 is not closed here: expected `,` or `}`"}));
-  EXPECT_EQ(problems_of("a: 1\n  b: 2\n"), (Lines{"2:4: a second `: ` stands where the value should be"}));
+  EXPECT_EQ(problems_of("a: b: c\n"), (Lines{"1:5: a second `: ` stands where the value should be"}));
+  EXPECT_EQ(problems_of("a: 1\n  b: 2\n"),
+            (Lines{"2:4: this key starts in column 3, the keys of its map start in column 1"}));
+  EXPECT_EQ(problems_of("a:1\nb: 2\n"),
+            (Lines{"2:2: this is not a key: the line above has no `: ` and goes on here"}));
   EXPECT_EQ(problems_of("a: \"\\q\"\n"), (Lines{"1:7: an unknown escape stands in a text in double quotes"}));
   EXPECT_EQ(problems_of("a: 1\n- b\n"), (Lines{"2:1: this does not belong to the map that starts at 1:1"}));
   EXPECT_EQ(problems_of("a: @b\n"), (Lines{"1:4: this character cannot start a value"}));

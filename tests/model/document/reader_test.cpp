@@ -195,6 +195,23 @@ TEST(Reader, ADocumentCutShortLacksNothing) {
             1U);
 }
 
+TEST(Reader, AWordThatTheSyntaxErrorAddedToTheLastValueIsNotJudged) {
+  // To the parser the value of `delay_s` is "1 name" up to the second colon.
+  EXPECT_EQ(reported("delay_s: 1\n  name: x\n", use_delay).size(), 1U);
+}
+
+TEST(Reader, KnowsWhichKeysWereGood) {
+  reported("a: 1\nb: x\nc: *d\ne: 2\n", [](MapReader& r) {
+    for (const char* const key : {"a", "b", "c", "d", "e"}) r.optional_number(key, {});
+    EXPECT_TRUE(r.good("a"));
+    EXPECT_FALSE(r.good("b"));
+    EXPECT_FALSE(r.good("c"));
+    EXPECT_FALSE(r.good("d"));
+    r.report("e", "no");
+    EXPECT_FALSE(r.good("e"));
+  });
+}
+
 TEST(Reader, WarningsAndReportsStandAtTheValue) {
   Problems problems;
   const Document document = parse("a.yaml", "first: 1\nsecond: 2\n", problems);
