@@ -1,0 +1,54 @@
+// The chain against numbers that scipy computed from the continuous equations: golden/make_golden.py, which
+// writes down signals and parameters on its own, so that a slip in a preset or a signal shows as well.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "model/chain.h"
+#include "model/signals.h"
+#include "tests/model/presets.h"
+
+namespace softgrip::model::testing {
+namespace {
+
+TEST(ChainGolden, PresetsGiveTheNumbersOfScipy) {
+  std::ifstream file(SOFTGRIP_SOURCE_DIR "/tests/model/golden/chain_golden.csv");
+  std::string line;
+  ASSERT_TRUE(std::getline(file, line));
+  EXPECT_EQ(line, "model,signal,time_s,displacement_mm");
+  constexpr double dt = 5e-3;
+  std::string running;
+  Chain<double> chain(preset("zhang2025"));
+  SignalName signal = SignalName::tp1;
+  int done = 0;
+  int rows = 0;
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    std::string model, name, time, displacement;
+    std::getline(cells, model, ',');
+    std::getline(cells, name, ',');
+    std::getline(cells, time, ',');
+    std::getline(cells, displacement, ',');
+    if (running != model + name) {
+      running = model + name;
+      chain = Chain<double>(preset(model), {}, dt);
+      signal = signal_named(name).value();
+      done = 0;
+    }
+    while (done < std::lround(std::stod(time) / dt)) {
+      ++done;
+      chain.step(dt, value_kpa(signal, done * dt));
+    }
+    ASSERT_NEAR(chain.reading_mm(), std::stod(displacement), 1e-7) << line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, 326);
+}
+
+}  // namespace
+}  // namespace softgrip::model::testing
