@@ -76,9 +76,10 @@ struct BlockInfo {
   Station station;
   Kind kind;
   Inverse inverse;
-  std::string_view title;    ///< "Transport delay"
-  std::string_view meaning;  ///< one line for the manual
-  bool repeatable = false;   ///< may stand in a chain more than once (two stops, two disturbances)
+  std::string_view title;     ///< "Transport delay"
+  std::string_view meaning;   ///< one line for the manual
+  std::string_view equation;  ///< what it computes, in plain text
+  bool repeatable = false;    ///< may stand in a chain more than once (two stops, two disturbances)
 };
 
 /// What a block may need to prepare itself, besides its parameters.

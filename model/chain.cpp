@@ -5,7 +5,7 @@
 namespace softgrip::model {
 
 template class Chain<double>;
-template double Chain<double>::peek(const double&, const double&, const Surroundings&) const;
-template Dual<double> Chain<double>::peek(const double&, const Dual<double>&, const Surroundings&) const;
+template double Chain<double>::peek(const double&, const double&, Surroundings) const;
+template Dual<double> Chain<double>::peek(const double&, const Dual<double>&, Surroundings) const;
 
 }  // namespace softgrip::model

@@ -42,14 +42,14 @@ class Chain {
   void reset(const T& command);
 
   /// Moves on by `duration_s` >= 0 while the command goes linearly to `command`; returns the reading [mm].
-  T step(const T& duration_s, const T& command, const Surroundings& surroundings = {});
+  T step(const T& duration_s, const T& command, Surroundings surroundings = {});
 
   /// What after(Station::load) would be if the pressure at the actuator went straight to `end_kpa` over
   /// `duration_s`, through the blocks that are undone implicitly and past all others; nothing changes.
   /// For an inverse: step a chain of only those blocks with the pressure that solves peek() = reference.
   /// U is T, or Dual<T> for the derivative with respect to the pressure.
   template <class U>
-  [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, const Surroundings& surroundings = {}) const;
+  [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, Surroundings surroundings = {}) const;
 
   /// The signal behind the last block of the given station after the last step: pressure at the actuator
   /// for Station::valve [kPa], displacement in mm for the others. Without blocks there: what came in.
@@ -91,6 +91,7 @@ class Chain {
   std::array<Index, 4> end_{};  // of each station: the index behind its last block
   Index first_element_ = 0, first_displacement_ = 0, first_reading_ = 0;
   double sample_time_s_;
+  double clock_s_ = 0;  // the durations since reset()
   T command_kpa_{0.0};
   T at_sensor_{0.0};  // what the reading blocks sample
   std::array<T, 4> after_{T(0.0), T(0.0), T(0.0), T(0.0)};

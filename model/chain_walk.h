@@ -17,6 +17,16 @@ AnyBlock<T> make_block(std::size_t type, std::span<const T> values, const Prepar
   return AnyBlock<T>(std::in_place_index<I>, values, preparation);
 }
 
+// The seed of a block: by its id and how often it stood there before, so that other blocks may come and go.
+inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_t seed) {
+  std::uint64_t part = 0;
+  for (const char c : catalogue()[model.blocks[index].type].info.id) {
+    part = part * 131 + static_cast<unsigned char>(c);
+  }
+  for (std::size_t i = 0; i < index; ++i) part += model.blocks[i].type == model.blocks[index].type ? 1U : 0U;
+  return derived_seed(seed, part);
+}
+
 template <class Block>
 inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
 template <class Block>
@@ -41,7 +51,7 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
       block_values = values.subspan(next, count);
     }
     next += count;
-    const Preparation preparation{sample_time_s, derived_seed(seed, blocks_.size())};
+    const Preparation preparation{sample_time_s, walk::seed_of(model, blocks_.size(), seed)};
     blocks_.push_back(walk::make_block<T>(spec.type, block_values, preparation));
     const BlockInfo& info = catalogue()[spec.type].info;
     const std::size_t behind = blocks_.size();
@@ -56,6 +66,7 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
 template <class T>
 void Chain<T>::reset(const T& command) {
   command_kpa_ = command;
+  clock_s_ = 0;
   T pressure = command;
   T displacement(0.0);
   if (end_[0] == 0) after_[0] = pressure;
@@ -82,11 +93,13 @@ void Chain<T>::reset(const T& command) {
 }
 
 template <class T>
-T Chain<T>::step(const T& duration_s, const T& command, const Surroundings& surroundings) {
+T Chain<T>::step(const T& duration_s, const T& command, Surroundings surroundings) {
   T duration = duration_s;
   if constexpr (std::is_arithmetic_v<T>) {
     if (std::abs(duration - sample_time_s_) <= 1e-9 * sample_time_s_) duration = sample_time_s_;
   }
+  clock_s_ += value_of(duration);
+  if (std::isnan(surroundings.time_s)) surroundings.time_s = clock_s_;
   const Segment<T> segment = Segment<T>::straight(duration, command_kpa_, command);
   command_kpa_ = command;
   walk_pressure(0, segment, surroundings);
@@ -160,7 +173,8 @@ void Chain<T>::walk_readings(const T& duration_s, const Surroundings& surroundin
 
 template <class T>
 template <class U>
-U Chain<T>::peek(const T& duration_s, const U& end_kpa, const Surroundings& surroundings) const {
+U Chain<T>::peek(const T& duration_s, const U& end_kpa, Surroundings surroundings) const {
+  if (std::isnan(surroundings.time_s)) surroundings.time_s = clock_s_ + value_of(duration_s);
   U pressure = end_kpa;
   U displacement(0.0);
   for (Index i = 0; i < end_[2]; ++i) {

@@ -93,9 +93,10 @@ BlockSpec neutral_block(std::size_t type) {
 }
 
 Model with_block(Model model, BlockSpec block) {
-  const int own = rank(info_of(block));
+  const auto place = [](const BlockSpec& b) { return std::pair(rank(info_of(b)), b.type); };
+  const auto own = place(block);
   const auto behind = std::find_if(model.blocks.begin(), model.blocks.end(),
-                                   [own](const BlockSpec& b) { return rank(info_of(b)) > own; });
+                                   [&](const BlockSpec& b) { return place(b) > own; });
   model.blocks.insert(behind, std::move(block));
   return model;
 }

@@ -39,7 +39,7 @@ struct Model {
 /// A block of a type at its neutral values, where it does nothing.
 [[nodiscard]] BlockSpec neutral_block(std::size_t type);
 
-/// The model with one more block, behind those of its station and kind.
+/// The model with one more block, in the place that registry.h gives it.
 [[nodiscard]] Model with_block(Model model, BlockSpec block);
 /// The model without the blocks of a type.
 [[nodiscard]] Model without_block(Model model, std::size_t type);

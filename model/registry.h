@@ -4,28 +4,64 @@
 
 #include <variant>
 
+#include "model/blocks/actuator_threshold.h"
+#include "model/blocks/ageing.h"
+#include "model/blocks/asymmetric_hysteresis.h"
+#include "model/blocks/backlash.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/contact.h"
+#include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/outliers.h"
+#include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/quantisation.h"
+#include "model/blocks/rate_dependent_hysteresis.h"
+#include "model/blocks/sensor_drift.h"
+#include "model/blocks/sensor_lag.h"
 #include "model/blocks/sensor_noise.h"
+#include "model/blocks/sensor_nonlinearity.h"
+#include "model/blocks/sensor_saturation.h"
+#include "model/blocks/slow_creep.h"
+#include "model/blocks/stiffening.h"
+#include "model/blocks/stress_softening.h"
+#include "model/blocks/supply_sag.h"
+#include "model/blocks/thermal_gain.h"
 #include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_deadband.h"
 #include "model/blocks/valve_lag.h"
 #include "model/catalogue.h"
 
 namespace softgrip::model {
 
-/// One block of any type. The index of a type is BlockSpec::type and its place in catalogue(). Listed by
-/// station, in the order in which the signal meets them.
+/// One block of any type. The index of a type is BlockSpec::type and its place in catalogue(). Listed in the
+/// order in which the signal meets them; with_block() puts blocks there.
 template <class T>
-using AnyBlock = std::variant<TransportDelay<T>,      //
-                              ValveLag<T>,            //
-                              PressureSaturation<T>,  //
-                              BoucWen<T>,             //
-                              KelvinVoigt<T>,         //
-                              Contact<T>,             //
-                              SensorNoise<T>,         //
+using AnyBlock = std::variant<TransportDelay<T>,           //
+                              ValveDeadband<T>,            //
+                              ValveLag<T>,                 //
+                              SupplySag<T>,                //
+                              PressureSaturation<T>,       //
+                              ActuatorThreshold<T>,        //
+                              StressSoftening<T>,          //
+                              BoucWen<T>,                  //
+                              KelvinVoigt<T>,              //
+                              SlowCreep<T>,                //
+                              AsymmetricHysteresis<T>,     //
+                              RateDependentHysteresis<T>,  //
+                              Stiffening<T>,               //
+                              ThermalGain<T>,              //
+                              Ageing<T>,                   //
+                              Inertia<T>,                  //
+                              Contact<T>,                  //
+                              Backlash<T>,                 //
+                              SensorLag<T>,                //
+                              SensorNonlinearity<T>,       //
+                              SensorDrift<T>,              //
+                              PeriodicDisturbance<T>,      //
+                              SensorNoise<T>,              //
+                              Outliers<T>,                 //
+                              SensorSaturation<T>,         //
                               Quantisation<T>>;
 
 }  // namespace softgrip::model

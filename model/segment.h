@@ -2,6 +2,7 @@
 // The signal between two blocks: a stretch of time over which the signal moves monotonically.
 
 #include <cmath>
+#include <limits>
 
 #include "model/number.h"
 
@@ -59,7 +60,8 @@ struct Segment {
 
 /// What surrounds the rig while a sample passes; blocks that do not depend on it ignore it.
 struct Surroundings {
-  double time_s = 0;          ///< since the start of the campaign, at the end of the sample
+  /// since the start of the campaign, at the end of the sample; NaN: the chain's own clock since reset()
+  double time_s = std::numeric_limits<double>::quiet_NaN();
   double supply_kpa = 1e9;    ///< supply pressure; the default never limits
   double temperature_c = 20;  ///< of the actuator
 };

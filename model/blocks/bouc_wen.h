@@ -24,27 +24,59 @@ template <class T>
 class BoucWen {
  public:
   static constexpr BlockInfo info{
-      "bouc_wen",
-      Station::actuator,
-      Kind::element,
-      Inverse::implicit,
-      "Bouc-Wen hysteresis",
-      "Rate-independent hysteresis: alpha p - h, with h' = beta p' - gamma p' |h|^n"
-      " - eta |p'| |h|^(n-1) h."};
+      .id = "bouc_wen",
+      .station = Station::actuator,
+      .kind = Kind::element,
+      .inverse = Inverse::implicit,
+      .title = "Bouc-Wen hysteresis",
+      .meaning = "Rate-independent hysteresis.",
+      .equation = "y += alpha p - h, h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h"};
   static constexpr std::array parameters{
-      ParameterSpec{"alpha_mm_per_kpa", "mm/kPa", 0.35, 0.0, 10.0, 0.1, "elastic gain", false, 0.0},
+      ParameterSpec{.name = "alpha_mm_per_kpa",
+                    .unit = "mm/kPa",
+                    .default_value = 0.35,
+                    .lower = 0.0,
+                    .upper = 10.0,
+                    .scale = 0.1,
+                    .meaning = "elastic gain",
+                    .neutral = 0.0},
       ParameterSpec{
-          "beta_mm_per_kpa", "mm/kPa", 0.2, 0.0, 10.0, 0.1,
-          "gain of the hysteresis state at its zero; below the instantaneous gain of the whole actuator"
-          " where the model can be inverted",
-          false, 0.0},
+          .name = "beta_mm_per_kpa",
+          .unit = "mm/kPa",
+          .default_value = 0.2,
+          .lower = 0.0,
+          .upper = 10.0,
+          .scale = 0.1,
+          .meaning =
+              "gain of the hysteresis state at its zero; below the instantaneous gain of the whole actuator"
+              " where the model can be inverted",
+          .neutral = 0.0},
       ParameterSpec{
-          "gamma_per_kpa", "1/kPa", 0.03, -10.0, 10.0, 0.02,
-          "how fast the hysteresis state levels off, both ways alike (per mm^(exponent-1) besides)"},
+          .name = "gamma_per_kpa",
+          .unit = "1/kPa",
+          .default_value = 0.03,
+          .lower = -10.0,
+          .upper = 10.0,
+          .scale = 0.02,
+          .meaning =
+              "how fast the hysteresis state levels off, both ways alike (per mm^(exponent-1) besides)"},
       ParameterSpec{
-          "eta_per_kpa", "1/kPa", 0.03, 0.0, 10.0, 0.02,
-          "how fast it levels off while it grows: the width of the loop (per mm^(exponent-1) besides)"},
-      ParameterSpec{"exponent", "", 1.0, 1.0, 4.0, 1.0, "n, sharpness of the levelling off", true}};
+          .name = "eta_per_kpa",
+          .unit = "1/kPa",
+          .default_value = 0.03,
+          .lower = 0.0,
+          .upper = 10.0,
+          .scale = 0.02,
+          .meaning =
+              "how fast it levels off while it grows: the width of the loop (per mm^(exponent-1) besides)"},
+      ParameterSpec{.name = "exponent",
+                    .unit = "",
+                    .default_value = 1.0,
+                    .lower = 1.0,
+                    .upper = 4.0,
+                    .scale = 1.0,
+                    .meaning = "n, sharpness of the levelling off",
+                    .whole = true}};
 
   BoucWen(std::span<const T> values, const Preparation&)
       : alpha_(values[0]),

@@ -15,19 +15,38 @@ namespace softgrip::model {
 template <class T>
 class KelvinVoigt {
  public:
-  static constexpr BlockInfo info{
-      "kelvin_voigt",
-      Station::actuator,
-      Kind::element,
-      Inverse::implicit,
-      "Kelvin-Voigt creep",
-      "A spring in series with branches of spring and dashpot: 1/k0 + sum 1/(c s + k)."};
-  static constexpr std::array parameters{ParameterSpec{"k0_kpa_per_mm", "kPa/mm", 300.0, 1e-3, 1e9, 50.0,
-                                                       "stiffness of the instantaneous spring", false, 1e9}};
+  static constexpr BlockInfo info{.id = "kelvin_voigt",
+                                  .station = Station::actuator,
+                                  .kind = Kind::element,
+                                  .inverse = Inverse::implicit,
+                                  .title = "Kelvin-Voigt creep",
+                                  .meaning = "Creep: a spring in series with branches of spring and dashpot.",
+                                  .equation = "y += p/k0 + x1 + x2 + ..., c x' = p - k x in every branch"};
+  static constexpr std::array parameters{ParameterSpec{.name = "k0_kpa_per_mm",
+                                                       .unit = "kPa/mm",
+                                                       .default_value = 300.0,
+                                                       .lower = 1e-3,
+                                                       .upper = 1e9,
+                                                       .scale = 50.0,
+                                                       .meaning = "stiffness of the instantaneous spring",
+                                                       .neutral = 1e9}};
   static constexpr std::array repeated{
-      ParameterSpec{"k#_kpa_per_mm", "kPa/mm", 5.0, 0.0, 1e9, 2.0, "stiffness of branch #", false, 1e9},
-      ParameterSpec{"c#_kpa_s_per_mm", "kPa s/mm", 10.0, 1e-9, 1e9, 5.0,
-                    "damping of branch #; its time constant is c/k", false, 1e9}};
+      ParameterSpec{.name = "k#_kpa_per_mm",
+                    .unit = "kPa/mm",
+                    .default_value = 5.0,
+                    .lower = 0.0,
+                    .upper = 1e9,
+                    .scale = 2.0,
+                    .meaning = "stiffness of branch #",
+                    .neutral = 1e9},
+      ParameterSpec{.name = "c#_kpa_s_per_mm",
+                    .unit = "kPa s/mm",
+                    .default_value = 10.0,
+                    .lower = 1e-9,
+                    .upper = 1e9,
+                    .scale = 5.0,
+                    .meaning = "damping of branch #; its time constant is c/k",
+                    .neutral = 1e9}};
   static constexpr std::size_t max_parts = 8;
 
   KelvinVoigt(std::span<const T> values, const Preparation& preparation)

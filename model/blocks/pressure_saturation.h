@@ -10,11 +10,21 @@ namespace softgrip::model {
 template <class T>
 class PressureSaturation {
  public:
-  static constexpr BlockInfo info{"pressure_saturation", Station::valve,
-                                  Kind::pressure,        Inverse::bound,
-                                  "Pressure saturation", "The pressure stops below the command."};
-  static constexpr std::array parameters{ParameterSpec{"limit_kpa", "kPa", 100.0, 0.0, 10000.0, 5.0,
-                                                       "highest pressure the valve reaches", false, 10000.0}};
+  static constexpr BlockInfo info{.id = "pressure_saturation",
+                                  .station = Station::valve,
+                                  .kind = Kind::pressure,
+                                  .inverse = Inverse::bound,
+                                  .title = "Pressure saturation",
+                                  .meaning = "The pressure stops below the command.",
+                                  .equation = "p = min(u, limit)"};
+  static constexpr std::array parameters{ParameterSpec{.name = "limit_kpa",
+                                                       .unit = "kPa",
+                                                       .default_value = 100.0,
+                                                       .lower = 0.0,
+                                                       .upper = 10000.0,
+                                                       .scale = 5.0,
+                                                       .meaning = "highest pressure the valve reaches",
+                                                       .neutral = 10000.0}};
 
   PressureSaturation(std::span<const T> values, const Preparation&) : limit_kpa_(values[0]) {}
 

@@ -103,7 +103,8 @@ TEST(Model, BlocksFindTheirPlace) {
   }
   EXPECT_TRUE(validate(model).empty());
   EXPECT_EQ(*position_of(model, "valve_lag"), 0u);
-  EXPECT_EQ(*position_of(model, "quantisation"), 4u);  // behind nothing of its kind when it came
+  EXPECT_EQ(*position_of(model, "sensor_noise"), 4u);
+  EXPECT_EQ(*position_of(model, "quantisation"), 5u);  // last, though it came first
   EXPECT_FALSE(position_of(model, "transport_delay"));
   EXPECT_FALSE(position_of(without_block(model, *find_block("contact")), "contact"));
 }

@@ -1,0 +1,87 @@
+#pragma once
+// No motion below a threshold pressure: the bladder must fill, the fold must open.
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// q = p - p0 above p0, 0 between 0 and p0, p below 0.
+template <class T>
+class ActuatorThreshold {
+ public:
+  static constexpr BlockInfo info{.id = "actuator_threshold",
+                                  .station = Station::actuator,
+                                  .kind = Kind::pressure,
+                                  .inverse = Inverse::implicit,
+                                  .title = "Actuator threshold",
+                                  .meaning = "No motion below a threshold pressure.",
+                                  .equation = "q = max(p - p0, 0) for p >= 0"};
+  static constexpr std::array parameters{ParameterSpec{.name = "threshold_kpa",
+                                                       .unit = "kPa",
+                                                       .default_value = 3.0,
+                                                       .lower = 0.0,
+                                                       .upper = 1000.0,
+                                                       .scale = 1.0,
+                                                       .meaning = "pressure at which motion begins",
+                                                       .neutral = 0.0}};
+
+  ActuatorThreshold(std::span<const T> values, const Preparation&) : threshold_kpa_(values[0]) {}
+
+  void reset(const T& input) { output_ = map(input); }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    const auto pass = [&](const Segment<T>& piece) {
+      // Inside one of the three zones the map is a shift or nothing moves.
+      const double middle = 0.5 * (value_of(piece.begin) + value_of(piece.end));
+      const T begin = output_;
+      output_ = map(piece.end);
+      if (middle > value_of(threshold_kpa_)) {
+        next(Segment<T>{piece.duration_s, begin, output_, piece.mean - threshold_kpa_});
+      } else {
+        next(middle >= 0.0 ? Segment<T>{piece.duration_s, begin, output_, output_}
+                           : Segment<T>{piece.duration_s, begin, output_, piece.mean});
+      }
+    };
+    if (passes(in, threshold_kpa_)) {
+      const T fraction = in.fraction_at(threshold_kpa_);
+      cut_at_zero(in.before(fraction), pass);
+      cut_at_zero(in.beyond(fraction), pass);
+    } else {
+      cut_at_zero(in, pass);
+    }
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+    return map(end_kpa);
+  }
+
+ private:
+  template <class U>
+  [[nodiscard]] U map(const U& p) const {
+    if (value_of(p) > value_of(threshold_kpa_)) return p - threshold_kpa_;
+    return value_of(p) < 0.0 ? p : U(0.0);
+  }
+
+  static bool passes(const Segment<T>& in, const T& level) {
+    return (value_of(in.begin) - value_of(level)) * (value_of(in.end) - value_of(level)) < 0.0;
+  }
+
+  template <class Pass>
+  static void cut_at_zero(const Segment<T>& in, Pass&& pass) {
+    if (passes(in, T(0.0))) {
+      const T fraction = in.fraction_at(T(0.0));
+      pass(in.before(fraction));
+      pass(in.beyond(fraction));
+    } else {
+      pass(in);
+    }
+  }
+
+  T threshold_kpa_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,97 @@
+#pragma once
+// Ringing: the mass of finger and load on the spring of the actuator.
+
+#include <cmath>
+#include <numbers>
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// z'' + 2 d w z' + w^2 z = w^2 y with w = 2 pi / period. Exact for a displacement that is a parabola over
+/// each segment. Period 0 passes the displacement on.
+template <class T>
+class Inertia {
+ public:
+  static constexpr BlockInfo info{.id = "inertia",
+                                  .station = Station::load,
+                                  .kind = Kind::displacement,
+                                  .inverse = Inverse::ignored,
+                                  .title = "Inertia",
+                                  .meaning = "Ringing: a second-order mode of mass and spring.",
+                                  .equation = "z'' + 2 d w z' + w^2 z = w^2 y, w = 2 pi/period"};
+  static constexpr std::array parameters{ParameterSpec{.name = "period_s",
+                                                       .unit = "s",
+                                                       .default_value = 0.1,
+                                                       .lower = 0.0,
+                                                       .upper = 10.0,
+                                                       .scale = 0.05,
+                                                       .meaning = "period of the undamped mode",
+                                                       .neutral = 0.0},
+                                         ParameterSpec{.name = "damping_ratio",
+                                                       .unit = "",
+                                                       .default_value = 0.2,
+                                                       .lower = 0.005,
+                                                       .upper = 0.95,
+                                                       .scale = 0.1,
+                                                       .meaning = "d; 1 would not ring any more"}};
+
+  Inertia(std::span<const T> values, const Preparation&)
+      : passes_(!(value_of(values[0]) > 1e-6)),
+        omega_(passes_ ? T(1.0) : T(2.0 * std::numbers::pi / values[0])),
+        damping_(values[1]) {}
+
+  void reset(const T& input) {
+    output_ = input;
+    speed_ = T(0.0);
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    if (passes_) {
+      output_ = in.end;
+      next(in);
+      return;
+    }
+    if (!(value_of(in.duration_s) > 0.0)) return;  // a jump moves no mass
+    const T begin = output_;
+    const T speed = speed_;
+    advance(in);
+    // Integrating the equation over the segment gives the mean.
+    const T left = (speed_ - speed) + 2.0 * damping_ * omega_ * (output_ - begin);
+    next(Segment<T>{in.duration_s, begin, output_, in.mean - left / (omega_ * omega_ * in.duration_s)});
+  }
+
+ private:
+  // Parabola a + b t + c t^2 that solves the equation, plus the decaying rest.
+  void advance(const Segment<T>& in) {
+    using std::cos;
+    using std::exp;
+    using std::sin;
+    using std::sqrt;
+    const T& dt = in.duration_s;
+    const T bend =
+        value_of(omega_) * value_of(dt) < 1e-6 ? T(0.0) : in.bend();  // below, rounding is all of it
+    const T c = -bend / (dt * dt);
+    const T b = (in.end - in.begin + bend) / dt - 4.0 * damping_ * c / omega_;
+    const T a = in.begin - 2.0 * damping_ * b / omega_ - 2.0 * c / (omega_ * omega_);
+    const T decay = damping_ * omega_;
+    const T ringing = omega_ * sqrt(1.0 - damping_ * damping_);
+    const T envelope = exp(-decay * dt);
+    const T cosine = envelope * cos(ringing * dt);
+    const T sine = envelope * sin(ringing * dt) / ringing;
+    const T offset = output_ - a;
+    const T rate = speed_ - b;
+    output_ = a + b * dt + c * dt * dt + (cosine + decay * sine) * offset + sine * rate;
+    speed_ = b + 2.0 * c * dt - omega_ * omega_ * sine * offset + (cosine - decay * sine) * rate;
+  }
+
+  bool passes_;
+  T omega_;
+  T damping_;
+  T output_{0.0};
+  T speed_{0.0};
+};
+
+}  // namespace softgrip::model

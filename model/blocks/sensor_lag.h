@@ -1,0 +1,68 @@
+#pragma once
+// The reading lags the displacement: the filter of the sensor or of its amplifier.
+
+#include "model/block.h"
+#include "model/exponential.h"
+#include "model/weight_cache.h"
+
+namespace softgrip::model {
+
+/// tau z' = y - z. Exact for a displacement that is a parabola over each segment.
+template <class T>
+class SensorLag {
+ public:
+  static constexpr BlockInfo info{.id = "sensor_lag",
+                                  .station = Station::sensor,
+                                  .kind = Kind::displacement,
+                                  .inverse = Inverse::ignored,
+                                  .title = "Sensor lag",
+                                  .meaning = "The reading lags the displacement.",
+                                  .equation = "tau z' = y - z"};
+  static constexpr std::array parameters{ParameterSpec{.name = "time_constant_s",
+                                                       .unit = "s",
+                                                       .default_value = 0.02,
+                                                       .lower = 0.0,
+                                                       .upper = 10.0,
+                                                       .scale = 0.02,
+                                                       .meaning = "time constant",
+                                                       .neutral = 0.0}};
+
+  SensorLag(std::span<const T> values, const Preparation& preparation)
+      : time_constant_s_(values[0]), weights_(1) {
+    if (preparation.sample_time_s > 0 && !passes()) (void)weights(T(preparation.sample_time_s));
+  }
+
+  void reset(const T& input) { output_ = input; }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    if (passes()) {
+      output_ = in.end;
+      next(in);
+      return;
+    }
+    if (is_zero(in.duration_s)) return;
+    const ExponentialWeights<T>& w = weights(in.duration_s);
+    const T bend = in.bend();
+    const T begin = output_;
+    output_ = w.end(begin, in, bend);
+    next(Segment<T>{in.duration_s, begin, output_, w.mean(begin, in, bend)});
+  }
+
+ private:
+  [[nodiscard]] bool passes() const { return value_of(time_constant_s_) <= 0.0; }
+
+  const ExponentialWeights<T>& weights(const T& duration_s) {
+    return weights_.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
+      const T rate = 1.0 / time_constant_s_;
+      out[0] = ExponentialWeights<T>::make(duration_s, rate, rate);
+    })[0];
+  }
+
+  T time_constant_s_;
+  T output_{0.0};
+  WeightCache<T> weights_;
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,69 @@
+#pragma once
+// The scale of the sensor is bent between its calibration points.
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// x = y/range: z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2x) inside the range, straight
+/// continuations outside. Right at both ends of the range, off by `bow` in the middle, and by up to `wave`
+/// the one way and the other to either side of it.
+template <class T>
+class SensorNonlinearity {
+ public:
+  static constexpr BlockInfo info{
+      .id = "sensor_nonlinearity",
+      .station = Station::sensor,
+      .kind = Kind::reading,
+      .inverse = Inverse::ignored,
+      .title = "Sensor nonlinearity",
+      .meaning = "The scale is bent between its calibration points.",
+      .equation = "z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2 x), x = y/range"};
+  static constexpr std::array parameters{
+      ParameterSpec{.name = "bow_mm",
+                    .unit = "mm",
+                    .default_value = 0.2,
+                    .lower = -100.0,
+                    .upper = 100.0,
+                    .scale = 0.1,
+                    .meaning = "error in the middle of the range",
+                    .neutral = 0.0},
+      ParameterSpec{.name = "wave_mm",
+                    .unit = "mm",
+                    .default_value = 0.0,
+                    .lower = -100.0,
+                    .upper = 100.0,
+                    .scale = 0.1,
+                    .meaning = "largest error of opposite sign in the two halves",
+                    .neutral = 0.0},
+      ParameterSpec{.name = "range_mm",
+                    .unit = "mm",
+                    .default_value = 30.0,
+                    .lower = 0.1,
+                    .upper = 1000.0,
+                    .scale = 10.0,
+                    .meaning = "displacement of the upper calibration point, the lower one is 0"}};
+
+  SensorNonlinearity(std::span<const T> values, const Preparation&)
+      : bow_mm_(values[0] * 4.0), wave_mm_(values[1] * 10.392304845413264), range_mm_(values[2]) {}
+
+  void reset(const T& input) { output_ = map(input); }
+  [[nodiscard]] T output() const { return output_; }
+
+  T sample(const T& displacement_mm, const T&, const Surroundings&) { return output_ = map(displacement_mm); }
+
+ private:
+  [[nodiscard]] T map(const T& y) const {
+    const T x = y / range_mm_;
+    if (value_of(x) < 0.0) return y + (bow_mm_ + wave_mm_) * x;
+    if (value_of(x) > 1.0) return y + (wave_mm_ - bow_mm_) * (x - 1.0);
+    return y + x * (1.0 - x) * (bow_mm_ + wave_mm_ * (1.0 - 2.0 * x));
+  }
+
+  T bow_mm_;   // times 4
+  T wave_mm_;  // times 6 sqrt(3)
+  T range_mm_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,59 @@
+#pragma once
+// The reading clips at the ends of the sensor's range.
+
+#include "model/block.h"
+#include "model/clip.h"
+
+namespace softgrip::model {
+
+/// z = y between the ends.
+template <class T>
+class SensorSaturation {
+ public:
+  static constexpr BlockInfo info{.id = "sensor_saturation",
+                                  .station = Station::sensor,
+                                  .kind = Kind::reading,
+                                  .inverse = Inverse::ignored,
+                                  .title = "Sensor saturation",
+                                  .meaning = "The reading clips at the ends of the sensor's range.",
+                                  .equation = "z = min(max(y, lower), upper)"};
+  static constexpr std::array parameters{ParameterSpec{.name = "lower_mm",
+                                                       .unit = "mm",
+                                                       .default_value = -10.0,
+                                                       .lower = -10000.0,
+                                                       .upper = 10000.0,
+                                                       .scale = 2.0,
+                                                       .meaning = "smallest reading",
+                                                       .neutral = -10000.0},
+                                         ParameterSpec{.name = "upper_mm",
+                                                       .unit = "mm",
+                                                       .default_value = 20.0,
+                                                       .lower = -10000.0,
+                                                       .upper = 10000.0,
+                                                       .scale = 2.0,
+                                                       .meaning = "largest reading",
+                                                       .neutral = 10000.0}};
+
+  SensorSaturation(std::span<const T> values, const Preparation&)
+      : lower_mm_(values[0]), upper_mm_(values[1]) {}
+
+  static std::string_view objection(std::span<const double> values) {
+    return values[0] < values[1] ? std::string_view{} : "lower_mm must lie below upper_mm";
+  }
+
+  void reset(const T& input) { output_ = clipped(input); }
+  [[nodiscard]] T output() const { return output_; }
+
+  T sample(const T& displacement_mm, const T&, const Surroundings&) {
+    return output_ = clipped(displacement_mm);
+  }
+
+ private:
+  [[nodiscard]] T clipped(const T& y) const { return lesser(greater(y, lower_mm_), upper_mm_); }
+
+  T lower_mm_;
+  T upper_mm_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

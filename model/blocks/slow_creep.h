@@ -1,0 +1,87 @@
+#pragma once
+// Creep slower than the slowest branch of the model: one more Kelvin-Voigt branch, given by what it adds.
+
+#include "model/block.h"
+#include "model/exponential.h"
+#include "model/weight_cache.h"
+
+namespace softgrip::model {
+
+/// tau x' = gain p - x. The same as a Kelvin-Voigt branch of stiffness 1/gain and damping tau/gain, but
+/// defined at gain 0 and apart from the branches of the given model.
+template <class T>
+class SlowCreep {
+ public:
+  static constexpr BlockInfo info{.id = "slow_creep",
+                                  .station = Station::actuator,
+                                  .kind = Kind::element,
+                                  .inverse = Inverse::implicit,
+                                  .title = "Slow creep",
+                                  .meaning = "Creep slower than the model's slowest branch.",
+                                  .equation = "tau x' = gain p - x"};
+  static constexpr std::array parameters{ParameterSpec{.name = "gain_mm_per_kpa",
+                                                       .unit = "mm/kPa",
+                                                       .default_value = 0.05,
+                                                       .lower = -10.0,
+                                                       .upper = 10.0,
+                                                       .scale = 0.02,
+                                                       .meaning = "what it adds in the end",
+                                                       .neutral = 0.0},
+                                         ParameterSpec{.name = "time_constant_s",
+                                                       .unit = "s",
+                                                       .default_value = 60.0,
+                                                       .lower = 0.1,
+                                                       .upper = 1e6,
+                                                       .scale = 30.0,
+                                                       .meaning = "how long it takes"}};
+
+  SlowCreep(std::span<const T> values, const Preparation& preparation)
+      : gain_(values[0]), rate_(1.0 / values[1]), weights_(1) {
+    if (preparation.sample_time_s > 0) (void)weights(T(preparation.sample_time_s));
+  }
+
+  void reset(const T& input) {
+    pressure_ = input;
+    creep_kpa_ = input;
+    output_ = gain_ * creep_kpa_;
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    const T begin = output_;
+    pressure_ = in.end;
+    if (is_zero(in.duration_s)) return {in.duration_s, begin, begin, begin};
+    const ExponentialWeights<T>& w = weights(in.duration_s);
+    const T bend = in.bend();
+    const T mean = w.mean(creep_kpa_, in, bend);
+    creep_kpa_ = w.end(creep_kpa_, in, bend);
+    output_ = gain_ * creep_kpa_;
+    return {in.duration_s, begin, output_, gain_ * mean};
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const {
+    if (is_zero(duration_s)) return U(output_);
+    const ExponentialWeights<T>* kept = weights_.find(duration_s);
+    const ExponentialWeights<T> w =
+        kept != nullptr ? *kept : ExponentialWeights<T>::make(duration_s, rate_, rate_);
+    const T fixed = creep_kpa_ - w.loss * creep_kpa_ + w.end_begin * pressure_ - w.end_rise * pressure_;
+    return gain_ * fixed + (gain_ * w.end_rise) * end_kpa;
+  }
+
+ private:
+  const ExponentialWeights<T>& weights(const T& duration_s) {
+    return weights_.at(duration_s, [&](std::span<ExponentialWeights<T>> out) {
+      out[0] = ExponentialWeights<T>::make(duration_s, rate_, rate_);
+    })[0];
+  }
+
+  T gain_;
+  T rate_;  // 1/tau
+  T pressure_{0.0};
+  T creep_kpa_{0.0};  // the pressure as the creep has felt it so far
+  T output_{0.0};
+  WeightCache<T> weights_;
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,61 @@
+#pragma once
+// The gain changes with displacement, both ways alike.
+
+#include "model/block.h"
+#include "model/static_map.h"
+
+namespace softgrip::model {
+
+/// z = y / (1 + s |y|) for s >= 0, y (1 - s |y|) below: odd, monotone for every s, smooth in s through 0.
+template <class T>
+class Stiffening {
+ public:
+  static constexpr BlockInfo info{
+      .id = "stiffening",
+      .station = Station::actuator,
+      .kind = Kind::displacement,
+      .inverse = Inverse::implicit,
+      .title = "Stiffening",
+      .meaning = "The gain changes with displacement, loading and unloading alike.",
+      .equation = "z = y / (1 + s |y|), for s < 0: y (1 - s |y|)"};
+  static constexpr std::array parameters{
+      ParameterSpec{.name = "stiffening_per_mm",
+                    .unit = "1/mm",
+                    .default_value = 0.01,
+                    .lower = -1.0,
+                    .upper = 1.0,
+                    .scale = 0.005,
+                    .meaning = "relative loss of gain per displacement, doubled at the tangent",
+                    .neutral = 0.0}};
+
+  Stiffening(std::span<const T> values, const Preparation&) : stiffening_per_mm_(values[0]) {}
+
+  void reset(const T& input) { output_ = map(input); }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    const Segment<T> out = mapped(
+        in, [this](const T& y) { return map(y); }, output_);
+    output_ = out.end;
+    next(out);
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_mm, const Surroundings&) const {
+    return map(end_mm);
+  }
+
+ private:
+  template <class U>
+  [[nodiscard]] U map(const U& y) const {
+    const U magnitude = value_of(y) < 0.0 ? U(-y) : y;
+    const U bent = stiffening_per_mm_ * magnitude;
+    return value_of(stiffening_per_mm_) >= 0.0 ? U(y / (1.0 + bent)) : U(y * (1.0 - bent));
+  }
+
+  T stiffening_per_mm_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,88 @@
+#pragma once
+// Softer after the largest load so far (the Mullins effect of filled rubbers).
+
+#include "model/block.h"
+#include "model/clip.h"
+
+namespace softgrip::model {
+
+/// q = p (1 + s m) with m the largest pressure so far: the first loading curve is steeper than a line, and
+/// every later one up to m is straight, above it. Runs through a campaign: only reset() forgets m.
+template <class T>
+class StressSoftening {
+ public:
+  static constexpr BlockInfo info{.id = "stress_softening",
+                                  .station = Station::actuator,
+                                  .kind = Kind::pressure,
+                                  .inverse = Inverse::implicit,
+                                  .title = "Stress softening",
+                                  .meaning = "Softer after the largest load so far (Mullins).",
+                                  .equation = "q = p (1 + s m), m = largest pressure so far"};
+  static constexpr std::array parameters{
+      ParameterSpec{.name = "softening_per_kpa",
+                    .unit = "1/kPa",
+                    .default_value = 0.002,
+                    .lower = 0.0,
+                    .upper = 1.0,
+                    .scale = 0.001,
+                    .meaning = "relative gain won per pressure of the largest load",
+                    .neutral = 0.0}};
+
+  StressSoftening(std::span<const T> values, const Preparation&) : softening_per_kpa_(values[0]) {}
+
+  void reset(const T& input) {
+    largest_kpa_ = greater(input, T(0.0));
+    output_ = map(input, largest_kpa_);
+  }
+  [[nodiscard]] T output() const { return output_; }
+  [[nodiscard]] const T& largest_kpa() const { return largest_kpa_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    const double largest = value_of(largest_kpa_);
+    if (value_of(in.end) <= largest) {
+      again(in, next);
+    } else if (value_of(in.begin) >= largest) {
+      anew(in, next);
+    } else {
+      const T fraction = in.fraction_at(largest_kpa_);
+      again(in.before(fraction), next);
+      anew(in.beyond(fraction), next);
+    }
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+    return value_of(end_kpa) > value_of(largest_kpa_) ? map(end_kpa, end_kpa) : map(end_kpa, U(largest_kpa_));
+  }
+
+ private:
+  template <class U>
+  [[nodiscard]] U map(const U& p, const U& largest) const {
+    return p * (1.0 + softening_per_kpa_ * largest);
+  }
+
+  // Below the largest load: a straight line.
+  template <class Next>
+  void again(const Segment<T>& in, Next&& next) {
+    const T begin = output_;
+    output_ = map(in.end, largest_kpa_);
+    next(Segment<T>{in.duration_s, begin, output_, map(in.mean, largest_kpa_)});
+  }
+
+  // Beyond it the load is the largest so far at every moment. The mean of p^2 is that of a straight p.
+  template <class Next>
+  void anew(const Segment<T>& in, Next&& next) {
+    const T begin = output_;
+    largest_kpa_ = in.end;
+    output_ = map(in.end, in.end);
+    const T mean_square = (in.begin * in.begin + in.begin * in.end + in.end * in.end) * (1.0 / 3.0);
+    next(Segment<T>{in.duration_s, begin, output_, in.mean + softening_per_kpa_ * mean_square});
+  }
+
+  T softening_per_kpa_;
+  T largest_kpa_{0.0};
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

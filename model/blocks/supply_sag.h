@@ -1,0 +1,63 @@
+#pragma once
+// The pressure follows a falling supply.
+
+#include "model/block.h"
+#include "model/gain.h"
+#include "model/moving_gain.h"
+
+namespace softgrip::model {
+
+/// p = u (1 - coupling * loss), loss = max(0, 1 - supply/nominal). The supply comes with the surroundings; a
+/// log needs its supply_kpa column.
+template <class T>
+class SupplySag {
+ public:
+  static constexpr BlockInfo info{
+      .id = "supply_sag",
+      .station = Station::valve,
+      .kind = Kind::pressure,
+      .inverse = Inverse::ignored,
+      .title = "Supply sag",
+      .meaning = "The pressure follows a supply that falls below its nominal value.",
+      .equation = "p = u (1 - coupling max(0, 1 - supply/nominal))"};
+  static constexpr std::array parameters{
+      ParameterSpec{.name = "coupling",
+                    .unit = "",
+                    .default_value = 0.2,
+                    .lower = 0.0,
+                    .upper = 1.0,
+                    .scale = 0.1,
+                    .meaning = "share of a relative loss of supply that reaches the pressure",
+                    .neutral = 0.0},
+      ParameterSpec{.name = "nominal_kpa",
+                    .unit = "kPa",
+                    .default_value = 500.0,
+                    .lower = 1.0,
+                    .upper = 10000.0,
+                    .scale = 50.0,
+                    .meaning = "supply pressure at and above which nothing is lost"}};
+
+  SupplySag(std::span<const T> values, const Preparation&) : coupling_(values[0]), nominal_kpa_(values[1]) {}
+
+  void reset(const T& input) {
+    gain_.reset(T(1.0));
+    output_ = input;
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings& surroundings, Next&& next) {
+    const T loss = 1.0 - surroundings.supply_kpa / nominal_kpa_;
+    const Segment<T> out = gain_.step(in, value_of(loss) > 0.0 ? T(1.0 - coupling_ * loss) : T(1.0));
+    output_ = out.end;
+    next(out);
+  }
+
+ private:
+  T coupling_;
+  T nominal_kpa_;
+  MovingGain<T> gain_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model
