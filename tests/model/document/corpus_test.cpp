@@ -1,0 +1,31 @@
+// The fuzzer's corpus, replayed in every build: what it found interesting stays harmless.
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace {
+
+TEST(Corpus, IsHarmless) {
+  std::size_t files = 0;
+  const std::filesystem::path folder =
+      std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/model/document/corpus";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string whole = text + text;  // a second document, a line without its end
+    for (const std::string& input : {text, whole, text.substr(text.size() / 2)}) {
+      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 50U);
+}
+
+}  // namespace
