@@ -85,7 +85,7 @@ std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_
   refused = 0;
   for (std::uint64_t i = 0; static_cast<int>(models.size()) < count && i < 100000; ++i) {
     model::Model drawn = control::with_scatter(scheme.believed, scatter, model::derived_seed(seed, i));
-    const control::LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
+    const control::LimitSettings limits{0, scheme.pressure_max_kpa, 400, 400, 0, 30, 1};
     if (control::check_feedforward(drawn, {scheme.kind, 0}, limits, tick_s)) {
       models.push_back(std::move(drawn));
     } else {
@@ -205,7 +205,7 @@ double quantile(std::vector<double> values, double share) {
 }
 
 void study(const Scheme& scheme, const Options& options, const model::Model& finger) {
-  const control::LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
+  const control::LimitSettings limits{0, scheme.pressure_max_kpa, 400, 400, 0, 30, 1};
   const auto accepted = control::check_feedforward(scheme.believed, {scheme.kind, 0}, limits, tick_s);
   std::printf("\n%s\n", scheme.name.c_str());
   if (!accepted) {
@@ -215,7 +215,7 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
   int refused = 0;
   const auto models = draws_of(scheme, options.draws, model::derived_seed(options.seed, 1), refused);
   if (refused > 0) {
-    std::printf("  %d of %zu scattered models refused (no inverse over 0 to 60 kPa) and drawn again\n",
+    std::printf("  %d of %zu scattered models refused (no inverse over 0 to %.0f kPa) and drawn again\n",
                 refused, models.size() + static_cast<std::size_t>(refused));
   }
   for (const double frequency : frequencies_hz) {

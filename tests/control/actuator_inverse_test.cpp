@@ -69,6 +69,16 @@ TEST(ActuatorInverse, SolvesFromRandomStates) {
   }
 }
 
+// The slope has a kink where the pressure turns: the last, unchecked step of the iteration must not cross it.
+TEST(ActuatorInverse, ATurnRightBesideTheGuessIsExactToo) {
+  ActuatorInverse inverse(body_of(model_named("bench_twin")), tick_s);
+  for (const double pressure : {20.0, 40.0 - 2e-6, 40.0 - 1e-6, 40.0}) inverse.advance(pressure);
+  for (const double turn : {1e-6, 4e-6, 1e-5, 1.5e-5}) {
+    const double wanted = inverse.displacement_at(40 - turn);
+    EXPECT_NEAR(inverse.displacement_at(inverse.solve(wanted, 0, 60).pressure_kpa), wanted, 2e-11) << turn;
+  }
+}
+
 TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
   const model::Model body = body_of(model_named("bench_twin"));
   ActuatorInverse inverse(body, tick_s);
