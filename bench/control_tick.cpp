@@ -78,7 +78,7 @@ void channel(benchmark::State& state) {
   Tape tape(settings);
   control::ChannelController controller(settings, tick_s);
   int k = 1;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     if (k == static_cast<int>(tape.readings_mm.size())) {
       state.PauseTiming();
       controller.start(0);
@@ -101,7 +101,7 @@ void two_channels_percentiles(benchmark::State& state) {
   std::vector<double> times_ns;
   times_ns.reserve(1 << 22);
   int k = 1;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     if (k == static_cast<int>(tape.readings_mm.size())) {
       for (auto& controller : controllers) controller.start(0);
       k = 1;
@@ -126,7 +126,7 @@ BENCHMARK(two_channels_percentiles);
 void running_model(benchmark::State& state) {
   control::RunningModel model(twin(), tick_s, 0, 0.05);
   double t = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     t += 0.01;
     model.advance(20 + t);
     if (t > 20) t = 0;
@@ -142,7 +142,7 @@ void actuator_inverse(benchmark::State& state) {
   (void)reference.ramp_for(6, 2);
   (void)reference.sine(13, 7, 0.1, 1000);
   double t = 0;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     t += tick_s;
     const auto solution = inverse.solve(reference.at(t).value, 0, 60);
     inverse.advance(solution.pressure_kpa);
@@ -156,7 +156,7 @@ void reference_at(benchmark::State& state) {
   (void)reference.ramp_for(6, 2);
   (void)reference.sine(13, 7, 0.1, 1000);
   double t = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(reference.at(t += tick_s));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(reference.at(t += tick_s));
 }
 BENCHMARK(reference_at);
 

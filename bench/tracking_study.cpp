@@ -201,7 +201,7 @@ PidSettings search(const Scheme& scheme, const Options& options, const model::Mo
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
 void study(const Scheme& scheme, const Options& options, const model::Model& finger) {
@@ -216,7 +216,7 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
   const auto models = draws_of(scheme, options.draws, model::derived_seed(options.seed, 1), refused);
   if (refused > 0) {
     std::printf("  %d of %zu scattered models refused (no inverse over 0 to %.0f kPa) and drawn again\n",
-                refused, models.size() + static_cast<std::size_t>(refused));
+                refused, models.size() + static_cast<std::size_t>(refused), scheme.pressure_max_kpa);
   }
   for (const double frequency : frequencies_hz) {
     const PidSettings pid = search(scheme, options, finger, frequency);

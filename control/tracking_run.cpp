@@ -19,6 +19,9 @@ namespace {
 
 constexpr double rest_s = 0.5;
 constexpr double approach_s = 3;
+/// The grid on which a loop's frequency response is looked at.
+constexpr double lowest_hz = 1e-3;
+constexpr double step_factor = 1.005;
 
 Reference reference_of(const TrackingRun& run) {
   Reference reference;
@@ -179,7 +182,9 @@ LoopMargins loop_margins(const model::Model& model, const PidSettings& pid, doub
     bool beyond = true;  // |L| > 1 so far, as it is at the lowest frequency with an integrator
     double phase = 0;
     std::complex<double> before = 0;
-    for (double hz = 1e-3; hz < 0.5 / tick_s; hz *= 1.005) {
+    const auto steps = static_cast<int>(std::log(0.5 / tick_s / lowest_hz) / std::log(step_factor));
+    for (int i = 0; i < steps; ++i) {
+      const double hz = lowest_hz * std::pow(step_factor, i);
       const std::complex<double> s(0, 2 * std::numbers::pi * hz);
       const std::complex<double> controller = pid.kp_kpa_per_mm + pid.ki_kpa_per_mm_s / s +
                                               pid.kd_kpa_s_per_mm * s / (1.0 + pid.derivative_filter_s * s);
