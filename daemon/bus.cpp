@@ -18,6 +18,15 @@ bool loses_session(BusStatus status) noexcept {
          status == BusStatus::bad_reply || status == BusStatus::watchdog_tripped;
 }
 
+/// After these the outputs are not where the controller believes they are.
+bool said_by_board(BusStatus status) noexcept {
+  return status == BusStatus::write_refused || status == BusStatus::watchdog_tripped;
+}
+
+/// The loop reads the newest report only; with several it cannot miss what the board said, however their
+/// grids jitter against each other.
+constexpr std::uint32_t reports_of_a_refusal = 3;
+
 }  // namespace
 
 FaultCode fault_of(BusStatus status) noexcept {
@@ -65,6 +74,7 @@ void Bus::run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept {
 }
 
 void Bus::step(Nanoseconds due) noexcept {
+  statistics_.steps.add();
   statistics_.wake_up.add(clock_.now() - due);
   if (!fetch_commands()) return;
   if (ensure_session()) {
@@ -126,12 +136,20 @@ void Bus::exchange() noexcept {
   }
   statistics_.exchange.add(clock_.now() - begin);
   report_.health = {true, silent_ ? FaultCode::cycles_lost : FaultCode::none, silent_ ? unheard_ : 0};
+  if (repeats_ > 0) {
+    --repeats_;
+    report_.health.fault = said_;
+  }
   if (told_failed_) tell(BusEvent::Kind::recovered, status);
   told_failed_ = false;
   if (commands.last) wires_.left_safely.store(true, std::memory_order_release);
 }
 
 void Bus::note_failure(BusStatus status) noexcept {
+  if (said_by_board(status)) {
+    said_ = fault_of(status);
+    repeats_ = reports_of_a_refusal;
+  }
   statistics_.failures.add();
   report_.health.connected = session_;
   report_.health.fault = fault_of(status);

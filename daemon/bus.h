@@ -28,6 +28,10 @@ class Bus {
   Bus(drivers::Board& board, const LoopSettings& loop, const ReconnectSettings& reconnect,
       const drivers::Clock& clock, Wires& wires, BusStatistics& statistics) noexcept;
 
+  /// Tries to open the session before the first step, so that what connecting measures is known. Blocks up to
+  /// connect_deadline.
+  bool open() noexcept { return ensure_session(); }
+
   /// Steps on the grid until the last commands were confirmed or `leave_deadline` has passed since the loop
   /// was told to leave.
   void run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept;
@@ -52,12 +56,14 @@ class Bus {
   std::size_t channels_;
 
   BusReport report_;
-  bool commanded_ = false;     // the loop has sent something
-  bool session_ = false;       // connect() succeeded and nothing poisoned it since
-  bool told_failed_ = false;   // the log knows about the present failure
-  bool silent_ = false;        // the loop is not heard; safe outputs are written
-  std::uint32_t unheard_ = 0;  // steps since its last commands
-  Nanoseconds pause_ = 0;      // before the attempt after the next
+  bool commanded_ = false;                              // the loop has sent something
+  bool session_ = false;                                // connect() succeeded and nothing poisoned it since
+  bool told_failed_ = false;                            // the log knows about the present failure
+  control::FaultCode said_ = control::FaultCode::none;  // by the board, and still to be reported ...
+  std::uint32_t repeats_ = 0;                           // ... so often
+  bool silent_ = false;                                 // the loop is not heard; safe outputs are written
+  std::uint32_t unheard_ = 0;                           // steps since its last commands
+  Nanoseconds pause_ = 0;                               // before the attempt after the next
   Nanoseconds next_attempt_ = 0;
 };
 

@@ -14,8 +14,9 @@ using model::Nanoseconds;
 
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;
 
+/// To the nearest double: a division is exact where a product with 1e-9 would leave 13.120000000000001.
 [[nodiscard]] constexpr double seconds(Nanoseconds duration) noexcept {
-  return static_cast<double>(duration) * 1e-9;
+  return static_cast<double>(duration) / 1e9;
 }
 [[nodiscard]] constexpr Nanoseconds nanoseconds(double duration_s) noexcept {
   return static_cast<Nanoseconds>(duration_s * 1e9 + 0.5);

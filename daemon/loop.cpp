@@ -62,10 +62,13 @@ void Loop::tick(Nanoseconds due) noexcept {
 }
 
 void Loop::read(control::TickInput& input) noexcept {
-  wires_.bus.fetch();
+  unreported_ = wires_.bus.fetch() ? 0 : unreported_ + 1;
   const BusReport& report = wires_.bus.value();
   input.readings = std::span(report.readings).first(channels_);
   input.bus = report.health;
+  // An exchange that hangs reports nothing until its deadline; its cycles are without a good exchange all the
+  // same. One missing report is the jitter of two grids.
+  if (unreported_ > 1) input.bus.consecutive_failures += unreported_ - 1;
   input.emergency_stop = wires_.inputs.emergency_stop.load(std::memory_order_relaxed);
   input.interlock_open = wires_.inputs.interlock_open.load(std::memory_order_relaxed);
   input.slipped_cycles = slipped_;

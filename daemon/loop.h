@@ -45,7 +45,8 @@ class Loop {
   std::size_t channels_;
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
-  std::uint32_t slipped_ = 0;  // told to the next tick
+  std::uint32_t unreported_ = 0;  // ticks since the bus last reported
+  std::uint32_t slipped_ = 0;     // told to the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;
   control::TickOutput output_;

@@ -74,4 +74,8 @@ inline constexpr std::string_view no_watchdog_words =
 /// parse_file() and read_rig().
 [[nodiscard]] std::optional<RigFile> load_rig(const std::string& path, document::Problems& problems);
 
+/// Gives the simulated plants other seeds, as if `seed` stood in the file. False if the board is not
+/// simulated.
+bool reseed(RigFile& rig, std::uint64_t seed);
+
 }  // namespace softgrip::daemon

@@ -198,3 +198,17 @@ void read_simulated_board(Context& context, const Node& node) {
 }
 
 }  // namespace softgrip::daemon::rig_file
+
+namespace softgrip::daemon {
+
+bool reseed(RigFile& rig, std::uint64_t seed) {
+  auto* const board = std::get_if<drivers::SimulatedBoardSettings>(&rig.board);
+  if (board == nullptr) return false;
+  rig.seed = seed;
+  for (std::size_t i = 0; i < board->channels.size(); ++i) {
+    board->channels[i].plant.seed = rig_file::seed_of(seed, i);
+  }
+  return true;
+}
+
+}  // namespace softgrip::daemon

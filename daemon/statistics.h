@@ -33,6 +33,7 @@ struct LoopStatistics {
 struct BusStatistics {
   Histogram wake_up;
   Histogram exchange;  ///< duration of good exchanges
+  Counter steps;       ///< of its grid, with an exchange or without
   Counter exchanges;
   Counter failures;
   Counter slips;

@@ -130,14 +130,30 @@ TEST_F(BusTest, CyclesWithoutASessionCountAsFailuresWhileItWaits) {
 TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
   command(12, 0, true);
   step();
-  for (const BusStatus status :
-       {BusStatus::exception, BusStatus::write_refused}) {
+  for (const BusStatus status : {BusStatus::exception, BusStatus::write_refused}) {
     board_.next_exchange = status;
     step();
     EXPECT_TRUE(wires_.bus.value().health.connected);
     EXPECT_EQ(wires_.bus.value().health.fault, fault_of(status));
+    EXPECT_EQ(wires_.bus.value().health.consecutive_failures, status == BusStatus::exception ? 1U : 2U);
   }
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
+}
+
+TEST_F(BusTest, WhatTheBoardRefusedOnceIsReportedUntilTheLoopMustHaveSeenIt) {
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::watchdog_tripped;
+  step();
+  EXPECT_FALSE(wires_.bus.value().health.connected) << "only a new session clears a watchdog";
+  board_.next_exchange = BusStatus::ok;
+  for (int report = 0; report < 3; ++report) {
+    step();
+    EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::board_watchdog_tripped);
+    EXPECT_TRUE(wires_.bus.value().health.connected);
+  }
+  step();
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::none);
 }
 
 TEST_F(BusTest, LeavesWhenTheBoardHasConfirmedTheLastCommands) {

@@ -1,0 +1,40 @@
+#pragma once
+// The daemon's own log: events and the reports of start and end, on the standard error.
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "daemon/daemon.h"
+#include "daemon/event_log.h"
+
+namespace spdlog {
+class logger;
+}
+
+namespace softgrip::daemon {
+
+/// Never used in the loop. Events of one kind that come faster than 20 in 10 s are counted instead of
+/// printed.
+class EventPrinter {
+ public:
+  EventPrinter();
+
+  void print(const EventEntry& event);
+  /// Several lines.
+  void print_report(const std::string& report);
+  void print_end(const Outcome& outcome);
+
+ private:
+  struct Flow {
+    double window_s = 0;  ///< when the present window began
+    int printed = 0;
+    int suppressed = 0;
+  };
+  [[nodiscard]] bool passes(const EventEntry& event);
+
+  std::shared_ptr<spdlog::logger> logger_;
+  std::map<std::string, Flow> flows_;  // by kind
+};
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,35 @@
+#include "daemon/service_manager.h"
+
+#include <systemd/sd-daemon.h>
+
+#include <cstdint>
+
+namespace softgrip::daemon {
+
+ServiceManager::ServiceManager() {
+  std::uint64_t timeout_us = 0;
+  if (sd_watchdog_enabled(0, &timeout_us) > 0) interval_ = static_cast<Nanoseconds>(timeout_us) * 1000 / 2;
+}
+
+void ServiceManager::ready(const std::string& text) {
+  sd_notify(0, ("READY=1\nSTATUS=" + text).c_str());
+}
+
+void ServiceManager::status(const std::string& text) {
+  if (text == status_) return;
+  status_ = text;
+  sd_notify(0, ("STATUS=" + text).c_str());
+}
+
+void ServiceManager::stopping() {
+  sd_notify(0, "STOPPING=1\nSTATUS=writing the safe outputs");
+}
+
+void ServiceManager::feed(Nanoseconds now, std::uint64_t progress) {
+  if (interval_ == 0 || now - fed_ < interval_ / 2 || progress == progress_) return;
+  sd_notify(0, "WATCHDOG=1");
+  fed_ = now;
+  progress_ = progress;
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,133 @@
+// softgripd: the command line of the daemon.
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "daemon/check.h"
+#include "daemon/daemon.h"
+#include "daemon/event_printer.h"
+#include "daemon/startup_report.h"
+#include "model/document/version.h"
+
+namespace {
+
+using namespace softgrip;
+
+// The exit codes of every program of the project.
+constexpr int failed = 1;
+constexpr int usage = 2;
+constexpr int input_refused = 3;
+
+struct Arguments {
+  std::string config;
+  std::string sequence;
+  std::string record;
+  bool check = false;
+  bool virtual_time = false;
+  bool no_socket = false;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> duration_s;
+};
+
+void declare(CLI::App& program, Arguments& arguments) {
+  program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
+  program.add_flag("--check", arguments.check,
+                   "say what is wrong with the rig file and the sequence, start nothing");
+  program.add_flag("--virtual-time", arguments.virtual_time,
+                   "as fast as possible on a simulated board, repeatable bit by bit; ends with --sequence or "
+                   "--duration-s");
+  program.add_option("--seed", arguments.seed, "seed of a simulated board instead of the rig file's")
+      ->type_name("N");
+  program
+      .add_option("--sequence", arguments.sequence, "start this sequence when the rig is idle, end after it")
+      ->type_name("FILE");
+  program.add_option("--duration-s", arguments.duration_s, "end after so many seconds")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  program.add_option("--record", arguments.record, "record everything into this one folder")
+      ->type_name("DIR");
+  program.add_flag("--no-socket", arguments.no_socket, "do not listen on the rig file's socket");
+  program.set_version_flag("--version", "softgripd " + std::string(document::software_version()));
+  program.footer(
+      "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or sequence refused, 4 I/O, 5 the rig's state "
+      "does not\n"
+      "allow the sequence, 6 the sequence ended but failed. SIGINT, SIGTERM and SIGHUP: the safe outputs are "
+      "written\n"
+      "and confirmed, the recording is closed, then it ends. The configuration is read once; restart to "
+      "change it.");
+}
+
+int refuse(const document::Problems& problems) {
+  std::fputs(problems.format().c_str(), stderr);
+  return input_refused;
+}
+
+int check(const Arguments& arguments) {
+  std::vector<std::string> files{arguments.config};
+  if (!arguments.sequence.empty()) files.push_back(arguments.sequence);
+  const daemon::CheckReport report = daemon::check_files(files);
+  std::fputs(report.problems.format().c_str(), stderr);
+  if (!report.accepted()) return input_refused;
+  fmt::print("{}: fit to run\n", arguments.config);
+  return 0;
+}
+
+int run(const Arguments& arguments) {
+  document::Problems problems;
+  auto rig = daemon::load_rig(arguments.config, problems);
+  if (!rig || !problems.empty()) return refuse(problems);
+  std::fputs(problems.format().c_str(), stderr);  // warnings
+  if (arguments.seed && !daemon::reseed(*rig, *arguments.seed)) {
+    fmt::print(stderr, "softgripd: --seed needs a simulated board\n");
+    return usage;
+  }
+
+  daemon::DaemonOptions options;
+  options.virtual_time = arguments.virtual_time;
+  options.duration_s = arguments.duration_s;
+  options.record_folder = arguments.record;
+  options.listen = !arguments.no_socket;
+  if (!arguments.sequence.empty()) {
+    auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(arguments.sequence);
+    if (!sequence) return refuse(sequence.error());
+    options.sequence = std::move(*sequence);
+  }
+  daemon::EventPrinter printer;
+  options.on_event = [&printer](const daemon::EventEntry& event) { printer.print(event); };
+  options.on_start = [&printer](const std::string& report) { printer.print_report(report); };
+
+  auto daemon = daemon::Daemon::create(std::move(*rig), std::move(options));
+  if (!daemon) {
+    fmt::print(stderr, "softgripd: {}\n", daemon.error());
+    return usage;
+  }
+  const daemon::Outcome outcome = (*daemon)->run();
+  printer.print_end(outcome);
+  return daemon::exit_code_of(outcome);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App program("softgripd: drives a soft gripper from a rig file", "softgripd");
+  declare(program, arguments);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : usage;
+  }
+  try {
+    return arguments.check ? check(arguments) : run(arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "softgripd: {}\n", error.what());
+    return failed;
+  }
+}
