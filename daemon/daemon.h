@@ -51,7 +51,8 @@ struct Outcome {
   Ending ending = Ending::asked;
   std::string message;  ///< one sentence where something went wrong
   std::optional<control::SequenceEnd> sequence_end;
-  Snapshot last;             ///< the last tick
+  Snapshot last;  ///< the last tick
+  std::vector<std::string> channel_names;
   bool left_safely = false;  ///< the board confirmed the safe outputs at the end
   std::uint64_t ticks = 0;
   std::uint64_t slips = 0;

@@ -1,16 +1,22 @@
 #pragma once
-// A value whose copying can be interrupted half-way, so that tests of lock-free cells do not depend on luck.
+// A value whose copying is interrupted half-way, so that tests of lock-free cells do not depend on luck.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <thread>
+#include <utility>
 
 namespace softgrip::daemon::testing {
 
 /// All words are equal in a value that was copied in one piece.
 class TornValue {
  public:
+  /// Called once, in the middle of the next copy of this thread: what another thread could do at the worst
+  /// moment.
+  static inline thread_local std::function<void()> halfway;
+
   TornValue() = default;
   explicit TornValue(std::uint64_t number) { words_.fill(number); }
   TornValue(const TornValue& other) : TornValue() { copy(other); }
@@ -31,7 +37,12 @@ class TornValue {
   void copy(const TornValue& other) {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       words_[i] = other.words_[i];
-      if (i == words_.size() / 2) std::this_thread::yield();
+      if (i != words_.size() / 2) continue;
+      if (const auto interruption = std::exchange(halfway, nullptr)) {
+        interruption();
+      } else {
+        std::this_thread::yield();
+      }
     }
   }
 
