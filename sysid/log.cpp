@@ -413,6 +413,26 @@ Campaign read_campaign(const std::vector<std::string>& paths, Problems& problems
   return campaign;
 }
 
+std::vector<std::string> channels_of(std::string_view text) {
+  std::vector<std::string> channels;
+  std::vector<Cell> cells;
+  std::optional<std::size_t> place;
+  for (const std::string_view line : lines_of(text)) {
+    split(line, cells);
+    if (!place) {
+      const auto found = std::find_if(cells.begin(), cells.end(),
+                                      [](const Cell& cell) { return unquoted(cell.text) == channel_column; });
+      if (found == cells.end()) break;
+      place = static_cast<std::size_t>(found - cells.begin());
+    } else if (*place < cells.size()) {
+      const std::string_view channel = unquoted(cells[*place].text);
+      if (std::find(channels.begin(), channels.end(), channel) == channels.end())
+        channels.emplace_back(channel);
+    }
+  }
+  return channels;
+}
+
 std::string format_log(const Log& log) {
   std::string text;
   std::vector<const Known*> present;

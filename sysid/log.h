@@ -85,6 +85,9 @@ struct Campaign {
 [[nodiscard]] std::optional<Log> parse_log(const std::string& file, std::string_view text,
                                            document::Problems& problems, const LogOptions& options = {});
 
+/// The channels of a log's text in the order of their first rows; none where there is no channel column.
+[[nodiscard]] std::vector<std::string> channels_of(std::string_view text);
+
 /// The CSV text of a log; numbers with the fewest digits that read back to the same double.
 /// parse_log(format_log(log)) gives the same columns.
 [[nodiscard]] std::string format_log(const Log& log);

@@ -7,6 +7,7 @@
 #define SOFTGRIP_COMMANDS(X) \
   X(check)                   \
   X(simulate)                \
+  X(plot)                    \
   X(status)                  \
   X(watch)                   \
   X(start)                   \

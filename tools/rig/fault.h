@@ -9,7 +9,7 @@
 //       replies: 1        # faults of the wire only: ends after so many requests that it touched
 //       interval_s: 0.05  # the kind's own keys, all required
 //
-// docs/reference/emulator-faults.md is the manual of the file.
+// docs/reference/emulator.md is the manual of the file.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,0 +1,75 @@
+// softgrip plot: a recording as a picture.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "sysid/numbers.h"
+#include "tools/commands.h"
+#include "tools/output.h"
+#include "tools/recording.h"
+#include "tools/recording_picture.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::string recording;
+  std::string out;
+  bool json = false;
+};
+
+void report(const Options& options, const Recording& recording) {
+  std::FILE* const stream = report_stream(options.out);
+  nlohmann::ordered_json json{{"out", options.out}, {"channels", nlohmann::ordered_json::array()}};
+  for (const sysid::Log& log : recording.channels) {
+    const Tracking tracking = tracking_of(log);
+    const std::string name = log.channel.empty() ? recording.name : log.channel;
+    nlohmann::ordered_json entry{{"channel", log.channel}, {"samples", log.size()}};
+    entry["tracked_samples"] = tracking.samples;
+    if (tracking.samples > 0) {
+      entry["tracking_rmse_mm"] = tracking.rmse_mm;
+      entry["tracking_largest_mm"] = tracking.largest_mm;
+    }
+    json["channels"].push_back(std::move(entry));
+    if (options.json) continue;
+    std::fprintf(stream, "%s: %zu samples", name.c_str(), log.size());
+    if (tracking.samples > 0) {
+      std::fprintf(stream, ", tracking RMSE %s mm, largest %s mm",
+                   sysid::significant(tracking.rmse_mm, 3).c_str(),
+                   sysid::significant(tracking.largest_mm, 3).c_str());
+    }
+    std::fprintf(stream, "\n");
+  }
+  if (options.json) {
+    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  } else {
+    std::fprintf(stream, "-> %s\n", options.out.c_str());
+  }
+}
+
+ExitCode run(const Options& options) {
+  document::Problems problems;
+  const auto recording = read_recording(options.recording, problems);
+  if (!recording) return problems.empty() ? recording.error() : refuse(problems);
+  if (const auto written = write_output(options.out, picture_of(*recording)); !written) {
+    return fail(ExitCode::io, written.error());
+  }
+  report(options, *recording);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_plot(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("plot", "A recording as a picture: pressure, displacement, error, states");
+  command->add_option("RECORDING", options->recording, "A recording's folder, or a log (CSV)")->required();
+  command->add_option("--out", options->out, "SVG file to write ('-': standard output)")->required();
+  command->add_flag("--json", options->json, "Say what was done as JSON");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
