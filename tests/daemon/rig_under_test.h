@@ -1,0 +1,32 @@
+#pragma once
+// The example rig and sequences of the project, loaded for tests.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "daemon/rig_file.h"
+#include "daemon/sequence_loader.h"
+
+namespace softgrip::daemon::testing {
+
+/// config/NAME; a failure of the test if it is refused.
+[[nodiscard]] inline RigFile example_rig(const std::string& name) {
+  document::Problems problems;
+  auto rig = load_rig(std::string(SOFTGRIP_SOURCE_DIR "/config/") + name, problems);
+  EXPECT_TRUE(rig.has_value()) << problems.format();
+  return rig ? std::move(*rig) : RigFile{};
+}
+
+/// config/sequences/NAME fitted to a rig, or nullptr and a failure of the test.
+[[nodiscard]] inline std::shared_ptr<const LoadedSequence> example_sequence(const RigFile& rig,
+                                                                            const std::string& name) {
+  auto sequence = SequenceLoader(rig.settings, "")
+                      .load_file(std::string(SOFTGRIP_SOURCE_DIR "/config/sequences/") + name);
+  EXPECT_TRUE(sequence.has_value()) << (sequence ? "" : sequence.error().format());
+  return sequence ? *sequence : nullptr;
+}
+
+}  // namespace softgrip::daemon::testing
