@@ -41,7 +41,11 @@ bool clear_away(const sockaddr_un& address) {
   const FileDescriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
   if (connect(probe.number(), generic, sizeof address) == 0 || errno == EAGAIN) return false;
-  if (errno == ECONNREFUSED) unlink(address.sun_path);
+  // A file that is no socket refuses a connection, too; it is somebody's, and bind() will say that it is
+  // there.
+  struct stat status {};
+  const bool refused = errno == ECONNREFUSED;
+  if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);
   return true;
 }
 
