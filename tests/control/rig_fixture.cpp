@@ -42,7 +42,8 @@ void SimulatedRig::step_plants() {
     plant.chain.step(0, plant.board_kpa);
     plant.chain.step(1 / settings_.rate_hz, plant.board_kpa);
     const double free = plant.chain.reading_mm();
-    plant.true_mm = stone_mm_ && free > *stone_mm_ ? *stone_mm_ + stone_yields * (free - *stone_mm_) : free;
+    const bool meets = stone_mm_ && free > *stone_mm_ && !(stone_only_left && i > 0);
+    plant.true_mm = meets ? *stone_mm_ + stone_yields * (free - *stone_mm_) : free;
   }
   if (pulling_out_ && stone_mm_) {
     *stone_mm_ += hand_mm_per_s / settings_.rate_hz;
