@@ -186,6 +186,24 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
 }
 
+TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
+  const PreparedSequence press =
+      sequence_of("name: x\nsteps:\n  - move: {pressure_kpa: 40, duration_s: 1}\n", settings);
+  SimulatedRig rig(settings);
+  start(rig, press);
+  ASSERT_TRUE(rig.run_until(State::idle, 5));
+  rig.run(20);
+  rig.request(Request::Kind::start, &press);
+  const double began = rig.time_s();
+  for (bool up = false; rig.time_s() - began < settings.rest_timeout_s - 1; up = !up) {
+    rig.fault[0].offset_mm = up ? 0.5 : -0.5;
+    rig.run(0.1);
+    ASSERT_EQ(rig.output().state, State::resynchronising);
+  }
+  rig.fault[0].offset_mm = 0;
+  EXPECT_TRUE(rig.run_until(State::running, 1)) << "the shaking has ended";
+}
+
 TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
   SimulatedRig rig(settings);
   rig.fault[0].offset_mm = 1.5 * settings.detection.margin_mm;
