@@ -106,7 +106,9 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
 Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelStep& step,
                             bool starting) const noexcept {
   const bool silent = step.validity == model::Validity::none_yet || step.validity == model::Validity::stale;
-  const bool invalid = step.validity != model::Validity::valid && !(starting && silent);
+  // While the bus is down, silence is its fault, and the reading is still old in the tick in which it is
+  // back.
+  const bool invalid = step.validity != model::Validity::valid && !(silent && (starting || !bus_good()));
   channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
   channel.beyond_cycles = step.displacement_beyond ? channel.beyond_cycles + 1 : 0;
   if (invalid && channel.invalid_cycles >= settings_.invalid_reading_cycles) {

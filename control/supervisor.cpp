@@ -45,10 +45,16 @@ void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) no
   told_ |= place;
   events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
                    fault.value, GripEvidence::none});
-  if (action_for(fault.code, facts.phase) == SafeAction::vent) {
+  // Later faults find the rig idle, but what it holds it holds because of the phase in which the first one
+  // came.
+  const bool first = state_ != State::faulted;
+  if (first) {
+    fault_phase_ = facts.phase;
+  }
+  if (action_for(fault.code, fault_phase_) == SafeAction::vent) {
     venting_ = all_;
   }
-  if (state_ == State::faulted) {
+  if (!first) {
     return;
   }
   first_fault_ = fault.code;

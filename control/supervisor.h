@@ -82,7 +82,8 @@ class Supervisor {
   std::uint64_t rig_;
   State state_ = State::starting;
   FaultCode first_fault_ = FaultCode::none;
-  std::uint32_t told_ = 0;  ///< faults told since the latch, by their place in all_faults()
+  Phase fault_phase_ = Phase::idle;  ///< in which it came
+  std::uint32_t told_ = 0;           ///< faults told since the latch, by their place in all_faults()
   std::uint32_t venting_ = 0;
   const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to its end
   std::uint32_t start_request_ = 0;

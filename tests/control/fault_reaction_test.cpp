@@ -280,7 +280,8 @@ TEST_F(SingleFault, AnAcknowledgementBeforeTheFaultDoesNotCount) {
 
 TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
   for (const bool board_vents : {true, false}) {
-    settings.safety.safe_action.fill(SafeAction::hold);
+    settings.safety.safe_action.fill(SafeAction::vent);
+    settings.safety.safe_action[static_cast<std::size_t>(Phase::holding)] = SafeAction::hold;
     settings.safety.board_vents_when_silent = board_vents;
     SimulatedRig rig(settings);
     rig.board_vents = board_vents;
@@ -296,7 +297,30 @@ TEST_F(SingleFault, AHoldSurvivesAReconnectionOnlyWhereTheBoardHoldsToo) {
     rig.wire_cut = false;
     rig.run(2);
     EXPECT_NEAR(rig.board_kpa(0), at_reconnection_kpa, 1) << "reconnection moves nothing";
+    EXPECT_EQ(rig.count(Event::Kind::fault_latched), 1U) << "old readings were the wire's fault";
   }
+}
+
+TEST_F(SingleFault, ALaterFaultDoesAsThePhaseOfTheFirstSays) {
+  settings.safety.safe_action.fill(SafeAction::vent);
+  settings.safety.safe_action[static_cast<std::size_t>(Phase::holding)] = SafeAction::hold;
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until_step(2, 20));
+  const double held_kpa = rig.board_kpa(0);
+  rig.fault[0].validity = model::Validity::out_of_range;
+  rig.run(1);
+  ASSERT_EQ(rig.output().first_fault, FaultCode::reading_out_of_range);
+  rig.fault[0].validity.reset();
+  rig.fault[1].validity = model::Validity::sensor_error;
+  rig.run(1);
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U);
+  EXPECT_NEAR(rig.board_kpa(0), held_kpa, 1) << "what is held stays held";
+  rig.emergency_stop = true;
+  rig.run(1);
+  EXPECT_LT(rig.board_kpa(0), 1) << "but an emergency stop has its own word";
 }
 
 TEST_F(SingleFault, SilenceAtPowerUpIsNoFault) {
