@@ -69,6 +69,7 @@ std::vector<ReadStep> merged(const BoardMap& map, std::vector<Range> ranges) {
     result.push_back(range);
   }
   std::vector<ReadStep> steps;
+  steps.reserve(result.size());
   for (const Range& range : result) {
     steps.push_back({range.function, static_cast<std::uint16_t>(range.begin),
                      static_cast<std::uint16_t>(range.end - range.begin)});
@@ -87,6 +88,7 @@ std::vector<std::size_t> wired_inputs(const std::vector<ChannelWiring>& wiring) 
 
 std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring) {
   std::vector<std::size_t> outputs;
+  outputs.reserve(wiring.size());
   for (const ChannelWiring& channel : wiring) outputs.push_back(channel.valve.output);
   return outputs;
 }

@@ -107,8 +107,9 @@ void Plant::advance(double duration_s) noexcept {
   if (!(duration_s > 0)) return;
   // A held output: the jump first, then time passes under it.
   if (parts.chain.command_kpa() != parts.applied_kpa) parts.chain.step(0, parts.applied_kpa);
-  const double pieces = std::max(1.0, std::ceil(duration_s / longest_step_s - 1e-6));
-  for (double i = 0; i < pieces; ++i) parts.chain.step(duration_s / pieces, parts.applied_kpa);
+  const long pieces = std::max(1L, std::lround(std::ceil(duration_s / longest_step_s - 1e-6)));
+  const double piece_s = duration_s / static_cast<double>(pieces);
+  for (long i = 0; i < pieces; ++i) parts.chain.step(piece_s, parts.applied_kpa);
   ++parts.samples;
   parts.sense();
 }
