@@ -46,6 +46,7 @@ class Chain {
 
   /// What after(Station::load) would be if the pressure at the actuator went straight to `end_kpa` over
   /// `duration_s`, through the blocks that are undone implicitly and past all others; nothing changes.
+  /// Exact but for a corner of the pressure inside the sample (a threshold that is passed).
   /// For an inverse: step a chain of only those blocks with the pressure that solves peek() = reference.
   /// U is T, or Dual<T> for the derivative with respect to the pressure.
   template <class U>

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "model/chain.h"
+#include "model/visit.h"
 
 namespace softgrip::model {
 namespace walk {
@@ -71,21 +72,19 @@ void Chain<T>::reset(const T& command) {
   T displacement(0.0);
   if (end_[0] == 0) after_[0] = pressure;
   for (Index i = 0; i < blocks_.size(); ++i) {
-    std::visit(
-        [&](auto& block) {
-          using Block = decltype(block);
-          if constexpr (walk::kind_of<Block> == Kind::pressure) {
-            block.reset(pressure);
-            pressure = block.output();
-          } else if constexpr (walk::kind_of<Block> == Kind::element) {
-            block.reset(pressure);
-            displacement += block.output();
-          } else {
-            block.reset(displacement);
-            displacement = block.output();
-          }
-        },
-        blocks_[i]);
+    visit_block(blocks_[i], [&](auto& block) {
+      using Block = decltype(block);
+      if constexpr (walk::kind_of<Block> == Kind::pressure) {
+        block.reset(pressure);
+        pressure = block.output();
+      } else if constexpr (walk::kind_of<Block> == Kind::element) {
+        block.reset(pressure);
+        displacement += block.output();
+      } else {
+        block.reset(displacement);
+        displacement = block.output();
+      }
+    });
     if (i + 1 == end_[0]) after_[0] = pressure;
     if (i + 1 >= first_displacement_ && i + 1 <= first_reading_) note_displacement(i + 1, displacement);
   }
@@ -114,30 +113,26 @@ void Chain<T>::walk_pressure(Index i, const Segment<T>& segment, const Surroundi
     walk_elements(segment, surroundings);
     return;
   }
-  std::visit(
-      [&](auto& block) {
-        if constexpr (walk::kind_of<decltype(block)> == Kind::pressure) {
-          block.step(segment, surroundings,
-                     [&](const Segment<T>& out) { walk_pressure(i + 1, out, surroundings); });
-        }
-      },
-      blocks_[i]);
+  visit_block(blocks_[i], [&](auto& block) {
+    if constexpr (walk::kind_of<decltype(block)> == Kind::pressure) {
+      block.step(segment, surroundings,
+                 [&](const Segment<T>& out) { walk_pressure(i + 1, out, surroundings); });
+    }
+  });
 }
 
 template <class T>
 void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surroundings) {
   Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};
   for (Index i = first_element_; i < first_displacement_; ++i) {
-    std::visit(
-        [&](auto& block) {
-          if constexpr (walk::kind_of<decltype(block)> == Kind::element) {
-            const Segment<T> out = block.step(segment, surroundings);
-            sum.begin += out.begin;
-            sum.end += out.end;
-            sum.mean += out.mean;
-          }
-        },
-        blocks_[i]);
+    visit_block(blocks_[i], [&](auto& block) {
+      if constexpr (walk::kind_of<decltype(block)> == Kind::element) {
+        const Segment<T> out = block.step(segment, surroundings);
+        sum.begin += out.begin;
+        sum.end += out.end;
+        sum.mean += out.mean;
+      }
+    });
   }
   walk_displacement(first_displacement_, sum, surroundings);
 }
@@ -146,27 +141,23 @@ template <class T>
 void Chain<T>::walk_displacement(Index i, const Segment<T>& segment, const Surroundings& surroundings) {
   note_displacement(i, segment.end);
   if (i == first_reading_) return;
-  std::visit(
-      [&](auto& block) {
-        if constexpr (walk::kind_of<decltype(block)> == Kind::displacement) {
-          block.step(segment, surroundings,
-                     [&](const Segment<T>& out) { walk_displacement(i + 1, out, surroundings); });
-        }
-      },
-      blocks_[i]);
+  visit_block(blocks_[i], [&](auto& block) {
+    if constexpr (walk::kind_of<decltype(block)> == Kind::displacement) {
+      block.step(segment, surroundings,
+                 [&](const Segment<T>& out) { walk_displacement(i + 1, out, surroundings); });
+    }
+  });
 }
 
 template <class T>
 void Chain<T>::walk_readings(const T& duration_s, const Surroundings& surroundings) {
   T value = at_sensor_;
   for (Index i = first_reading_; i < blocks_.size(); ++i) {
-    std::visit(
-        [&](auto& block) {
-          if constexpr (walk::kind_of<decltype(block)> == Kind::reading) {
-            value = block.sample(value, duration_s, surroundings);
-          }
-        },
-        blocks_[i]);
+    visit_block(blocks_[i], [&](auto& block) {
+      if constexpr (walk::kind_of<decltype(block)> == Kind::reading) {
+        value = block.sample(value, duration_s, surroundings);
+      }
+    });
   }
   after_[3] = value;
 }
@@ -178,20 +169,18 @@ U Chain<T>::peek(const T& duration_s, const U& end_kpa, Surroundings surrounding
   U pressure = end_kpa;
   U displacement(0.0);
   for (Index i = 0; i < end_[2]; ++i) {
-    std::visit(
-        [&](const auto& block) {
-          using Block = decltype(block);
-          if constexpr (walk::is_implicit<Block>) {
-            if constexpr (walk::kind_of<Block> == Kind::pressure) {
-              pressure = block.peek(duration_s, pressure, surroundings);
-            } else if constexpr (walk::kind_of<Block> == Kind::element) {
-              displacement = displacement + block.peek(duration_s, pressure, surroundings);
-            } else {
-              displacement = block.peek(duration_s, displacement, surroundings);
-            }
-          }
-        },
-        blocks_[i]);
+    visit_block(blocks_[i], [&](const auto& block) {
+      using Block = decltype(block);
+      if constexpr (walk::is_implicit<Block>) {
+        if constexpr (walk::kind_of<Block> == Kind::pressure) {
+          pressure = block.peek(duration_s, pressure, surroundings);
+        } else if constexpr (walk::kind_of<Block> == Kind::element) {
+          displacement = displacement + block.peek(duration_s, pressure, surroundings);
+        } else {
+          displacement = block.peek(duration_s, displacement, surroundings);
+        }
+      }
+    });
   }
   return displacement;
 }

@@ -1,6 +1,8 @@
 #pragma once
 // The play operator: an output that is dragged along once its input has moved by half the play.
 
+#include <type_traits>
+
 #include "model/number.h"
 #include "model/segment.h"
 
@@ -13,14 +15,11 @@ class Play {
   explicit Play(const T& reach) : reach_(reach) {}
 
   /// As if the input had risen from 0.
-  void reset(const T& input) { output_ = dragged(input, T(0.0)); }
-  [[nodiscard]] const T& output() const { return output_; }
-
-  /// Where the output goes for an input that moves to `end`.
-  template <class U>
-  [[nodiscard]] U peek(const U& end) const {
-    return dragged(end, output_);
+  void reset(const T& input) {
+    output_ = dragged(input, T(0.0));
+    dragging_ = false;
   }
+  [[nodiscard]] const T& output() const { return output_; }
 
   /// Passes the output on, in two segments when it begins to move inside.
   template <class Next>
@@ -29,31 +28,38 @@ class Play {
     const T end = dragged(in.end, output_);
     output_ = end;
     if (same(begin, end)) {
+      if (!same(in.begin, in.end)) dragging_ = false;
       next(Segment<T>{in.duration_s, begin, begin, begin});
       return;
     }
-    const T side = end - in.end;              // -reach on the way up, +reach on the way down
-    const T gap = (begin - side) - in.begin;  // what the input moves before it drags
-    const double share = value_of(gap) / value_of(T(in.end - in.begin));
-    if (!(share > 1e-12) || !(share < 1.0)) {
+    const bool upwards = value_of(end) > value_of(begin);
+    const bool went_on = dragging_ && upwards == upwards_;
+    dragging_ = true;
+    upwards_ = upwards;
+    const T side = upwards ? T(-reach_) : reach_;
+    const T start = begin - side;  // the input at which it begins to move
+    const double share = (value_of(start) - value_of(in.begin)) / (value_of(in.end) - value_of(in.begin));
+    // A move that begins with the segment is split for the sake of derivatives alone.
+    const double least = std::is_arithmetic_v<T> ? 1e-12 : -1e-12;
+    if (went_on || !(share > least && share < 1.0)) {
       next(Segment<T>{in.duration_s, begin, end, in.mean + side});
       return;
     }
-    const T fraction = in.fraction_at(begin - side);
-    const Segment<T> moving = in.beyond(fraction);
+    const Segment<T> moving = in.beyond(in.fraction_at(start));
     next(Segment<T>{in.duration_s - moving.duration_s, begin, begin, begin});
     next(Segment<T>{moving.duration_s, begin, end, moving.mean + side});
   }
 
  private:
-  template <class U>
-  [[nodiscard]] U dragged(const U& input, const T& from) const {
+  [[nodiscard]] T dragged(const T& input, const T& from) const {
     if (value_of(input) - value_of(reach_) > value_of(from)) return input - reach_;
     if (value_of(input) + value_of(reach_) < value_of(from)) return input + reach_;
-    return U(from);
+    return from;
   }
 
   T reach_;
+  bool dragging_ = false;  // the last move was one of the output, not of the input alone
+  bool upwards_ = false;
   T output_{0.0};
 };
 

@@ -15,7 +15,7 @@ class ActuatorThreshold {
                                   .inverse = Inverse::implicit,
                                   .title = "Actuator threshold",
                                   .meaning = "No motion below a threshold pressure.",
-                                  .equation = "q = max(p - p0, 0) for p >= 0"};
+                                  .equation = "q = max(p - threshold, 0) for p >= 0"};
   static constexpr std::array parameters{ParameterSpec{.name = "threshold_kpa",
                                                        .unit = "kPa",
                                                        .default_value = 3.0,

@@ -17,7 +17,7 @@ class Ageing {
                                   .inverse = Inverse::implicit,
                                   .title = "Ageing",
                                   .meaning = "The gain drifts with the time of the campaign.",
-                                  .equation = "z = y (1 + a t)"};
+                                  .equation = "z = y (1 + gain t), kept positive"};
   static constexpr std::array parameters{ParameterSpec{.name = "gain_per_h",
                                                        .unit = "1/h",
                                                        .default_value = 0.1,

@@ -6,9 +6,10 @@
 
 namespace softgrip::model {
 
-/// An element that only unloading winds up: while the pressure falls, z approaches the memory length; while
-/// it rises, z fades. Rate independent; nothing on the first loading. Bouc-Wen's own loop is point symmetric
-/// in the limit, this one is not. Exact for any step size.
+/// An element that unloading winds up and loading unwinds, each over its own pressure: while the pressure
+/// falls, z approaches the unloading length; while it rises, z fades over the loading length. Rate
+/// independent; nothing on the first loading. With both lengths equal the settled loop is point symmetric, as
+/// Bouc-Wen's own is; with different ones it is not. Exact for any step size.
 template <class T>
 class AsymmetricHysteresis {
  public:
@@ -30,16 +31,23 @@ class AsymmetricHysteresis {
                     .scale = 0.02,
                     .meaning = "added per pressure at the start of unloading",
                     .neutral = 0.0},
-      ParameterSpec{.name = "memory_kpa",
+      ParameterSpec{.name = "unloading_kpa",
                     .unit = "kPa",
-                    .default_value = 15.0,
+                    .default_value = 20.0,
                     .lower = 0.01,
                     .upper = 10000.0,
                     .scale = 5.0,
-                    .meaning = "pressure over which a turn is forgotten"}};
+                    .meaning = "fall of the pressure over which it builds up"},
+      ParameterSpec{.name = "loading_kpa",
+                    .unit = "kPa",
+                    .default_value = 5.0,
+                    .lower = 0.01,
+                    .upper = 10000.0,
+                    .scale = 5.0,
+                    .meaning = "rise of the pressure over which it fades"}};
 
   AsymmetricHysteresis(std::span<const T> values, const Preparation&)
-      : gain_(values[0]), per_kpa_(1.0 / values[1]) {}
+      : gain_(values[0]), unloading_per_kpa_(1.0 / values[1]), loading_per_kpa_(1.0 / values[2]) {}
 
   void reset(const T& input) {
     falling_ = value_of(input) < 0.0;
@@ -60,7 +68,8 @@ class AsymmetricHysteresis {
     output_ = gain_ * wound_kpa_;
     // The cubic through both ends and their slopes.
     const T size = falling_ ? T(-change) : change;
-    const T bow = size * per_kpa_ * (wound_kpa_ - before) * (1.0 / 12.0);
+    const T bow =
+        size * (falling_ ? unloading_per_kpa_ : loading_per_kpa_) * (wound_kpa_ - before) * (1.0 / 12.0);
     return {in.duration_s, begin, output_, gain_ * ((before + wound_kpa_) * 0.5 + bow)};
   }
 
@@ -77,17 +86,17 @@ class AsymmetricHysteresis {
     return value < 0.0 || (value == 0.0 && falling_);
   }
 
-  // z after a monotone change: dz/d|p| = falling - z/memory.
+  // z after a monotone change: dz/d|p| = 1 - z/unloading or -z/loading.
   template <class U>
   [[nodiscard]] U moved(const U& change, bool falling) const {
+    const T& per_kpa = falling ? unloading_per_kpa_ : loading_per_kpa_;
     const U size = falling ? U(-change) : change;
-    const U share = size * phi1(U(-(per_kpa_ * size)));  // memory (1 - exp(-size/memory))
-    return falling ? U(wound_kpa_ + share * (1.0 - per_kpa_ * wound_kpa_))
-                   : U(wound_kpa_ - share * (per_kpa_ * wound_kpa_));
+    return wound_kpa_ + size * phi1(U(-(per_kpa * size))) * ((falling ? 1.0 : 0.0) - per_kpa * wound_kpa_);
   }
 
   T gain_;
-  T per_kpa_;  // 1/memory
+  T unloading_per_kpa_;  // 1/unloading
+  T loading_per_kpa_;
   bool falling_ = false;
   T wound_kpa_{0.0};  // z
   T pressure_{0.0};

@@ -1,6 +1,6 @@
 #pragma once
-// Bouc-Wen hysteresis, stepped in pressure. Zhang et al., Actuators 2025, 14(4), 193, equations of section 3,
-// with the operators that the text version lost:
+// Bouc-Wen hysteresis, stepped in pressure. Zhang et al., Actuators 2025, 14(4), 193, equation 1,
+// with signs and bars in their standard reading:
 //   B(t) = alpha p - h,   h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h
 // The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h), whatever the time.
 

@@ -17,7 +17,7 @@ class Contact {
       .inverse = Inverse::implicit,
       .title = "Contact",
       .meaning = "Stiffer beyond a position: an object or a stop.",
-      .equation = "z = y up to the position y0, beyond it y0 + (y - y0)/(1 + stiffening)",
+      .equation = "z = y up to the position, beyond it position + (y - position)/(1 + stiffening)",
       .repeatable = true};
   static constexpr std::array parameters{
       ParameterSpec{.name = "position_mm",

@@ -20,7 +20,7 @@ class SensorDrift {
                                   .equation = "z = y + rate t + warm_up (1 - exp(-t/tau))"};
   static constexpr std::array parameters{ParameterSpec{.name = "rate_mm_per_h",
                                                        .unit = "mm/h",
-                                                       .default_value = 1.0,
+                                                       .default_value = 0.5,
                                                        .lower = -1e5,
                                                        .upper = 1e5,
                                                        .scale = 1.0,
@@ -28,7 +28,7 @@ class SensorDrift {
                                                        .neutral = 0.0},
                                          ParameterSpec{.name = "warm_up_mm",
                                                        .unit = "mm",
-                                                       .default_value = 0.0,
+                                                       .default_value = 0.2,
                                                        .lower = -100.0,
                                                        .upper = 100.0,
                                                        .scale = 0.1,

@@ -17,7 +17,7 @@ class Stiffening {
       .inverse = Inverse::implicit,
       .title = "Stiffening",
       .meaning = "The gain changes with displacement, loading and unloading alike.",
-      .equation = "z = y / (1 + s |y|), for s < 0: y (1 - s |y|)"};
+      .equation = "z = y / (1 + s |y|), for negative s: y (1 - s |y|)"};
   static constexpr std::array parameters{
       ParameterSpec{.name = "stiffening_per_mm",
                     .unit = "1/mm",

@@ -17,7 +17,7 @@ class StressSoftening {
                                   .inverse = Inverse::implicit,
                                   .title = "Stress softening",
                                   .meaning = "Softer after the largest load so far (Mullins).",
-                                  .equation = "q = p (1 + s m), m = largest pressure so far"};
+                                  .equation = "q = p (1 + softening m), m = largest pressure so far"};
   static constexpr std::array parameters{
       ParameterSpec{.name = "softening_per_kpa",
                     .unit = "1/kPa",

@@ -18,7 +18,7 @@ class ThermalGain {
                                   .inverse = Inverse::implicit,
                                   .title = "Thermal gain",
                                   .meaning = "The gain follows the temperature.",
-                                  .equation = "z = y (1 + a (temperature - 20 degC))"};
+                                  .equation = "z = y (1 + gain (temperature - 20 degC)), kept positive"};
   static constexpr std::array parameters{ParameterSpec{.name = "gain_per_c",
                                                        .unit = "1/degC",
                                                        .default_value = 0.005,

@@ -14,11 +14,15 @@ namespace {
 using Block = BoucWen<double>;
 
 // alpha, beta, gamma, eta, exponent; eta above |gamma|, so that a closed loop cannot give energy back.
-const std::vector<std::vector<double>> materials{{0.211, 0.171, 0.016, 0.024, 1}, {0.35, 0.2, -0.02, 0.05, 1},
-                                                 {0.211, 0.171, 0.004, 0.006, 2}, {0.3, 0.2, 0.0005, 0.001, 3},
+const std::vector<std::vector<double>> materials{{0.211, 0.171, 0.016, 0.024, 1},
+                                                 {0.35, 0.2, -0.02, 0.05, 1},
+                                                 {0.211, 0.171, 0.004, 0.006, 2},
+                                                 {0.3, 0.2, 0.0005, 0.001, 3},
                                                  {0.3, 0.2, 0.0002, 0.0003, 4}};
 
-Block make_material(const std::vector<double>& values) { return Block(values, Preparation{}); }
+Block make_material(const std::vector<double>& values) {
+  return Block(values, Preparation{});
+}
 
 std::vector<double> random_turning_points(unsigned seed, int count) {
   std::mt19937 generator(seed);
@@ -33,7 +37,8 @@ TEST(BoucWen, TimeDoesNotMatter) {
     Block slow = make_material(values);
     Block fast = make_material(values);
     double a = 0, b = 0;
-    for (const double p : random_turning_points(3, 200)) ASSERT_EQ(move(slow, a, p, 10.0), move(fast, b, p, 1e-6));
+    for (const double p : random_turning_points(3, 200))
+      ASSERT_EQ(move(slow, a, p, 10.0), move(fast, b, p, 1e-6));
   }
 }
 
@@ -160,7 +165,8 @@ TEST(BoucWen, EqualGammaAndEtaAreNoSpecialCase) {
   Block equal = make<Block>({0.21, 0.17, 0.02, 0.02, 1});
   Block near = make<Block>({0.21, 0.17, 0.02, 0.02 + 1e-13, 1});
   double a = 0, b = 0;
-  for (const double p : random_turning_points(6, 200)) ASSERT_NEAR(move(equal, a, p, 1), move(near, b, p, 1), 1e-9);
+  for (const double p : random_turning_points(6, 200))
+    ASSERT_NEAR(move(equal, a, p, 1), move(near, b, p, 1), 1e-9);
 }
 
 TEST(BoucWen, RefusesAStateThatGrowsWithoutBound) {

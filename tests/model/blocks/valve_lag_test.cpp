@@ -32,7 +32,8 @@ TEST(ValveLag, MeanIsExact) {
   for (const double to : {5.0, 9.0, 9.0, 2.0, 1.0, 30.0}) {
     const double before = block.output();
     double integral = 0;
-    for (const auto& s : pass(block, Segment<double>::straight(0.02, from, to))) integral += s.mean * s.duration_s;
+    for (const auto& s : pass(block, Segment<double>::straight(0.02, from, to)))
+      integral += s.mean * s.duration_s;
     EXPECT_NEAR(0.05 * (block.output() - before), 0.02 * 0.5 * (from + to) - integral, 1e-14);
     from = to;
   }

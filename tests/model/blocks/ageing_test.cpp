@@ -1,0 +1,27 @@
+#include "model/blocks/ageing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/model/drive.h"
+
+namespace softgrip::model::testing {
+namespace {
+
+using Block = Ageing<double>;
+
+TEST(Ageing, GainDriftsWithTheTimeOfTheCampaign) {
+  Block block = make<Block>({0.5});
+  Surroundings later;
+  later.time_s = 7200;
+  pass(block, Segment<double>::straight(1.0, 0, 10), later);
+  EXPECT_NEAR(block.output(), 20, 1e-12);
+  Block weaker = make<Block>({-0.5});
+  pass(weaker, Segment<double>::straight(1.0, 0, 10), later);
+  EXPECT_NEAR(weaker.output(), 5, 1e-12);
+}
+
+}  // namespace
+}  // namespace softgrip::model::testing

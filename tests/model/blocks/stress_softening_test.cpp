@@ -1,0 +1,41 @@
+#include "model/blocks/stress_softening.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/model/drive.h"
+
+namespace softgrip::model::testing {
+namespace {
+
+using Block = StressSoftening<double>;
+
+TEST(StressSoftening, LaterLoadsFindItSofter) {
+  Block block = make<Block>({0.01});
+  const std::vector<double> out = drive(block, 0, std::vector<double>{20, 0, 10, 20, 40, 10}, 1.0);
+  EXPECT_NEAR(out[0], 20 * 1.2, 1e-12);
+  EXPECT_NEAR(out[2], 10 * 1.2, 1e-12);  // on the first rise it was 10 * 1.1
+  EXPECT_NEAR(out[3], out[0], 1e-12);
+  EXPECT_NEAR(out[4], 40 * 1.4, 1e-12);
+  EXPECT_NEAR(out[5], 10 * 1.4, 1e-12);
+  EXPECT_EQ(block.largest_kpa(), 40);
+}
+
+TEST(StressSoftening, MeanOfARiseBeyondTheLargestLoad) {
+  Block once = make<Block>({0.01}), often = make<Block>({0.01});
+  for (Block* block : {&once, &often}) drive(*block, 0, std::vector<double>{20, 0}, 1.0);
+  double mean = 0, fine = 0;
+  for (const auto& s : pass(once, Segment<double>::straight(1.0, 0, 50))) mean += s.mean * s.duration_s;
+  for (int i = 0; i < 1000; ++i) {
+    for (const auto& s : pass(often, Segment<double>::straight(1e-3, 0.05 * i, 0.05 * (i + 1)))) {
+      fine += s.mean * s.duration_s;
+    }
+  }
+  EXPECT_NEAR(mean, fine, 1e-9);
+  EXPECT_NEAR(once.output(), often.output(), 1e-12);
+}
+
+}  // namespace
+}  // namespace softgrip::model::testing

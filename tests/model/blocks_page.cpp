@@ -1,0 +1,122 @@
+// docs/reference/blocks.md, written from the catalogue.
+//   model_blocks_page            prints the page
+//   model_blocks_page --check    1 when the file in the source tree differs from it
+//   model_blocks_page --write    writes the file
+
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+#include "model/catalogue.h"
+#include "model/text.h"
+
+namespace softgrip::model {
+namespace {
+
+const std::string file_name = std::string(SOFTGRIP_SOURCE_DIR) + "/docs/reference/blocks.md";
+
+std::string_view what_it_does(Kind kind) {
+  switch (kind) {
+    case Kind::pressure:
+      return "kPa to kPa, in series";
+    case Kind::element:
+      return "kPa to mm; the displacements of all elements add";
+    case Kind::displacement:
+      return "mm to mm, in series";
+    case Kind::reading:
+      return "mm to mm, once per reading";
+  }
+  return "";
+}
+
+std::string_view how_undone(Inverse inverse) {
+  switch (inverse) {
+    case Inverse::implicit:
+      return "solved together with the actuator";
+    case Inverse::lead:
+      return "led by the derivative of the planned pressure";
+    case Inverse::preview:
+      return "met by asking for the future value of the reference";
+    case Inverse::bound:
+      return "no inverse; bounds the reference";
+    case Inverse::ignored:
+      return "not undone";
+  }
+  return "";
+}
+
+std::string range(double value) {
+  if (value == 0) return "0";
+  return to_text(value);
+}
+
+void write_parameter(std::ostream& out, const ParameterSpec& spec) {
+  out << "| `" << spec.name << "` | " << (spec.unit.empty() ? "-" : spec.unit) << " | "
+      << range(spec.default_value) << " | " << range(spec.lower) << " to " << range(spec.upper)
+      << (spec.whole ? ", whole" : "") << " | "
+      << (spec.neutral == spec.neutral ? range(spec.neutral) : "any") << " | " << spec.meaning << " |\n";
+}
+
+void write_block(std::ostream& out, const Descriptor& descriptor) {
+  const BlockInfo& info = descriptor.info;
+  out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
+  out << "    " << info.equation << "\n\n";
+  out << "Acts on: " << what_it_does(info.kind) << ". In the feedforward: " << how_undone(info.inverse) << "."
+      << (info.repeatable ? " May stand in a chain more than once." : "") << "\n\n";
+  out << "| key | unit | default | allowed | does nothing at | meaning |\n|---|---|---|---|---|---|\n";
+  for (const ParameterSpec& spec : descriptor.parameters) write_parameter(out, spec);
+  for (const ParameterSpec& spec : descriptor.repeated) write_parameter(out, spec);
+  if (descriptor.max_parts > 0) {
+    out << "\n`#` counts the branches from 1, at most " << descriptor.max_parts << ".\n";
+  }
+}
+
+std::string page() {
+  std::ostringstream out;
+  out << "# Blocks\n\n"
+         "A model file lists blocks by station; the command walks them from top to bottom:\n\n"
+         "    command [kPa] -> valve -> actuator -> load -> sensor -> reading [mm]\n\n"
+         "u is the command, p the pressure, y a displacement that comes in, z what goes out, t the time of "
+         "the"
+         " campaign, ' a derivative with respect to time. Inside a station blocks stand by what they act on:"
+         " pressure, elements, displacement, reading. Every number of a block must be given; a model file "
+         "refuses"
+         " what is outside the allowed range.\n\n"
+         "This page is written by `model_blocks_page --write` from the declarations in `model/blocks/`.\n";
+  Station station = Station::valve;
+  bool first = true;
+  for (const Descriptor& descriptor : catalogue()) {
+    if (first || descriptor.info.station != station) {
+      station = descriptor.info.station;
+      out << "\n## Station `" << name_of(station) << "`\n";
+      first = false;
+    }
+    write_block(out, descriptor);
+  }
+  return out.str();
+}
+
+}  // namespace
+}  // namespace softgrip::model
+
+int main(int argc, char** argv) {
+  using namespace softgrip::model;
+  const std::string mode = argc > 1 ? argv[1] : "";
+  const std::string text = page();
+  if (mode == "--write") {
+    std::ofstream file(file_name, std::ios::binary);
+    file << text;
+    return file.flush() ? 0 : 4;
+  }
+  if (mode == "--check") {
+    std::ifstream file(file_name, std::ios::binary);
+    std::ostringstream found;
+    found << file.rdbuf();
+    if (found.str() == text) return 0;
+    std::cerr << file_name << " differs from the declarations; run model_blocks_page --write\n";
+    return 1;
+  }
+  std::cout << text;
+  return 0;
+}
