@@ -332,6 +332,11 @@ tl::expected<Identification, std::string> identify(const std::vector<Log>& logs,
                                                    const IdentifyOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   if (logs.empty()) return Failure("no logs to identify from");
+  for (const Log& log : logs) {
+    if (options.record.drive == Drive::measured && log.pressure_kpa.empty()) {
+      return Failure(log.name + " has no measured pressure");
+    }
+  }
   std::vector<Record> whole = make_records(logs, options.record);
   std::vector<Record> records = whole;
   if (options.fit_share < 1) {

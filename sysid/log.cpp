@@ -388,6 +388,18 @@ std::optional<Log> parse_log(const std::string& file, std::string_view text, Pro
   return log;
 }
 
+namespace {
+
+/// Reports and JSON speak of logs by name: the second of a name becomes "run (2)".
+void make_names_unique(std::vector<Log>& logs) {
+  std::map<std::string, int> seen;
+  for (Log& log : logs) {
+    if (const int count = ++seen[log.name]; count > 1) log.name += " (" + std::to_string(count) + ")";
+  }
+}
+
+}  // namespace
+
 Campaign read_campaign(const std::vector<std::string>& paths, Problems& problems, const LogOptions& options) {
   namespace fs = std::filesystem;
   Campaign campaign;
@@ -410,6 +422,7 @@ Campaign read_campaign(const std::vector<std::string>& paths, Problems& problems
     }
     campaign.logs.push_back(std::move(*log));
   }
+  make_names_unique(campaign.logs);
   return campaign;
 }
 

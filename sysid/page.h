@@ -4,6 +4,7 @@
 // Readable without JavaScript (there is none), no reference to anything outside, prints well. Every text is
 // escaped here; only pictures made by sysid/chart.h enter as markup.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,6 +48,8 @@ class Page {
   void begin_details(std::string_view summary);
   void end_details();
 
+  /// Bytes of the page's body so far.
+  [[nodiscard]] std::size_t size() const noexcept { return body_.size(); }
   [[nodiscard]] std::string to_html() const;
 
  private:

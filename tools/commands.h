@@ -8,6 +8,8 @@
   X(check)                   \
   X(simulate)                \
   X(plot)                    \
+  X(identify)                \
+  X(validate)                \
   X(status)                  \
   X(watch)                   \
   X(start)                   \

@@ -1,0 +1,178 @@
+// softgrip identify: a model's parameters from logs.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/model_file.h"
+#include "sysid/files.h"
+#include "sysid/identify.h"
+#include "sysid/identify_report.h"
+#include "sysid/numbers.h"
+#include "sysid/page.h"
+#include "sysid/validate.h"
+#include "tools/commands.h"
+#include "tools/log_input.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::vector<std::string> data;
+  std::vector<std::string> validate;
+  std::string start;
+  std::string out;
+  std::size_t branches = 2;
+  LogInput logs;
+  sysid::IdentifyOptions fit;
+  bool json = false;
+};
+
+void show_progress(const sysid::Progress& progress) {
+  std::fprintf(stderr, "\r  start %zu of %zu, best RMSE %s mm   ", progress.done, progress.starts,
+               sysid::significant(progress.best_rmse_mm, 4).c_str());
+  if (progress.done == progress.starts) std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+}
+
+/// The model to start from: the given file's, or the base structure.
+tl::expected<model::Model, ExitCode> start_model(const Options& options,
+                                                 const std::vector<sysid::Log>& logs) {
+  if (options.start.empty()) return sysid::base_model(logs, options.branches);
+  if (const auto code = unreadable(options.start)) return tl::unexpected(*code);
+  document::Problems problems;
+  auto model = model::load_model(options.start, problems);
+  if (!model) return tl::unexpected(refuse(problems));
+  return std::move(*model);
+}
+
+std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const model::Model& start) {
+  std::string source = "identified by " + sysid::software_version() + " from ";
+  for (std::size_t i = 0; i < logs.size(); ++i) source += (i == 0 ? "" : ", ") + logs[i].name;
+  return source + " (RMSE " + sysid::significant(rmse_mm, 3) + " mm), starting from " + start.name;
+}
+
+void print_estimates(const std::vector<sysid::Estimate>& list) {
+  for (const sysid::Estimate& e : list) {
+    std::string range;
+    if (e.ci95) {
+      range = sysid::significant(e.ci95->lower, 4) + " .. " + sysid::significant(e.ci95->upper, 4);
+    }
+    std::printf("  %-34s %12s  %-26s %s\n", e.name.c_str(), sysid::significant(e.value, 5).c_str(),
+                range.c_str(), e.note.c_str());
+  }
+}
+
+void print_scores(const char* title, const std::vector<sysid::Score>& scores) {
+  if (scores.empty()) return;
+  std::printf("%s\n", title);
+  for (const sysid::Score& s : scores) {
+    std::printf("  %-24s RMSE %8s mm  %6s %% of span  largest %8s mm\n", s.name.c_str(),
+                sysid::significant(s.rmse_mm, 4).c_str(),
+                sysid::significant(s.rmse_percent_of_span, 3).c_str(),
+                sysid::significant(s.largest_error_mm, 3).c_str());
+  }
+}
+
+void print_summary(const sysid::IdentifyReport& report, const std::string& out) {
+  const sysid::Identification& r = report.result;
+  std::printf("%s\n\n", sysid::verdict_of(r).c_str());
+  print_scores("Fit", r.scores);
+  print_scores("Held out", r.held_out);
+  print_scores("Validation", report.validation);
+  std::puts("Parameters, 95 % intervals");
+  print_estimates(r.parameters);
+  print_estimates(r.starts);
+  std::puts("What the finger shows");
+  print_estimates(r.combinations);
+  for (const std::string& warning : r.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("%.0f %% of %zu starts reached the best fit, %s s; report: %s\n",
+              100 * r.multistart.share_at_best, r.multistart.starts, sysid::significant(r.wall_s, 3).c_str(),
+              (std::filesystem::path(out) / "report.html").c_str());
+}
+
+ExitCode run(Options options) {
+  const auto logs = read_logs(options.data, options.logs);
+  if (!logs) return logs.error();
+  std::vector<sysid::Log> validation_logs;
+  if (!options.validate.empty()) {
+    auto read = read_logs(options.validate, options.logs);
+    if (!read) return read.error();
+    validation_logs = std::move(*read);
+  }
+  const auto start = start_model(options, *logs);
+  if (!start) return start.error();
+  options.fit.record = options.logs.record_options();
+  if (::isatty(STDERR_FILENO) == 1) options.fit.progress = show_progress;
+  auto result = sysid::identify(*logs, *start, options.fit);
+  if (!result) return fail(ExitCode::input_refused, result.error());
+  if (!options.start.empty()) result->model.name = start->name + "_identified";
+  result->model.source = source_of(*logs, result->rmse_mm, *start);
+
+  sysid::IdentifyReport report{*result, *logs, *start, options.fit.seed, {}, {}, nullptr};
+  if (!validation_logs.empty()) {
+    sysid::Validation validation = sysid::validate_logs(result->model, validation_logs, options.fit.record);
+    report.validation_records = std::move(validation.records);
+    report.validation = std::move(validation.scores);
+    report.validation_logs = &validation_logs;
+  }
+  const std::string json = sysid::identify_json(report);
+  const std::filesystem::path out(options.out);
+  for (const auto& [name, text] :
+       {std::pair<const char*, std::string>{"model.yaml", model::to_yaml(result->model)},
+        {"identify.json", json},
+        {"report.html", sysid::identify_html(report)}}) {
+    if (const auto written = sysid::write_file((out / name).string(), text); !written) {
+      return fail(ExitCode::io, written.error());
+    }
+  }
+  if (options.json) {
+    std::fputs(json.c_str(), stdout);
+  } else {
+    print_summary(report, options.out);
+  }
+  return result->converged ? ExitCode::done : ExitCode::not_acceptable;
+}
+
+void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
+  command.add_option("--fix", fit.fixed, "Parameters that keep the start's value (bouc_wen.gamma_per_kpa)");
+  command.add_option("--free", fit.free, "Only these parameters are free");
+  command.add_option("--starts", fit.starts, "Searches from as many points")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command.add_option("--seed", fit.seed, "Of the starts")->capture_default_str();
+  command.add_option("--exponents", fit.exponents, "Exponents of the hysteresis to try")
+      ->check(CLI::Range(1, 4));
+  command.add_flag("--robust", fit.robust, "Outliers count linearly (Huber)");
+  command.add_flag("--profile", fit.profile, "Intervals by profile likelihood besides");
+  command.add_option("--fit-share", fit.fit_share, "Fit this first share of every log, hold out the rest")
+      ->check(CLI::Range(0.05, 1.0))
+      ->capture_default_str();
+  command.add_option("--threads", fit.threads, "0: as many as there are cores")->capture_default_str();
+}
+
+}  // namespace
+
+void add_identify(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("identify", "A model's parameters from logs, with intervals");
+  command->add_option("--data", options->data, "Logs to fit (CSV, or a recording's folder)")->required();
+  command->add_option("--validate", options->validate, "Logs to predict");
+  command->add_option("--start", options->start, "Model file to start from [the base structure]");
+  command->add_option("--branches", options->branches, "Creep branches of the base structure")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder for model.yaml, identify.json, report.html")->required();
+  add_fit_options(*command, options->fit);
+  add_log_options(*command, options->logs);
+  command->add_flag("--json", options->json, "Print identify.json");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
