@@ -81,6 +81,17 @@ TEST(TransportDelay, AKinkInsideASampleMakesTwoSegments) {
   EXPECT_NEAR(out[1].end, 4, 1e-12);
 }
 
+TEST(TransportDelay, OnTheGridASampleStaysOneSegment) {
+  // Rounding in 0.13 - 26 * 0.005 must leave no slivers behind that every later sample is cut by.
+  for (const double delay : {0.13, 0.3, 0.07, 0.005}) {
+    Block block = make<Block>({delay});
+    for (int i = 0; i < 1000; ++i) {
+      ASSERT_EQ(pass(block, Segment<double>::straight(0.005, i, i + 1)).size(), 1u)
+          << delay << " sample " << i;
+    }
+  }
+}
+
 TEST(TransportDelay, AHeldOutputArrivesAsJumps) {
   // Delay of exactly three samples: the jump comes out at the start of the fourth.
   for (const double sample_time : {0.0, 0.1}) {
