@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,11 +25,13 @@ using namespace softgrip;
 constexpr int failed = 1;
 constexpr int usage = 2;
 constexpr int input_refused = 3;
+constexpr int io_failed = 4;
 
 struct Arguments {
   std::string config;
   std::string sequence;
   std::string record;
+  std::string histograms;
   bool check = false;
   bool virtual_time = false;
   bool no_socket = false;
@@ -53,6 +56,10 @@ void declare(CLI::App& program, Arguments& arguments) {
       ->check(CLI::PositiveNumber);
   program.add_option("--record", arguments.record, "record everything into this one folder")
       ->type_name("DIR");
+  program
+      .add_option("--histograms", arguments.histograms,
+                  "write the histograms of loop and bus to this file at the end, in cyclictest's form")
+      ->type_name("FILE");
   program.add_flag("--no-socket", arguments.no_socket, "do not listen on the rig file's socket");
   program.set_version_flag("--version", "softgripd " + std::string(document::software_version()));
   program.footer(
@@ -77,6 +84,21 @@ int check(const Arguments& arguments) {
   if (!report.accepted()) return input_refused;
   fmt::print("{}: fit to run\n", arguments.config);
   return 0;
+}
+
+/// False if the file cannot be written.
+bool write_histograms(const std::string& path, const daemon::Daemon& daemon) {
+  const daemon::LoopStatistics& loop = daemon.loop_statistics();
+  const daemon::BusStatistics& bus = daemon.bus_statistics();
+  std::ofstream file(path);
+  file << loop.wake_up.cyclictest_text("loop wake-up, us") << loop.compute.cyclictest_text("loop compute, us")
+       << loop.reading_age.cyclictest_text("reading age, us")
+       << bus.wake_up.cyclictest_text("bus wake-up, us") << bus.exchange.cyclictest_text("exchange, us");
+  file << "# Ticks: " << loop.ticks.value() << "\n# Slips, woken late: " << loop.slips_woken_late.value()
+       << "\n# Slips, took long: " << loop.slips_took_long.value()
+       << "\n# Exchanges: " << bus.exchanges.value() << "\n# Failed exchanges: " << bus.failures.value()
+       << "\n";
+  return file.flush().good();
 }
 
 int run(const Arguments& arguments) {
@@ -110,6 +132,10 @@ int run(const Arguments& arguments) {
   }
   const daemon::Outcome outcome = (*daemon)->run();
   printer.print_end(outcome);
+  if (!arguments.histograms.empty() && !write_histograms(arguments.histograms, **daemon)) {
+    fmt::print(stderr, "softgripd: {} cannot be written\n", arguments.histograms);
+    return io_failed;
+  }
   return daemon::exit_code_of(outcome);
 }
 

@@ -1,0 +1,124 @@
+// What a whole tick of the loop's thread costs: readings taken, two fingers on full_model and PID, limits,
+// supervisor, commands and snapshot published, rows pushed to the recorder. Only Loop::tick is timed; board
+// and recorder work in between. Two runs of the same ticks: by the processor's time of the thread, which
+// interruptions do not touch but which takes a system call to read, and by the monotonic clock, which is
+// cheap to read and sees everything.
+//
+//   loop_tick [TICKS]
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/daemon_parts.h"
+#include "daemon/sequence_loader.h"
+
+namespace {
+
+using namespace softgrip;  // NOLINT(google-build-using-namespace)
+using daemon::Nanoseconds;
+
+constexpr std::uint64_t default_ticks = 400'000;
+constexpr std::uint64_t ticks_per_look = 64;
+
+template <class Value>
+Value or_exit(std::optional<Value> value, const document::Problems& problems) {
+  if (!value) {
+    std::fputs(problems.format().c_str(), stderr);
+    std::exit(3);
+  }
+  return std::move(*value);
+}
+
+/// The example rig at another rate.
+daemon::RigFile rig_at(double rate_hz) {
+  document::Problems problems;
+  document::Document document = document::parse_file(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
+  std::string text = document.text;
+  const std::string old = "rate_hz: 200";
+  text.replace(text.find(old), old.size(), "rate_hz: " + std::to_string(static_cast<int>(rate_hz)));
+  document = document::parse(document.file, text, problems);
+  return or_exit(daemon::read_rig(document, problems), problems);
+}
+
+Nanoseconds read(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return time.tv_sec * daemon::ns_per_s + time.tv_nsec;
+}
+
+struct Times {
+  std::vector<Nanoseconds> sorted;
+  [[nodiscard]] long at(double share) const {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  }
+};
+
+/// What reading the clock twice costs by itself.
+Times time_nothing(clockid_t clock) {
+  Times times;
+  for (int i = 0; i < 100'000; ++i) {
+    const Nanoseconds begin = read(clock);
+    times.sorted.push_back(read(clock) - begin);
+  }
+  std::sort(times.sorted.begin(), times.sorted.end());
+  return times;
+}
+
+/// Ticks of a sequence that follows a sine, again and again.
+Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
+  daemon::DaemonOptions options;
+  options.virtual_time = true;
+  daemon::DaemonParts parts(rig_at(rate_hz), options);
+  parts.rig.recorder.mode = daemon::RecorderSettings::Mode::off;
+  const auto sequence = daemon::SequenceLoader(parts.rig.settings, "")
+                            .load_file(SOFTGRIP_SOURCE_DIR "/config/sequences/track_sine.yaml");
+  if (!sequence) {
+    std::fputs(sequence.error().format().c_str(), stderr);
+    std::exit(3);
+  }
+  Times times;
+  times.sorted.reserve(ticks);
+  Nanoseconds due = parts.origin;
+  for (std::uint64_t tick = 0; times.sorted.size() < ticks; ++tick, due += parts.period()) {
+    parts.virtual_clock.set(due);
+    const Nanoseconds begin = read(clock);
+    parts.loop.tick(due);
+    const Nanoseconds took = read(clock) - begin;
+    parts.virtual_clock.set(due + parts.bus_offset());
+    parts.bus.step(due + parts.bus_offset());
+    const control::State state = parts.service.snapshot().state;
+    if (state == control::State::running) times.sorted.push_back(took);
+    if (tick % ticks_per_look != 0) continue;
+    parts.service.pump();
+    parts.recorder.drain();
+    if (state == control::State::idle) parts.service.submit(control::Request::Kind::start, *sequence);
+  }
+  std::sort(times.sorted.begin(), times.sorted.end());
+  return times;
+}
+
+void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t ticks) {
+  const Times nothing = time_nothing(clock);
+  const Times times = time_ticks(rate_hz, clock, ticks);
+  std::printf("%4.0f Hz  %-14s  p50 %6ld  p99 %6ld  p99.9 %6ld  max %8ld  (of it the clock: p50 %ld)\n",
+              rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::uint64_t ticks = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : default_ticks;
+  std::printf("one tick, two fingers, ns, %lu ticks each\n", static_cast<unsigned long>(ticks));
+  for (const double rate_hz : {200.0, 1000.0}) {
+    print(rate_hz, "processor time", CLOCK_THREAD_CPUTIME_ID, ticks);
+    print(rate_hz, "clock", CLOCK_MONOTONIC, ticks);
+  }
+  return 0;
+}
