@@ -50,8 +50,7 @@ struct RigFile {
   std::optional<std::uint64_t> seed;  ///< of a simulated board, as written
   /// The sentence by which the file accepts a board that does not vent by itself; empty: it has a watchdog.
   std::string accept_no_watchdog;
-  /// A board whose measured budget does not allow the rate is used all the same; without it the daemon
-  /// refuses to start.
+  /// The file takes a rate that the bus budget does not allow; without it such a file is refused.
   bool accept_over_budget = false;
   LoopSettings loop;
   ReconnectSettings reconnect;

@@ -50,18 +50,17 @@ void check_watchdog_time(Context& context, MapReader& top) {
   }
 }
 
-/// Before the board was asked its round trip is an assumption, which refuses nothing.
+/// The round trip of a network is an assumption until it is measured: whoever knows better says so.
 void check_budget(Context& context, MapReader& top) {
   const auto* const settings = std::get_if<drivers::ModbusTcpSettings>(&context.rig.board);
   if (settings == nullptr || context.rig.accept_over_budget) return;
   const drivers::Board::Budget budget = drivers::ModbusTcpBoard(*settings).budget();
   if (budget.exchange_s <= context.period_s()) return;
-  top.warn(
-      "rate_hz",
-      "the bus may not be fast enough for " + written(context.rig.settings.rate_hz) +
-          " exchanges a second: " + budget.explanation,
-      "softgripd measures it when it connects and refuses to start if it does not fit, unless `modbus_tcp` "
-      "says `accept_over_budget: true`");
+  top.report("rate_hz",
+             "the bus is not fast enough for " + written(context.rig.settings.rate_hz) +
+                 " exchanges a second: " + budget.explanation,
+             "lower the rate or, if you know that the bus is faster, write `accept_over_budget: true` under "
+             "`modbus_tcp`");
 }
 
 }  // namespace
