@@ -64,7 +64,7 @@ FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records
     const double scale_mm = std::max(record.span_mm, 1e-3);
     if (record.offset_free) add(FreeParameter::Kind::offset, 0, "offset_mm", "mm", scale_mm, -1e6, 1e6);
     if (!record.start_unknown) continue;
-    const double first = record.drive_kpa.front();
+    const double first = record.drive_kpa.front() + 1e-6;
     add(FreeParameter::Kind::peak_before, 0, "peak_before_kpa", "kPa", record.largest_kpa, first,
         std::max(first + 1e-6, 1.5 * record.largest_kpa));
     for (std::size_t b = 0; b < branches; ++b) {
@@ -132,7 +132,9 @@ std::vector<StartState> rest_starts(const model::Model& model, const std::vector
   std::vector<StartState> starts(records.size());
   const std::size_t branches = branch_time_constants_s(model).size();
   for (std::size_t r = 0; r < records.size(); ++r) {
-    starts[r].peak_before_kpa = records[r].drive_kpa.front();
+    const double first = records[r].drive_kpa.front();
+    // Half way to the peak where nothing is known: at the first pressure itself the fit would see no slope.
+    starts[r].peak_before_kpa = records[r].start_unknown ? (first + records[r].largest_kpa) / 2 : first;
     starts[r].unsettled_mm.assign(branches, 0);
   }
   return starts;

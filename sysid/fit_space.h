@@ -65,7 +65,8 @@ class FitSpace {
   std::vector<FreeParameter> free_;
 };
 
-/// Start states at rest, with as many unsettled branches as the model has.
+/// Start states with settled creep and without offset, at rest where a record starts there; with as many
+/// unsettled branches as the model has.
 [[nodiscard]] std::vector<StartState> rest_starts(const model::Model& model,
                                                   const std::vector<Record>& records);
 

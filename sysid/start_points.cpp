@@ -41,6 +41,7 @@ class Drawer {
     std::vector<double> z = space_.z(given);
     for (std::size_t i = 0; i < z.size(); ++i) {
       const FreeParameter& p = space_.free()[i];
+      if (p.kind == FreeParameter::Kind::peak_before) z[i] = uniform(p.lower_z(), p.upper_z());
       if (p.kind != FreeParameter::Kind::model) continue;
       z[i] += 0.7 * normal_(random_) * (p.logarithmic ? 1 : std::max(std::abs(z[i]), 0.5));
       z[i] = std::clamp(z[i], p.lower_z(), p.upper_z());
