@@ -70,6 +70,8 @@ struct StatusBlock {
 struct ReadBack {
   RegisterBlock registers;   ///< same kind and scaling as the outputs
   double tolerance_raw = 0;  ///< a larger difference means that the write was refused
+  /// So many exchanges the board may need until it shows what was written: earlier ones are accepted too.
+  std::uint32_t lag_exchanges = 0;
 };
 
 /// One register or coil written with a fixed value.

@@ -179,6 +179,8 @@ class BoardReader {
     block.registers.function = function(in, {3, 4}, "allowed is");
     block.registers.address = address(in, block.registers.registers());
     block.tolerance_raw = in.number("tolerance_raw", {0, 4294967295.0});
+    block.lag_exchanges =
+        static_cast<std::uint32_t>(in.optional_integer("lag_exchanges", 0, 100).value_or(0));
     map_.read_back = block;
   }
 

@@ -19,8 +19,9 @@ struct ModbusTcpSettings {
   std::uint8_t unit = 1;  ///< unit id; replies with another one are refused
   BoardMap map;
   std::vector<ChannelWiring> wiring;  ///< one per channel; wiring_problems(map, wiring) is empty
-  /// Reads made by connect() to measure the round trip for budget(); 0: none, the budget is assumed.
-  int probes = 5;
+  /// Most reads made by connect() to measure the round trip for budget(), in at most a quarter of its
+  /// deadline; 0: none, the budget is assumed.
+  int probes = 9;
 };
 
 /// One exchange is: the outputs in one write (or FC23), then the inputs, and with them what the map has of

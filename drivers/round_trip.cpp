@@ -1,5 +1,6 @@
 #include "drivers/round_trip.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -24,15 +25,30 @@ std::string milliseconds(double seconds) {
 
 }  // namespace
 
+double RoundTrip::median_s() const noexcept {
+  if (count_ == 0) return 0;
+  std::array<Nanoseconds, 32> sorted = durations_;
+  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count_));
+  return static_cast<double>(sorted[count_ / 2]) * 1e-9;
+}
+
+double RoundTrip::slowest_s() const noexcept {
+  if (count_ == 0) return 0;
+  return static_cast<double>(*std::max_element(durations_.begin(),
+                                               durations_.begin() + static_cast<std::ptrdiff_t>(count_))) *
+         1e-9;
+}
+
 Board::Budget tcp_budget(std::size_t transactions, const std::string& plan, const std::string& host,
                          const RoundTrip& measured) {
   const bool known = measured.count() > 0;
   const double assumed_s = is_loopback(host) ? assumed_loopback_s : assumed_network_s;
-  const double round_trip_s = known ? measured.slowest_s() : assumed_s;
+  const double round_trip_s = known ? measured.median_s() : assumed_s;
   Board::Budget budget;
   budget.exchange_s = static_cast<double>(transactions) * round_trip_s;
   const std::string source =
-      known ? "the slowest of " + std::to_string(measured.count()) + " measured when connecting"
+      known ? "median of " + std::to_string(measured.count()) + " measured when connecting, slowest " +
+                  milliseconds(measured.slowest_s())
             : std::string("assumed for ") + (is_loopback(host) ? "loopback" : "a network") +
                   ", not measured: not connected yet";
   budget.explanation = "Modbus TCP, " + std::to_string(transactions) +

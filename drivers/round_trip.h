@@ -1,6 +1,7 @@
 #pragma once
 // How long one question and its answer take, and what that makes of an exchange.
 
+#include <array>
 #include <cstddef>
 #include <string>
 
@@ -8,25 +9,26 @@
 
 namespace softgrip::drivers {
 
-/// Round trips measured when the session was opened.
+/// Round trips measured when the session was opened; the first few are kept.
 class RoundTrip {
  public:
-  void reset() noexcept { *this = RoundTrip(); }
+  void reset() noexcept { count_ = 0; }
   void add(Nanoseconds duration) noexcept {
-    ++count_;
-    if (duration > slowest_) slowest_ = duration;
+    if (count_ < durations_.size()) durations_[count_++] = duration;
   }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  /// 0 without a measurement.
-  [[nodiscard]] double slowest_s() const noexcept { return static_cast<double>(slowest_) * 1e-9; }
+  /// Both 0 without a measurement.
+  [[nodiscard]] double median_s() const noexcept;
+  [[nodiscard]] double slowest_s() const noexcept;
 
  private:
+  std::array<Nanoseconds, 32> durations_{};
   std::size_t count_ = 0;
-  Nanoseconds slowest_ = 0;
 };
 
-/// The budget of an exchange of `transactions` round trips, one after the other, at the slowest that was
-/// measured; without a measurement at an assumed one, and the text says that it is assumed.
+/// The budget of an exchange of `transactions` round trips, one after the other, at the median that was
+/// measured (one of few may have met a busy moment of this machine; the slowest is told besides); without a
+/// measurement at an assumed one, and the text says that it is assumed.
 [[nodiscard]] Board::Budget tcp_budget(std::size_t transactions, const std::string& plan,
                                        const std::string& host, const RoundTrip& measured);
 

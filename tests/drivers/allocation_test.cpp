@@ -73,6 +73,7 @@ TEST_F(ModbusAllocation, EveryWayAnExchangeCanFail) {
   expect(BusStatus::write_refused, {10, 1234.5678});
   expect(BusStatus::write_refused, {10, std::numeric_limits<double>::quiet_NaN()});
   server_.ignore_writes(true);
+  expect(BusStatus::ok, {90, 90});  // its read-back may lag one exchange
   expect(BusStatus::write_refused, {90, 90});
   server_.ignore_writes(false);
   for (const std::uint8_t code : {std::uint8_t{2}, std::uint8_t{9}, std::uint8_t{200}}) {

@@ -230,7 +230,9 @@ TEST_F(ModbusTcpBoardTest, ACommandThatIsNoNumberWritesNothing) {
 }
 
 TEST_F(ModbusTcpBoardTest, AnOutputThatDoesNotFollowIsRefused) {
-  connect(shipped("adam-6024.yaml"));
+  BoardMap map = shipped("adam-6024.yaml");
+  map.read_back->lag_exchanges = 0;
+  connect(map);
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   server_.ignore_writes(true);
   EXPECT_EQ(exchange(10.01, 10), BusStatus::ok) << "within the read-back tolerance";
@@ -238,6 +240,29 @@ TEST_F(ModbusTcpBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   EXPECT_NE(std::string(board_->detail()).find("left"), std::string::npos) << board_->detail();
   server_.ignore_writes(false);
   EXPECT_EQ(exchange(50, 10), BusStatus::ok);
+}
+
+// Some boards show in the read-back what they were told one exchange ago, all the more with function 23.
+TEST_F(ModbusTcpBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
+  BoardMap map = shipped("adam-6024.yaml");
+  map.read_back->lag_exchanges = 1;
+  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
+    if (request.function != 16) return;  // called before the write is carried out: shows the one before
+    server.input_[10] = server.holding_[10];
+    server.input_[11] = server.holding_[11];
+  });
+  connect(map);
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
+  map.read_back->lag_exchanges = 0;
+  connect(map);
+  EXPECT_EQ(exchange(70, 70), BusStatus::write_refused);
+  map.read_back->lag_exchanges = 1;
+  connect(map);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  server_.ignore_writes(true);
+  ASSERT_EQ(exchange(50, 10), BusStatus::ok) << "it may still show the exchange before";
+  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "but not for ever";
 }
 
 TEST_F(ModbusTcpBoardTest, ExceptionsAreToldAndTheSessionStands) {
@@ -299,7 +324,7 @@ TEST_F(ModbusTcpBoardTest, ConnectingWritesNoOutput) {
   EXPECT_EQ(server_.take_requests(), expected);
   const Board::Budget budget = board_->budget();
   EXPECT_NE(budget.explanation.find("4 round trips"), std::string::npos) << budget.explanation;
-  EXPECT_NE(budget.explanation.find("slowest of 3 measured"), std::string::npos) << budget.explanation;
+  EXPECT_NE(budget.explanation.find("median of 3 measured"), std::string::npos) << budget.explanation;
   EXPECT_GT(budget.exchange_s, 0);
 }
 
