@@ -33,6 +33,9 @@
 // Rest. reset(input) puts a block where it stands after its input rose from 0 to `input` once and has been
 // held ever since: lags and creep settled, hysteresis on its first loading curve, the delay line filled.
 //
+// A block that remembers something for the whole campaign (the largest load so far) has rest(input) besides,
+// which does the same but keeps that memory.
+//
 // A block with repeated parts declares `repeated` (the parameters of one part, in order) and `max_parts`
 // besides. A block whose parameters must fit each other declares
 // `static std::string_view objection(std::span<const double> values)`, empty when they do.

@@ -41,6 +41,10 @@ class Chain {
   /// At rest: as if the command had risen from 0 to `command` once and been held ever since (see block.h).
   void reset(const T& command);
 
+  /// Like reset(), but what runs through a campaign (the largest load so far) is kept: a new log of the same
+  /// rig, which rested in between.
+  void rest(const T& command);
+
   /// Moves on by `duration_s` >= 0 while the command goes linearly to `command`; returns the reading [mm].
   T step(const T& duration_s, const T& command, Surroundings surroundings = {});
 
@@ -77,6 +81,8 @@ class Chain {
  private:
   using Index = std::size_t;
 
+  template <bool campaign_goes_on>
+  void settle(const T& command);
   void walk_pressure(Index i, const Segment<T>& segment, const Surroundings& surroundings);
   void walk_elements(const Segment<T>& segment, const Surroundings& surroundings);
   void walk_displacement(Index i, const Segment<T>& segment, const Surroundings& surroundings);

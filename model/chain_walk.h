@@ -66,22 +66,40 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
 
 template <class T>
 void Chain<T>::reset(const T& command) {
+  settle<false>(command);
+}
+
+template <class T>
+void Chain<T>::rest(const T& command) {
+  settle<true>(command);
+}
+
+template <class T>
+template <bool campaign_goes_on>
+void Chain<T>::settle(const T& command) {
   command_kpa_ = command;
-  clock_s_ = 0;
+  if constexpr (!campaign_goes_on) clock_s_ = 0;
   T pressure = command;
   T displacement(0.0);
   if (end_[0] == 0) after_[0] = pressure;
   for (Index i = 0; i < blocks_.size(); ++i) {
     visit_block(blocks_[i], [&](auto& block) {
       using Block = decltype(block);
+      const auto to_rest = [&](const T& input) {
+        if constexpr (campaign_goes_on && requires { block.rest(input); }) {
+          block.rest(input);
+        } else {
+          block.reset(input);
+        }
+      };
       if constexpr (walk::kind_of<Block> == Kind::pressure) {
-        block.reset(pressure);
+        to_rest(pressure);
         pressure = block.output();
       } else if constexpr (walk::kind_of<Block> == Kind::element) {
-        block.reset(pressure);
+        to_rest(pressure);
         displacement += block.output();
       } else {
-        block.reset(displacement);
+        to_rest(displacement);
         displacement = block.output();
       }
     });

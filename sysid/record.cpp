@@ -72,8 +72,11 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
 std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options) {
   std::vector<Record> records;
   double campaign_time_s = 0;
+  double largest_kpa = 0;
   for (const Log& log : logs) {
     records.push_back(make_record(log, options, campaign_time_s));
+    records.back().largest_before_kpa = largest_kpa;
+    largest_kpa = std::max(largest_kpa, records.back().largest_kpa);
     campaign_time_s += log.time_s.back();
   }
   return records;

@@ -56,6 +56,7 @@ struct Record {
   double campaign_time_s = 0;  ///< when it began, counted from the first log's start
   double span_mm = 0;          ///< of the readings
   double largest_kpa = 0;      ///< of the drive
+  double largest_before_kpa = 0;  ///< of the drive in the campaign's earlier records
   std::size_t readings = 0;    ///< how many are there
   bool held = false;
   bool start_unknown = false;

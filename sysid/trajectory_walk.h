@@ -19,11 +19,13 @@ inline constexpr double creep_settling_s = 1e6;
 template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa) {
   const T first(record.drive_kpa.front());
+  // What remembers the largest load so far has seen that of the earlier records.
+  chain.reset(T(record.largest_before_kpa));
   if (!record.start_unknown || !(model::value_of(peak_before_kpa) > record.drive_kpa.front())) {
-    chain.reset(first);
+    chain.rest(first);
     return;
   }
-  chain.reset(peak_before_kpa);
+  chain.rest(peak_before_kpa);
   chain.step(T(0.0), first);
   chain.step(T(valve_settling_s), first);
   chain.step(T(creep_settling_s), first);

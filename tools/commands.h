@@ -10,6 +10,7 @@
   X(plot)                    \
   X(identify)                \
   X(validate)                \
+  X(diagnose)                \
   X(status)                  \
   X(watch)                   \
   X(start)                   \

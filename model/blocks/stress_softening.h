@@ -7,7 +7,7 @@
 namespace softgrip::model {
 
 /// q = p (1 + s m) with m the largest pressure so far: the first loading curve is steeper than a line, and
-/// every later one up to m is straight, above it. Runs through a campaign: only reset() forgets m.
+/// every later one up to m is straight, above it. Runs through a campaign: rest() keeps m, only reset() forgets it.
 template <class T>
 class StressSoftening {
  public:
@@ -32,6 +32,10 @@ class StressSoftening {
 
   void reset(const T& input) {
     largest_kpa_ = greater(input, T(0.0));
+    output_ = map(input, largest_kpa_);
+  }
+  void rest(const T& input) {
+    largest_kpa_ = greater(input, largest_kpa_);
     output_ = map(input, largest_kpa_);
   }
   [[nodiscard]] T output() const { return output_; }

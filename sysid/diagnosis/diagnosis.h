@@ -1,0 +1,86 @@
+#pragma once
+// The diagnosis: what a model gets wrong, the cause, the extension, the gain.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "model/model.h"
+#include "sysid/diagnosis/outliers.h"
+#include "sysid/diagnosis/selection.h"
+#include "sysid/identify.h"
+#include "sysid/log.h"
+
+namespace softgrip::sysid {
+
+enum class Verdict { adequate, recalibrate, cause_found, ambiguous, unexplained };
+[[nodiscard]] const char* name_of(Verdict verdict);
+
+/// A parameter of a named cause.
+struct CauseParameter {
+  std::string name;
+  std::string unit;
+  double value = 0;
+  Interval ci95;
+  bool has_interval = false;
+};
+
+/// A cause as the verdict names it.
+struct NamedCause {
+  Cause cause;
+  std::vector<CauseParameter> parameters;
+  Spread heldout_gain_percent;
+  std::vector<Cause> rivals;
+  std::vector<CandidateScore> candidates;
+};
+
+struct DiagnosisOptions {
+  RecordOptions record;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  std::function<void(const std::string&)> progress;
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::unexplained;
+  std::vector<NamedCause> causes;   ///< of cause_found and ambiguous
+  std::vector<NamedCause> partial;  ///< of unexplained: what explains part of it
+  std::vector<CandidateScore> rejected;
+  double noise_mm = 0;
+  Spread gain;  ///< extended against recalibrated, held out [%]
+  double as_given_rmse_mm = 0;
+  double recalibrated_rmse_mm = 0;  ///< held out
+  double extended_rmse_mm = 0;      ///< held out
+  /// The same with whole logs held out; empty with a single log.
+  std::optional<double> recalibrated_other_logs_rmse_mm;
+  std::optional<double> extended_other_logs_rmse_mm;
+  double unexplained_percent = 0;
+  OutlierEvidence outliers;
+  Structure structure_recalibrated;
+  Structure structure_left;
+  StructureFit as_given;
+  StructureFit recalibrated;
+  StructureFit extended;
+  model::Model extended_model;  ///< ready for the daemon: the given name, extended
+  model::Model recalibrated_model;
+  std::vector<Record> records;
+  std::vector<std::string> warnings;
+  double wall_s = 0;
+};
+
+/// Fails with a sentence where the logs cannot be judged at all.
+[[nodiscard]] tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs,
+                                                            const model::Model& given,
+                                                            const DiagnosisOptions& options = {});
+
+/// The verdict in one sentence that a technician understands.
+[[nodiscard]] std::string verdict_sentence(const Diagnosis& diagnosis);
+
+/// The contract's JSON. `next_experiment` is null here; the command that designs one fills it in.
+[[nodiscard]] std::string to_json(const Diagnosis& diagnosis);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,155 @@
+#include "sysid/diagnosis/search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+#include "model/catalogue.h"
+#include "sysid/parallel.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Interval to which the first look is thinned; latencies of interest are longer.
+constexpr double look_interval_s = 0.025;
+constexpr FitEffort look{.most_iterations = 10, .tolerance = 1e-5};
+constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
+/// Looks that are followed to the end.
+constexpr std::size_t followed = 2;
+
+bool varies(const std::vector<double>& column) {
+  if (column.empty()) return false;
+  const auto [low, high] = std::minmax_element(column.begin(), column.end());
+  return *high - *low > 1e-6 * std::max(1.0, std::abs(*high));
+}
+
+FitPoint with_cause(const FitPoint& point, const model::BlockSpec& block) {
+  FitPoint extended = point;
+  extended.model = model::with_block(extended.model, block);
+  return extended;
+}
+
+Candidate fit_candidate(const SearchData& data, const StructureFit& current, const Cause& cause) {
+  Candidate candidate{cause, std::nullopt, unanswerable(cause, data.scales)};
+  if (!candidate.why_not.empty()) return candidate;
+  std::vector<Cause> causes = current.causes;
+  causes.push_back(cause);
+
+  std::vector<FitPoint> places{current.point};
+  // Recalibration may have walked far from the truth to swallow the effect.
+  if (current.causes.empty() && data.given_is_base) places.push_back(data.given);
+  std::vector<StructureFit> looks;
+  for (const FitPoint& place : places) {
+    for (const CauseStart& start : cause_starts(cause, data.scales)) {
+      looks.push_back(fit_structure(data.thinned, causes, with_cause(place, start.block), look));
+    }
+  }
+  std::sort(looks.begin(), looks.end(), [](const StructureFit& a, const StructureFit& b) {
+    return a.mean_square_mm2 < b.mean_square_mm2;
+  });
+  for (std::size_t i = 0; i < std::min(followed, looks.size()); ++i) {
+    if (!std::isfinite(looks[i].mean_square_mm2)) break;
+    if (i > 0 && looks[i].mean_square_mm2 > 1.5 * looks[0].mean_square_mm2) break;
+    StructureFit fit = fit_structure(data.records, causes, looks[i].point, full);
+    if (!candidate.fit || fit.mean_square_mm2 < candidate.fit->mean_square_mm2)
+      candidate.fit = std::move(fit);
+  }
+  if (!candidate.fit) candidate.why_not = "no start led to a fit";
+  return candidate;
+}
+
+}  // namespace
+
+std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
+                                      const std::vector<std::vector<double>>& residual_mm,
+                                      std::size_t count) {
+  // Periodogram at fixed frequencies by Goertzel-like sums over the true sample times, so that irregular
+  // sampling needs no resampling. The grid is as fine as the campaign's length resolves.
+  double length_s = 0, sample_s = std::numeric_limits<double>::infinity();
+  for (const Record& record : records) {
+    length_s += record.time_s.back() - record.time_s.front();
+    sample_s = std::min(sample_s, (record.time_s.back() - record.time_s.front()) /
+                                      static_cast<double>(std::max<std::size_t>(1, record.size() - 1)));
+  }
+  const double step_hz = 0.5 / std::max(length_s, 1.0);
+  const double highest_hz = std::min(0.45 / sample_s, 25.0);
+  const auto bins = static_cast<std::size_t>(highest_hz / step_hz);
+  std::vector<double> power(bins, 0.0);
+  for (std::size_t b = 1; b < bins; ++b) {
+    const double omega = 2 * std::numbers::pi * step_hz * static_cast<double>(b);
+    std::complex<double> sum = 0;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      const double interval = records[k].sample_time_s;
+      std::complex<double> turn =
+          std::polar(1.0, omega * (records[k].campaign_time_s + records[k].time_s[0]));
+      const std::complex<double> ahead = std::polar(1.0, omega * interval);
+      for (std::size_t i = 0; i < records[k].size(); ++i) {
+        if (interval == 0)
+          turn = std::polar(1.0, omega * (records[k].campaign_time_s + records[k].time_s[i]));
+        if (!std::isnan(residual_mm[k][i])) sum += residual_mm[k][i] * turn;
+        turn *= ahead;
+      }
+    }
+    power[b] = std::norm(sum);
+  }
+  // A line stands out against its neighbourhood, not against the slow structure of a misfit.
+  const std::size_t around = 60;
+  std::vector<std::pair<double, double>> peaks;
+  for (std::size_t b = 2; b + 1 < bins; ++b) {
+    if (power[b] < power[b - 1] || power[b] < power[b + 1]) continue;
+    const std::size_t first = b > around ? b - around : 1;
+    const std::size_t last = std::min(bins, b + around);
+    std::vector<double> near(power.begin() + static_cast<long>(first),
+                             power.begin() + static_cast<long>(last));
+    std::nth_element(near.begin(), near.begin() + static_cast<long>(near.size() / 2), near.end());
+    peaks.emplace_back(power[b] / (near[near.size() / 2] + 1e-300), step_hz * static_cast<double>(b));
+  }
+  std::sort(peaks.rbegin(), peaks.rend());
+  std::vector<double> found;
+  for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) found.push_back(peaks[i].second);
+  return found;
+}
+
+SearchData make_search_data(std::vector<Record> records, const model::Model& given) {
+  SearchData data;
+  data.records = std::move(records);
+  data.given = {given, rest_starts(given, data.records)};
+  Scales& s = data.scales;
+  s.sample_s = std::numeric_limits<double>::infinity();
+  for (const Record& record : data.records) {
+    s.span_mm = std::max(s.span_mm, record.span_mm);
+    s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);
+    s.campaign_s += record.time_s.back() - record.time_s.front();
+    const double interval = (record.time_s.back() - record.time_s.front()) /
+                            static_cast<double>(std::max<std::size_t>(1, record.size() - 1));
+    s.sample_s = std::min(s.sample_s, interval);
+    s.has_temperature |= varies(record.temperature_c);
+    s.has_supply |= varies(record.supply_kpa);
+    for (const double supply : record.supply_kpa)
+      s.largest_supply_kpa = std::max(s.largest_supply_kpa, supply);
+    const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(look_interval_s / interval)));
+    data.thinned.push_back(stride > 1 ? thinned_record(record, stride) : record);
+  }
+  return data;
+}
+
+std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
+                                      const std::vector<Cause>& only,
+                                      const std::function<void(const Cause&)>& done) {
+  std::vector<Cause> wanted;
+  for (const Cause& cause : only.empty() ? all_causes() : only) {
+    if (cause.id == "outliers") continue;  // not a trajectory: see outliers.h
+    const bool has = model::position_of(current.point.model, cause.type).has_value();
+    if (!has) wanted.push_back(cause);
+  }
+  std::vector<Candidate> candidates(wanted.size());
+  parallel_for(wanted.size(), data.threads, [&](std::size_t i) {
+    candidates[i] = fit_candidate(data, current, wanted[i]);
+    if (done) done(wanted[i]);
+  });
+  return candidates;
+}
+
+}  // namespace softgrip::sysid

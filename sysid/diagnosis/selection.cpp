@@ -1,0 +1,183 @@
+#include "sysid/diagnosis/selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "model/catalogue.h"
+#include "sysid/parallel.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Candidates that are refitted without held-out blocks.
+constexpr std::size_t finalists = 5;
+/// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
+/// is no rival whatever the blocks say.
+constexpr double rival_share = 0.05;
+
+class Selector {
+ public:
+  Selector(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
+           const SelectionOptions& options)
+      : data_(data), noise_(noise_mm), division_(division), options_(options) {
+    result_.base = std::move(base);
+    result_.base_losses = held_out_losses(data_.records, division_, result_.base);
+    result_.base_structure = structure_of(result_.base.residual_mm, noise_);
+    result_.extended = result_.base;
+    result_.extended_losses = result_.base_losses;
+    result_.left = result_.base_structure;
+  }
+
+  Selection run() {
+    while (result_.left.present && result_.extended.causes.size() < options_.most_causes) {
+      if (!add_one()) break;
+      if (result_.extended.causes.size() > 1) swap_others();
+    }
+    for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) explain(i);
+    return std::move(result_);
+  }
+
+ private:
+  struct Scored {
+    Candidate candidate;
+    BlockLosses losses;  ///< empty: not refitted
+  };
+
+  /// All candidates for one more cause on top of `current`, fitted, the best ones scored held out; best
+  /// first.
+  std::vector<Scored> score(const StructureFit& current) {
+    std::vector<Candidate> candidates = fit_candidates(data_, current, {}, [&](const Cause& cause) {
+      if (options_.progress) options_.progress(std::string(cause.id));
+    });
+    std::vector<Scored> scored;
+    for (Candidate& candidate : candidates) scored.push_back({std::move(candidate), {}});
+    const auto square = [](const Scored& s) {
+      return s.candidate.fit ? s.candidate.fit->mean_square_mm2 : std::numeric_limits<double>::infinity();
+    };
+    std::stable_sort(scored.begin(), scored.end(),
+                     [&](const Scored& a, const Scored& b) { return square(a) < square(b); });
+    const std::size_t count = std::min(finalists, scored.size());
+    parallel_for(count, data_.threads, [&](std::size_t i) {
+      if (!scored[i].candidate.fit) return;
+      scored[i].losses = held_out_losses(data_.records, division_, *scored[i].candidate.fit);
+    });
+    const auto held_out = [](const Scored& s) {
+      return s.losses.empty() ? std::numeric_limits<double>::infinity() : rmse_mm(s.losses);
+    };
+    std::stable_sort(scored.begin(), scored.begin() + static_cast<long>(count),
+                     [&](const Scored& a, const Scored& b) { return held_out(a) < held_out(b); });
+    return scored;
+  }
+
+  /// A gain whose interval excludes nothing and whose size is worth having.
+  [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after) const {
+    const Spread difference = mean_difference(before, after, options_.seed);
+    const double worth = 0.01 * noise_ * noise_;
+    return difference.lower > 0 && difference.value > worth &&
+           difference.value > 0.02 * rmse_mm(before) * rmse_mm(before) * 0.5;
+  }
+
+  bool add_one() {
+    std::vector<Scored> scored = score(result_.extended);
+    if (scored.empty() || scored.front().losses.empty() ||
+        !is_gain(result_.extended_losses, scored.front().losses)) {
+      result_.last_candidates = describe(scored, result_.extended_losses);
+      return false;
+    }
+    take(scored.front());
+    fresh_[result_.extended.causes.size() - 1] = std::move(scored);
+    return true;
+  }
+
+  void take(const Scored& best) {
+    result_.extended = *best.candidate.fit;
+    result_.extended_losses = best.losses;
+    result_.left = structure_of(result_.extended.residual_mm, noise_);
+    fresh_.clear();
+  }
+
+  [[nodiscard]] StructureFit without(std::size_t index) const {
+    std::vector<Cause> rest = result_.extended.causes;
+    FitPoint point = result_.extended.point;
+    point.model = model::without_block(point.model, rest[index].type);
+    rest.erase(rest.begin() + static_cast<long>(index));
+    return fit_structure(data_.records, std::move(rest), point);
+  }
+
+  /// Looks whether another cause serves better in an earlier one's place, now that one more is there.
+  void swap_others() {
+    for (std::size_t i = 0; i + 1 < result_.extended.causes.size(); ++i) {
+      const Cause old = result_.extended.causes[i];
+      std::vector<Scored> scored = score(without(i));
+      if (scored.empty() || scored.front().losses.empty()) continue;
+      const bool better = rmse_mm(scored.front().losses) < rmse_mm(result_.extended_losses) &&
+                          scored.front().candidate.cause.type != old.type;
+      if (better) {
+        take(scored.front());
+        return;  // the new one stands last now; the others were searched with the old
+      }
+      fresh_[i] = std::move(scored);
+    }
+  }
+
+  void explain(std::size_t index) {
+    ChosenCause chosen;
+    chosen.cause = result_.extended.causes[index];
+    const StructureFit rest = result_.extended.causes.size() == 1 ? result_.base : without(index);
+    std::vector<Scored> scored;
+    const auto fresh = fresh_.find(index);
+    if (fresh != fresh_.end()) {
+      scored = std::move(fresh->second);
+    } else {
+      scored = score(rest);
+    }
+    const BlockLosses rest_losses = held_out_losses(data_.records, division_, rest);
+    chosen.gain_percent = gain_percent(rest_losses, result_.extended_losses, options_.seed);
+    const double gained = rmse_mm(rest_losses) * rmse_mm(rest_losses) -
+                          rmse_mm(result_.extended_losses) * rmse_mm(result_.extended_losses);
+    for (const Scored& s : scored) {
+      if (s.losses.empty() || s.candidate.cause.type == chosen.cause.type) continue;
+      const Spread behind = mean_difference(s.losses, result_.extended_losses, options_.seed);
+      if (behind.value <= std::max(behind.standard_error, 0.002 * noise_ * noise_) &&
+          behind.value <= std::max(rival_share * gained, 0.002 * noise_ * noise_)) {
+        chosen.rivals.push_back(s.candidate.cause);
+      }
+    }
+    chosen.candidates = describe(scored, rest_losses);
+    result_.chosen.push_back(std::move(chosen));
+  }
+
+  [[nodiscard]] std::vector<CandidateScore> describe(const std::vector<Scored>& scored,
+                                                     const BlockLosses& before) const {
+    std::vector<CandidateScore> list;
+    for (const Scored& s : scored) {
+      CandidateScore one{
+          s.candidate.cause, s.candidate.why_not, 0, std::numeric_limits<double>::quiet_NaN(), {}};
+      if (s.candidate.fit) one.rmse_mm = std::sqrt(s.candidate.fit->mean_square_mm2);
+      if (!s.losses.empty()) {
+        one.heldout_rmse_mm = rmse_mm(s.losses);
+        one.gain_percent = gain_percent(before, s.losses, options_.seed);
+      }
+      list.push_back(std::move(one));
+    }
+    return list;
+  }
+
+  const SearchData& data_;
+  double noise_;
+  const Division& division_;
+  const SelectionOptions& options_;
+  Selection result_;
+  std::map<std::size_t, std::vector<Scored>> fresh_;  ///< searches that still hold, by place
+};
+
+}  // namespace
+
+Selection select_causes(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
+                        const SelectionOptions& options) {
+  return Selector(data, std::move(base), noise_mm, division, options).run();
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,50 @@
+#include <string>
+
+#include "model/catalogue.h"
+#include "sysid/diagnosis/diagnosis.h"
+#include "sysid/numbers.h"
+
+namespace softgrip::sysid {
+namespace {
+
+std::string title(const Cause& cause) {
+  std::string text(model::catalogue()[cause.type].info.title);
+  if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+std::string listed(const std::vector<NamedCause>& causes) {
+  std::string text;
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == causes.size() ? " and " : ", ") + title(causes[i].cause);
+    for (const Cause& rival : causes[i].rivals) text += " or " + title(rival);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string verdict_sentence(const Diagnosis& d) {
+  const std::string before = significant(d.recalibrated_rmse_mm, 2) + " mm";
+  const std::string after = significant(d.extended_rmse_mm, 2) + " mm";
+  switch (d.verdict) {
+    case Verdict::adequate:
+      return "The model explains these logs to the noise (" + significant(d.noise_mm, 2) +
+             " mm): nothing to change.";
+    case Verdict::recalibrate:
+      return "The structure is right and its numbers are not: recalibrated, the error falls from " +
+             significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
+    case Verdict::cause_found:
+      return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
+             " to " + after + ".";
+    case Verdict::ambiguous:
+      return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) +
+             "): with it the held-out error falls from " + before + " to " + after + ".";
+    case Verdict::unexplained:
+      return "Something is wrong that no known cause explains: of the structure in the error, " +
+             fixed(d.unexplained_percent, 0) + " % is left unexplained.";
+  }
+  return {};
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,119 @@
+// softgrip diagnose: what a model gets wrong on measured data, the cause, the extension, the gain.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/model_file.h"
+#include "sysid/diagnosis/diagnosis.h"
+#include "sysid/files.h"
+#include "sysid/numbers.h"
+#include "tools/commands.h"
+#include "tools/log_input.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::string model;
+  std::vector<std::string> data;
+  std::string out;
+  LogInput logs;
+  sysid::DiagnosisOptions diagnosis;
+  bool json = false;
+};
+
+void show_progress(const std::string& what) {
+  std::fprintf(stderr, "\r\033[K  tried %s", what.c_str());
+  std::fflush(stderr);
+}
+
+void print_cause(const sysid::NamedCause& named) {
+  std::printf("  %-26s held-out gain %s %% (%s .. %s)\n", std::string(named.cause.id).c_str(),
+              sysid::fixed(named.heldout_gain_percent.value, 1).c_str(),
+              sysid::fixed(named.heldout_gain_percent.lower, 1).c_str(),
+              sysid::fixed(named.heldout_gain_percent.upper, 1).c_str());
+  for (const sysid::CauseParameter& p : named.parameters) {
+    const std::string interval = p.has_interval ? "(" + sysid::significant(p.ci95.lower, 4) + " .. " +
+                                                      sysid::significant(p.ci95.upper, 4) + ")"
+                                                : "";
+    std::printf("      %-22s %s %s\n", p.name.c_str(), sysid::significant(p.value, 5).c_str(),
+                interval.c_str());
+  }
+  for (const sysid::Cause& rival : named.rivals) {
+    std::printf("      %s explains as much\n", std::string(rival.id).c_str());
+  }
+}
+
+void print_summary(const sysid::Diagnosis& d, const std::string& out) {
+  std::printf("%s\n\n", sysid::verdict_sentence(d).c_str());
+  std::printf("  %-34s %s mm\n", "noise of the readings", sysid::significant(d.noise_mm, 3).c_str());
+  std::printf("  %-34s %s mm\n", "RMSE of the model as given",
+              sysid::significant(d.as_given_rmse_mm, 4).c_str());
+  std::printf("  %-34s %s mm\n", "recalibrated, held out",
+              sysid::significant(d.recalibrated_rmse_mm, 4).c_str());
+  std::printf("  %-34s %s mm\n", "extended, held out", sysid::significant(d.extended_rmse_mm, 4).c_str());
+  std::printf("  %-34s %s %%\n\n", "structure left", sysid::fixed(d.unexplained_percent, 1).c_str());
+  for (const sysid::NamedCause& named : d.causes) print_cause(named);
+  if (!d.partial.empty()) std::puts("  Part of it, but not enough to be named the cause:");
+  for (const sysid::NamedCause& named : d.partial) print_cause(named);
+  for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("%s s; diagnosis: %s\n", sysid::significant(d.wall_s, 3).c_str(),
+              (std::filesystem::path(out) / "diagnosis.json").c_str());
+}
+
+ExitCode run(Options options) {
+  if (const auto code = unreadable(options.model)) return *code;
+  document::Problems problems;
+  const auto model = model::load_model(options.model, problems);
+  if (!model) return refuse(problems);
+  const auto logs = read_logs(options.data, options.logs);
+  if (!logs) return logs.error();
+  options.diagnosis.record = options.logs.record_options();
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  if (terminal) options.diagnosis.progress = show_progress;
+  const auto result = sysid::diagnose(*logs, *model, options.diagnosis);
+  if (terminal) std::fputs("\r\033[K", stderr);
+  if (!result) return fail(ExitCode::input_refused, result.error());
+
+  const std::string json = sysid::to_json(*result);
+  const std::filesystem::path out(options.out);
+  for (const auto& [name, text] : {std::pair<const char*, std::string>{"diagnosis.json", json},
+                                   {"model.yaml", model::to_yaml(result->extended_model)}}) {
+    if (const auto written = sysid::write_file((out / name).string(), text); !written) {
+      return fail(ExitCode::io, written.error());
+    }
+  }
+  if (options.json) {
+    std::fputs(json.c_str(), stdout);
+  } else {
+    print_summary(*result, options.out);
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("diagnose", "What a model gets wrong on measured data, and why");
+  command->add_option("--model", options->model, "Model file as it is used today")->required();
+  command
+      ->add_option("--data", options->data, "Logs of one campaign, in order (CSV, or a recording's folder)")
+      ->required();
+  command->add_option("--out", options->out, "Folder for diagnosis.json, model.yaml, report.html")
+      ->required();
+  command->add_option("--seed", options->diagnosis.seed, "Of starts and resampling")->capture_default_str();
+  command->add_option("--threads", options->diagnosis.threads, "0: as many as there are cores")
+      ->capture_default_str();
+  add_log_options(*command, options->logs);
+  command->add_flag("--json", options->json, "Print diagnosis.json");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
