@@ -11,6 +11,7 @@
   X(identify)                \
   X(validate)                \
   X(diagnose)                \
+  X(run)                     \
   X(status)                  \
   X(watch)                   \
   X(start)                   \

@@ -15,9 +15,7 @@ std::string line_of_event(const nlohmann::ordered_json& event) {
   if (time.size() < time_columns) time.insert(0, time_columns - time.size(), ' ');
   std::string severity = event.value("severity", "");
   severity.resize(severity_columns, ' ');
-  const std::string channel = event.value("channel", "");
-  return time + " s  " + severity + (channel.empty() ? "" : document::shown(channel) + ": ") +
-         document::shown(event.value("text", ""), longest_text);
+  return time + " s  " + severity + document::shown(event.value("text", ""), longest_text);
 }
 
 }  // namespace softgrip::tools

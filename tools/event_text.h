@@ -7,7 +7,7 @@
 
 namespace softgrip::tools {
 
-/// "   12.340 s  warning  left: NO PART ..." of an event as the socket API tells it.
+/// "   12.340 s  warning  left: The grip's result is NO PART." of an event as the socket API tells it.
 [[nodiscard]] std::string line_of_event(const nlohmann::ordered_json& event);
 
 }  // namespace softgrip::tools

@@ -1,11 +1,10 @@
 #include "tools/rig/options.h"
 
-#include <filesystem>
-
 #include "daemon/rig_file.h"
 #include "drivers/board_map_file.h"
 #include "model/model_file.h"
 #include "tools/command.h"
+#include "tools/configuration.h"
 #include "tools/rig/control.h"
 #include "tools/rig/wiring.h"
 
@@ -15,14 +14,10 @@ namespace {
 // Distinct seeds of the channels' noise; any odd number does.
 constexpr std::uint64_t seed_step = 0x9e3779b97f4a7c15;
 
-/// A board file as the user named it: a path, or a name in one of the folders where board files are.
+/// A board file as the user named it: a path, or a name in config/boards.
 std::string board_path(const std::string& board) {
-  if (board.find('/') != std::string::npos || board.ends_with(".yaml")) return board;
-  for (const char* folder : {"config/boards/", SOFTGRIP_CONFIG_DIR "/boards/"}) {
-    const std::string path = folder + board + ".yaml";
-    if (std::filesystem::exists(path)) return path;
-  }
-  return board;
+  const bool is_path = board.find('/') != std::string::npos || board.ends_with(".yaml");
+  return is_path ? board : configuration_path("boards/" + board + ".yaml");
 }
 
 std::vector<drivers::PlantSettings> make_plants(const Options& options, std::size_t channels,

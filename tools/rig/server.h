@@ -7,8 +7,8 @@
 #include <list>
 #include <string>
 
-#include "tools/rig/connection.h"
 #include "tools/descriptor.h"
+#include "tools/rig/connection.h"
 #include "tools/rig/emulator.h"
 
 namespace softgrip::tools::rig {

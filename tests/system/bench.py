@@ -1,0 +1,294 @@
+"""Processes and files of the end-to-end tests: a folder per test, free ports, nothing left behind.
+
+The programs come from the build; their folder is named by the environment variable SOFTGRIP_BUILD.
+"""
+
+import contextlib
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", SOURCE / "build" / "release"))
+SOFTGRIP = BUILD / "tools" / "softgrip"
+SOFTGRIP_RIG = BUILD / "tools" / "softgrip-rig"
+SOFTGRIPD = BUILD / "daemon" / "softgripd"
+
+# Generous: the machine may be busy. No result depends on it.
+PATIENCE_S = 30
+
+# Of the rig that the tests run: 100 Hz, and a bus that may be silent for 0.6 s.
+RATE_HZ = 100
+BUS_DOWN_CYCLES = 60
+
+
+def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):
+    """Returns the first true result of condition(); fails with `what` when patience ends."""
+    end = time.monotonic() + patience_s
+    while True:
+        result = condition()
+        if result:
+            return result
+        if time.monotonic() > end:
+            raise AssertionError(f"waited {patience_s} s in vain for {what}")
+        time.sleep(pause_s)
+
+
+class Lines:
+    """Lines to and from a Unix socket."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.socket.settimeout(PATIENCE_S)
+        try:
+            self.socket.connect(str(path))
+        except OSError:
+            self.socket.close()
+            raise
+        self.file = self.socket.makefile("rw", encoding="utf-8", newline="\n")
+
+    def ask(self, line):
+        self.file.write(line + "\n")
+        self.file.flush()
+        answer = self.file.readline()
+        if not answer:
+            raise AssertionError(f"no answer to {line!r}")
+        return answer.rstrip("\n")
+
+    def close(self):
+        self.file.close()
+        self.socket.close()
+
+
+class Process:
+    """A child whose output goes to files and who never outlives its test."""
+
+    def __init__(self, name, arguments, folder):
+        self.name = name
+        self.output_path = folder / f"{name}.out"
+        self.error_path = folder / f"{name}.err"
+        with open(self.output_path, "wb") as output, open(self.error_path, "wb") as error:
+            self.child = subprocess.Popen([str(a) for a in arguments], stdout=output, stderr=error,
+                                          stdin=subprocess.DEVNULL, cwd=folder)
+
+    def output(self):
+        return self.output_path.read_text(errors="replace")
+
+    def errors(self):
+        return self.error_path.read_text(errors="replace")
+
+    def running(self):
+        return self.child.poll() is None
+
+    def send(self, number):
+        self.child.send_signal(number)
+
+    def kill(self):
+        """As kill -9 does."""
+        self.child.kill()
+        self.child.wait(PATIENCE_S)
+
+    def end(self, number=signal.SIGTERM):
+        """Asks it to end and returns its exit code."""
+        if self.running():
+            self.send(number)
+        return self.wait()
+
+    def wait(self):
+        try:
+            return self.child.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            raise AssertionError(f"{self.name} did not end:\n{self.errors()}") from None
+
+
+class Emulator(Process):
+    """softgrip-rig on a free port, with a control socket."""
+
+    def __init__(self, folder, *arguments, port=0, name="softgrip-rig"):
+        self.control_path = folder / f"{name}.sock"
+        super().__init__(name, [SOFTGRIP_RIG, "--model", folder / "config/models/bench_twin.yaml",
+                                "--board", folder / "config/boards/adam-6024.yaml", "--tcp", port,
+                                "--control", self.control_path, *arguments], folder)
+        self.port = int(wait_for(f"{name} to listen: {self.errors()}", self._ready))
+        self.control = Lines(self.control_path)
+
+    def _ready(self):
+        if not self.running():
+            raise AssertionError(f"{self.name} ended: {self.errors()}")
+        found = re.search(r"listening on [\d.]+:(\d+)\n", self.output())
+        return found and found.group(1)
+
+    def ask(self, line):
+        answer = self.control.ask(line)
+        if answer.startswith("error"):
+            raise AssertionError(f"{line}: {answer}")
+        return answer
+
+    def status(self):
+        return json.loads(self.ask("status"))
+
+    def commands_kpa(self):
+        return [channel["pressure_command_kpa"] for channel in self.status()["channels"]]
+
+    def pressures_kpa(self):
+        return [channel["pressure_kpa"] for channel in self.status()["channels"]]
+
+
+class Daemon(Process):
+    """softgripd on a rig file of the test's folder."""
+
+    def __init__(self, folder, rig, name="softgripd"):
+        self.socket_path = folder / "softgripd.sock"
+        super().__init__(name, [SOFTGRIPD, "--config", rig], folder)
+        wait_for("the daemon's socket", self._listening)
+        self.lines = Lines(self.socket_path)
+
+    def _listening(self):
+        if not self.running():
+            raise AssertionError(f"softgripd ended: {self.errors()}")
+        with contextlib.suppress(OSError):
+            Lines(self.socket_path).close()
+            return True
+        return False
+
+    def ask(self, command, **arguments):
+        return json.loads(self.lines.ask(json.dumps({"command": command, **arguments})))
+
+    def result(self, command, **arguments):
+        reply = self.ask(command, **arguments)
+        if not reply["ok"]:
+            raise AssertionError(f"{command}: {reply['error']}\n{self.errors()}")
+        return reply["result"]
+
+    def status(self):
+        return self.result("status")
+
+    def events(self, since=0):
+        return self.result("events", since=since, limit=1000)["events"]
+
+    def wait_for_state(self, *states):
+        try:
+            return wait_for(f"state {states}", lambda: (s := self.status())["state"] in states and s)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; it is {self.status()['state']}\n{self.errors()}") from None
+
+    def wait_for_event(self, kind, since=0, **keys):
+        def find():
+            for event in self.events(since):
+                if event["kind"] == kind and all(event.get(k) == v for k, v in keys.items()):
+                    return event
+            return None
+        try:
+            return wait_for(f"event {kind} {keys}", find)
+        except AssertionError as error:
+            raise AssertionError(f"{error}\n{self.errors()}") from None
+
+    def start(self, sequence):
+        """Starts it; one exchange that the busy machine delayed is no reason to give up."""
+        def accepted():
+            reply = self.ask("start", sequence=sequence)
+            if reply["ok"]:
+                return reply["result"]
+            if reply["error"].get("refusal", {}).get("name") != "no_valid_reading":
+                raise AssertionError(f"start {sequence}: {reply['error']}\n{self.errors()}")
+            return None
+        return wait_for("readings to start with", accepted)["request"]
+
+    def results(self):
+        return [channel["result"] for channel in self.status()["channels"]]
+
+
+class BenchTest(unittest.TestCase):
+    """A test with a folder of its own, the shipped configuration in it, and processes that end with it."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_system_"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        shutil.copytree(SOURCE / "config", self.folder / "config")
+        self.processes = []
+
+    def tearDown(self):
+        for process in reversed(self.processes):
+            if process.running():
+                process.kill()
+        result = self._outcome.result
+        if any(test is self for test, _ in result.failures + result.errors):
+            for process in self.processes:
+                print(f"--- {process.name}\n{process.output()[-2000:]}\n{process.errors()[-6000:]}", file=sys.stderr)
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def rig(self, port, changes=(), name="rig_tcp.yaml"):
+        """The shipped TCP rig with this port, the test's folder and further (pattern, replacement) changes.
+
+        Loop and bounds are set for a busy machine: a stall of the host must not look like a fault.
+        """
+        text = (self.folder / "config" / name).read_text()
+        for pattern, replacement in (
+                (r"port: \d+", f"port: {port}"),
+                (r"rate_hz: \d+", f"rate_hz: {RATE_HZ}"),
+                (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.15"),
+                (r"bus_down_cycles: \d+", f"bus_down_cycles: {BUS_DOWN_CYCLES}"),
+                (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"),
+                (r"readback_cycles: \d+", "readback_cycles: 30"),
+                (r"max_missed_commands: \d+", "max_missed_commands: 30"),
+                (r"max_age_s: [\d.]+", "max_age_s: 0.35"),
+                (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
+                (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
+                (r"directory: /tmp/softgrip-runs", f"directory: {self.folder}/runs"),
+                (r"path: /tmp/softgrip.sock", f"path: {self.folder}/softgripd.sock"),
+                *changes):
+            text, count = re.subn(pattern, replacement, text)
+            if count == 0:
+                raise AssertionError(f"{name} has no {pattern}")
+        path = self.folder / "config" / "test_rig.yaml"
+        path.write_text(text)
+        return path
+
+    def emulator(self, *arguments, **keys):
+        process = Emulator(self.folder, *arguments, **keys)
+        self.processes.append(process)
+        self.addCleanup(process.control.close)
+        return process
+
+    def daemon(self, rig):
+        process = Daemon(self.folder, rig)
+        self.processes.append(process)
+        self.addCleanup(process.lines.close)
+        return process
+
+    def softgrip(self, *arguments, expect=0, timeout_s=PATIENCE_S):
+        """Runs the command line and returns the finished process; its exit code must be as expected."""
+        done = subprocess.run([str(a) for a in (SOFTGRIP, *arguments)], capture_output=True, text=True,
+                              timeout=timeout_s, cwd=self.folder, stdin=subprocess.DEVNULL,
+                              env={**os.environ, "SOFTGRIP_SOCKET": str(self.folder / "softgripd.sock")})
+        if expect is not None:
+            self.assertEqual(done.returncode, expect, f"softgrip {arguments}:\n{done.stdout}\n{done.stderr}")
+        return done
+
+    def recordings(self):
+        """Folders of recordings, oldest first."""
+        return sorted(path.parent for path in (self.folder / "runs").glob("*/run.csv"))
+
+    @staticmethod
+    def rows(recording, channel=None):
+        with open(recording / "run.csv", newline="") as file:
+            return [row for row in csv.DictReader(file) if channel in (None, row["channel"])]
+
+
+def main():
+    unittest.main(verbosity=2)

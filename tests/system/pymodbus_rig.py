@@ -1,0 +1,134 @@
+"""An ADAM-6024 with two soft fingers, served by pymodbus: no line of it is shared with the emulator.
+
+pymodbus_rig.py [OBJECT_MM]     an object stops both fingers there
+Prints {"port": N}, then answers each line on stdin with one line of JSON: what was written and how often.
+"""
+
+import asyncio
+import collections
+import json
+import logging
+import math
+import sys
+import threading
+import time
+
+from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
+from pymodbus.server.async_io import ModbusTcpServer
+
+FIRST_OUTPUT = 10
+INPUT_REGISTERS = 4  # function codes as pymodbus hands them on
+STEP_S = 0.001
+NOISE_COUNTS = 3
+YIELDING = 0.1  # share of its free motion that the object leaves a finger
+
+
+class Finger:
+    """The bench twin (config/models/bench_twin.yaml), integrated by explicit Euler steps of 1 ms."""
+
+    ALPHA, BETA, GAMMA, ETA = 0.21105, 0.1713, 0.01625, 0.02428
+    K0, BRANCHES = 325.9, ((18.16, 299.8), (2.761, 1.621))
+    LAG_S, DELAY_S = 0.044, 0.130
+
+    def __init__(self, object_mm):
+        self.object_mm = object_mm
+        self.command_kpa = 0.0
+        self.pressure_kpa = 0.0
+        self.hysteresis_mm = 0.0
+        self.creep_mm = [0.0, 0.0]
+        self.line = collections.deque([0.0] * round(self.DELAY_S / STEP_S))
+        self.moved_at = time.monotonic()
+
+    def move(self):
+        now = time.monotonic()
+        while self.moved_at + STEP_S <= now:
+            self.step()
+            self.moved_at += STEP_S
+
+    def step(self):
+        self.line.append(self.command_kpa)
+        change = (self.line.popleft() - self.pressure_kpa) * (1 - math.exp(-STEP_S / self.LAG_S))
+        h = self.hysteresis_mm
+        self.hysteresis_mm += self.BETA * change - self.GAMMA * change * abs(h) - self.ETA * abs(change) * h
+        self.pressure_kpa += change
+        for i, (stiffness, damping) in enumerate(self.BRANCHES):
+            self.creep_mm[i] += (self.pressure_kpa - stiffness * self.creep_mm[i]) / damping * STEP_S
+
+    def displacement_mm(self):
+        free_mm = self.ALPHA * self.pressure_kpa - self.hysteresis_mm + self.pressure_kpa / self.K0 + sum(self.creep_mm)
+        beyond_mm = max(free_mm - self.object_mm, 0)
+        return free_mm - beyond_mm * (1 - YIELDING)
+
+    def raw(self, count):
+        """On a 16-bit input of -10 to 10 V, wired as 0-10 V = -5 to 45 mm; never twice the same."""
+        volts = (self.displacement_mm() + 5) / 50 * 10
+        return round((volts + 10) / 20 * 65535) + count % NOISE_COUNTS - 1
+
+    def pressure_raw(self):
+        volts = self.pressure_kpa / 10
+        return round((volts + 10) / 20 * 65535)
+
+
+class Board(ModbusSlaveContext):
+    def __init__(self, object_mm):
+        def block():
+            return ModbusSequentialDataBlock(0, [0] * 64)
+
+        super().__init__(di=block(), co=block(), hr=block(), ir=block(), zero_mode=True)
+        self.fingers = [Finger(object_mm), Finger(object_mm)]
+        self.reads = 0
+        self.writes = 0
+        self.highest_kpa = 0.0
+
+    def getValues(self, fc_as_hex, address, count=1):  # noqa: N802 (pymodbus names it)
+        if fc_as_hex == INPUT_REGISTERS:
+            self.reads += 1
+            for index, finger in enumerate(self.fingers):
+                finger.move()
+                self.store["i"].setValues(index, [finger.raw(self.reads)])
+                self.store["i"].setValues(4 + index, [finger.pressure_raw()])
+        return super().getValues(fc_as_hex, address, count)
+
+    def setValues(self, fc_as_hex, address, values):  # noqa: N802
+        self.writes += 1
+        for offset, value in enumerate(values):
+            index = address + offset - FIRST_OUTPUT
+            if 0 <= index < len(self.fingers):
+                self.fingers[index].move()
+                self.fingers[index].command_kpa = value / 4095 * 100
+                self.highest_kpa = max(self.highest_kpa, self.fingers[index].command_kpa)
+        self.store["i"].setValues(address, list(values))  # read back under function 4
+        super().setValues(fc_as_hex, address, values)
+
+    def told(self):
+        return {"reads": self.reads, "writes": self.writes, "highest_kpa": self.highest_kpa,
+                "commands_kpa": [finger.command_kpa for finger in self.fingers],
+                "displacements_mm": [finger.displacement_mm() for finger in self.fingers]}
+
+
+async def serve(board):
+    context = ModbusServerContext(slaves={1: board}, single=False)
+    server = ModbusTcpServer(context, address=("127.0.0.1", 0), allow_reuse_address=True)
+    asyncio.ensure_future(server.serve_forever())
+    await server.serving
+    return server.server.sockets[0].getsockname()[1]
+
+
+def main():
+    logging.disable(logging.CRITICAL)
+    loop = asyncio.new_event_loop()
+    asyncio.set_event_loop(loop)
+    board = Board(float(sys.argv[1]) if len(sys.argv) > 1 else math.inf)
+    print(json.dumps({"port": loop.run_until_complete(serve(board))}), flush=True)
+
+    def talk():
+        for _ in sys.stdin:
+            print(json.dumps(board.told()), flush=True)
+        loop.call_soon_threadsafe(loop.stop)
+
+    threading.Thread(target=talk, daemon=True).start()
+    loop.run_forever()
+
+
+if __name__ == "__main__":
+    main()

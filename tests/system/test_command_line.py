@@ -1,0 +1,178 @@
+"""The programs as a user meets them: exit codes, messages, JSON, the live view."""
+
+import json
+import os
+import pty
+import select
+import socket
+import time
+
+import bench
+
+
+class Offline(bench.BenchTest):
+    """What needs no daemon."""
+
+    def simulate(self, *arguments, model="bench_twin", expect=0):
+        return self.softgrip("simulate", "--model", f"config/models/{model}.yaml", *arguments, expect=expect)
+
+    def test_simulate_repeats_its_bytes(self):
+        for name, seed in (("a", 7), ("b", 7), ("c", 8)):
+            self.simulate("--input", "tp1", "--out", f"{name}.csv", "--noise-mm", "0.05", "--seed", seed)
+        a, b, c = ((self.folder / f"{name}.csv").read_bytes() for name in "abc")
+        self.assertEqual(a, b)
+        self.assertNotEqual(a, c)
+        self.assertTrue(a.startswith(b"time_s,pressure_command_kpa,displacement_mm\n0,0,"))
+
+    def test_simulate_follows_a_logs_own_times(self):
+        self.write("log.csv", "time_s,pressure_command_kpa\n0,0\n0.5,20\n0.7,20\n4,0\n")
+        done = self.simulate("--input", "log.csv", "--out", "-")
+        rows = [line.split(",") for line in done.stdout.splitlines()]
+        self.assertEqual([row[0] for row in rows], ["time_s", "0", "0.5", "0.7", "4"])
+        self.assertGreater(float(rows[3][2]), 1)
+
+    def test_simulate_says_what_is_wrong(self):
+        self.simulate("--input", "tp1", expect=2)
+        self.simulate("--input", "tp1", "--out", "a.csv", "--rate-hz", "-1", expect=2)
+        self.simulate("--input", "tp1", "--out", "a.csv", model="none", expect=4)
+        self.assertIn("signals are tp1", self.simulate("--input", "tp9", "--out", "a.csv", expect=4).stderr)
+        self.write("config/models/bad.yaml", "name: bad\nsource: x\nactuator:\n  - bouc_wenn: {}\n")
+        bad = self.simulate("--input", "tp1", "--out", "a.csv", model="bad", expect=3)
+        self.assertIn("bad.yaml:4:5", bad.stderr)
+        self.write("bad.csv", "time_s,pressure_command_kpa,displacement_mm\n0,0,0\n1,x,0\n")
+        self.assertIn("bad.csv:3:3", self.simulate("--input", "bad.csv", "--out", "a.csv", expect=3).stderr)
+        self.assertFalse((self.folder / "a.csv").exists())
+
+    def test_check_finds_everything_at_once(self):
+        good = self.softgrip("check", *sorted((self.folder / "config").rglob("*.yaml")))
+        self.assertIn("rig 'bench': ok", good.stdout)
+        self.write("bad.yaml", "name: bad\nsource: x\nvalve:\n  - transport_delay: {delay: 1}\nactuatr: []\n")
+        bad = self.softgrip("check", "bad.yaml", "--json", expect=3)
+        report = json.loads(bad.stdout)
+        self.assertFalse(report["accepted"])
+        self.assertGreater(len(report["problems"]), 1)
+        self.assertIn("bad.yaml:4:", self.softgrip("check", "bad.yaml", expect=3).stderr)
+        self.softgrip("check", "absent.yaml", expect=4)
+        self.softgrip("check", expect=2)
+
+    def test_run_in_virtual_time_repeats_its_bytes(self):
+        for name in "ab":
+            done = self.softgrip("run", "config/sequences/pick_stone.yaml", "--virtual-time", "--record", name)
+            self.assertIn("left: RELEASED", done.stdout)
+        for file in ("run.csv", "run.json"):
+            self.assertEqual(*((self.folder / name / file).read_bytes() for name in "ab"))
+
+    def test_run_says_by_its_exit_code_that_a_grip_failed(self):
+        rig = self.folder / "config/rig.yaml"
+        lines = [line for line in rig.read_text().splitlines() if "object:" not in line]
+        rig.write_text("\n".join(lines) + "\n")
+        done = self.softgrip("run", "config/sequences/pick_stone.yaml", "--virtual-time", "--quiet", "--record", "r",
+                             expect=6)
+        self.assertIn("left: NO PART", done.stdout)
+        self.softgrip("run", "config/rig.yaml", expect=3)
+        self.softgrip("run", "absent.yaml", expect=4)
+
+    def test_without_a_daemon_it_says_how_to_start_one(self):
+        for command in ("status", "watch", "stop", "vent", "acknowledge", "events"):
+            done = self.softgrip(command, expect=4)
+            self.assertIn("softgripd --config", done.stderr)
+        self.softgrip("nonsense", expect=2)
+        self.softgrip(expect=2)
+        self.assertIn("softgrip 0.", self.softgrip("--version").stdout)
+
+    def test_the_emulator_refuses_what_it_should(self):
+        def refused(code, *arguments):
+            process = bench.Process("refused", [bench.SOFTGRIP_RIG, "--model",
+                                                self.folder / "config/models/bench_twin.yaml", *arguments], self.folder)
+            self.processes.append(process)
+            self.assertEqual(process.wait(), code, process.errors())
+            return process.errors()
+
+        self.assertIn("--allow-network", refused(2, "--bind", "0.0.0.0", "--tcp", "0"))
+        self.assertIn("not available yet", refused(2, "--rtu", "/dev/ttyS0"))
+        self.assertIn("stone", refused(2, "--object", "feather", "--tcp", "0"))
+        self.assertIn("faults.yaml:2:", refused(3, "--tcp", "0", "--faults", self.write(
+            "faults.yaml", "faults:\n  - {name: a, kind: noreply}\n")))
+        refused(4, "--faults", "absent.yaml")
+        refused(3, "--channels", "9")
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            self.assertIn("cannot listen", refused(4, "--tcp", taken.getsockname()[1]))
+
+
+class Online(bench.BenchTest):
+    """What talks to the daemon."""
+
+    def setUp(self):
+        super().setUp()
+        self.emulated = self.emulator("--object", "stone")
+        self.softgripd = self.daemon(self.rig(self.emulated.port))
+        self.softgripd.wait_for_state("idle")
+
+    def test_a_day_at_the_bench(self):
+        self.assertIn("idle", self.softgrip("status").stdout)
+        self.assertEqual(json.loads(self.softgrip("status", "--json").stdout)["rig"], "bench")
+        self.softgrip("stop", expect=5)
+        self.assertIn("sequence.yaml:1:", self.softgrip(
+            "start", self.write("sequence.yaml", "nme: x\nsteps: []\n"), expect=3).stderr)
+        self.softgrip("start", "no_such_sequence", expect=3)
+
+        self.softgripd.start("pick_stone")
+        self.softgrip("start", "pick_stone", expect=5)
+        self.softgripd.wait_for_event("grip_result", code="HOLDING", channel="left")
+        lines = self.softgrip("watch", "--count", "3", "--rate-hz", "20").stdout.splitlines()
+        self.assertEqual(len(lines), 3)
+        self.assertIn("HOLDING", lines[-1])
+        states = [json.loads(line) for line in self.softgrip("watch", "--count", "2", "--json").stdout.splitlines()]
+        self.assertEqual(states[1]["channels"][0]["name"], "left")
+        self.softgrip("vent")
+        bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
+        told = self.softgrip("events", "--limit", "1000").stdout
+        self.assertIn("HOLDING", told)
+        kinds = [json.loads(line)["kind"] for line in self.softgrip("events", "--json").stdout.splitlines()]
+        self.assertIn("sequence_finished", kinds)
+
+    def live(self, environment, keys):
+        """`softgrip watch` on a terminal of its own; returns all that it wrote."""
+        child, terminal = pty.fork()
+        if child == 0:
+            os.environ.update(environment, TERM="xterm", SOFTGRIP_SOCKET=str(self.softgripd.socket_path))
+            os.execv(bench.SOFTGRIP, ["softgrip", "watch"])
+        written = b""
+        end = time.monotonic() + bench.PATIENCE_S
+        while time.monotonic() < end:
+            if terminal in select.select([terminal], [], [], 0.2)[0]:
+                try:
+                    written += os.read(terminal, 65536)
+                except OSError:
+                    break  # the child has closed its end
+            if written.count(b"\x1b[H") >= 3 and keys:
+                os.write(terminal, keys)
+                keys = b""
+        _, status = os.waitpid(child, 0)
+        os.close(terminal)
+        self.assertEqual(os.waitstatus_to_exitcode(status), 0, written)
+        return written
+
+    def test_the_live_view_gives_the_terminal_back(self):
+        for keys in (b"q", b"\x03"):  # the key, and Ctrl-C
+            written = self.live({}, keys)
+            self.assertIn(b"displacement", written)
+            self.assertTrue(written.startswith(b"\x1b[?1049h\x1b[?25l"), written[:40])
+            self.assertTrue(written.endswith(b"\x1b[?25h\x1b[?1049l"), written[-40:])
+            self.assertIn(b"\x1b[1m", written)
+
+    def test_the_live_view_has_no_colour_when_asked(self):
+        self.assertNotIn(b"m", set(self.escapes(self.live({"NO_COLOR": "1"}, b"q"))))
+
+    @staticmethod
+    def escapes(written):
+        """The last character of every escape sequence."""
+        for part in written.split(b"\x1b[")[1:]:
+            for byte in part:
+                if 0x40 <= byte <= 0x7e:
+                    yield bytes([byte])
+                    break
+
+
+if __name__ == "__main__":
+    bench.main()

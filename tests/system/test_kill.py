@@ -1,0 +1,55 @@
+"""kill -9 of the daemon in the middle of a grip: the board vents, the recording is whole up to the last second."""
+
+import json
+import time
+
+import bench
+
+WATCHDOG_S = 0.5  # of the board map
+
+
+class Kill(bench.BenchTest):
+    def test_the_board_vents_and_the_recording_opens(self):
+        emulator = self.emulator("--object", "stone")
+        daemon = self.daemon(self.rig(emulator.port))
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
+        began = daemon.wait_for_event("recording_started")["time_s"]
+        self.assertGreater(min(emulator.commands_kpa()), 10)
+
+        killed_at = daemon.status()["time_s"] - began
+        daemon.kill()
+        killed = time.monotonic()
+        bench.wait_for("vented valves", lambda: max(emulator.commands_kpa()) == 0)
+        # The emulator is asked every 20 ms; the rest is what a busy machine may add to that.
+        self.assertLess(time.monotonic() - killed, WATCHDOG_S + 0.5)
+        self.assertTrue(emulator.status()["watchdog_tripped"])
+
+        (recording,) = self.recordings()
+        last = float(self.rows(recording)[-1]["time_s"])
+        self.assertGreater(last, killed_at - 1)
+        self.assertLess(last, killed_at + 1)
+        json.loads((recording / "run.json").read_text())
+        self.softgrip("plot", recording, "--out", self.folder / "run.svg")
+        self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", recording,
+                      "--channel", "left", "--out", self.folder / "again.csv")
+
+    def test_a_new_daemon_starts_vented_and_still(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        daemon.start("track_sine")
+        bench.wait_for("pressure", lambda: min(emulator.commands_kpa()) > 5)
+        daemon.kill()
+        again = self.daemon(rig)
+        again.wait_for_state("idle")
+        for _ in range(20):
+            self.assertLess(max(emulator.commands_kpa()), 0.1)
+            time.sleep(0.05)
+        self.assertEqual(again.status()["state"], "idle")
+
+
+if __name__ == "__main__":
+    bench.main()

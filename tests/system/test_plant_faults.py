@@ -1,0 +1,63 @@
+"""Faults of sensors, lines and outputs while a finger moves."""
+
+import bench
+
+FAULTS = """faults:
+  - {name: stuck, kind: sensor_stuck, channel: left}
+  - {name: jumping, kind: sensor_jumping, by_mm: 15, interval_s: 1, channel: right}
+  - {name: blind, kind: sensor_out_of_range, channel: right}
+  - {name: ignored, kind: ignored_write}
+  - {name: leak, kind: line_leaking, share: 0.5, channel: left}
+  - {name: blocked, kind: line_blocked, channel: left}
+"""
+
+
+class PlantFaults(bench.BenchTest):
+    def tracking(self, changes=()):
+        """A daemon that tracks a sine with both fingers."""
+        self.emulated = self.emulator("--faults", self.write("faults.yaml", FAULTS))
+        daemon = self.daemon(self.rig(self.emulated.port, changes))
+        daemon.wait_for_state("idle")
+        daemon.start("track_sine")
+        daemon.wait_for_event("step_started", code="1")
+        return daemon
+
+    def check_latches(self, fault, codes, channel, changes=()):
+        daemon = self.tracking(changes)
+        self.emulated.ask(f"fault {fault}")
+        latched = daemon.wait_for_event("fault_latched")
+        self.assertIn(latched["code"], codes, daemon.errors())
+        if channel is not None:
+            self.assertEqual(latched["channel"], channel)
+        self.assertEqual(daemon.wait_for_event("sequence_finished")["code"], "faulted")
+        self.assertEqual(daemon.results(), ["ERROR", "ERROR"])
+        return daemon
+
+    def test_a_stuck_sensor_is_noticed_while_the_command_moves(self):
+        self.check_latches("stuck", ("F205",), "left")
+        bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
+
+    def test_a_jumping_sensor(self):
+        # 15 mm at 100 mm/s: for 15 cycles no finger could have got there.
+        self.check_latches("jumping", ("F204",), "right", ((r"max_speed_mm_per_s: \d+", "max_speed_mm_per_s: 100"),
+                                                           (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 10")))
+
+    def test_a_blind_sensor(self):
+        self.check_latches("blind", ("F202", "F203"), "right")
+
+    def test_outputs_that_do_not_follow(self):
+        self.check_latches("ignored", ("F301", "F302"), None)
+
+    def test_a_leaking_line_makes_the_model_unfit(self):
+        daemon = self.tracking()
+        self.emulated.ask("fault leak")
+        daemon.wait_for_event("model_health_changed", channel="left", code="unfit")
+
+    def test_a_blocked_line_makes_the_model_unfit(self):
+        daemon = self.tracking()
+        self.emulated.ask("fault blocked")
+        daemon.wait_for_event("model_health_changed", channel="left", code="unfit")
+
+
+if __name__ == "__main__":
+    bench.main()

@@ -1,0 +1,71 @@
+"""Every fault of the wire that the emulator knows: short ones are survived, lasting ones latch by their name."""
+
+import bench
+
+# Which fault latches when it lasts. A reply that makes no sense ends the session; whether the next session or the
+# nonsense is what the daemon saw last is a matter of moments.
+WIRE = {
+    "lost_request": ("", ("F101", "F102")),
+    "no_reply": ("", ("F101", "F102")),
+    "late_reply": ("delay_s: 0.4", ("F101", "F102", "F103")),
+    "dripped_reply": ("interval_s: 0.05", ("F101", "F102")),
+    "cut_reply": ("", ("F101", "F102", "F103")),
+    "wrong_unit": ("", ("F101", "F103")),
+    "wrong_transaction": ("", ("F101", "F103")),
+    "wrong_length": ("", ("F101", "F102", "F103")),
+    "exception_reply": ("code: 4", ("F104",)),
+    "disconnect": ("", ("F101",)),
+}
+
+
+class WireFaults(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        lines = ["faults:"]
+        for kind, (keys, _) in WIRE.items():
+            more = ", " + keys if keys else ""
+            lines.append(f"  - {{name: {kind}_once, kind: {kind}, replies: 1{more}}}")
+            lines.append(f"  - {{name: {kind}_lasting, kind: {kind}{more}}}")
+        lines.append("  - {name: repeated_reply_once, kind: repeated_reply, replies: 1}")
+        self.emulated = self.emulator("--faults", self.write("faults.yaml", "\n".join(lines) + "\n"))
+        self.softgripd = self.daemon(self.rig(self.emulated.port))
+        self.softgripd.wait_for_state("idle")
+
+    def fresh_readings(self):
+        def fresh():
+            status = self.softgripd.status()
+            return status["bus"]["connected"] and all(
+                channel["validity"] == "valid" and channel["age_s"] < 0.05 for channel in status["channels"])
+        bench.wait_for("fresh readings", fresh)
+
+    def test_one_bad_reply_is_survived(self):
+        for kind in (*WIRE, "repeated_reply"):
+            if kind == "disconnect":
+                continue  # it lasts until it is cleared: a cable is not out for one reply
+            with self.subTest(kind):
+                before = self.softgripd.result("statistics")["bus"]["exchanges"]
+                self.emulated.ask(f"fault {kind}_once")
+                bench.wait_for("good exchanges after it",
+                               lambda: self.softgripd.result("statistics")["bus"]["exchanges"] > before + 10)
+                self.fresh_readings()
+                self.assertEqual(self.softgripd.status()["state"], "idle", self.softgripd.errors())
+                # A late or repeated reply must not shift later ones: the reading is still the finger's.
+                for channel in self.softgripd.status()["channels"]:
+                    self.assertAlmostEqual(channel["displacement_mm"], 0, delta=0.3)
+
+    def test_what_lasts_latches_and_is_acknowledged_only_when_it_is_gone(self):
+        for kind, (_, codes) in WIRE.items():
+            with self.subTest(kind):
+                newest = self.softgripd.events()[-1]["id"]
+                self.emulated.ask(f"fault {kind}_lasting")
+                fault = self.softgripd.wait_for_event("fault_latched", since=newest)
+                self.assertIn(fault["code"], codes, self.softgripd.errors())
+                self.softgrip("acknowledge", expect=5)
+                self.emulated.ask(f"clear {kind}_lasting")
+                self.fresh_readings()
+                self.softgrip("acknowledge")
+                self.softgripd.wait_for_state("idle")
+
+
+if __name__ == "__main__":
+    bench.main()

@@ -1,0 +1,114 @@
+// softgrip run: one sequence on a rig, in the foreground.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "daemon/daemon.h"
+#include "daemon/sequence_loader.h"
+#include "daemon/status_json.h"
+#include "sysid/numbers.h"
+#include "tools/commands.h"
+#include "tools/configuration.h"
+#include "tools/daemon_command.h"
+#include "tools/event_text.h"
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string sequence;
+  std::string rig;
+  std::string record;
+  std::optional<std::uint64_t> seed;
+  bool virtual_time = false;
+  bool no_socket = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+void report(const Options& options, const daemon::Outcome& outcome) {
+  const std::vector<std::string>& channels = outcome.channel_names;
+  const std::string end =
+      outcome.sequence_end ? std::string(control::name_of(*outcome.sequence_end)) : std::string("not run");
+  const auto title = [&](std::size_t i) {
+    return std::string(control::title_of(outcome.last.channels[i].result));
+  };
+  if (options.json) {
+    Json json{{"sequence_end", end},    {"left_safely", outcome.left_safely}, {"ticks", outcome.ticks},
+              {"slips", outcome.slips}, {"wall_s", outcome.wall_s},           {"results", Json::object()}};
+    for (std::size_t i = 0; i < channels.size(); ++i) json["results"][channels[i]] = title(i);
+    print_json(json);
+    return;
+  }
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    std::printf("%s: %s\n", channels[i].c_str(), title(i).c_str());
+  std::printf("sequence %s; %s ticks, %s slips in %s s; %s\n", end.c_str(),
+              std::to_string(outcome.ticks).c_str(), std::to_string(outcome.slips).c_str(),
+              sysid::significant(outcome.wall_s, 4).c_str(),
+              outcome.left_safely ? "the board confirmed the safe outputs"
+                                  : "the board did NOT confirm the safe outputs");
+}
+
+ExitCode run(const Options& options) {
+  const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
+  for (const std::string& file : {path, options.sequence}) {
+    if (const auto code = unreadable(file)) return *code;
+  }
+  document::Problems problems;
+  auto rig = daemon::load_rig(path, problems);
+  if (!rig) return refuse(problems);
+  std::fputs(problems.format().c_str(), stderr);  // warnings
+  if (options.seed && !daemon::reseed(*rig, *options.seed))
+    return fail(ExitCode::usage, "--seed needs a simulated board");
+  auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence);
+  if (!sequence) return refuse(sequence.error());
+
+  daemon::DaemonOptions daemon_options;
+  daemon_options.virtual_time = options.virtual_time;
+  daemon_options.sequence = std::move(*sequence);
+  daemon_options.record_folder = options.record;
+  daemon_options.listen = !options.no_socket;
+  daemon_options.on_event = [&options](const daemon::EventEntry& event) {
+    if (options.quiet) return;
+    if (options.json) {
+      print_json(daemon::event_json(event));
+    } else {
+      std::printf("%s\n", line_of_event(daemon::event_json(event)).c_str());
+      std::fflush(stdout);
+    }
+  };
+  daemon_options.on_start = [&options](const std::string& text) {
+    if (!options.quiet) std::fprintf(stderr, "%s\n", text.c_str());
+  };
+  auto daemon = daemon::Daemon::create(std::move(*rig), std::move(daemon_options));
+  if (!daemon) return fail(ExitCode::usage, daemon.error());
+  const daemon::Outcome outcome = (*daemon)->run();
+  if (!outcome.message.empty()) fail(ExitCode::failed, outcome.message);
+  report(options, outcome);
+  return static_cast<ExitCode>(daemon::exit_code_of(outcome));
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("run", "One sequence on a rig, in the foreground; no daemon is needed");
+  command->add_option("SEQUENCE", options->sequence, "Sequence file")->required();
+  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
+  command->add_option("--record", options->record, "Record into this folder, whatever the rig file says");
+  command->add_flag("--virtual-time", options->virtual_time,
+                    "As fast as possible, repeatable; simulated boards only");
+  command->add_option("--seed", options->seed, "Of a simulated board, in place of the rig file's");
+  command->add_flag("--no-socket", options->no_socket, "Do not listen on the rig file's socket");
+  command->add_flag("--quiet", options->quiet, "Only the results");
+  command->add_flag("--json", options->json, "Events and results as JSON, one per line");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
