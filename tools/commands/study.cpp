@@ -1,0 +1,88 @@
+// softgrip study: the project's studies, each by one command.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sysid/files.h"
+#include "tools/commands.h"
+#include "tools/studies/published.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Output {
+  std::string out;
+  bool json = false;
+};
+
+/// One line that is overwritten, on a terminal only.
+void show_progress(const std::string& text) {
+  std::fprintf(stderr, "\r\033[K  %s ", text.c_str());
+  std::fflush(stderr);
+}
+
+bool on_error_terminal() {
+  return ::isatty(STDERR_FILENO) == 1;
+}
+
+void end_progress() {
+  if (on_error_terminal()) std::fputs("\r\033[K", stderr);
+}
+
+ExitCode write_all(const Output& output, const std::string& json_name, const std::string& json,
+                   const std::string& html, const std::string& text) {
+  const std::filesystem::path folder(output.out);
+  for (const auto& [name, content] :
+       {std::pair<std::string, const std::string&>{json_name, json}, {"report.html", html}}) {
+    if (const auto written = sysid::write_file((folder / name).string(), content); !written) {
+      return fail(ExitCode::io, written.error());
+    }
+  }
+  std::fputs(output.json ? json.c_str() : text.c_str(), stdout);
+  if (!output.json) std::printf("report: %s\n", (folder / "report.html").c_str());
+  return ExitCode::done;
+}
+
+void add_output(CLI::App& command, Output& output) {
+  command.add_option("--out", output.out, "Folder for the report and the numbers")->required();
+  command.add_flag("--json", output.json, "The numbers as JSON on the standard output");
+}
+
+void add_published(CLI::App& study, ExitCode& outcome) {
+  struct Options {
+    Output output;
+    PublishedOptions study;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = study.add_subcommand(
+      "published", "What the published numbers say: latency that hysteresis absorbs, and what follows");
+  add_output(*command, options->output);
+  command->add_option("--seed", options->study.seed, "Of noise and starts")->capture_default_str();
+  command->add_option("--starts", options->study.starts, "Searches per identification")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->callback([options, &outcome] {
+    if (on_error_terminal()) options->study.progress = show_progress;
+    const PublishedStudy result = study_published(options->study);
+    end_progress();
+    outcome = write_all(options->output, "published.json", published_json(result), published_html(result),
+                        published_text(result));
+  });
+}
+
+}  // namespace
+
+void add_study(CLI::App& program, ExitCode& outcome) {
+  CLI::App* study = program.add_subcommand("study", "Studies that can be repeated");
+  study->require_subcommand(1);
+  add_published(*study, outcome);
+}
+
+}  // namespace softgrip::tools
