@@ -291,6 +291,7 @@ Outcome RealRun::run() {
   parts_.bus.open();
   start();
   if (outcome_.ending == Ending::asked) {
+    parts_.tell("daemon_started", Severity::information, "The loop begins.");
     manager_.ready(status_line());
     look_after();
   }

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <malloc.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -194,10 +195,30 @@ RealTimeStep set_scheduling(int priority, std::string_view who) {
   return page_faults() - before;
 }
 
+/// Bytes of the calling thread's stack that are not used, less a margin for what the calls below need.
+std::size_t stack_left() {
+  constexpr std::size_t margin = 64 * 1024;
+  pthread_attr_t attributes;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return 0;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  pthread_attr_getstack(&attributes, &lowest, &size);
+  pthread_attr_destroy(&attributes);
+  const char here = 0;
+  const auto used_from = reinterpret_cast<std::uintptr_t>(&here);
+  const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(lowest) + margin;
+  return used_from > end ? used_from - end : 0;
+}
+
 RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
   RealTimeStep step{fmt::format("stack of {}", who), Outcome::not_asked, "",
                     "the first deep call of the thread page-faults"};
   if (bytes == 0) return step;
+  if (const std::size_t left = stack_left(); bytes > left) {
+    step.outcome = Outcome::failed;
+    step.detail = fmt::format("{} KiB asked for, the thread has {} KiB left", bytes / 1024, left / 1024);
+    return step;
+  }
   touch_stack(bytes);
   const long faults = touch_stack(bytes);
   step.outcome = faults == 0 ? Outcome::verified : Outcome::failed;

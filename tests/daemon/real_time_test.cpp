@@ -77,8 +77,15 @@ TEST(RealTime, AProcessorThatIsNotThereIsAFailureWithItsReasonAndCost) {
   EXPECT_NE(report.format().find("cost: " + step->cost), std::string::npos);
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool sanitized = true;  // then mlockall() does nothing
+#else
+constexpr bool sanitized = false;
+#endif
+
 /// Without rights, in a process that gave them up.
 TEST(RealTime, WithoutRightsEveryStepSaysWhichLimitStandsInTheWay) {
+  if (sanitized) GTEST_SKIP() << "sanitizers intercept the locking of memory";
   const pid_t child = fork();
   if (child == 0) {
     const rlimit none{0, 0};
@@ -107,11 +114,23 @@ TEST(RealTime, ReportsTheStackThatWasTouched) {
   settings.prefault_stack_bytes = 512 * 1024;
   RealTimeReport report;
   Thread thread(
-      {.name = "prefault", .stack_bytes = 1024 * 1024},
+      {.name = "prefault", .stack_bytes = 2 * 1024 * 1024},
       [&] { prepare_thread(settings, 0, "the loop", report); }, [](const std::string&) {});
   thread.join();
   ASSERT_NE(find(report, "stack of the loop"), nullptr);
   EXPECT_EQ(find(report, "stack of the loop")->outcome, Outcome::verified);
+}
+
+TEST(RealTime, AStackThatIsTooSmallIsAFailureAndNoCrash) {
+  RealTimeSettings settings;
+  settings.prefault_stack_bytes = 4 * 1024 * 1024;
+  RealTimeReport report;
+  Thread thread(
+      {.name = "prefault", .stack_bytes = 1024 * 1024},
+      [&] { prepare_thread(settings, 0, "the loop", report); }, [](const std::string&) {});
+  thread.join();
+  ASSERT_NE(find(report, "stack of the loop"), nullptr);
+  EXPECT_EQ(find(report, "stack of the loop")->outcome, Outcome::failed);
 }
 
 TEST(Thread, AnExceptionInAThreadIsToldAndEndsNothingElse) {
