@@ -87,7 +87,7 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
   }
   ceres::Solver::Options solver;
   solver.logging_type = ceres::SILENT;
-  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.linear_solver_type = options.normal_equations ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
   solver.num_threads = 1;
   solver.max_num_iterations = options.most_iterations;
   solver.function_tolerance = options.tolerance;

@@ -16,6 +16,9 @@ struct MinimiseOptions {
   double huber_mm = std::numeric_limits<double>::infinity();
   /// Index of a parameter that keeps its value.
   std::optional<std::size_t> held;
+  /// Normal equations instead of an orthogonal factorisation: several times faster, half the digits. Enough
+  /// where a fit is judged by its error, not by its last digits.
+  bool normal_equations = false;
   /// Relative change of the cost at which the search ends.
   double tolerance = 1e-10;
 };

@@ -61,6 +61,7 @@ StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause
   MinimiseOptions options;
   options.most_iterations = effort.most_iterations;
   options.tolerance = effort.tolerance;
+  options.normal_equations = true;
   const Minimum minimum = minimise(*residuals, space.z(from), options);
   StructureFit fit = evaluate_structure(records, std::move(causes), space.point(minimum.z));
   fit.free_parameters = space.size();

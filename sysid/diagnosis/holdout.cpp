@@ -9,7 +9,7 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr FitEffort refit{.most_iterations = 12, .tolerance = 1e-6};
+constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6};
 constexpr std::size_t draws = 1000;
 constexpr std::size_t fewest_blocks = 8;
 

@@ -14,10 +14,18 @@ namespace {
 
 /// Interval to which the first look is thinned; latencies of interest are longer.
 constexpr double look_interval_s = 0.025;
-constexpr FitEffort look{.most_iterations = 10, .tolerance = 1e-5};
+constexpr FitEffort glance{.most_iterations = 3, .tolerance = 1e-4};
+constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Looks that are followed to the end.
+/// Glances that become looks, and looks that are followed to the end.
+constexpr std::size_t looked_at = 3;
 constexpr std::size_t followed = 2;
+/// So many candidates are followed to the end, first on thinned records, then of these so many on all
+/// samples, whatever the others do; more when they are as near.
+constexpr std::size_t always_followed = 7;
+constexpr double near_enough = 1.4;
+constexpr std::size_t always_finished = 4;
+constexpr double next_to_best = 1.05;
 
 bool varies(const std::vector<double>& column) {
   if (column.empty()) return false;
@@ -31,33 +39,53 @@ FitPoint with_cause(const FitPoint& point, const model::BlockSpec& block) {
   return extended;
 }
 
-Candidate fit_candidate(const SearchData& data, const StructureFit& current, const Cause& cause) {
-  Candidate candidate{cause, std::nullopt, unanswerable(cause, data.scales)};
-  if (!candidate.why_not.empty()) return candidate;
+void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
+  std::erase_if(fits, [](const StructureFit& fit) { return !std::isfinite(fit.mean_square_mm2); });
+  std::stable_sort(fits.begin(), fits.end(), [](const StructureFit& a, const StructureFit& b) {
+    return a.mean_square_mm2 < b.mean_square_mm2;
+  });
+  if (fits.size() > count) fits.resize(count);
+}
+
+/// The best looks at one candidate, on thinned records, best first.
+std::vector<StructureFit> look_at(const SearchData& data, const StructureFit& current, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
   causes.push_back(cause);
-
   std::vector<FitPoint> places{current.point};
   // Recalibration may have walked far from the truth to swallow the effect.
   if (current.causes.empty() && data.given_is_base) places.push_back(data.given);
-  std::vector<StructureFit> looks;
+  std::vector<StructureFit> fits;
   for (const FitPoint& place : places) {
     for (const CauseStart& start : cause_starts(cause, data.scales)) {
-      looks.push_back(fit_structure(data.thinned, causes, with_cause(place, start.block), look));
+      fits.push_back(fit_structure(data.thinned, causes, with_cause(place, start.block), glance));
     }
   }
-  std::sort(looks.begin(), looks.end(), [](const StructureFit& a, const StructureFit& b) {
-    return a.mean_square_mm2 < b.mean_square_mm2;
-  });
-  for (std::size_t i = 0; i < std::min(followed, looks.size()); ++i) {
-    if (!std::isfinite(looks[i].mean_square_mm2)) break;
-    if (i > 0 && looks[i].mean_square_mm2 > 1.5 * looks[0].mean_square_mm2) break;
-    StructureFit fit = fit_structure(data.records, causes, looks[i].point, full);
-    if (!candidate.fit || fit.mean_square_mm2 < candidate.fit->mean_square_mm2)
-      candidate.fit = std::move(fit);
+  sort_and_keep(fits, looked_at);
+  for (StructureFit& fit : fits) fit = fit_structure(data.thinned, causes, fit.point, look);
+  sort_and_keep(fits, followed);
+  return fits;
+}
+
+StructureFit follow(const SearchData& data, const std::vector<StructureFit>& looks) {
+  StructureFit best = fit_structure(data.thinned, looks[0].causes, looks[0].point, full);
+  for (std::size_t i = 1; i < looks.size(); ++i) {
+    if (looks[i].mean_square_mm2 > 1.3 * looks[0].mean_square_mm2) break;
+    StructureFit fit = fit_structure(data.thinned, looks[i].causes, looks[i].point, full);
+    if (fit.mean_square_mm2 < best.mean_square_mm2) best = std::move(fit);
   }
-  if (!candidate.fit) candidate.why_not = "no start led to a fit";
-  return candidate;
+  return best;
+}
+
+/// Indices of what there is, smallest mean square first.
+std::vector<std::size_t> ranking(const std::vector<std::optional<StructureFit>>& fits) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i]) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return fits[a]->mean_square_mm2 < fits[b]->mean_square_mm2;
+  });
+  return order;
 }
 
 }  // namespace
@@ -145,9 +173,35 @@ std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit
     if (!has) wanted.push_back(cause);
   }
   std::vector<Candidate> candidates(wanted.size());
+  std::vector<std::vector<StructureFit>> looks(wanted.size());
   parallel_for(wanted.size(), data.threads, [&](std::size_t i) {
-    candidates[i] = fit_candidate(data, current, wanted[i]);
+    candidates[i] = {wanted[i], std::nullopt, unanswerable(wanted[i], data.scales)};
+    if (!candidates[i].why_not.empty()) return;
+    looks[i] = look_at(data, current, wanted[i]);
+    if (looks[i].empty()) candidates[i].why_not = "no start led to a fit";
     if (done) done(wanted[i]);
+  });
+
+  std::vector<std::optional<StructureFit>> thin(wanted.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!looks[i].empty()) thin[i] = looks[i].front();
+  }
+  std::vector<std::size_t> order = ranking(thin);
+  if (order.empty()) return candidates;
+  const double best_look = thin[order.front()]->mean_square_mm2;
+  parallel_for(order.size(), data.threads, [&](std::size_t rank) {
+    const std::size_t i = order[rank];
+    if (rank < always_followed || thin[i]->mean_square_mm2 < near_enough * best_look) {
+      thin[i] = follow(data, looks[i]);
+    }
+  });
+  order = ranking(thin);
+  const double best = thin[order.front()]->mean_square_mm2;
+  parallel_for(order.size(), data.threads, [&](std::size_t rank) {
+    const StructureFit& fit = *thin[order[rank]];
+    const bool finish = rank < always_finished || fit.mean_square_mm2 < next_to_best * best;
+    candidates[order[rank]].fit = finish ? fit_structure(data.records, fit.causes, fit.point, full)
+                                         : evaluate_structure(data.records, fit.causes, fit.point);
   });
   return candidates;
 }

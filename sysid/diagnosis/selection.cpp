@@ -12,7 +12,7 @@ namespace softgrip::sysid {
 namespace {
 
 /// Candidates that are refitted without held-out blocks.
-constexpr std::size_t finalists = 5;
+constexpr std::size_t finalists = 4;
 /// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
 /// is no rival whatever the blocks say.
 constexpr double rival_share = 0.05;
