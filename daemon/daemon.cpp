@@ -68,14 +68,14 @@ Provenance provenance_of(const RigFile& rig, const DaemonOptions& options) {
   return provenance;
 }
 
+}  // namespace
+
 std::unique_ptr<drivers::Board> make_board(const RigFile& rig, const drivers::Clock& clock) {
   if (const auto* simulated = std::get_if<drivers::SimulatedBoardSettings>(&rig.board)) {
     return std::make_unique<drivers::SimulatedBoard>(*simulated, clock);
   }
   return std::make_unique<drivers::ModbusTcpBoard>(std::get<drivers::ModbusTcpSettings>(rig.board));
 }
-
-}  // namespace
 
 DaemonParts::DaemonParts(RigFile rig_file, DaemonOptions run_options)
     : rig(std::move(rig_file)),

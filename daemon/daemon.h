@@ -17,6 +17,8 @@
 #include "daemon/sequence_loader.h"
 #include "daemon/statistics.h"
 #include "daemon/wires.h"
+#include "drivers/board.h"
+#include "drivers/clock.h"
 
 namespace softgrip::daemon {
 
@@ -61,6 +63,9 @@ struct Outcome {
 
 /// 0, 1, 4, 5 or 6: see the exit codes of the manual.
 [[nodiscard]] int exit_code_of(const Outcome& outcome) noexcept;
+
+/// The board of a rig file, not yet connected. `clock` outlives it.
+[[nodiscard]] std::unique_ptr<drivers::Board> make_board(const RigFile& rig, const drivers::Clock& clock);
 
 struct DaemonParts;  // daemon_parts.h
 

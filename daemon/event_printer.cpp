@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include <spdlog/async.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double window_s = 10;
 constexpr int most_per_window = 20;
+constexpr std::size_t lines_kept = 4096;
 
 spdlog::level::level_enum level_of(Severity severity) {
   switch (severity) {
@@ -27,9 +29,15 @@ spdlog::level::level_enum level_of(Severity severity) {
 
 }  // namespace
 
-EventPrinter::EventPrinter()
-    : logger_(std::make_shared<spdlog::logger>("softgripd",
-                                               std::make_shared<spdlog::sinks::stderr_color_sink_mt>())) {
+EventPrinter::EventPrinter(bool beside) {
+  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  if (beside) {
+    writer_ = std::make_shared<spdlog::details::thread_pool>(lines_kept, 1);
+    logger_ = std::make_shared<spdlog::async_logger>("softgripd", sink, writer_,
+                                                     spdlog::async_overflow_policy::overrun_oldest);
+  } else {
+    logger_ = std::make_shared<spdlog::logger>("softgripd", sink);
+  }
   // The journal knows the time itself.
   const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
   logger_->set_pattern(journal ? "%l: %v" : "%H:%M:%S.%e %^%l%$: %v");

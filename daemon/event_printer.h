@@ -10,7 +10,10 @@
 
 namespace spdlog {
 class logger;
+namespace details {
+class thread_pool;
 }
+}  // namespace spdlog
 
 namespace softgrip::daemon {
 
@@ -18,7 +21,9 @@ namespace softgrip::daemon {
 /// printed.
 class EventPrinter {
  public:
-  EventPrinter();
+  /// `beside`: lines are written by a thread of the printer's own, so that a reader that hangs cannot hold up
+  /// the caller; the oldest lines are lost then. Otherwise every line is written before the call returns.
+  explicit EventPrinter(bool beside);
 
   void print(const EventEntry& event);
   /// Several lines.
@@ -33,6 +38,7 @@ class EventPrinter {
   };
   [[nodiscard]] bool passes(const EventEntry& event);
 
+  std::shared_ptr<spdlog::details::thread_pool> writer_;  // must outlive the logger
   std::shared_ptr<spdlog::logger> logger_;
   std::map<std::string, Flow> flows_;  // by kind
 };

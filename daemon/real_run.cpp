@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <latch>
 #include <mutex>
 #include <optional>
@@ -68,6 +69,8 @@ class RealRun {
   bool listen();
   void start_threads();
   void start();
+  /// An exception of this thread must not leave the others alone: it is noted, and the run ends in order.
+  void guarded(const std::function<void()>& action);
   void prepare(int priority, const char* who, RealTimeReport& report);
   void look_after();
   void stop();
@@ -192,18 +195,24 @@ void RealRun::start_threads() {
       {.name = "softgrip-serve"}, [this] { service_body(); }, broken("service thread"));
 }
 
-void RealRun::start() {
+void RealRun::guarded(const std::function<void()>& action) {
   try {
-    start_threads();
+    action();
   } catch (const std::exception& error) {
     note_broken(error.what());
   }
-  if (parts_.options.on_start) parts_.options.on_start(startup_report(parts_.rig, *parts_.board, &report_));
+  if (broken_.load()) outcome_.ending = Ending::broken;
+}
+
+void RealRun::start() {
+  guarded([this] { start_threads(); });
+  guarded([this] {
+    if (parts_.options.on_start) parts_.options.on_start(startup_report(parts_.rig, *parts_.board, &report_));
+  });
   if (parts_.rig.real_time.required && report_.degraded()) {
     outcome_.ending = Ending::real_time_refused;
     outcome_.message = "real_time: required, and something could not be verified";
   }
-  if (broken_.load()) outcome_.ending = Ending::broken;
   // A loop that is told to leave before its first tick still sends the safe outputs.
   if (outcome_.ending != Ending::asked) parts_.wires.leave.store(true);
   start_ = parts_.clock.now() + lead_time;
@@ -293,13 +302,13 @@ Outcome RealRun::run() {
   if (outcome_.ending == Ending::asked) {
     parts_.tell("daemon_started", Severity::information, "The loop begins.");
     manager_.ready(status_line());
-    look_after();
+    guarded([this] { look_after(); });
   }
   stop();
   parts_.conclude(outcome_);
   if (outcome_.ending == Ending::broken) outcome_.message = broken_text_;
   outcome_.wall_s = seconds(parts_.clock.now() - start_);
-  parts_.deliver_events();
+  guarded([this] { parts_.deliver_events(); });
   return outcome_;
 }
 

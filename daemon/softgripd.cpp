@@ -82,7 +82,12 @@ int check(const Arguments& arguments) {
   const daemon::CheckReport report = daemon::check_files(files);
   std::fputs(report.problems.format().c_str(), stderr);
   if (!report.accepted()) return input_refused;
-  fmt::print("{}: fit to run\n", arguments.config);
+  document::Problems ignored;  // the report has them
+  const auto rig = daemon::load_rig(arguments.config, ignored);
+  if (!rig) return input_refused;
+  const drivers::MonotonicClock clock;
+  fmt::print("{}{}: fit to run\n", daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr),
+             arguments.config);
   return 0;
 }
 
@@ -121,7 +126,7 @@ int run(const Arguments& arguments) {
     if (!sequence) return refuse(sequence.error());
     options.sequence = std::move(*sequence);
   }
-  daemon::EventPrinter printer;
+  daemon::EventPrinter printer(!arguments.virtual_time);
   options.on_event = [&printer](const daemon::EventEntry& event) { printer.print(event); };
   options.on_start = [&printer](const std::string& report) { printer.print_report(report); };
 
