@@ -4,6 +4,8 @@
 // interruptions do not touch but which takes a system call to read, and by the monotonic clock, which is
 // cheap to read and sees everything.
 //
+// Then how much faster than real time the whole daemon is in virtual time: board, loop, bus, recorder, disk.
+//
 //   loop_tick [TICKS]
 
 #include <algorithm>
@@ -11,7 +13,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,18 +75,23 @@ Times time_nothing(clockid_t clock) {
   return times;
 }
 
+std::shared_ptr<const daemon::LoadedSequence> track_sine(const control::RigSettings& rig) {
+  auto sequence =
+      daemon::SequenceLoader(rig, "").load_file(SOFTGRIP_SOURCE_DIR "/config/sequences/track_sine.yaml");
+  if (!sequence) {
+    std::fputs(sequence.error().format().c_str(), stderr);
+    std::exit(3);
+  }
+  return *sequence;
+}
+
 /// Ticks of a sequence that follows a sine, again and again.
 Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
   daemon::DaemonOptions options;
   options.virtual_time = true;
   daemon::DaemonParts parts(rig_at(rate_hz), options);
   parts.rig.recorder.mode = daemon::RecorderSettings::Mode::off;
-  const auto sequence = daemon::SequenceLoader(parts.rig.settings, "")
-                            .load_file(SOFTGRIP_SOURCE_DIR "/config/sequences/track_sine.yaml");
-  if (!sequence) {
-    std::fputs(sequence.error().format().c_str(), stderr);
-    std::exit(3);
-  }
+  const auto sequence = track_sine(parts.rig.settings);
   Times times;
   times.sorted.reserve(ticks);
   Nanoseconds due = parts.origin;
@@ -98,7 +107,7 @@ Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
     if (tick % ticks_per_look != 0) continue;
     parts.service.pump();
     parts.recorder.drain();
-    if (state == control::State::idle) parts.service.submit(control::Request::Kind::start, *sequence);
+    if (state == control::State::idle) parts.service.submit(control::Request::Kind::start, sequence);
   }
   std::sort(times.sorted.begin(), times.sorted.end());
   return times;
@@ -111,6 +120,38 @@ void print(double rate_hz, const char* name, clockid_t clock, std::uint64_t tick
               rate_hz, name, times.at(0.5), times.at(0.99), times.at(0.999), times.at(1), nothing.at(0.5));
 }
 
+/// Seconds of the rig's time per second of the clock, everything recorded; the middle one of several runs.
+void print_speed(double rate_hz) {
+  constexpr int runs = 7;
+  std::vector<double> by_clock;
+  std::vector<double> by_processor;
+  std::uint64_t bytes = 0;
+  for (int i = 0; i < runs; ++i) {
+    std::string folder = (std::filesystem::temp_directory_path() / "loop_tick-XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) std::exit(4);
+    daemon::RigFile rig = rig_at(rate_hz);
+    daemon::DaemonOptions options;
+    options.virtual_time = true;
+    options.sequence = track_sine(rig.settings);
+    options.record_folder = folder;
+    const auto daemon = daemon::Daemon::create(std::move(rig), options);
+    const Nanoseconds begin = read(CLOCK_PROCESS_CPUTIME_ID);
+    const daemon::Outcome outcome = (*daemon)->run();
+    const double rig_s = static_cast<double>(outcome.ticks) / rate_hz;
+    by_clock.push_back(rig_s / outcome.wall_s);
+    by_processor.push_back(rig_s / daemon::seconds(read(CLOCK_PROCESS_CPUTIME_ID) - begin));
+    bytes = std::filesystem::file_size(folder + "/run.csv");
+    std::filesystem::remove_all(folder);
+  }
+  std::printf("%4.0f Hz  virtual time, %lu MB recorded a run, %d runs\n", rate_hz,
+              static_cast<unsigned long>(bytes >> 20), runs);
+  for (auto [name, factors] : {std::pair{"clock", by_clock}, std::pair{"processor time", by_processor}}) {
+    std::sort(factors.begin(), factors.end());
+    std::printf("         by %-14s %5.0f times real time (%.0f to %.0f)\n", name, factors[runs / 2],
+                factors.front(), factors.back());
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -120,5 +161,6 @@ int main(int argc, char** argv) {
     print(rate_hz, "processor time", CLOCK_THREAD_CPUTIME_ID, ticks);
     print(rate_hz, "clock", CLOCK_MONOTONIC, ticks);
   }
+  print_speed(1000);
   return 0;
 }

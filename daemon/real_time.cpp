@@ -1,16 +1,19 @@
 #include "daemon/real_time.h"
 
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -83,14 +86,27 @@ bool new_mapping_is_resident() {
   return asked && (resident & 1) != 0;
 }
 
+/// Whether the limit on locked memory does not apply to this process.
+bool may_lock_without_limit() {
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  if (limit.rlim_cur == RLIM_INFINITY) return true;
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> data{};
+  if (syscall(SYS_capget, &header, data.data()) != 0) return false;
+  return (data[CAP_TO_INDEX(CAP_IPC_LOCK)].effective & CAP_TO_MASK(CAP_IPC_LOCK)) != 0;
+}
+
 RealTimeStep lock_memory(bool wanted) {
   RealTimeStep step{
       "memory lock", Outcome::not_asked, "",
       "the first use of a page, or its return from swap, stops the loop for up to milliseconds"};
   if (!wanted) return step;
   step.outcome = Outcome::failed;
-  if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-    const int error = errno;
+  // Under a limit the lock might succeed now, and the memory that is mapped later be refused for it.
+  const bool unlimited = may_lock_without_limit();
+  if (!unlimited || mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    const int error = unlimited ? errno : EPERM;
     rlimit limit{};
     getrlimit(RLIMIT_MEMLOCK, &limit);
     step.detail = fmt::format("{}; the limit is {} KiB (LimitMEMLOCK=infinity in the unit, or CAP_IPC_LOCK)",
