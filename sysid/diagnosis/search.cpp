@@ -102,6 +102,8 @@ std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
                                       static_cast<double>(std::max<std::size_t>(1, record.size() - 1)));
   }
   const double step_hz = 0.5 / std::max(length_s, 1.0);
+  // Slower than this it is not an oscillation but a wandering zero.
+  const double lowest_hz = std::max(0.2, 10 / std::max(length_s, 1.0));
   const double highest_hz = std::min(0.45 / sample_s, 25.0);
   const auto bins = static_cast<std::size_t>(highest_hz / step_hz);
   std::vector<double> power(bins, 0.0);
@@ -127,6 +129,7 @@ std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
   std::vector<std::pair<double, double>> peaks;
   for (std::size_t b = 2; b + 1 < bins; ++b) {
     if (power[b] < power[b - 1] || power[b] < power[b + 1]) continue;
+    if (step_hz * static_cast<double>(b) < lowest_hz) continue;
     const std::size_t first = b > around ? b - around : 1;
     const std::size_t last = std::min(bins, b + around);
     std::vector<double> near(power.begin() + static_cast<long>(first),
