@@ -4,15 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "model/catalogue.h"
 #include "sysid/estimates.h"
 #include "sysid/minimise.h"
 #include "sysid/numbers.h"
-#include "sysid/parallel.h"
 #include "sysid/profile.h"
-#include "sysid/separable_search.h"
+#include "sysid/search.h"
 #include "sysid/start_points.h"
 #include "sysid/trajectory.h"
 
@@ -23,9 +21,6 @@ using Failure = tl::unexpected<std::string>;
 
 /// A search that ends within this of the best RMSE has reached it.
 constexpr double reached_share = 1e-3;
-/// A start far from the best after this many iterations of the cheap search is not worth more.
-constexpr int search_iterations = 60;
-constexpr int chain_search_iterations = 40;
 
 /// Hides the readings after the fitted share of a record.
 void hold_out(Record& record, double fit_share) {
@@ -70,121 +65,6 @@ tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
   return free;
 }
 
-/// Puts the branches into the order of time constants that the start had.
-void order_branches(const model::Model& like, FitPoint& point) {
-  const auto position = model::position_of(point.model, "kelvin_voigt");
-  if (!position) return;
-  std::vector<double>& v = point.model.blocks[*position].values;
-  const std::vector<double> wanted = branch_time_constants_s(like);
-  const std::vector<double> found = branch_time_constants_s(point.model);
-  std::vector<std::size_t> rank_wanted(wanted.size()), rank_found(found.size());
-  const auto ranks = [](const std::vector<double>& values, std::vector<std::size_t>& order) {
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
-  };
-  ranks(wanted, rank_wanted);
-  ranks(found, rank_found);
-  const std::vector<double> old = v;
-  const std::vector<StartState> old_starts = point.starts;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const std::size_t to = rank_wanted[i];
-    const std::size_t from = rank_found[i];
-    v[1 + 2 * to] = old[1 + 2 * from];
-    v[2 + 2 * to] = old[2 + 2 * from];
-    for (std::size_t r = 0; r < point.starts.size(); ++r) {
-      point.starts[r].unsettled_mm[to] = old_starts[r].unsettled_mm[from];
-    }
-  }
-}
-
-/// Reports progress from several threads, one at a time.
-class Reporter {
- public:
-  Reporter(const IdentifyOptions& options, std::size_t starts)
-      : options_(options), progress_{0, starts, std::numeric_limits<double>::infinity()} {}
-  void finished(double rmse_mm) {
-    const std::lock_guard lock(mutex_);
-    ++progress_.done;
-    progress_.best_rmse_mm = std::min(progress_.best_rmse_mm, rmse_mm);
-    if (options_.progress) options_.progress(progress_);
-  }
-
- private:
-  const IdentifyOptions& options_;
-  std::mutex mutex_;
-  Progress progress_;
-};
-
-/// How many samples a first look at many starts needs; more only cost time.
-constexpr std::size_t samples_of_a_look = 6000;
-
-/// Every start is searched to its end on thinned records; those that end where no other did, and not far
-/// above the best, go on from there on all samples.
-std::vector<SearchResult> search_separable(const SeparableSearch& full, const FitSpace& space,
-                                           const std::vector<Record>& records,
-                                           const std::vector<FitPoint>& starts,
-                                           const IdentifyOptions& options) {
-  std::size_t samples = 0;
-  for (const Record& record : records) samples += record.size();
-  const std::size_t stride = starts.size() > 1 ? samples / samples_of_a_look : 1;
-  std::vector<Record> thin;
-  for (const Record& record : records) thin.push_back(stride > 1 ? thinned_record(record, stride) : record);
-  const SeparableSearch look = *SeparableSearch::make(thin, space);
-  Reporter reporter(options, starts.size());
-  std::vector<SearchResult> results(starts.size());
-  parallel_for(starts.size(), options.threads, [&](std::size_t i) {
-    results[i] = look.run(starts[i], search_iterations);
-    order_branches(starts.front().model, results[i].point);
-    reporter.finished(results[i].rmse_mm);
-  });
-  if (stride <= 1) return results;
-
-  constexpr double not_far = 1.3;
-  constexpr double same_place = 0.02;  // in the fit's scale
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const SearchResult& r : results) lowest = std::min(lowest, r.rmse_mm);
-  std::vector<std::size_t> leaders;  // one for each place
-  std::vector<std::size_t> leader_of(starts.size());
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const std::vector<double> z = space.z(results[i].point);
-    const auto leader = std::find_if(leaders.begin(), leaders.end(), [&](std::size_t j) {
-      const std::vector<double> other = space.z(results[j].point);
-      double distance = 0;
-      for (std::size_t k = 0; k < z.size(); ++k) distance = std::max(distance, std::abs(z[k] - other[k]));
-      return distance < same_place;
-    });
-    leader_of[i] = leader == leaders.end() ? i : *leader;
-    if (leader == leaders.end()) leaders.push_back(i);
-  }
-  std::erase_if(leaders, [&](std::size_t i) { return results[i].rmse_mm > not_far * lowest; });
-  parallel_for(leaders.size(), options.threads, [&](std::size_t i) {
-    results[leaders[i]] = full.run(results[leaders[i]].point, search_iterations);
-  });
-  for (std::size_t i = 0; i < starts.size(); ++i) results[i] = results[leader_of[i]];
-  return results;
-}
-
-/// Searches from all starts; the results in their order.
-std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record>& records,
-                                 const std::vector<FitPoint>& starts, const IdentifyOptions& options) {
-  if (const auto separable = SeparableSearch::make(records, space)) {
-    return search_separable(*separable, space, records, starts, options);
-  }
-  std::vector<SearchResult> results(starts.size());
-  Reporter reporter(options, starts.size());
-  const auto residuals = residuals_for(records, space);
-  parallel_for(starts.size(), options.threads, [&](std::size_t i) {
-    MinimiseOptions coarse;
-    coarse.most_iterations = starts.size() > 1 ? chain_search_iterations : 1;
-    coarse.tolerance = 1e-6;
-    const Minimum minimum = minimise(*residuals, space.z(starts[i]), coarse);
-    results[i] = {space.point(minimum.z), minimum.rmse_mm, minimum.iterations, minimum.converged};
-    reporter.finished(results[i].rmse_mm);
-  });
-  return results;
-}
-
 /// 2.5 standard deviations of what the residuals are without their tails.
 double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) {
   std::vector<double> r(residuals.count());
@@ -213,13 +93,14 @@ class Run {
     if (starts.empty())
       starts = draw_starts(space, given, result_.records, std::max<std::size_t>(1, options_.starts),
                            options_.seed);
-    std::vector<SearchResult> found = search(space, result_.records, starts, options_);
+    std::vector<SearchResult> found =
+        search(space, result_.records, starts, options_.threads, options_.progress);
     const auto best =
         std::min_element(found.begin(), found.end(),
                          [](const SearchResult& a, const SearchResult& b) { return a.rmse_mm < b.rmse_mm; });
     if (!std::isfinite(best->rmse_mm)) return Failure("the model's answer is not finite from any start");
     for (const SearchResult& each : found) result_.multistart.rmse_mm.push_back(each.rmse_mm);
-    order_branches(start_, best->point);
+    order_branches(branch_time_constants_s(start_), best->point);
     polish(best->point, *free);
     return std::move(result_);
   }

@@ -2,7 +2,6 @@
 // Identification: a model's parameters from logs.
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "sysid/noise_model.h"
 #include "sysid/record.h"
 #include "sysid/score.h"
+#include "sysid/search.h"
 #include "sysid/uncertainty.h"
 
 namespace softgrip::sysid {
@@ -43,13 +43,6 @@ struct MultiStart {
   std::vector<double> rmse_mm;  ///< by start
 };
 
-/// How far an identification has come.
-struct Progress {
-  std::size_t done = 0;
-  std::size_t starts = 0;
-  double best_rmse_mm = 0;
-};
-
 struct IdentifyOptions {
   std::vector<std::string> fixed;  ///< parameter paths that keep the start's value
   std::vector<std::string> free;   ///< if any: only these are free
@@ -63,7 +56,7 @@ struct IdentifyOptions {
   double fit_share = 1;
   std::vector<int> exponents;  ///< tried in turn; empty: the start's own
   RecordOptions record;
-  std::function<void(const Progress&)> progress;  ///< called from any thread, never from two at once
+  ShowProgress progress;
 };
 
 /// The result.

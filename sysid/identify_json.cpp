@@ -55,6 +55,7 @@ std::string identify_json(const IdentifyReport& report) {
                         {"seed", report.seed},
                         {"rmse_mm", r.multistart.rmse_mm}};
   json["residuals"] = {{"rmse_mm", r.rmse_mm},
+                       {"noise_mm", r.noise.deviation_mm},
                        {"lag1_correlation", r.noise.lag1_correlation},
                        {"autoregressive_order", r.noise.coefficients.size()},
                        {"effective_samples", r.noise.effective_samples},

@@ -6,17 +6,14 @@
 
 namespace softgrip::sysid {
 
-NoiseModel fit_noise(const std::vector<std::span<const double>>& series, int most_lags) {
-  std::size_t count = 0;
+Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series, int most_lags) {
+  Autocovariance covariance;
   for (const auto& s : series) {
-    count += static_cast<std::size_t>(
+    covariance.samples += static_cast<std::size_t>(
         std::count_if(s.begin(), s.end(), [](double e) { return std::isfinite(e); }));
   }
-  NoiseModel noise;
-  if (count == 0) return noise;
-  const auto lags = std::min<std::size_t>(static_cast<std::size_t>(most_lags), count / 10);
-  // Divided by the count of all samples, not of pairs: that keeps the matrix positive definite.
-  std::vector<double> covariance(lags + 1, 0.0);
+  const auto lags = std::min<std::size_t>(static_cast<std::size_t>(most_lags), covariance.samples / 10);
+  covariance.lags.assign(lags + 1, 0.0);
   for (const auto& s : series) {
     for (std::size_t lag = 0; lag <= lags; ++lag) {
       double sum = 0;
@@ -24,9 +21,18 @@ NoiseModel fit_noise(const std::vector<std::span<const double>>& series, int mos
         const double product = s[i] * s[i - lag];
         if (std::isfinite(product)) sum += product;
       }
-      covariance[lag] += sum / static_cast<double>(count);
+      covariance.lags[lag] += sum / static_cast<double>(covariance.samples);
     }
   }
+  return covariance;
+}
+
+NoiseModel fit_noise(const Autocovariance& given) {
+  const std::vector<double>& covariance = given.lags;
+  const std::size_t count = given.samples;
+  const std::size_t lags = covariance.size() - 1;
+  NoiseModel noise;
+  if (count == 0 || !(covariance[0] >= 0)) return noise;
   noise.deviation_mm = std::sqrt(covariance[0]);
   noise.innovation_mm = noise.deviation_mm;
   noise.effective_samples = static_cast<double>(count);
@@ -41,6 +47,7 @@ NoiseModel fit_noise(const std::vector<std::span<const double>>& series, int mos
     double reflection = covariance[order];
     for (std::size_t i = 0; i < a.size(); ++i) reflection -= a[i] * covariance[order - 1 - i];
     reflection /= variance;
+    if (!(std::abs(reflection) < 0.99999)) break;
     std::vector<double> next(order);
     for (std::size_t i = 0; i + 1 < order; ++i) next[i] = a[i] - reflection * a[order - 2 - i];
     next[order - 1] = reflection;

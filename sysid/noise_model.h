@@ -16,8 +16,16 @@ struct NoiseModel {
   double effective_samples = 0;
 };
 
-/// Fits the process to several series (not finite: a gap) of one kind: Yule-Walker's equations with pooled
-/// autocovariances, the order by Akaike's criterion.
-[[nodiscard]] NoiseModel fit_noise(const std::vector<std::span<const double>>& series, int most_lags = 40);
+/// Autocovariances of several series (not finite: a gap) of one kind, pooled, up to a lag of `most_lags` or a
+/// tenth of all samples. Divided by the count of all samples, not of pairs: that keeps them a covariance.
+struct Autocovariance {
+  std::vector<double> lags;  ///< [mm^2], by lag from 0
+  std::size_t samples = 0;
+};
+[[nodiscard]] Autocovariance autocovariance_of(const std::vector<std::span<const double>>& series,
+                                               int most_lags = 40);
+
+/// The process with these autocovariances: Yule-Walker's equations, the order by Akaike's criterion.
+[[nodiscard]] NoiseModel fit_noise(const Autocovariance& covariance);
 
 }  // namespace softgrip::sysid

@@ -333,14 +333,13 @@ SeparableSearch::Normal SeparableSearch::normal(const SeparablePoint& point, con
   return normal;
 }
 
-SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations) const {
+SearchResult SeparableSearch::run(const FitPoint& start, int most_iterations, double damping) const {
   SeparablePoint point = to_separable(shape_, start);
   VectorXd q = coordinates_of(point);
   point = moved(std::move(point), q);
   Linear linear = project(point);
   set_linear(point, linear.values);
   SearchResult result;
-  double damping = 1e-3;
   Normal normal = this->normal(point, linear);
   const auto low = [&](Index i) { return coordinates_[static_cast<std::size_t>(i)].lower; };
   const auto high = [&](Index i) { return coordinates_[static_cast<std::size_t>(i)].upper; };

@@ -35,7 +35,9 @@ class SeparableSearch {
                                                            const FitSpace& space);
 
   /// From the nonlinear parameters of `start`; its linear ones do not matter.
-  [[nodiscard]] SearchResult run(const FitPoint& start, int most_iterations) const;
+  /// @param damping  at first: small goes straight for the nearest minimum of a parabola, large creeps
+  /// downhill.
+  [[nodiscard]] SearchResult run(const FitPoint& start, int most_iterations, double damping = 1e-3) const;
 
  private:
   /// A nonlinear parameter of the search and its bounds, in the search's own scale: growing and eta, delay,

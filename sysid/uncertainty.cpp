@@ -17,27 +17,79 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Sum over the records of (C^(1/2)' J)' (C^(1/2)' J): J' C J for the autoregressive covariance C. With A the
-/// whitening filter, C = s^2 (A'A)^-1, so each column is run backwards through 1/A.
-MatrixXd correlated_product(const RowMajor& jacobian, const std::vector<std::size_t>& rows,
-                            const NoiseModel& noise) {
-  const Index n = jacobian.cols();
-  MatrixXd sum = MatrixXd::Zero(n, n);
-  Index first = 0;
-  const auto order = static_cast<Index>(noise.coefficients.size());
-  for (const std::size_t count : rows) {
-    RowMajor x = jacobian.middleRows(first, static_cast<Index>(count));
+/// Products of the correlated noise's covariance C with the Jacobian, record by record. With A the whitening
+/// filter of the autoregressive model, C = s^2 (A'A)^-1: C J is s^2 times J run backwards and then forwards
+/// through 1/A.
+class CorrelatedNoise {
+ public:
+  CorrelatedNoise(const RowMajor& jacobian, const std::vector<std::size_t>& rows)
+      : jacobian_(jacobian), rows_(rows) {}
+
+  /// J' C J
+  [[nodiscard]] MatrixXd product(const NoiseModel& noise) const {
+    MatrixXd sum = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
+    for_each_record([&](Index first, Index count) {
+      const RowMajor x = backwards(jacobian_.middleRows(first, count), noise);
+      sum.noalias() += x.transpose() * x;
+    });
+    return noise.innovation_mm * noise.innovation_mm * sum;
+  }
+
+  /// What a fit takes away from the autocovariances of its residuals: with H = J M J' (M the inverse of J'J)
+  /// the residuals' covariance is (I - H) C (I - H) instead of C.
+  void give_back(const NoiseModel& noise, const MatrixXd& inverse, const MatrixXd& meat,
+                 Autocovariance& covariance) const {
+    const double s2 = noise.innovation_mm * noise.innovation_mm;
+    const MatrixXd both = inverse * meat * inverse;
+    for_each_record([&](Index first, Index count) {
+      const auto j = jacobian_.middleRows(first, count);
+      const RowMajor cj = s2 * forwards(backwards(j, noise), noise);
+      const RowMajor jm = j * inverse;
+      const RowMajor jk = j * both;
+      for (std::size_t lag = 0; lag < covariance.lags.size(); ++lag) {
+        const Index n = count - static_cast<Index>(lag);
+        if (n <= 0) break;
+        const double taken = jm.topRows(n).cwiseProduct(cj.bottomRows(n)).sum() +
+                             cj.topRows(n).cwiseProduct(jm.bottomRows(n)).sum() -
+                             jk.topRows(n).cwiseProduct(j.bottomRows(n)).sum();
+        covariance.lags[lag] += taken / static_cast<double>(covariance.samples);
+      }
+    });
+  }
+
+ private:
+  template <class Work>
+  void for_each_record(Work&& work) const {
+    Index first = 0;
+    for (const std::size_t count : rows_) {
+      work(first, static_cast<Index>(count));
+      first += static_cast<Index>(count);
+    }
+  }
+  static RowMajor backwards(RowMajor x, const NoiseModel& noise) {
+    const auto order = static_cast<Index>(noise.coefficients.size());
     for (Index t = x.rows(); t-- > 0;) {
       const Index reach = std::min(order, x.rows() - 1 - t);
       for (Index lag = 1; lag <= reach; ++lag) {
         x.row(t) += noise.coefficients[static_cast<std::size_t>(lag - 1)] * x.row(t + lag);
       }
     }
-    sum.noalias() += x.transpose() * x;
-    first += static_cast<Index>(count);
+    return x;
   }
-  return noise.innovation_mm * noise.innovation_mm * sum;
-}
+  static RowMajor forwards(RowMajor x, const NoiseModel& noise) {
+    const auto order = static_cast<Index>(noise.coefficients.size());
+    for (Index t = 0; t < x.rows(); ++t) {
+      const Index reach = std::min(order, t);
+      for (Index lag = 1; lag <= reach; ++lag) {
+        x.row(t) += noise.coefficients[static_cast<std::size_t>(lag - 1)] * x.row(t - lag);
+      }
+    }
+    return x;
+  }
+
+  const RowMajor& jacobian_;
+  const std::vector<std::size_t>& rows_;
+};
 
 void scatter(const MatrixXd& part, const std::vector<Index>& keep, MatrixXd& whole) {
   for (std::size_t i = 0; i < keep.size(); ++i) {
@@ -120,7 +172,8 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
     counts.push_back(record.readings);
     first += record.readings;
   }
-  u.noise = fit_noise(series);
+  const Autocovariance observed = autocovariance_of(series);
+  u.noise = fit_noise(observed);
 
   std::vector<Index> keep;
   const double largest = jacobian.colwise().norm().maxCoeff();
@@ -140,13 +193,23 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   const MatrixXd inverse = scale.asDiagonal() *
                            scaled.ldlt().solve(MatrixXd::Identity(gram.rows(), gram.cols())).eval() *
                            scale.asDiagonal();
-  const MatrixXd meat = kept(correlated_product(jacobian, counts, u.noise), keep);
-  // What the fit took away from the residuals' size: E[r'r] = trace C - trace((J'J)^-1 J' C J).
-  const double squares = u.noise.deviation_mm * u.noise.deviation_mm * static_cast<double>(rows);
-  const double taken = 1 + (inverse * meat).trace() / std::max(squares, 1e-300);
-  const MatrixXd covariance = taken * inverse * meat * inverse;
+  RowMajor columns(jacobian.rows(), static_cast<Index>(keep.size()));
+  for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = jacobian.col(keep[i]);
+  const CorrelatedNoise correlated(columns, counts);
+  MatrixXd meat = correlated.product(u.noise);
+  // The noise is more than the residuals show, and more correlated: the fit followed some of it. Lags well
+  // beyond the order do not come into it.
+  constexpr std::size_t lags_beyond = 5;
+  for (int pass = 0; pass < 2; ++pass) {
+    Autocovariance whole = observed;
+    whole.lags.resize(std::min(whole.lags.size(), u.noise.coefficients.size() + lags_beyond));
+    correlated.give_back(u.noise, inverse, meat, whole);
+    u.noise = fit_noise(whole);
+    meat = correlated.product(u.noise);
+  }
+  const MatrixXd covariance = inverse * meat * inverse;
   scatter(covariance, keep, u.covariance);
-  scatter(inverse * u.noise.deviation_mm * u.noise.deviation_mm * taken, keep, u.naive);
+  scatter(inverse * u.noise.deviation_mm * u.noise.deviation_mm, keep, u.naive);
   u.quantile = t_quantile(u.noise.effective_samples - static_cast<double>(keep.size()));
   u.loose = loose_directions(covariance, keep, residuals.space());
   return u;

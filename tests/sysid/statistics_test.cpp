@@ -31,7 +31,7 @@ std::vector<double> autoregressive(double correlation, std::size_t count, std::u
 TEST(NoiseModel, CountsCorrelatedSamplesForWhatTheyAreWorth) {
   for (const double correlation : {0.0, 0.5, 0.9, 0.98}) {
     const auto values = autoregressive(correlation, 60'000, 1);
-    const NoiseModel noise = fit_noise({values});
+    const NoiseModel noise = fit_noise(autocovariance_of({values}));
     EXPECT_NEAR(noise.lag1_correlation, correlation, 0.02);
     EXPECT_NEAR(noise.deviation_mm, 1, 0.15);
     const double expected = 60'000 * (1 - correlation) / (1 + correlation);
@@ -43,7 +43,7 @@ TEST(NoiseModel, GapsAndSeveralSeriesDoNotMix) {
   auto first = autoregressive(0.8, 20'000, 2);
   first[777] = std::nan("");
   const auto second = autoregressive(0.8, 20'000, 3);
-  EXPECT_NEAR(fit_noise({first, second}).lag1_correlation, 0.8, 0.02);
+  EXPECT_NEAR(fit_noise(autocovariance_of({first, second})).lag1_correlation, 0.8, 0.02);
 }
 
 TEST(TQuantile, MatchesTables) {
