@@ -110,6 +110,7 @@ class Run {
     const auto residuals = residuals_for(result_.records, FitSpace(from.model, result_.records, free.flat));
     std::vector<double> z = residuals->space().z(from);
     MinimiseOptions options;
+    options.normal_equations = true;
     Minimum minimum = minimise(*residuals, z, options);
     // The scale of the tails and the fit depend on each other: twice settles it.
     for (int pass = 0; pass < 2 && options_.robust; ++pass) {

@@ -56,14 +56,14 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   }
 
   constexpr double next_to_nothing = 0.01;
-  record.start_unknown = options.start == Start::unknown ||
-                         (options.start == Start::automatic &&
-                          std::abs(record.drive_kpa.front()) > next_to_nothing * record.largest_kpa);
+  const bool pressurised = std::abs(record.drive_kpa.front()) > next_to_nothing * record.largest_kpa;
+  record.start_unknown =
+      options.start == Start::unknown || (options.start == Start::automatic && pressurised);
   const auto first = std::find_if(record.reading_mm.begin(), record.reading_mm.end(),
                                   [](double y) { return std::isfinite(y); });
   const bool at_zero = first != record.reading_mm.end() &&
                        std::abs(*first) < std::max(4 * fast_noise_mm(record), 1e-3 * record.span_mm);
-  record.offset_free = record.start_unknown || !at_zero;
+  record.offset_free = record.start_unknown || pressurised || !at_zero;
   return record;
 }
 

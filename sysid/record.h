@@ -52,15 +52,15 @@ struct Record {
   std::vector<double> reading_mm;  ///< NaN: none
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
-  double sample_time_s = 0;    ///< 0 when irregular
-  double campaign_time_s = 0;  ///< when it began, counted from the first log's start
-  double span_mm = 0;          ///< of the readings
-  double largest_kpa = 0;      ///< of the drive
+  double sample_time_s = 0;       ///< 0 when irregular
+  double campaign_time_s = 0;     ///< when it began, counted from the first log's start
+  double span_mm = 0;             ///< of the readings
+  double largest_kpa = 0;         ///< of the drive
   double largest_before_kpa = 0;  ///< of the drive in the campaign's earlier records
-  std::size_t readings = 0;    ///< how many are there
+  std::size_t readings = 0;       ///< how many are there
   bool held = false;
   bool start_unknown = false;
-  bool offset_free = false;  ///< the first reading is not 0 within the noise, or the start is unknown
+  bool offset_free = false;  ///< the start is unknown, or pressure and reading do not begin at 0 together
 
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }
 };
