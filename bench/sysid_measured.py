@@ -9,7 +9,8 @@ kPa; the displacement is the encoder with the largest span, scaled so that the s
 proportional to length; the scale changes no percentage). Times start at 0.
 
 Each case is fitted twice: on all of a log, and on its first half, from which the second half is predicted
-with nothing re-seeded. The baseline is a ten-parameter fit of the same structure by scipy's least_squares,
+with nothing re-seeded. The measured pressure drives the model, and every log begins at rest at its idle
+pressure (1 psi). The baseline is a ten-parameter fit of the same structure by scipy's least_squares,
 RMSE in % of span, as the data's own notes give it.
 """
 import argparse
@@ -56,7 +57,7 @@ def convert(path, segment, target):
 
 
 def identify(program, log, out, extra):
-    command = [program, "identify", "--data", log, "--drive", "measured", "--out", out, "--json", *extra]
+    command = [program, "identify", "--data", log, "--drive", "measured", "--begin", "rest", "--out", out, "--json", *extra]
     run = subprocess.run(command, capture_output=True, text=True)
     if run.returncode not in (0, 6):
         sys.exit(f"{' '.join(command)}: exit {run.returncode}\n{run.stderr}")
