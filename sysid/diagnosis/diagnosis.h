@@ -10,7 +10,9 @@
 #include <tl/expected.hpp>
 
 #include "model/model.h"
+#include "sysid/diagnosis/evidence.h"
 #include "sysid/diagnosis/outliers.h"
+#include "sysid/diagnosis/reference.h"
 #include "sysid/diagnosis/selection.h"
 #include "sysid/identify.h"
 #include "sysid/log.h"
@@ -69,6 +71,9 @@ struct Diagnosis {
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;
+  std::optional<Evidence> evidence;         ///< where the models are wrong; see examine()
+  std::optional<Reference> reference;       ///< of the recalibrated model's residual
+  std::optional<Reference> reference_left;  ///< of the extended model's residual, where it is another
   double wall_s = 0;
 };
 
@@ -76,6 +81,9 @@ struct Diagnosis {
 [[nodiscard]] tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs,
                                                             const model::Model& given,
                                                             const DiagnosisOptions& options = {});
+
+/// Adds the evidence and the references to a diagnosis.
+void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
 
 /// The verdict in one sentence that a technician understands.
 [[nodiscard]] std::string verdict_sentence(const Diagnosis& diagnosis);

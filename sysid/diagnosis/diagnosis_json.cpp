@@ -45,6 +45,77 @@ Json candidates_json(const std::vector<CandidateScore>& candidates) {
   return list;
 }
 
+Json bins_json(const ConditionEvidence& e) {
+  Json list = Json::array();
+  for (const ConditionBin& bin : e.bins) {
+    Json one;
+    if (!e.condition.groups.empty()) one["group"] = e.condition.groups[bin.group];
+    one["value"] = bin.label.empty() ? Json(bin.value) : Json(bin.label);
+    one["samples"] = bin.samples;
+    one["mean_mm"] = bin.mean_mm;
+    one["ci95"] = {number(bin.lower_mm), number(bin.upper_mm)};
+    one["rms_mm"] = bin.rms_mm;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+Json residual_json(const ResidualEvidence& r, bool with_bins) {
+  Json json{{"rms_mm", r.rms_mm},
+            {"structure_mm", r.structure_mm},
+            {"memory_s", r.memory_s},
+            {"block_s", r.block_s},
+            {"blocks", r.blocks}};
+  Json conditions = Json::array();
+  for (const ConditionEvidence& e : r.conditions) {
+    Json one{{"id", e.condition.id}};
+    if (e.condition.why_not.empty()) {
+      one["share_percent"] = e.share_percent;
+      one["p_value"] = e.p_value;
+      one["p_adjusted"] = e.p_adjusted;
+      one["clear"] = e.clear;
+      if (with_bins) one["bins"] = bins_json(e);
+    } else {
+      one["not_judged"] = e.condition.why_not;
+    }
+    conditions.push_back(std::move(one));
+  }
+  json["conditions"] = std::move(conditions);
+  if (r.spectrum.why_not.empty()) {
+    json["line"] = {{"frequency_hz", r.spectrum.peak_hz},
+                    {"amplitude_mm", r.spectrum.peak_amplitude_mm},
+                    {"share_percent", r.spectrum.share_percent},
+                    {"p_value", r.spectrum.p_value}};
+  } else {
+    json["line"] = nullptr;
+  }
+  return json;
+}
+
+Json evidence_json(const Evidence& evidence) {
+  Json unphysical = Json::array();
+  for (const UnphysicalSign& sign : evidence.unphysical) {
+    unphysical.push_back(
+        {{"id", sign.id}, {"value", sign.value}, {"limit", sign.limit}, {"sentence", sign.sentence}});
+  }
+  return {{"as_given", residual_json(evidence.as_given, false)},
+          {"recalibrated", residual_json(evidence.recalibrated, true)},
+          {"extended", residual_json(evidence.extended, false)},
+          {"unphysical_recalibration", std::move(unphysical)}};
+}
+
+Json reference_json(const Reference& r) {
+  Json json{{"structure_mm", r.structural_mm}, {"rmse_before_mm", r.rmse_before_mm}};
+  json["explained_percent"] = r.present ? spread(r.explained_percent) : Json(nullptr);
+  if (!r.present) return json;
+  json["linear_percent"] = r.linear_percent;
+  json["heldout_rmse_mm"] = r.rmse_after_mm;
+  Json groups = Json::object();
+  for (const FeatureGroup& group : r.groups) groups[group.id] = group.importance_percent;
+  json["importance_percent"] = std::move(groups);
+  return json;
+}
+
 }  // namespace
 
 std::string to_json(const Diagnosis& d) {
@@ -83,6 +154,9 @@ std::string to_json(const Diagnosis& d) {
   }
   if (!d.rejected.empty()) candidates["none"] = candidates_json(d.rejected);
   json["candidates"] = std::move(candidates);
+  if (d.evidence) json["evidence"] = evidence_json(*d.evidence);
+  if (d.reference) json["reference"] = reference_json(*d.reference);
+  if (d.reference_left) json["reference_left"] = reference_json(*d.reference_left);
   json["warnings"] = d.warnings;
   json["wall_s"] = d.wall_s;
   return json.dump(2) + "\n";

@@ -11,6 +11,7 @@
 
 #include "model/model_file.h"
 #include "sysid/diagnosis/diagnosis.h"
+#include "sysid/diagnosis/report.h"
 #include "sysid/files.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
@@ -59,12 +60,14 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
               sysid::significant(d.recalibrated_rmse_mm, 4).c_str());
   std::printf("  %-34s %s mm\n", "extended, held out", sysid::significant(d.extended_rmse_mm, 4).c_str());
   std::printf("  %-34s %s %%\n\n", "structure left", sysid::fixed(d.unexplained_percent, 1).c_str());
+  if (d.evidence && d.structure_recalibrated.present)
+    std::printf("%s\n", sysid::dependence_sentence(d.evidence->recalibrated).c_str());
   for (const sysid::NamedCause& named : d.causes) print_cause(named);
   if (!d.partial.empty()) std::puts("  Part of it, but not enough to be named the cause:");
   for (const sysid::NamedCause& named : d.partial) print_cause(named);
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%s s; diagnosis: %s\n", sysid::significant(d.wall_s, 3).c_str(),
-              (std::filesystem::path(out) / "diagnosis.json").c_str());
+  std::printf("%s s; report: %s\n", sysid::significant(d.wall_s, 3).c_str(),
+              (std::filesystem::path(out) / "report.html").c_str());
 }
 
 ExitCode run(Options options) {
@@ -77,14 +80,17 @@ ExitCode run(Options options) {
   options.diagnosis.record = options.logs.record_options();
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
   if (terminal) options.diagnosis.progress = show_progress;
-  const auto result = sysid::diagnose(*logs, *model, options.diagnosis);
+  auto result = sysid::diagnose(*logs, *model, options.diagnosis);
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!result) return fail(ExitCode::input_refused, result.error());
 
+  sysid::examine(*result, options.diagnosis);
   const std::string json = sysid::to_json(*result);
   const std::filesystem::path out(options.out);
+  const sysid::DiagnosisReport report{*result, *logs, *model, options.diagnosis.seed, {}};
   for (const auto& [name, text] : {std::pair<const char*, std::string>{"diagnosis.json", json},
-                                   {"model.yaml", model::to_yaml(result->extended_model)}}) {
+                                   {"model.yaml", model::to_yaml(result->extended_model)},
+                                   {"report.html", sysid::diagnosis_html(report)}}) {
     if (const auto written = sysid::write_file((out / name).string(), text); !written) {
       return fail(ExitCode::io, written.error());
     }

@@ -1,0 +1,29 @@
+#include <chrono>
+
+#include "sysid/diagnosis/diagnosis.h"
+#include "sysid/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+Reference reference_of(const Diagnosis& d, const StructureFit& fit, const DiagnosisOptions& options) {
+  std::vector<std::vector<double>> prediction;
+  for (std::size_t k = 0; k < d.records.size(); ++k)
+    prediction.push_back(predict(fit.point.model, d.records[k], fit.point.starts[k]));
+  ReferenceOptions how;
+  how.seed = options.seed;
+  how.threads = options.threads;
+  return smooth_reference(d.records, prediction, fit.residual_mm, d.noise_mm, how);
+}
+
+}  // namespace
+
+void examine(Diagnosis& d, const DiagnosisOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  d.evidence = examine_fits(d.records, d.as_given, d.recalibrated, d.extended, d.noise_mm, options.seed);
+  d.reference = reference_of(d, d.recalibrated, options);
+  if (!d.extended.causes.empty()) d.reference_left = reference_of(d, d.extended, options);
+  d.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+}  // namespace softgrip::sysid
