@@ -49,6 +49,7 @@ void add_turns(const Record& record, DriveHistory& h) {
   double turned_s = record.time_s.front();
   double turned_kpa = record.drive_kpa.front();
   double largest = record.largest_before_kpa;
+  bool falling = false;
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (i > 0 && h.branch[i] != h.branch[i - 1]) {
       turned_s = record.time_s[i];
@@ -56,6 +57,8 @@ void add_turns(const Record& record, DriveHistory& h) {
     }
     const bool stands = h.branch[i] == Branch::rest || h.branch[i] == Branch::hold;
     largest = std::max(largest, record.drive_kpa[i]);
+    if (!stands) falling = h.branch[i] == Branch::unloading;
+    h.falling.push_back(falling);
     h.since_turn_s.push_back(record.time_s[i] - turned_s);
     h.turn_kpa.push_back(turned_kpa);
     h.dwell_s.push_back(stands ? record.time_s[i] - turned_s : none);
@@ -210,12 +213,10 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
                            [&](std::size_t k, std::size_t i) { return h[k].largest_kpa[i]; }));
   const auto position = [&](std::size_t k, std::size_t i) { return prediction_mm[k][i]; };
   list.push_back(condition("position", "predicted displacement [mm]", "the position", samples, position));
-  list.push_back(condition("loop", "predicted displacement [mm]", "the position within the loop", samples,
-                           [&](std::size_t k, std::size_t i) {
-                             return h[k].rate_kpa_per_s[i] == 0 ? none : prediction_mm[k][i];
-                           }));
+  list.push_back(
+      condition("loop", "predicted displacement [mm]", "the position within the loop", samples, position));
   group_by(list.back(), samples, {"loading", "unloading"},
-           [&](std::size_t k, std::size_t i) { return h[k].branch[i] == Branch::unloading; });
+           [&](std::size_t k, std::size_t i) { return h[k].falling[i]; });
   list.push_back(condition(
       "campaign_time", "time in the campaign [s]", "the time in the campaign", samples,
       [&](std::size_t k, std::size_t i) { return records[k].campaign_time_s + records[k].time_s[i]; }));

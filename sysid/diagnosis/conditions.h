@@ -18,6 +18,7 @@ enum class Branch : std::uint8_t { rest, loading, hold, unloading };
 struct DriveHistory {
   std::vector<double> rate_kpa_per_s;  ///< slope over a tenth of a second, 0 where the pressure stands
   std::vector<Branch> branch;
+  std::vector<bool> falling;          ///< the last motion was downwards
   std::vector<double> dwell_s;        ///< since the pressure stopped; NaN while it moves
   std::vector<double> since_turn_s;   ///< since it last turned, started or stopped
   std::vector<double> turn_kpa;       ///< pressure at that moment
@@ -56,8 +57,8 @@ struct Condition {
   std::string why_not;  ///< why nothing can be said, or empty
 };
 
-/// branch, cycle, amplitude, rate, dwell, history, position, loop (position by branch), campaign_time,
-/// temperature, supply; in this order.
+/// branch, cycle, amplitude, rate, dwell, history, position, loop (position by the direction of the last
+/// motion), campaign_time, temperature, supply; in this order.
 /// @param prediction_mm  by record: the position is the model's, for the reading shares its error with the
 ///                       residual.
 [[nodiscard]] std::vector<Condition> conditions_of(const std::vector<Record>& records,

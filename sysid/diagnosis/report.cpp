@@ -132,9 +132,11 @@ void add_wrong(Page& page, const Diagnosis& d) {
 void add_cause(Page& page, const NamedCause& named, double extended_rmse_mm) {
   const model::BlockInfo& info = model::catalogue()[named.cause.type].info;
   page.subsection(std::string(info.title));
-  page.paragraph(std::string(info.meaning) + " (" + std::string(model::name_of(info.station)) + ", " +
-                 std::string(info.id) +
-                 "). Held-out gain over the model without it: " + range(named.heldout_gain_percent, 1) + ".");
+  std::string meaning(info.meaning);
+  if (!meaning.empty() && meaning.back() != '.') meaning += '.';
+  page.paragraph(meaning + " Station: " + std::string(model::name_of(info.station)) +
+                 "; id: " + std::string(info.id) +
+                 ". Held-out gain over the model without it: " + range(named.heldout_gain_percent, 1) + ".");
   if (!named.rivals.empty()) {
     std::string text = "These logs cannot tell it from ";
     for (std::size_t i = 0; i < named.rivals.size(); ++i)
@@ -186,7 +188,7 @@ void add_gain(Page& page, const Diagnosis& d) {
                    significant(after, 3) + " mm (" + fixed(100 * (1 - after / before), 1) + " %)." +
                    (after < before ? "" : " The gain does not carry over to logs that were not fitted."));
   }
-  page.figure_row({gain_chart(d)}, "Held-out errors beside the readings' noise.");
+  page.figure(gain_chart(d), "Held-out errors beside the readings' noise.");
 }
 
 std::string reference_sentence(const Reference& r, const std::string& whose) {

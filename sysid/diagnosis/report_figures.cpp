@@ -126,6 +126,8 @@ Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvid
   Chart chart;
   chart.width = 380;
   chart.height = 250;
+  chart.title = condition.id;
+  std::replace(chart.title.begin(), chart.title.end(), '_', ' ');
   chart.x.label = condition.axis;
   chart.x.logarithmic = condition.logarithmic;
   chart.x.categories = condition.categories;
@@ -174,8 +176,8 @@ Chart spectrum_chart(const Diagnosis& d) {
 
 Chart gain_chart(const Diagnosis& d) {
   Chart chart;
-  chart.width = 380;
-  chart.height = 240;
+  chart.width = 440;
+  chart.height = 220;
   chart.y.label = "held-out RMSE [mm]";
   chart.x.categories = {"as given", "recalibrated"};
   Series bars;

@@ -35,7 +35,7 @@ std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double
     if (rival) return "explains as much";
   }
   if (!c.why_not.empty()) return c.why_not;
-  if (std::isnan(c.heldout_rmse_mm)) return "behind the others when fitted";
+  if (std::isnan(c.heldout_rmse_mm)) return "behind when fitted";
   if (c.gain_percent.lower <= 0) return "no gain that excludes chance";
   if (chosen == nullptr) return "gain too small to be worth a block";
   return "explains less: " + significant(c.heldout_rmse_mm, 3) + " against " +
