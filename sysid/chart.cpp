@@ -235,7 +235,10 @@ class Painter {
       if (!mark.label.empty()) words(right_ - 4, y.px(mark.at) - 4, "end", mark.label, halo);
     } else {
       line(x.px(mark.at), upper_, x.px(mark.at), lower_, text_colour, dashes);
-      if (!mark.label.empty()) words(x.px(mark.at) + 4, upper_ + 11, "start", mark.label, halo);
+      // Beside its line, on the side where there is room.
+      const bool fits = x.px(mark.at) + 4 + text_width(mark.label) <= right_;
+      const double at = fits ? x.px(mark.at) + 4 : x.px(mark.at) - 4;
+      if (!mark.label.empty()) words(at, upper_ + 11, fits ? "start" : "end", mark.label, halo);
     }
   }
 

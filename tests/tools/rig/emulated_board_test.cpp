@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "drivers/board_map_file.h"
 
 namespace softgrip::tools::rig {
@@ -122,6 +124,22 @@ TEST(EmulatedBoard, IgnoredWritesAreAnswered) {
   board.ignore_writes(true);
   EXPECT_EQ(board.answer(0, write_outputs(3000, 3000)).pdu, (Bytes{0x10, 0, 10, 0, 2}));
   EXPECT_EQ(read_one(board, 0, 0x04, 10), 1000);
+}
+
+TEST(EmulatedBoard, AnswersEveryRequestWithAReplyOrAnException) {
+  constexpr std::uint64_t seed = 20251120;
+  SCOPED_TRACE(seed);
+  std::mt19937_64 random(seed);
+  EmulatedBoard board(adam());
+  for (int i = 0; i < 100'000; ++i) {
+    Bytes pdu(1 + random() % 20);
+    for (std::uint8_t& byte : pdu)
+      byte = static_cast<std::uint8_t>(random() % 4 == 0 ? random() : random() % 24);
+    const Bytes reply = board.answer(i, pdu).pdu;
+    ASSERT_GE(reply.size(), 2U);
+    ASSERT_LE(reply.size(), max_pdu_size);
+    ASSERT_EQ(reply[0] & 0x7fU, pdu[0] & 0x7fU);
+  }
 }
 
 }  // namespace
