@@ -148,7 +148,7 @@ void ChannelController::Parts::watch_model(const ChannelInput& input, ChannelSte
 
 double ChannelController::Parts::track(const ChannelDemand& demand, ChannelStep& out) noexcept {
   const bool entering = !tracking;
-  FeedforwardQuery query{demand.reference, demand.time_s, offset_mm};
+  FeedforwardQuery query{demand.reference, demand.time_s, offset_mm, demand.plan, demand.plan_origin_s};
   if (entering) {
     feedforward.enter(running, query, command_kpa);
     ticks = 1;

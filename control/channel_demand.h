@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "control/planned_feedforward.h"
 #include "control/reference.h"
 
 namespace softgrip::control {
@@ -19,6 +20,10 @@ struct ChannelDemand {
   double pressure_kpa = 0;               ///< of pressure
   const Reference* reference = nullptr;  ///< of displacement [mm]; on the clock of `time_s`
   double time_s = 0;                     ///< now, on that clock
+  /// Of displacement with feedforward `planned`: the plan for the reference; nullptr where there is none. Its
+  /// clock is the reference's, less plan_origin_s.
+  const PressurePlan* plan = nullptr;
+  double plan_origin_s = 0;
   /// Of displacement: the finger meets an object. The feedback stays as it is, so that it does not press
   /// ever harder against what does not yield; the feedforward goes on.
   bool feedback_held = false;

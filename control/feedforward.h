@@ -10,6 +10,7 @@ enum class FeedforwardKind : std::uint8_t {
   bouc_wen,  ///< inverse of the Bouc-Wen element alone, in parallel with the PID (Zhang et al. 2025, section
              ///< 5)
   full_model,  ///< inverse of the whole chain: implicit solve, lead for lag, preview for delay
+  planned,     ///< computed before the run by least squares over the reference; needs no inverse
 };
 
 struct FeedforwardSettings {

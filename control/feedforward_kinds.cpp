@@ -21,6 +21,10 @@ constexpr double peak_acceleration = 5.774;
 constexpr double peak_speed = 1.875;
 /// A plan that differs from what the reference needs by more than this is called out of reach.
 constexpr double late_kpa = 1e-6;
+/// A plan whose model is further from the reference than this is called out of reach.
+constexpr double missed_mm = 0.2;
+/// How long the difference between the pressure before and the start of a plan takes to fade.
+constexpr double plan_fade_s = 1;
 
 /// The value of a parameter of the first block with that id, or nothing.
 std::optional<double> value_in(const model::Model& model, std::string_view id, std::string_view parameter) {
@@ -150,6 +154,34 @@ FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexce
   return {command_kpa_, late || !solution.reached};
 }
 
+PlannedFeedforward::PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,
+                                       double tick_s)
+    : tick_s_(tick_s), ahead_s_(0.5 * tick_s + dead_time_s(model) + settings.extra_latency_s) {}
+
+void PlannedFeedforward::enter(const RunningModel&, const FeedforwardQuery&, double command_kpa) noexcept {
+  plan_ = nullptr;
+  last_kpa_ = command_kpa;
+}
+
+FeedforwardStep PlannedFeedforward::step(const FeedforwardQuery& query) noexcept {
+  if (query.plan == nullptr) {
+    plan_ = nullptr;
+    return {last_kpa_, false};
+  }
+  const double then_s = query.time_s + ahead_s_ - query.plan_origin_s;
+  const double planned_kpa = query.plan->at(then_s);
+  if (query.plan != plan_ || query.plan_origin_s != origin_s_) {
+    plan_ = query.plan;
+    origin_s_ = query.plan_origin_s;
+    difference_kpa_ = last_kpa_ - planned_kpa;
+    fade_left_s_ = plan_fade_s;
+  }
+  last_kpa_ = planned_kpa + difference_kpa_ * fade_left_s_ / plan_fade_s;
+  fade_left_s_ = std::max(0.0, fade_left_s_ - tick_s_);
+  const double wanted_mm = query.reference->at(query.time_s + ahead_s_).value;
+  return {last_kpa_, plan_->miss_mm(then_s, wanted_mm) > missed_mm};
+}
+
 Feedforward::Feedforward(const model::Model& model, const FeedforwardSettings& settings,
                          const LimitSettings& limits, double tick_s) {
   switch (settings.kind) {
@@ -160,6 +192,9 @@ Feedforward::Feedforward(const model::Model& model, const FeedforwardSettings& s
       break;
     case FeedforwardKind::full_model:
       kind_.emplace<FullModelFeedforward>(model, settings, limits, tick_s);
+      break;
+    case FeedforwardKind::planned:
+      kind_.emplace<PlannedFeedforward>(model, settings, tick_s);
       break;
   }
 }

@@ -7,6 +7,7 @@
 #include "control/actuator_inverse.h"
 #include "control/feedforward.h"
 #include "control/limits.h"
+#include "control/planned_feedforward.h"
 #include "control/reference.h"
 #include "control/running_model.h"
 #include "model/model.h"
@@ -25,6 +26,8 @@ struct FeedforwardQuery {
   const Reference* reference = nullptr;
   double time_s = 0;  ///< now, on the reference's clock
   double offset_mm = 0;
+  const PressurePlan* plan = nullptr;  ///< of `planned`
+  double plan_origin_s = 0;            ///< of the plan's clock on the reference's
 };
 
 // Each kind has: enter() when tracking begins, with what is out there; step() once per tick from then on;
@@ -98,6 +101,26 @@ class FullModelFeedforward {
   Reference fade_;  ///< of the difference after enter() or a jump, on the reference's clock
 };
 
+/// A plan that was made before the run (control/planned_feedforward.h), read ahead by all dead time and the
+/// hold's half tick. Without a plan the pressure stays where it was and the rest is the PID's.
+class PlannedFeedforward {
+ public:
+  PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings, double tick_s);
+  void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
+  FeedforwardStep step(const FeedforwardQuery& query) noexcept;
+  /// More than the dead time: a plan acts before its reference does.
+  [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + Planner::lead_s; }
+
+ private:
+  double tick_s_;
+  double ahead_s_;
+  const PressurePlan* plan_ = nullptr;
+  double origin_s_ = 0;
+  double last_kpa_ = 0;
+  double difference_kpa_ = 0;  ///< between where the pressure was and where the plan began
+  double fade_left_s_ = 0;     ///< until it is gone
+};
+
 /// One of them.
 class Feedforward {
  public:
@@ -108,7 +131,7 @@ class Feedforward {
   [[nodiscard]] double preview_s() const noexcept;
 
  private:
-  std::variant<NoFeedforward, BoucWenFeedforward, FullModelFeedforward> kind_;
+  std::variant<NoFeedforward, BoucWenFeedforward, FullModelFeedforward, PlannedFeedforward> kind_;
 };
 
 }  // namespace softgrip::control

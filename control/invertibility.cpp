@@ -122,6 +122,13 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   return check_gain(part, limits.pressure_max_kpa, tick_s, 0, "");
 }
 
+/// Any model can be planned for that moves the finger.
+tl::expected<void, Refusal> check_planned(const model::Model& model) {
+  const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
+  if (!elements.blocks.empty()) return {};
+  return tl::unexpected(Refusal{"the model has no element that moves the finger"});
+}
+
 tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,
                                              double tick_s) {
   const std::string names = without_inverse(model);
@@ -154,6 +161,8 @@ tl::expected<void, Refusal> check_feedforward(const model::Model& model, const F
       return check_bouc_wen(model, limits, tick_s);
     case FeedforwardKind::full_model:
       return check_full_model(model, limits, tick_s);
+    case FeedforwardKind::planned:
+      return check_planned(model);
   }
   return {};
 }

@@ -115,6 +115,12 @@ std::complex<double> creep(const model::Model& body, std::complex<double> s) {
 
 }  // namespace
 
+PressurePlan plan_for(const TrackingRun& run) {
+  const Reference reference = reference_of(run);
+  Planner planner(run.settings.model, run.settings.limits, 1 / run.rate_hz);
+  return planner.plan(reference, 0, reference.end_s());
+}
+
 TrackingResult track(const TrackingRun& run) {
   const double tick_s = 1 / run.rate_hz;
   const auto tick_ns = static_cast<model::Nanoseconds>(std::llround(1e9 * tick_s));
@@ -125,6 +131,12 @@ TrackingResult track(const TrackingRun& run) {
   ChannelInput input;
   input.demand.mode = ChannelDemand::Mode::displacement;
   input.demand.reference = &reference;
+
+  PressurePlan own_plan;
+  if (run.settings.feedforward.kind == FeedforwardKind::planned) {
+    if (run.plan == nullptr) own_plan = plan_for(run);
+    input.demand.plan = run.plan != nullptr ? run.plan : &own_plan;
+  }
 
   const double start_s = rest_s + approach_s + 1 + run.settling_cycles / run.frequency_hz;
   const double end_s = start_s + run.measured_cycles / run.frequency_hz;
@@ -146,6 +158,8 @@ TrackingResult track(const TrackingRun& run) {
       squares += 0.5 * error * error;
       result.worst_mm = std::max(result.worst_mm, std::abs(error));
     }
+    result.pressure_mean_kpa += step.command_kpa;
+    result.pressure_most_kpa = std::max(result.pressure_most_kpa, step.command_kpa);
     residuals += std::isfinite(step.residual_mm) ? step.residual_mm * step.residual_mm : 0;
     result.out_of_reach_share += step.out_of_reach ? 1 : 0;
     result.cut_share += step.saturated || step.slewing ? 1 : 0;
@@ -154,6 +168,7 @@ TrackingResult track(const TrackingRun& run) {
   }
   result.rmse_mm = std::sqrt(squares / ticks);
   result.residual_rms_mm = std::sqrt(residuals / ticks);
+  result.pressure_mean_kpa /= ticks;
   result.out_of_reach_share /= ticks;
   result.cut_share /= ticks;
   return result;

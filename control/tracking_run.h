@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "control/channel_settings.h"
+#include "control/planned_feedforward.h"
 #include "model/model.h"
 
 namespace softgrip::control {
@@ -24,12 +25,19 @@ struct TrackingRun {
   double reading_step_mm = 0;   ///< quantisation of the reading; 0: none
   double command_step_kpa = 0;  ///< quantisation of the output; 0: none
   std::uint64_t seed = 1;
+  /// For feedforward `planned`: plan_for() of this run; made anew where there is none.
+  const PressurePlan* plan = nullptr;
 };
+
+/// The plan for a run's reference, by the model that its controller believes in.
+[[nodiscard]] PressurePlan plan_for(const TrackingRun& run);
 
 /// What came out, of the finger itself (not of its noisy reading), over the measured cycles.
 struct TrackingResult {
   double rmse_mm = 0;
   double worst_mm = 0;
+  double pressure_mean_kpa = 0;  ///< of the commands
+  double pressure_most_kpa = 0;
   double residual_rms_mm = 0;                 ///< of the running model
   double out_of_reach_share = 0;              ///< of the ticks
   double cut_share = 0;                       ///< of the ticks in which limits changed the request

@@ -65,8 +65,14 @@ std::string read_channel_name(Context& context, MapReader& reader) {
 }
 
 void read_feedforward(Context& context, MapReader& reader, control::ChannelSettings& channel) {
-  channel.feedforward.kind =
-      static_cast<control::FeedforwardKind>(reader.choice("feedforward", {"none", "bouc_wen", "full_model"}));
+  channel.feedforward.kind = static_cast<control::FeedforwardKind>(
+      reader.choice("feedforward", {"none", "bouc_wen", "full_model", "planned"}));
+  if (channel.feedforward.kind == control::FeedforwardKind::planned && reader.good("feedforward")) {
+    reader.report("feedforward",
+                  "`planned` exists in `softgrip study control` only, the daemon does not run it",
+                  "`full_model`, or `none` for a model without an inverse");
+    channel.feedforward.kind = control::FeedforwardKind::none;
+  }
   // A command waits for the bus thread, which lags the loop by this.
   const double lag_s = context.rig.loop.bus_offset_fraction * context.period_s();
   channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 1}).value_or(lag_s);

@@ -18,6 +18,8 @@ std::string_view name_of_feedforward(control::FeedforwardKind kind) {
       return "none";
     case control::FeedforwardKind::bouc_wen:
       return "bouc_wen";
+    case control::FeedforwardKind::planned:
+      return "planned";
     case control::FeedforwardKind::full_model:
       return "full_model";
   }

@@ -12,6 +12,7 @@
   X(validate)                \
   X(diagnose)                \
   X(run)                     \
+  X(tune)                    \
   X(study)                   \
   X(status)                  \
   X(watch)                   \

@@ -12,6 +12,7 @@
 
 #include "sysid/files.h"
 #include "tools/commands.h"
+#include "tools/studies/control_study.h"
 #include "tools/studies/published.h"
 
 namespace softgrip::tools {
@@ -77,12 +78,41 @@ void add_published(CLI::App& study, ExitCode& outcome) {
   });
 }
 
+void add_control(CLI::App& study, ExitCode& outcome) {
+  struct Options {
+    Output output;
+    ControlStudyOptions study;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = study.add_subcommand(
+      "control", "The simulated finger tracked by every scheme, with mismatch, noise and margins");
+  add_output(*command, options->output);
+  command->add_option("--draws", options->study.draws, "Fingers per figure")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--seed", options->study.seed, "Of fingers, noise and logs")->capture_default_str();
+  command->add_option("--frequencies-hz", options->study.frequencies_hz, "Of the references")
+      ->check(CLI::Range(0.01, 2.0))
+      ->capture_default_str();
+  command->add_option("--max-sensitivity", options->study.most_sensitivity, "Ms of every loop, at most")
+      ->check(CLI::Range(1.05, 5.0))
+      ->capture_default_str();
+  command->callback([options, &outcome] {
+    if (on_error_terminal()) options->study.progress = show_progress;
+    const ControlStudy result = study_control(options->study);
+    end_progress();
+    outcome = write_all(options->output, "control.json", control_json(result), control_html(result),
+                        control_text(result));
+  });
+}
+
 }  // namespace
 
 void add_study(CLI::App& program, ExitCode& outcome) {
   CLI::App* study = program.add_subcommand("study", "Studies that can be repeated");
   study->require_subcommand(1);
   add_published(*study, outcome);
+  add_control(*study, outcome);
 }
 
 }  // namespace softgrip::tools

@@ -1,0 +1,204 @@
+// softgrip tune: PID gains and filter for a model, a feedforward and a rate.
+
+#include "control/tune.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "control/invertibility.h"
+#include "daemon/rig_file.h"
+#include "model/model_file.h"
+#include "sysid/numbers.h"
+#include "tools/commands.h"
+#include "tools/output.h"
+
+namespace softgrip::tools {
+namespace {
+
+using sysid::shortest;
+using sysid::significant;
+
+struct Options {
+  std::string model;
+  std::string rig;
+  std::string channel;
+  std::string out;
+  std::optional<std::string> feedforward;
+  std::optional<double> rate_hz;
+  std::optional<double> pressure_max_kpa;
+  double mismatch_percent = 5;
+  control::TuneTask task;
+  bool json = false;
+};
+
+constexpr double default_pressure_max_kpa = 60;
+constexpr double default_slew_kpa_per_s = 400;
+constexpr double ahead_of_any_mm = 1e4;
+
+std::optional<control::FeedforwardKind> kind_named(const std::string& name) {
+  using control::FeedforwardKind;
+  if (name == "none") return FeedforwardKind::none;
+  if (name == "bouc_wen") return FeedforwardKind::bouc_wen;
+  if (name == "full_model") return FeedforwardKind::full_model;
+  if (name == "planned") return FeedforwardKind::planned;
+  return std::nullopt;
+}
+
+/// Takes over what the rig file says of the channel; nothing when that went well.
+std::optional<ExitCode> take_rig(const Options& options, control::TuneTask& task) {
+  if (const auto code = unreadable(options.rig)) return code;
+  document::Problems problems;
+  const auto rig = daemon::load_rig(options.rig, problems);
+  if (!rig) return refuse(problems);
+  const auto& channels = rig->settings.channels;
+  const auto found = options.channel.empty()
+                         ? channels.begin()
+                         : std::find_if(channels.begin(), channels.end(),
+                                        [&](const auto& channel) { return channel.name == options.channel; });
+  if (found == channels.end()) {
+    return fail(ExitCode::usage, options.rig + " has no channel '" + options.channel + "'");
+  }
+  const model::Model believed = task.channel.model;
+  task.channel = *found;
+  task.channel.model = believed;
+  task.rate_hz = rig->settings.rate_hz;
+  task.exchange_s = std::min(found->feedforward.extra_latency_s, 0.9 / task.rate_hz);
+  if (found->health.noise_mm > 0) task.noise_mm = found->health.noise_mm;
+  return std::nullopt;
+}
+
+void take_defaults(control::TuneTask& task) {
+  task.channel.limits = {0,
+                         default_pressure_max_kpa,
+                         default_slew_kpa_per_s,
+                         default_slew_kpa_per_s,
+                         -ahead_of_any_mm,
+                         ahead_of_any_mm,
+                         0};
+}
+
+std::string snippet(const Options& options, const control::TuneTask& task, const control::Tuned& tuned,
+                    const std::string& model_name) {
+  std::string text;
+  text += "# `softgrip tune` for " + model_name + ", " + significant(task.rate_hz) +
+          " Hz, every parameter off by up to " + significant(options.mismatch_percent) + " %, " +
+          std::to_string(task.draws) + " fingers, seed " + std::to_string(task.seed) + ".\n";
+  text += "# Worst Ms " + significant(tuned.sensitivity, 3) + " (bound " +
+          significant(task.most_sensitivity, 3) + "), crossover " + significant(tuned.crossover_hz, 3) +
+          " Hz; RMSE " + significant(tuned.rmse_mm, 3) + " mm on " + significant(task.mean_mm, 3) + " +- " +
+          significant(task.amplitude_mm, 3) + " mm at";
+  for (const double frequency : task.frequencies_hz) text += " " + significant(frequency);
+  text += " Hz.\n# Limited by " + tuned.limited_by + ".\n";
+  const control::PidSettings& pid = tuned.pid;
+  text += "pid:\n  kp_kpa_per_mm: " + significant(pid.kp_kpa_per_mm) +
+          "\n  ki_kpa_per_mm_s: " + significant(pid.ki_kpa_per_mm_s) +
+          "\n  kd_kpa_s_per_mm: " + significant(pid.kd_kpa_s_per_mm) +
+          "\n  derivative_filter_s: " + significant(pid.derivative_filter_s) +
+          "\n  setpoint_weight: " + significant(pid.setpoint_weight) +
+          "\n  anti_windup: back_calculation\n  tracking_time_s: " + significant(pid.tracking_time_s) + "\n";
+  return text;
+}
+
+std::string json_of(const Options& options, const control::TuneTask& task, const control::Tuned& tuned) {
+  nlohmann::ordered_json json;
+  json["schema"] = 1;
+  json["out"] = options.out;
+  json["kp_kpa_per_mm"] = tuned.pid.kp_kpa_per_mm;
+  json["ki_kpa_per_mm_s"] = tuned.pid.ki_kpa_per_mm_s;
+  json["kd_kpa_s_per_mm"] = tuned.pid.kd_kpa_s_per_mm;
+  json["derivative_filter_s"] = tuned.pid.derivative_filter_s;
+  json["sensitivity"] = tuned.sensitivity;
+  json["most_sensitivity"] = task.most_sensitivity;
+  json["crossover_hz"] = tuned.crossover_hz;
+  json["rmse_mm"] = tuned.rmse_mm;
+  json["rmse_exact_mm"] = tuned.exact_mm;
+  json["rmse_noise_mm"] = tuned.noisy_mm;
+  json["rmse_mismatch_mm"] = tuned.mismatch_mm;
+  json["limited_by"] = tuned.limited_by;
+  json["rate_hz"] = task.rate_hz;
+  json["mean_mm"] = task.mean_mm;
+  json["amplitude_mm"] = task.amplitude_mm;
+  json["seed"] = task.seed;
+  return json.dump() + "\n";
+}
+
+ExitCode run(Options& options) {
+  if (const auto code = unreadable(options.model)) return *code;
+  document::Problems problems;
+  const auto model = model::load_model(options.model, problems);
+  if (!model) return refuse(problems);
+  control::TuneTask& task = options.task;
+  task.channel.model = *model;
+  task.finger = *model;
+  take_defaults(task);
+  if (!options.rig.empty()) {
+    if (options.rate_hz) return fail(ExitCode::usage, "--rate-hz goes without --rig, which has its own");
+    if (const auto code = take_rig(options, task)) return *code;
+  }
+  if (options.rate_hz) task.rate_hz = *options.rate_hz;
+  if (options.pressure_max_kpa) task.channel.limits.pressure_max_kpa = *options.pressure_max_kpa;
+  if (options.feedforward) task.channel.feedforward.kind = kind_named(*options.feedforward).value();
+  const auto accepted =
+      control::check_feedforward(*model, task.channel.feedforward, task.channel.limits, 1 / task.rate_hz);
+  if (!accepted) return fail(ExitCode::input_refused, options.model + ": " + accepted.error().text);
+  task.channel.plausibility.max_speed_mm_per_s = 1e6;
+  task.mismatch = 0.01 * options.mismatch_percent;
+  control::choose_reference(task);
+
+  const control::Tuned tuned = control::tune(task);
+  const std::string text = snippet(options, task, tuned, model->name);
+  if (const auto written = write_output(options.out, text); !written) {
+    return fail(ExitCode::io, written.error());
+  }
+  std::FILE* const stream = report_stream(options.out);
+  if (options.json) {
+    std::fputs(json_of(options, task, tuned).c_str(), stream);
+  } else if (options.out != "-") {
+    std::fputs(text.c_str(), stream);
+  }
+  if (tuned.sensitivity > task.most_sensitivity) {
+    return fail(ExitCode::not_acceptable, "no gains keep the margin");
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_tune(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("tune", "PID gains for a model that is not quite the finger");
+  command->add_option("--model", options->model, "Model file")->required();
+  command->add_option("--rig", options->rig, "Rig file: rate, limits, feedforward and latency of a channel");
+  command->add_option("--channel", options->channel, "Which channel of the rig [the first]");
+  command->add_option("--rate-hz", options->rate_hz, "Of the loop, without a rig [200]")
+      ->check(CLI::Range(10.0, 2000.0));
+  command->add_option("--feedforward", options->feedforward, "In place of the rig's, or of none")
+      ->check(CLI::IsMember({"none", "bouc_wen", "full_model", "planned"}));
+  command->add_option("--pressure-max-kpa", options->pressure_max_kpa, "Highest pressure, without a rig [60]")
+      ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--mismatch-percent", options->mismatch_percent, "Every parameter is off by up to this")
+      ->check(CLI::Range(0.0, 50.0))
+      ->capture_default_str();
+  command->add_option("--max-sensitivity", options->task.most_sensitivity, "Ms of the loop, at most")
+      ->check(CLI::Range(1.05, 5.0))
+      ->capture_default_str();
+  command->add_option("--frequencies-hz", options->task.frequencies_hz, "Sines that are tracked")
+      ->check(CLI::Range(0.01, 5.0))
+      ->capture_default_str();
+  command->add_option("--noise-mm", options->task.noise_mm, "Of the sensor, without a rig")
+      ->capture_default_str();
+  command->add_option("--draws", options->task.draws, "Fingers")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--seed", options->task.seed, "Of fingers and noise")->capture_default_str();
+  command->add_option("--out", options->out, "Snippet for the rig file ('-': standard output)")->required();
+  command->add_flag("--json", options->json, "The numbers as JSON");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,151 @@
+// The study of control as a page.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sysid/numbers.h"
+#include "sysid/page.h"
+#include "tools/studies/control_study.h"
+#include "tools/studies/models.h"
+
+namespace softgrip::tools {
+namespace {
+
+using sysid::Colour;
+using sysid::fixed;
+using sysid::significant;
+
+/// RMSE of one scheme over that of another; NaN where one is missing.
+double gain_of(const ControlStudy& study, const std::string& worse, const std::string& better,
+               double frequency_hz, double mismatch) {
+  const ControlFigure* const a = study.find(worse, frequency_hz, mismatch);
+  const ControlFigure* const b = study.find(better, frequency_hz, mismatch);
+  if (a == nullptr || b == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  return a->rmse_mm.median / b->rmse_mm.median;
+}
+
+std::string gains_in_words(const ControlStudy& study, const std::string& worse, const std::string& better,
+                           double mismatch) {
+  std::string text;
+  for (const double frequency : study.options.frequencies_hz) {
+    text += (text.empty() ? "" : ", ") + significant(gain_of(study, worse, better, frequency, mismatch), 3) +
+            " at " + significant(frequency) + " Hz";
+  }
+  return text;
+}
+
+std::string verdict(const ControlStudy& study) {
+  const double mismatch = study.options.mismatches.front();
+  return "With models off by up to " + significant(100 * mismatch) +
+         " %, the full inverse of the extended structure tracks better than the best PID alone by a factor "
+         "of " +
+         gains_in_words(study, "pid", "full_extended", mismatch) +
+         "; the published scheme cannot be computed.";
+}
+
+sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
+  sysid::Chart chart;
+  chart.title = "Fingers off by up to " + significant(100 * mismatch) + " %";
+  chart.x.label = "frequency [Hz]";
+  chart.y.label = "RMSE [mm], median and 90 % of the draws";
+  chart.x.logarithmic = chart.y.logarithmic = true;
+  chart.height = 360;
+  const auto add = [&](const char* id, Colour colour, bool dashed) {
+    sysid::Series line, band;
+    line.label = id;
+    line.colour = band.colour = colour;
+    line.dashed = dashed;
+    band.style = sysid::Series::Style::band;
+    for (const double frequency : study.options.frequencies_hz) {
+      const ControlFigure* const figure = study.find(id, frequency, mismatch);
+      if (figure == nullptr) continue;
+      for (sysid::Series* series : {&line, &band}) series->x.push_back(frequency);
+      line.y.push_back(figure->rmse_mm.median);
+      band.y.push_back(figure->rmse_mm.low);
+      band.y_upper.push_back(figure->rmse_mm.high);
+    }
+    if (line.x.empty()) return;
+    chart.series.push_back(std::move(band));
+    chart.series.push_back(std::move(line));
+  };
+  add("pid", Colour::measured, false);
+  add("published_cut", Colour::bad, false);
+  add("planned_identified", Colour::other, false);
+  add("full_extended", Colour::good, false);
+  add("planned_extended", Colour::model, true);
+  return chart;
+}
+
+sysid::Table table_of(const ControlScheme& scheme) {
+  sysid::Table table;
+  table.header = {"frequency [Hz]",     "amplitude [mm]",
+                  "mismatch [%]",       "RMSE [mm]",
+                  "90 % of draws [mm]", "% of stroke",
+                  "largest [mm]",       "pressure, mean / most [kPa]",
+                  "kp, ki, kd",         "Ms",
+                  "out of reach"};
+  table.numeric = {true, true, true, true, true, true, true, true, false, true, true};
+  for (const ControlFigure& f : scheme.figures) {
+    table.rows.push_back({significant(f.frequency_hz), significant(f.amplitude_mm),
+                          significant(100 * f.mismatch), fixed(f.rmse_mm.median, 4),
+                          fixed(f.rmse_mm.low, 4) + " .. " + fixed(f.rmse_mm.high, 4),
+                          fixed(f.percent_of_stroke, 2), fixed(f.most_mm.median, 3),
+                          fixed(f.pressure_mean_kpa, 1) + " / " + fixed(f.pressure_most_kpa, 1),
+                          significant(f.pid.kp_kpa_per_mm, 3) + ", " + significant(f.pid.ki_kpa_per_mm_s, 3) +
+                              ", " + significant(f.pid.kd_kpa_s_per_mm, 2),
+                          fixed(f.sensitivity, 2), fixed(100 * f.out_of_reach_share, 0) + " %"});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string control_html(const ControlStudy& study) {
+  const ControlStudyOptions& options = study.options;
+  const double mismatch = options.mismatches.front();
+  sysid::Page page("Study of control", verdict(study), sysid::Tone::good);
+  page.provenance(
+      {{"Software", sysid::software_version()},
+       {"Command", "softgrip study control --draws " + std::to_string(options.draws) + " --seed " +
+                       std::to_string(options.seed)},
+       {"Reference", significant(options.mean_mm) + " +- " + significant(options.amplitude_mm) +
+                         " mm, less where the finger cannot follow; stroke: twice the amplitude"},
+       {"Loop",
+        significant(options.rate_hz) + " Hz, noise " + significant(options.noise_mm) + " mm, 0 to 60 kPa"},
+       {"Gains", "one tuner for all: least RMSE on " + std::to_string(options.search_draws) +
+                     " other fingers, Ms at most " + significant(options.most_sensitivity)},
+       {"Fingers", std::to_string(options.draws) + " per figure, every parameter off by its own share"},
+       {"Time", significant(study.wall_s, 3) + " s"}});
+  page.section("Scheme by scheme");
+  for (const double each : options.mismatches) {
+    page.figure(chart_of(study, each), "RMSE of the finger itself (not of its noisy reading).");
+  }
+  page.list({"Full inverse of the extended structure against PID alone, RMSE by a factor of " +
+                 gains_in_words(study, "pid", "full_extended", mismatch) + ".",
+             "Plan on a finger that is the published model, which has no inverse, against its PID alone: " +
+                 gains_in_words(study, "pid_on_published", "planned_on_published", mismatch) + ".",
+             "Plan by the published structure as identified on the twin, against PID alone: " +
+                 gains_in_words(study, "pid", "planned_identified", mismatch) + "."});
+  page.section("What the controllers believe");
+  page.paragraph(
+      "Both structures were identified from the twin's answers to tp1 and sp1 with 0.05 mm of noise. "
+      "Published structure: RMSE " +
+      fixed(study.identified_rmse_mm, 3) + " mm, beta/(alpha + 1/k0) " +
+      significant(wrong_way_ratio(study.identified), 3) + ". With valve lag and dead time: RMSE " +
+      fixed(study.extended_rmse_mm, 3) + " mm, " + significant(wrong_way_ratio(study.extended), 3) + ".");
+  page.section("Figures");
+  for (const ControlScheme& scheme : study.schemes) {
+    page.subsection(scheme.id + ": " + scheme.about);
+    if (!scheme.refusal.empty()) {
+      page.paragraph("Refused before the start: " + scheme.refusal + ".");
+      continue;
+    }
+    page.table(table_of(scheme));
+    page.paragraph("At " + significant(scheme.figures.front().frequency_hz) + " Hz limited by " +
+                   scheme.figures.front().limited_by + ".");
+  }
+  return page.to_html();
+}
+
+}  // namespace softgrip::tools
