@@ -109,6 +109,16 @@ void add_turns(Builder& b, const std::vector<DriveHistory>& h) {
     return amplitude;
   });
   b.each([&](const Record&, std::size_t k) {
+    // How long the last rest was: an actuator may recover in it.
+    std::vector<double> rests;
+    double last_s = 0;
+    for (std::size_t i = 0; i < h[k].branch.size(); ++i) {
+      if (h[k].branch[i] == Branch::rest) last_s = h[k].dwell_s[i];
+      rests.push_back(std::log(std::max(last_s, shortest_s)));
+    }
+    return rests;
+  });
+  b.each([&](const Record&, std::size_t k) {
     std::vector<double> branch;
     for (const Branch one : h[k].branch)
       branch.push_back(one == Branch::loading ? 1 : one == Branch::unloading ? -1 : 0);

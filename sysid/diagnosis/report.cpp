@@ -81,7 +81,7 @@ void add_conditions(Page& page, const Diagnosis& d) {
   const Evidence& evidence = *d.evidence;
   page.subsection("On what the error depends");
   page.paragraph("After recalibration: " + dependence_sentence(evidence.recalibrated));
-  page.table(condition_table(evidence));
+  page.table(condition_table(evidence, is_extended(d)));
   std::vector<Chart> row;
   std::size_t shown = 0;
   for (const ConditionEvidence& e : evidence.recalibrated.conditions) {
@@ -214,8 +214,8 @@ void add_left(Page& page, const Diagnosis& d) {
                    fixed(last.explained_percent.lower, 0) + " % of that structure.");
   } else if (last.present) {
     page.paragraph(
-        "Nothing that these logs record predicts what is left: it does not repeat with the command, its "
-        "history, or the surroundings.");
+        "That function finds nothing that predicts what is left. That is no proof that nothing does: a law "
+        "that it would need more logs to learn may still be there.");
   }
   const Reference& drawn = last.groups.empty() ? *d.reference : last;
   if (!drawn.groups.empty() && drawn.groups.front().importance_percent > 0) {

@@ -73,7 +73,7 @@ Table rmse_table(const Diagnosis& d) {
   return table;
 }
 
-Table condition_table(const Evidence& evidence) {
+Table condition_table(const Evidence& evidence, bool extended) {
   Table table;
   table.caption =
       "Share of the error's structure that goes with a condition, and the probability of such "
@@ -94,6 +94,11 @@ Table condition_table(const Evidence& evidence) {
                           after != nullptr ? fixed(after->share_percent, 1) : dash,
                           after != nullptr ? p_text(after->p_adjusted) : dash, e.clear ? "clear" : ""});
   }
+  if (extended) return table;
+  constexpr long first = 4, count = 2;  // the extended model's columns
+  table.header.erase(table.header.begin() + first, table.header.begin() + first + count);
+  table.numeric.erase(table.numeric.begin() + first, table.numeric.begin() + first + count);
+  for (auto& row : table.rows) row.erase(row.begin() + first, row.begin() + first + count);
   return table;
 }
 

@@ -12,8 +12,8 @@ namespace softgrip::sysid {
 
 /// Errors of the three models: all readings, blocks held out, logs held out.
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
-/// Share and p-value of every condition, for all three models.
-[[nodiscard]] Table condition_table(const Evidence& evidence);
+/// Share and p-value of every condition, for the models that there are.
+[[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
 /// What was tried, how well it did, and why it was not kept.
 /// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
 [[nodiscard]] Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
