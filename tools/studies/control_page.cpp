@@ -46,7 +46,6 @@ std::string verdict(const ControlStudy& study) {
 
 sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
   sysid::Chart chart;
-  chart.title = "Fingers off by up to " + significant(100 * mismatch) + " %";
   chart.x.label = "frequency [Hz]";
   chart.y.label = "RMSE [mm], median and 90 % of the draws";
   chart.x.logarithmic = chart.y.logarithmic = true;
@@ -79,22 +78,18 @@ sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
 
 sysid::Table table_of(const ControlScheme& scheme) {
   sysid::Table table;
-  table.header = {"frequency [Hz]",     "amplitude [mm]",
-                  "mismatch [%]",       "RMSE [mm]",
-                  "90 % of draws [mm]", "% of stroke",
-                  "largest [mm]",       "pressure, mean / most [kPa]",
-                  "kp, ki, kd",         "Ms",
-                  "out of reach"};
-  table.numeric = {true, true, true, true, true, true, true, true, false, true, true};
+  table.header = {"f [Hz]",      "+- [mm]", "off by [%]",       "RMSE [mm]",  "90 % of draws",
+                  "% of stroke", "largest", "mean, most [kPa]", "kp, ki, kd", "Ms"};
+  table.numeric = {true, true, true, true, true, true, true, true, false, true};
   for (const ControlFigure& f : scheme.figures) {
     table.rows.push_back({significant(f.frequency_hz), significant(f.amplitude_mm),
-                          significant(100 * f.mismatch), fixed(f.rmse_mm.median, 4),
-                          fixed(f.rmse_mm.low, 4) + " .. " + fixed(f.rmse_mm.high, 4),
+                          significant(100 * f.mismatch), fixed(f.rmse_mm.median, 3),
+                          fixed(f.rmse_mm.low, 3) + " .. " + fixed(f.rmse_mm.high, 3),
                           fixed(f.percent_of_stroke, 2), fixed(f.most_mm.median, 3),
-                          fixed(f.pressure_mean_kpa, 1) + " / " + fixed(f.pressure_most_kpa, 1),
-                          significant(f.pid.kp_kpa_per_mm, 3) + ", " + significant(f.pid.ki_kpa_per_mm_s, 3) +
-                              ", " + significant(f.pid.kd_kpa_s_per_mm, 2),
-                          fixed(f.sensitivity, 2), fixed(100 * f.out_of_reach_share, 0) + " %"});
+                          fixed(f.pressure_mean_kpa, 0) + ", " + fixed(f.pressure_most_kpa, 0),
+                          significant(f.pid.kp_kpa_per_mm, 2) + ", " + significant(f.pid.ki_kpa_per_mm_s, 2) +
+                              ", " + significant(f.pid.kd_kpa_s_per_mm, 1),
+                          fixed(f.sensitivity, 2)});
   }
   return table;
 }
@@ -119,7 +114,8 @@ std::string control_html(const ControlStudy& study) {
        {"Time", significant(study.wall_s, 3) + " s"}});
   page.section("Scheme by scheme");
   for (const double each : options.mismatches) {
-    page.figure(chart_of(study, each), "RMSE of the finger itself (not of its noisy reading).");
+    page.figure(chart_of(study, each), "Fingers off by up to " + significant(100 * each) +
+                                           " %: RMSE of the finger itself, not of its noisy reading.");
   }
   page.list({"Full inverse of the extended structure against PID alone, RMSE by a factor of " +
                  gains_in_words(study, "pid", "full_extended", mismatch) + ".",
