@@ -15,7 +15,8 @@ TruthLog::TruthLog(const std::string& path, std::uint32_t decimation)
 void TruthLog::add(const Emulator& emulator) {
   if (count_++ % decimation_ != 0) return;
   // Whole microseconds, so that times on the grid have short texts.
-  const double time_s = static_cast<double>(emulator.now() / 1000) / 1e6;
+  const std::int64_t time_us = emulator.now() / 1000;
+  const double time_s = static_cast<double>(time_us) / 1e6;
   for (const Finger& finger : emulator.fingers()) {
     const drivers::Plant& plant = finger.plant();
     row_ = sysid::shortest(time_s) + "," + finger.name();
