@@ -33,7 +33,9 @@ class Offline(bench.BenchTest):
 
     def test_simulate_says_what_is_wrong(self):
         self.simulate("--input", "tp1", expect=2)
-        self.simulate("--input", "tp1", "--out", "a.csv", "--rate-hz", "-1", expect=2)
+        for number in ("-1", "nan", "inf", "x", "0", "1e9", "10 Hz"):
+            self.simulate("--input", "tp1", "--out", "a.csv", "--rate-hz", number, expect=2)
+        self.simulate("--input", "tp1", "--out", "a.csv", "--noise-mm", "nan", expect=2)
         self.simulate("--input", "tp1", "--out", "a.csv", model="none", expect=4)
         self.assertIn("signals are tp1", self.simulate("--input", "tp9", "--out", "a.csv", expect=4).stderr)
         self.write("config/models/bad.yaml", "name: bad\nsource: x\nactuator:\n  - bouc_wenn: {}\n")

@@ -10,6 +10,7 @@
 #include "model/model_file.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
+#include "tools/option_check.h"
 #include "tools/output.h"
 #include "tools/simulation.h"
 
@@ -117,10 +118,10 @@ void add_simulate(CLI::App& program, ExitCode& outcome) {
       ->add_option("--noise-mm", options->settings.noise_mm,
                    "Standard deviation of white noise on the reading")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(number_between(0, 1000));
   command->add_option("--seed", options->settings.seed, "Of all noise")->capture_default_str();
   command->add_option("--rate-hz", options->rate_hz, "Samples per second of a SIGNAL [100]")
-      ->check(CLI::Range(0.1, 100000.0));
+      ->check(number_between(0.1, 100000));
   command->add_option("--channel", options->channel, "Which channel of a log with several");
   command->add_flag("--json", options->json, "Say what was done as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });

@@ -13,6 +13,7 @@
 
 #include "tools/commands.h"
 #include "tools/daemon_command.h"
+#include "tools/option_check.h"
 #include "tools/status_view.h"
 #include "tools/terminal.h"
 
@@ -102,7 +103,7 @@ void add_watch(CLI::App& program, ExitCode& outcome) {
   add_daemon_options(*command, options->daemon);
   command->add_option("--rate-hz", options->rate_hz, "Updates per second")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 50.0));
+      ->check(number_between(0.1, 50));
   command->add_option("--count", options->count, "Leave after so many updates; 0: when interrupted")
       ->capture_default_str();
   command->callback([options, &outcome] { outcome = run(*options); });

@@ -14,6 +14,7 @@
 
 #include "model/document/version.h"
 #include "tools/command.h"
+#include "tools/option_check.h"
 #include "tools/rig/listener.h"
 #include "tools/rig/options.h"
 #include "tools/rig/server.h"
@@ -23,6 +24,7 @@ namespace {
 
 using softgrip::tools::ExitCode;
 using softgrip::tools::fail;
+using softgrip::tools::number_between;
 namespace rig = softgrip::tools::rig;
 
 void add_options(CLI::App& program, rig::Options& options) {
@@ -49,23 +51,23 @@ void add_options(CLI::App& program, rig::Options& options) {
   program
       .add_option("--object-out-at", options.object_out_at_s,
                   "Pull it out so many seconds after the first command")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_between(0, 86400));
   program.add_option("--faults", options.faults, "What goes wrong, and when (YAML)");
   program.add_option("--watchdog-s", options.watchdog_s, "The board's communication watchdog; 0: none")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_between(0, 86400));
   program.add_option("--noise-mm", options.noise_mm, "Standard deviation of the displacement sensor")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_between(0, 1000));
   program
       .add_option("--pressure-noise-kpa", options.pressure_noise_kpa,
                   "Standard deviation of the pressure monitor")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_between(0, 1000));
   program.add_option("--seed", options.seed, "Of all noise")->capture_default_str();
   program.add_option("--truth", options.truth, "Write what really happened to this CSV file");
   program.add_option("--truth-rate-hz", options.truth_rate_hz, "Rows per second and channel of --truth")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(number_between(0.1, 1000));
   program.add_option("--control", options.control,
                      "Take control commands on this Unix socket ('-': standard input)");
   program.footer(
