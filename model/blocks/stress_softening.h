@@ -7,7 +7,8 @@
 namespace softgrip::model {
 
 /// q = p (1 + s m) with m the largest pressure so far: the first loading curve is steeper than a line, and
-/// every later one up to m is straight, above it. Runs through a campaign: rest() keeps m, only reset() forgets it.
+/// every later one up to m is straight, above it. Runs through a campaign: rest() keeps m, only reset()
+/// forgets it.
 template <class T>
 class StressSoftening {
  public:

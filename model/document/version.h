@@ -5,7 +5,8 @@
 
 namespace softgrip::document {
 
-/// "0.1.0+1a2b3c4": the project's version and what `git describe` called the sources, "-dirty" if they differ.
+/// "0.1.0+1a2b3c4": the project's version and what `git describe` called the sources, "-dirty" if they
+/// differ.
 [[nodiscard]] std::string_view software_version() noexcept;
 
 }  // namespace softgrip::document
