@@ -10,10 +10,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "control/gain_search.h"
 #include "control/invertibility.h"
 #include "control/tracking_run.h"
 #include "model/model_file.h"
@@ -103,16 +103,7 @@ class Cost {
     int refused = 0;
     models_ = draws_of(scheme, options.search_draws, model::derived_seed(options.seed, 1000), refused);
   }
-  static PidSettings gains(const std::array<double, 3>& x) {
-    PidSettings pid;
-    pid.kp_kpa_per_mm = std::exp(x[0]);
-    pid.ki_kpa_per_mm_s = std::exp(x[1]);
-    pid.kd_kpa_s_per_mm = std::max(0.0, x[2]);
-    return pid;
-  }
-  double operator()(const std::array<double, 3>& x) {
-    ++evaluations;
-    const PidSettings pid = gains(x);
+  double operator()(const PidSettings& pid) const {
     const double sensitivity = control::loop_margins(finger_, pid, 60, tick_s, tick_s).sensitivity;
     if (sensitivity > options_.max_sensitivity) return 10 + std::min(100.0, sensitivity);
     double squares = 0;
@@ -126,7 +117,6 @@ class Cost {
     }
     return std::sqrt(squares / static_cast<double>(models_.size()));
   }
-  int evaluations = 0;
 
  private:
   const Scheme& scheme_;
@@ -136,67 +126,10 @@ class Cost {
   std::vector<model::Model> models_;
 };
 
-using Point = std::array<double, 3>;
-
-/// Nelder and Mead, Computer Journal 7, 1965, with the usual coefficients.
-Point nelder_mead(const std::function<double(const Point&)>& cost, const Point& start, int iterations) {
-  std::array<std::pair<double, Point>, 4> simplex;
-  for (std::size_t i = 0; i < 4; ++i) {
-    Point point = start;
-    if (i > 0) point[i - 1] += i == 3 ? 0.02 : 0.4;
-    simplex[i] = {cost(point), point};
-  }
-  const auto along = [](const Point& from, const Point& to, double t) {
-    Point result{};
-    for (std::size_t i = 0; i < 3; ++i) result[i] = from[i] + t * (to[i] - from[i]);
-    return result;
-  };
-  for (int k = 0; k < iterations; ++k) {
-    std::sort(simplex.begin(), simplex.end());
-    Point centre{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) centre[j] += simplex[i].second[j] / 3;
-    }
-    const Point mirrored = along(centre, simplex[3].second, -1);
-    const double at_mirrored = cost(mirrored);
-    if (at_mirrored < simplex[0].first) {
-      const Point further = along(centre, simplex[3].second, -2);
-      const double at_further = cost(further);
-      simplex[3] =
-          at_further < at_mirrored ? std::pair(at_further, further) : std::pair(at_mirrored, mirrored);
-    } else if (at_mirrored < simplex[2].first) {
-      simplex[3] = {at_mirrored, mirrored};
-    } else {
-      const Point nearer = along(centre, simplex[3].second, at_mirrored < simplex[3].first ? -0.5 : 0.5);
-      const double at_nearer = cost(nearer);
-      if (at_nearer < std::min(at_mirrored, simplex[3].first)) {
-        simplex[3] = {at_nearer, nearer};
-      } else {
-        for (std::size_t i = 1; i < 4; ++i) {
-          simplex[i].second = along(simplex[0].second, simplex[i].second, 0.5);
-          simplex[i].first = cost(simplex[i].second);
-        }
-      }
-    }
-  }
-  std::sort(simplex.begin(), simplex.end());
-  return simplex[0].second;
-}
-
-/// A coarse grid of kp and ki, then Nelder-Mead on kp, ki and kd from its best.
 PidSettings search(const Scheme& scheme, const Options& options, const model::Model& finger,
                    double frequency_hz) {
   Cost cost(scheme, options, finger, frequency_hz);
-  Point best{};
-  double least = 1e300;
-  for (const double kp : {0.02, 0.1, 0.3, 0.8, 2.0}) {
-    for (const double ki : {0.1, 0.5, 1.5, 3.0, 6.0, 12.0}) {
-      const Point point{std::log(kp), std::log(ki), 0};
-      const double value = cost(point);
-      if (value < least) least = value, best = point;
-    }
-  }
-  return Cost::gains(nelder_mead([&](const Point& x) { return cost(x); }, best, 60));
+  return control::search_gains([&](const PidSettings& pid) { return cost(pid); });
 }
 
 double quantile(std::vector<double> values, double share) {

@@ -41,7 +41,10 @@ Outcome run_in_virtual_time(DaemonParts& parts) {
     exchange(parts, due + parts.bus_offset());
     if (tick % ticks_per_look != 0) continue;
     look(parts, due);
-    if ((parts.errand && parts.errand->over()) || signals.wait(0) != 0) break;
+    if ((parts.errand && parts.errand->over()) || signals.wait(0) != 0) {
+      due += period;  // leaving is a tick of its own: a recording has every time once
+      break;
+    }
   }
   parts.virtual_clock.set(due);
   parts.loop.leave();

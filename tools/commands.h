@@ -11,6 +11,7 @@
   X(identify)                \
   X(validate)                \
   X(diagnose)                \
+  X(investigate)             \
   X(run)                     \
   X(tune)                    \
   X(study)                   \

@@ -3,9 +3,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "sysid/files.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
+#include "tools/diagnosis_folder.h"
 #include "tools/log_input.h"
 
 namespace softgrip::tools {
@@ -26,6 +29,10 @@ struct Options {
   std::string out;
   LogInput logs;
   sysid::DiagnosisOptions diagnosis;
+  ConsequenceOptions consequences;
+  double pressure_max_kpa = 0;  ///< 0: the largest of the logs
+  double slew_kpa_per_s = 300;
+  bool no_closed_loop = false;
   bool json = false;
 };
 
@@ -70,6 +77,30 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
+ConsequenceOptions consequence_options(const Options& options, const std::vector<sysid::Log>& logs) {
+  ConsequenceOptions wanted = options.consequences;
+  sysid::RigLimits limits{options.pressure_max_kpa, options.slew_kpa_per_s};
+  for (const sysid::Log& log : logs) {
+    wanted.experiment.pressure_recorded |= !log.pressure_kpa.empty();
+    if (options.pressure_max_kpa > 0) continue;
+    for (const double p : log.pressure_command_kpa)
+      limits.pressure_max_kpa = std::max(limits.pressure_max_kpa, p);
+  }
+  wanted.experiment.limits = limits;
+  wanted.experiment.threads = options.diagnosis.threads;
+  wanted.closed_loop = !options.no_closed_loop;
+  wanted.seed = options.diagnosis.seed;
+  return wanted;
+}
+
+/// What the report says of the next experiment.
+std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences& consequences) {
+  const sysid::NextExperiment& next = consequences.experiment;
+  if (!next.best) return std::nullopt;
+  return sysid::ProposedExperiment{"next_experiment.yaml", next.separates, next.predicted_separation_sigma,
+                                   next.best->minutes, next.best->waveform.about};
+}
+
 ExitCode run(Options options) {
   if (const auto code = unreadable(options.model)) return *code;
   document::Problems problems;
@@ -85,20 +116,21 @@ ExitCode run(Options options) {
   if (!result) return fail(ExitCode::input_refused, result.error());
 
   sysid::examine(*result, options.diagnosis);
-  const std::string json = sysid::to_json(*result);
-  const std::filesystem::path out(options.out);
-  const sysid::DiagnosisReport report{*result, *logs, *model, options.diagnosis.seed, {}};
-  for (const auto& [name, text] : {std::pair<const char*, std::string>{"diagnosis.json", json},
-                                   {"model.yaml", model::to_yaml(result->extended_model)},
-                                   {"report.html", sysid::diagnosis_html(report)}}) {
-    if (const auto written = sysid::write_file((out / name).string(), text); !written) {
-      return fail(ExitCode::io, written.error());
-    }
+  const Consequences consequences = consequences_of(*result, consequence_options(options, *logs));
+  if (const auto written = write_diagnosis_folder(options.out, *result, consequences, options.logs.channel);
+      !written) {
+    return fail(ExitCode::io, written.error());
   }
+  const sysid::DiagnosisReport report{*result, *logs, *model, options.diagnosis.seed,
+                                      proposed_experiment(consequences)};
+  const std::string page = (std::filesystem::path(options.out) / "report.html").string();
+  if (const auto written = sysid::write_file(page, sysid::diagnosis_html(report)); !written)
+    return fail(ExitCode::io, written.error());
   if (options.json) {
-    std::fputs(json.c_str(), stdout);
+    std::fputs(complete_json(*result, consequences).c_str(), stdout);
   } else {
     print_summary(*result, options.out);
+    std::fputs(text_of(consequences, options.out).c_str(), stdout);
   }
   return ExitCode::done;
 }
@@ -112,11 +144,24 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
   command
       ->add_option("--data", options->data, "Logs of one campaign, in order (CSV, or a recording's folder)")
       ->required();
-  command->add_option("--out", options->out, "Folder for diagnosis.json, model.yaml, report.html")
+  command
+      ->add_option("--out", options->out,
+                   "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html")
       ->required();
   command->add_option("--seed", options->diagnosis.seed, "Of starts and resampling")->capture_default_str();
   command->add_option("--threads", options->diagnosis.threads, "0: as many as there are cores")
       ->capture_default_str();
+  command->add_flag("--propose", options->consequences.experiment.always,
+                    "Propose an experiment also where the verdict has no rivals");
+  command
+      ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
+                   "Bound of the proposed experiment [the largest of the logs]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "Of the rig, for the proposed experiment")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag("--no-closed-loop", options->no_closed_loop,
+                    "Do not measure the extension's gain in closed loop");
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print diagnosis.json");
   command->callback([options, &outcome] { outcome = run(*options); });

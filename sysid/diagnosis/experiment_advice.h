@@ -1,0 +1,20 @@
+#pragma once
+// What no waveform can tell apart, and what would.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace softgrip::sysid {
+
+struct AdviceFacts {
+  bool pressure_recorded = false;  ///< the logs have pressure_kpa
+  bool temperature_varies = false;
+  bool separable = false;  ///< some waveform tells the two apart
+};
+
+/// Sentences about two causes, by id; empty where a waveform is all that is needed.
+[[nodiscard]] std::vector<std::string> advice_for(std::string_view one, std::string_view other,
+                                                  const AdviceFacts& facts);
+
+}  // namespace softgrip::sysid

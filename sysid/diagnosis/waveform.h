@@ -1,0 +1,37 @@
+#pragma once
+// The menu of experiments: pressures over time that a rig can play, from 0 back to 0.
+
+#include <string>
+#include <vector>
+
+namespace softgrip::sysid {
+
+/// What a rig may be asked to do.
+struct RigLimits {
+  double pressure_max_kpa = 60;
+  double slew_kpa_per_s = 300;
+};
+
+/// A corner of a piecewise linear command.
+struct Corner {
+  double time_s = 0;
+  double pressure_kpa = 0;
+};
+
+/// One experiment of the menu. Between corners it never changes faster than the limits allow.
+struct Waveform {
+  std::string name;   ///< "rest_and_repeat"
+  std::string about;  ///< one line for people
+  std::vector<Corner> corners;
+
+  [[nodiscard]] double duration_s() const { return corners.empty() ? 0 : corners.back().time_s; }
+};
+
+/// Rest and repeat; triangles at three rates over two decades; a staircase with holds; minor loops; an
+/// amplitude ladder; sharp steps. All within the limits.
+[[nodiscard]] std::vector<Waveform> experiment_menu(const RigLimits& limits);
+
+/// The command at every `interval_s` from 0 to the end.
+[[nodiscard]] std::vector<double> sampled_kpa(const Waveform& waveform, double interval_s);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,258 @@
+// softgrip investigate: diagnose, play the experiment that tells more, diagnose again; then extend, retune,
+// measure.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/rig_file.h"
+#include "model/model_file.h"
+#include "sysid/files.h"
+#include "sysid/numbers.h"
+#include "tools/commands.h"
+#include "tools/experiment_rig.h"
+#include "tools/investigation.h"
+#include "tools/log_input.h"
+#include "tools/rig_tracking.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::string model;
+  std::vector<std::string> data;
+  std::string rig;
+  std::string rig_command;
+  std::string out;
+  LogInput logs;
+  sysid::DiagnosisOptions diagnosis;
+  double budget_minutes = 30;
+  double pressure_max_kpa = 0;  ///< of --rig-command; 0: the largest of the logs
+  double slew_kpa_per_s = 300;
+  bool yes = false;
+  bool no_closed_loop = false;
+  bool json = false;
+};
+
+/// What a campaign tells about the rig.
+struct CampaignScales {
+  double largest_kpa = 0;
+  double gain_mm_per_kpa = 0;
+  double interval_s = 0.01;
+  bool pressure_recorded = false;
+};
+
+CampaignScales scales_of(const std::vector<sysid::Log>& logs) {
+  CampaignScales scales;
+  double highest_mm = 0;
+  for (const sysid::Log& log : logs) {
+    for (const double p : log.pressure_command_kpa) scales.largest_kpa = std::max(scales.largest_kpa, p);
+    for (const double y : log.displacement_mm) highest_mm = std::max(highest_mm, y);
+    scales.pressure_recorded |= !log.pressure_kpa.empty();
+  }
+  scales.interval_s = sysid::sampling_of(logs.front()).median_interval_s;
+  if (scales.largest_kpa > 0) scales.gain_mm_per_kpa = highest_mm / scales.largest_kpa;
+  return scales;
+}
+
+Consent consent_of(const Options& options) {
+  if (options.yes) return [](const std::string&) { return true; };
+  return [](const std::string& what) {
+    std::fprintf(stderr, "%s. Ctrl-C vents it. Go on? [y/N] ", what.c_str());
+    std::fflush(stderr);
+    std::string answer;
+    return std::getline(std::cin, answer) && (answer == "y" || answer == "Y" || answer == "yes");
+  };
+}
+
+/// Where experiments are played, and within which limits.
+struct Playground {
+  Player play;
+  sysid::RigLimits limits;
+  std::string name;
+  std::string channel;
+  std::optional<ExperimentRig> rig;  ///< of a rig file: the closed loop can be measured on it
+};
+
+tl::expected<Playground, ExitCode> playground_of(const Options& options, const CampaignScales& scales) {
+  Playground ground;
+  if (!options.rig_command.empty()) {
+    const double largest_kpa = options.pressure_max_kpa > 0 ? options.pressure_max_kpa : scales.largest_kpa;
+    ground.limits = {largest_kpa, options.slew_kpa_per_s};
+    ground.play = command_player(options.rig_command, scales.interval_s, consent_of(options));
+    ground.name = options.rig_command;
+    return ground;
+  }
+  if (const auto code = unreadable(options.rig)) return tl::unexpected(*code);
+  document::Problems problems;
+  auto file = daemon::load_rig(options.rig, problems);
+  if (!file) return tl::unexpected(refuse(problems));
+  auto rig = experiment_rig(std::move(*file), options.logs.channel);
+  if (!rig) return tl::unexpected(fail(ExitCode::usage, rig.error()));
+  if (!rig->simulated && !options.yes && ::isatty(STDIN_FILENO) == 0) {
+    return tl::unexpected(
+        fail(ExitCode::usage, "this would move a rig and there is nobody to ask: --yes allows it"));
+  }
+  ground.limits = rig->limits(scales.gain_mm_per_kpa);
+  ground.channel = rig->channel_name();
+  ground.name = options.rig;
+  ground.rig = *rig;
+  ground.play = rig_player(std::move(*rig), consent_of(options));
+  return ground;
+}
+
+/// The extension's worth on the rig itself. A rig that cannot be measured is said, and no failure.
+std::optional<RigTracking> on_rig(const Options& options, const Playground& ground,
+                                  const Investigation& investigation,
+                                  const std::optional<ClosedLoopGain>& gain) {
+  if (!gain || !ground.rig || investigation.end != InvestigationEnd::settled) return std::nullopt;
+  const auto tracking =
+      track_on_rig(*ground.rig, investigation.last.recalibrated_model, investigation.last.extended_model,
+                   *gain, options.out, consent_of(options));
+  if (tracking) return *tracking;
+  std::fprintf(stderr, "the closed loop was not measured on the rig: %s\n", tracking.error().why.c_str());
+  return std::nullopt;
+}
+
+std::string completed(const Investigation& investigation, const Playground& ground,
+                      const std::optional<ClosedLoopGain>& gain, const std::optional<RigTracking>& tracking) {
+  std::string json = to_json(investigation, ground.name);
+  if (gain) json = with_closed_loop(json, *gain);
+  return tracking ? with_rig_tracking(json, *tracking) : json;
+}
+
+void print_end(const Investigation& investigation, const std::optional<ClosedLoopGain>& gain,
+               const std::string& out) {
+  std::printf("\n%s\n", sysid::verdict_sentence(investigation.last).c_str());
+  std::printf("%s after %s of %s minutes on the rig%s%s\n", name_of(investigation.end),
+              sysid::significant(investigation.spent_minutes, 3).c_str(),
+              sysid::significant(investigation.budget_minutes, 3).c_str(),
+              investigation.why.empty() ? "" : ": ", investigation.why.c_str());
+  if (gain) std::fputs(text_of({{}, gain}, out).c_str(), stdout);
+  std::printf("investigation: %s\n", (std::filesystem::path(out) / "investigation.json").c_str());
+}
+
+ExitCode exit_code_of(const Investigation& investigation) {
+  switch (investigation.end) {
+    case InvestigationEnd::settled:
+      return ExitCode::done;
+    case InvestigationEnd::stopped:
+    case InvestigationEnd::failed:
+      return fail(ExitCode::failed, investigation.why);
+    case InvestigationEnd::unexplained:
+    case InvestigationEnd::nothing_left:
+    case InvestigationEnd::budget_spent:
+      return ExitCode::not_acceptable;
+  }
+  return ExitCode::failed;
+}
+
+/// Extends, retunes, measures, and leaves the result.
+ExitCode conclude(const Options& options, const Playground& ground, const Investigation& investigation) {
+  ConsequenceOptions wanted;
+  wanted.experiment.most_minutes = 0;  // whatever is still open was judged in the last step
+  wanted.closed_loop = !options.no_closed_loop && investigation.end != InvestigationEnd::stopped;
+  wanted.seed = options.diagnosis.seed;
+  const Consequences consequences = consequences_of(investigation.last, wanted);
+  if (const auto written =
+          write_diagnosis_folder(options.out, investigation.last, consequences, ground.channel);
+      !written) {
+    return fail(ExitCode::io, written.error());
+  }
+  const auto tracking = on_rig(options, ground, investigation, consequences.closed_loop);
+  const std::string json = completed(investigation, ground, consequences.closed_loop, tracking);
+  const std::string path = (std::filesystem::path(options.out) / "investigation.json").string();
+  if (const auto written = sysid::write_file(path, json); !written)
+    return fail(ExitCode::io, written.error());
+  if (options.json) {
+    std::fputs(json.c_str(), stdout);
+  } else {
+    print_end(investigation, consequences.closed_loop, options.out);
+    if (tracking) {
+      std::printf("on the rig: recalibrated %s mm, extended %s mm\n",
+                  sysid::significant(tracking->recalibrated_rmse_mm, 3).c_str(),
+                  sysid::significant(tracking->extended_rmse_mm, 3).c_str());
+    }
+  }
+  return exit_code_of(investigation);
+}
+
+ExitCode run(const Options& options) {
+  if (options.rig.empty() == options.rig_command.empty())
+    return fail(ExitCode::usage, "an investigation needs --rig or --rig-command, and not both");
+  if (const auto code = unreadable(options.model)) return *code;
+  document::Problems problems;
+  const auto model = model::load_model(options.model, problems);
+  if (!model) return refuse(problems);
+  const auto logs = read_logs(options.data, options.logs);
+  if (!logs) return logs.error();
+  const CampaignScales scales = scales_of(*logs);
+  auto ground = playground_of(options, scales);
+  if (!ground) return ground.error();
+
+  InvestigationOptions investigation;
+  investigation.given = *model;
+  investigation.logs = *logs;
+  investigation.diagnosis = options.diagnosis;
+  investigation.diagnosis.record = options.logs.record_options();
+  investigation.experiment.limits = ground->limits;
+  investigation.experiment.pressure_recorded = scales.pressure_recorded;
+  investigation.experiment.threads = options.diagnosis.threads;
+  investigation.budget_minutes = options.budget_minutes;
+  investigation.out = options.out;
+  investigation.channel = ground->channel;
+  investigation.play = ground->play;
+  if (!options.json) {
+    investigation.tell = [](const std::string& line) {
+      std::printf("%s\n", line.c_str());
+      std::fflush(stdout);
+    };
+  }
+  const auto result = investigate(investigation);
+  if (!result) return fail(ExitCode::input_refused, result.error());
+  return conclude(options, *ground, *result);
+}
+
+}  // namespace
+
+void add_investigate(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "investigate", "Diagnose, play the experiment that tells more, diagnose again, until one cause stands");
+  command->add_option("--model", options->model, "Model file as it is used today")->required();
+  command->add_option("--data", options->data, "Logs of one campaign, in order")->required();
+  command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
+  command->add_option("--rig-command", options->rig_command,
+                      "Command that plays on another rig: COMMAND COMMAND_CSV LOG_OUT");
+  command->add_option("--out", options->out, "Folder for everything that is found")->required();
+  command->add_option("--budget-minutes", options->budget_minutes, "Of the rig's time")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--pressure-max-kpa", options->pressure_max_kpa,
+                   "With --rig-command: its largest pressure [the largest of the logs]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--slew-kpa-per-s", options->slew_kpa_per_s, "With --rig-command: its fastest change")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_flag("--yes", options->yes, "Move the rig without asking");
+  command->add_flag("--no-closed-loop", options->no_closed_loop,
+                    "Do not retune and measure the extension's gain in closed loop");
+  command->add_option("--seed", options->diagnosis.seed, "Of starts and resampling")->capture_default_str();
+  command->add_option("--threads", options->diagnosis.threads, "0: as many as there are cores")
+      ->capture_default_str();
+  add_log_options(*command, options->logs);
+  command->add_flag("--json", options->json, "Print investigation.json");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
