@@ -5,8 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include <ceres/jet.h>
-
+#include "sysid/gradient.h"
 #include "sysid/residuals.h"
 #include "sysid/trajectory.h"
 #include "sysid/trajectory_walk.h"
@@ -14,14 +13,24 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Derivatives are carried along in groups of this many: as many as two runs of the chain need for the
-/// extended model, as few as one for part of the base chain.
-constexpr int group = 6;
-using Jet = ceres::Jet<double, group>;
+/// Derivatives are carried along in groups of one of these sizes: a base with two branches and a cause's
+/// first parameters need one run of the chain.
+constexpr std::size_t small_group = 8;
+constexpr std::size_t large_group = 12;
+
+/// The size of the next group when so many derivatives are left: as few runs as possible, then as narrow.
+std::size_t group_for(std::size_t left) {
+  if (left <= small_group) return small_group;
+  return left > large_group && left <= 2 * small_group ? small_group : large_group;
+}
 
 class ChainResiduals final : public Residuals {
  public:
-  ChainResiduals(const std::vector<Record>& records, FitSpace space) : Residuals(records, std::move(space)) {}
+  ChainResiduals(const std::vector<Record>& records, FitSpace space) : Residuals(records, std::move(space)) {
+    for (std::size_t c = 0; c < space_.size(); ++c) {
+      if (space_.free()[c].kind == FreeParameter::Kind::offset) offsets_.push_back(c);
+    }
+  }
 
   bool evaluate(std::span<const double> z, std::span<double> r, std::span<double> jacobian) const override {
     const FitPoint point = space_.point(z);
@@ -38,8 +47,14 @@ class ChainResiduals final : public Residuals {
     }
     std::size_t first = 0;
     do {
+      const std::size_t group = group_for(dynamic.size() - first);
       const std::size_t last = std::min(first + group, dynamic.size());
-      derivatives(point, z, std::span(dynamic).subspan(first, last - first), out, jacobian);
+      const std::span<const std::size_t> columns = std::span(dynamic).subspan(first, last - first);
+      if (group == small_group) {
+        derivatives<small_group>(point, z, columns, out, jacobian);
+      } else {
+        derivatives<large_group>(point, z, columns, out, jacobian);
+      }
       first = last;
     } while (first < dynamic.size());
     starts(point, z, out, jacobian);
@@ -62,25 +77,27 @@ class ChainResiduals final : public Residuals {
   }
 
   /// Values of the chain and derivatives by the parameters in `columns`.
+  template <std::size_t group>
   void derivatives(const FitPoint& point, std::span<const double> z, std::span<const std::size_t> columns,
                    std::span<double> r, std::span<double> jacobian) const {
+    using Number = Gradient<group>;
     const std::vector<double> flat = model::flat_values(point.model);
     std::size_t row = 0;
     for (std::size_t k = 0; k < records_.size(); ++k) {
-      std::vector<Jet> values(flat.begin(), flat.end());
-      Jet peak(point.starts[k].peak_before_kpa);
+      std::vector<Number> values(flat.begin(), flat.end());
+      Number peak(point.starts[k].peak_before_kpa);
       for (std::size_t c = 0; c < columns.size(); ++c) {
         const FreeParameter& p = space_.free()[columns[c]];
         const double slope = p.slope(z[columns[c]]);
-        if (p.kind == FreeParameter::Kind::model) values[p.flat_index].v[static_cast<int>(c)] = slope;
-        if (p.kind == FreeParameter::Kind::peak_before && p.record == k) peak.v[static_cast<int>(c)] = slope;
+        if (p.kind == FreeParameter::Kind::model) values[p.flat_index].v.set(c, slope);
+        if (p.kind == FreeParameter::Kind::peak_before && p.record == k) peak.v.set(c, slope);
       }
       const Record& record = records_[k];
-      walk<Jet>(point.model, values, record, peak, [&](std::size_t i, const Jet& y) {
+      walk<Number>(point.model, values, record, peak, [&](std::size_t i, const Number& y) {
         if (!std::isfinite(record.reading_mm[i])) return;
         r[row] = y.a - record.reading_mm[i];
         double* const line = &jacobian[row * space_.size()];
-        for (std::size_t c = 0; c < columns.size(); ++c) line[columns[c]] = y.v[static_cast<int>(c)];
+        for (std::size_t c = 0; c < columns.size(); ++c) line[columns[c]] = y.v[c];
         ++row;
       });
     }
@@ -93,25 +110,47 @@ class ChainResiduals final : public Residuals {
     std::size_t row = 0;
     for (std::size_t k = 0; k < records_.size(); ++k) {
       const Record& record = records_[k];
+      const StartState& state = point.starts[k];
+      const std::vector<double> offset_line = offset_columns(z, k);
+      const std::vector<std::size_t> unsettled = unsettled_branches(state);
       for (std::size_t i = 0; i < record.size(); ++i) {
         if (!std::isfinite(record.reading_mm[i])) continue;
-        const StartState& state = point.starts[k];
         const double t = record.time_s[i] - record.time_s[0];
         r[row] += state.offset_mm;
         double* const line = &jacobian[row * space_.size()];
-        for (std::size_t b = 0; b < time_constants.size(); ++b) {
+        for (const std::size_t b : unsettled) {
           const double decay = std::exp(-t / time_constants[b]);
           r[row] += state.unsettled_mm[b] * decay;
           creep_columns(point, z, b, state.unsettled_mm[b] * decay * t / time_constants[b], line);
           unsettled_column(z, k, b, decay, line);
         }
-        for (std::size_t c = 0; c < space_.size(); ++c) {
-          const FreeParameter& p = space_.free()[c];
-          if (p.kind == FreeParameter::Kind::offset) line[c] = p.record == k ? p.slope(z[c]) : 0;
-        }
+        for (const std::size_t c : offsets_) line[c] = offset_line[c];
         ++row;
       }
     }
+  }
+
+  /// The columns of the offsets: the same in every row of record k.
+  [[nodiscard]] std::vector<double> offset_columns(std::span<const double> z, std::size_t k) const {
+    std::vector<double> line(space_.size());
+    for (const std::size_t c : offsets_) {
+      const FreeParameter& p = space_.free()[c];
+      line[c] = p.record == k ? p.slope(z[c]) : 0;
+    }
+    return line;
+  }
+
+  /// Branches whose unsettled creep is there or may be fitted.
+  [[nodiscard]] std::vector<std::size_t> unsettled_branches(const StartState& state) const {
+    std::vector<std::size_t> branches;
+    for (std::size_t b = 0; b < state.unsettled_mm.size(); ++b) {
+      const auto fitted = [&](const FreeParameter& p) {
+        return p.kind == FreeParameter::Kind::unsettled && p.branch == b;
+      };
+      if (state.unsettled_mm[b] != 0 || std::any_of(space_.free().begin(), space_.free().end(), fitted))
+        branches.push_back(b);
+    }
+    return branches;
   }
 
   void unsettled_column(std::span<const double> z, std::size_t record, std::size_t branch, double decay,
@@ -139,6 +178,8 @@ class ChainResiduals final : public Residuals {
       line[c] += sign * by_ln_tau * p.slope(z[c]) / point.model.blocks[place.block].values[place.value];
     }
   }
+
+  std::vector<std::size_t> offsets_;  ///< columns of the records' offsets
 };
 
 }  // namespace

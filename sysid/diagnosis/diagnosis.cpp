@@ -8,6 +8,7 @@
 #include "model/catalogue.h"
 #include "sysid/combinations.h"
 #include "sysid/diagnosis/noise.h"
+#include "sysid/diagnosis/spectrum_peaks.h"
 #include "sysid/numbers.h"
 #include "sysid/residuals.h"
 #include "sysid/trajectory.h"

@@ -7,6 +7,7 @@
 #include "sysid/diagnosis/experiment_advice.h"
 #include "sysid/diagnosis/search.h"
 #include "sysid/diagnosis/separation.h"
+#include "sysid/diagnosis/spectrum_peaks.h"
 #include "sysid/parallel.h"
 #include "sysid/trajectory.h"
 

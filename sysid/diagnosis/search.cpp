@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
-#include <numbers>
 
 #include "model/catalogue.h"
 #include "sysid/parallel.h"
@@ -89,59 +87,6 @@ std::vector<std::size_t> ranking(const std::vector<std::optional<StructureFit>>&
 }
 
 }  // namespace
-
-std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
-                                      const std::vector<std::vector<double>>& residual_mm,
-                                      std::size_t count) {
-  // Periodogram at fixed frequencies by Goertzel-like sums over the true sample times, so that irregular
-  // sampling needs no resampling. The grid is as fine as the campaign's length resolves.
-  double length_s = 0, sample_s = std::numeric_limits<double>::infinity();
-  for (const Record& record : records) {
-    length_s += record.time_s.back() - record.time_s.front();
-    sample_s = std::min(sample_s, (record.time_s.back() - record.time_s.front()) /
-                                      static_cast<double>(std::max<std::size_t>(1, record.size() - 1)));
-  }
-  const double step_hz = 0.5 / std::max(length_s, 1.0);
-  // Slower than this it is not an oscillation but a wandering zero.
-  const double lowest_hz = std::max(0.2, 10 / std::max(length_s, 1.0));
-  const double highest_hz = std::min(0.45 / sample_s, 25.0);
-  const auto bins = static_cast<std::size_t>(highest_hz / step_hz);
-  std::vector<double> power(bins, 0.0);
-  for (std::size_t b = 1; b < bins; ++b) {
-    const double omega = 2 * std::numbers::pi * step_hz * static_cast<double>(b);
-    std::complex<double> sum = 0;
-    for (std::size_t k = 0; k < records.size(); ++k) {
-      const double interval = records[k].sample_time_s;
-      std::complex<double> turn =
-          std::polar(1.0, omega * (records[k].campaign_time_s + records[k].time_s[0]));
-      const std::complex<double> ahead = std::polar(1.0, omega * interval);
-      for (std::size_t i = 0; i < records[k].size(); ++i) {
-        if (interval == 0)
-          turn = std::polar(1.0, omega * (records[k].campaign_time_s + records[k].time_s[i]));
-        if (!std::isnan(residual_mm[k][i])) sum += residual_mm[k][i] * turn;
-        turn *= ahead;
-      }
-    }
-    power[b] = std::norm(sum);
-  }
-  // A line stands out against its neighbourhood, not against the slow structure of a misfit.
-  const std::size_t around = 60;
-  std::vector<std::pair<double, double>> peaks;
-  for (std::size_t b = 2; b + 1 < bins; ++b) {
-    if (power[b] < power[b - 1] || power[b] < power[b + 1]) continue;
-    if (step_hz * static_cast<double>(b) < lowest_hz) continue;
-    const std::size_t first = b > around ? b - around : 1;
-    const std::size_t last = std::min(bins, b + around);
-    std::vector<double> near(power.begin() + static_cast<long>(first),
-                             power.begin() + static_cast<long>(last));
-    std::nth_element(near.begin(), near.begin() + static_cast<long>(near.size() / 2), near.end());
-    peaks.emplace_back(power[b] / (near[near.size() / 2] + 1e-300), step_hz * static_cast<double>(b));
-  }
-  std::sort(peaks.rbegin(), peaks.rend());
-  std::vector<double> found;
-  for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) found.push_back(peaks[i].second);
-  return found;
-}
 
 SearchData make_search_data(std::vector<Record> records, const model::Model& given) {
   SearchData data;

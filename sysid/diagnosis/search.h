@@ -36,9 +36,4 @@ struct Candidate {
                                                     const std::vector<Cause>& only,
                                                     const std::function<void(const Cause&)>& done = {});
 
-/// Frequencies at which the residual's spectrum stands out, largest first [Hz].
-[[nodiscard]] std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
-                                                    const std::vector<std::vector<double>>& residual_mm,
-                                                    std::size_t count);
-
 }  // namespace softgrip::sysid

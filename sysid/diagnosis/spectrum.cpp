@@ -7,10 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "sysid/diagnosis/fourier.h"
+
 namespace softgrip::sysid {
 namespace {
-
-using Complex = std::complex<double>;
 
 constexpr std::size_t shown = 100;
 /// Bins on either side that make a line's neighbourhood, in units of one record's own resolution.
@@ -20,28 +20,6 @@ constexpr std::size_t lobe = 3;
 
 double square(double x) {
   return x * x;
-}
-
-/// Radix-2 transform in place (Cooley and Tukey 1965); the size is a power of two.
-void transform(std::vector<Complex>& x) {
-  const std::size_t n = x.size();
-  for (std::size_t i = 1, j = 0; i < n; ++i) {
-    std::size_t bit = n >> 1;
-    for (; (j & bit) != 0; bit >>= 1) j ^= bit;
-    j ^= bit;
-    if (i < j) std::swap(x[i], x[j]);
-  }
-  for (std::size_t length = 2; length <= n; length <<= 1) {
-    const Complex turn = std::polar(1.0, -2 * std::numbers::pi / static_cast<double>(length));
-    for (std::size_t i = 0; i < n; i += length) {
-      Complex w = 1;
-      for (std::size_t k = 0; k < length / 2; ++k, w *= turn) {
-        const Complex even = x[i + k], odd = w * x[i + k + length / 2];
-        x[i + k] = even + odd;
-        x[i + k + length / 2] = even - odd;
-      }
-    }
-  }
 }
 
 /// Sum over the records of |window * residual|^2 by frequency, on one common grid.
@@ -87,7 +65,7 @@ Periodogram periodogram(const std::vector<Record>& records,
       p.window_squares += w * w;
     }
     p.window_mean_square += square(window_sum);
-    transform(x);
+    fourier_transform(x);
     for (std::size_t b = 0; b < p.power.size(); ++b) p.power[b] += std::norm(x[b]);
   }
   return p;
