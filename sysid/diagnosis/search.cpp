@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "model/catalogue.h"
+#include "sysid/diagnosis/scan.h"
 #include "sysid/parallel.h"
 
 namespace softgrip::sysid {
@@ -12,10 +14,9 @@ namespace {
 
 /// Interval to which the first look is thinned; latencies of interest are longer.
 constexpr double look_interval_s = 0.025;
-constexpr FitEffort glance{.most_iterations = 3, .tolerance = 1e-4};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Glances that become looks, and looks that are followed to the end.
+/// Starts that are looked at, and looks that are followed to the end.
 constexpr std::size_t looked_at = 3;
 constexpr std::size_t followed = 2;
 /// So many candidates are followed to the end, first on thinned records, then of these so many on all
@@ -31,12 +32,6 @@ bool varies(const std::vector<double>& column) {
   return *high - *low > 1e-6 * std::max(1.0, std::abs(*high));
 }
 
-FitPoint with_cause(const FitPoint& point, const model::BlockSpec& block) {
-  FitPoint extended = point;
-  extended.model = model::with_block(extended.model, block);
-  return extended;
-}
-
 void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   std::erase_if(fits, [](const StructureFit& fit) { return !std::isfinite(fit.mean_square_mm2); });
   std::stable_sort(fits.begin(), fits.end(), [](const StructureFit& a, const StructureFit& b) {
@@ -45,21 +40,25 @@ void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   if (fits.size() > count) fits.resize(count);
 }
 
+/// Where searches on top of `current` may start from.
+std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
+  std::vector<Scan> scans;
+  scans.emplace_back(data.thinned, current.causes, current.point);
+  // Recalibration may have walked far from the truth to swallow the effect.
+  if (current.causes.empty() && data.given_is_base)
+    scans.emplace_back(data.thinned, current.causes, data.given);
+  return scans;
+}
+
 /// The best looks at one candidate, on thinned records, best first.
-std::vector<StructureFit> look_at(const SearchData& data, const StructureFit& current, const Cause& cause) {
+std::vector<StructureFit> look_at(const SearchData& data, const StructureFit& current,
+                                  std::span<const Scan> scans, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
   causes.push_back(cause);
-  std::vector<FitPoint> places{current.point};
-  // Recalibration may have walked far from the truth to swallow the effect.
-  if (current.causes.empty() && data.given_is_base) places.push_back(data.given);
   std::vector<StructureFit> fits;
-  for (const FitPoint& place : places) {
-    for (const CauseStart& start : cause_starts(cause, data.scales)) {
-      fits.push_back(fit_structure(data.thinned, causes, with_cause(place, start.block), glance));
-    }
+  for (const FitPoint& start : best_starts(scans, cause, data.scales, looked_at)) {
+    fits.push_back(fit_structure(data.thinned, causes, start, look));
   }
-  sort_and_keep(fits, looked_at);
-  for (StructureFit& fit : fits) fit = fit_structure(data.thinned, causes, fit.point, look);
   sort_and_keep(fits, followed);
   return fits;
 }
@@ -122,10 +121,11 @@ std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit
   }
   std::vector<Candidate> candidates(wanted.size());
   std::vector<std::vector<StructureFit>> looks(wanted.size());
+  const std::vector<Scan> scans = places(data, current);
   parallel_for(wanted.size(), data.threads, [&](std::size_t i) {
     candidates[i] = {wanted[i], std::nullopt, unanswerable(wanted[i], data.scales)};
     if (!candidates[i].why_not.empty()) return;
-    looks[i] = look_at(data, current, wanted[i]);
+    looks[i] = look_at(data, current, scans, wanted[i]);
     if (looks[i].empty()) candidates[i].why_not = "no start led to a fit";
     if (done) done(wanted[i]);
   });
