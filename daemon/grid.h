@@ -1,10 +1,10 @@
 #pragma once
 // The absolute time grid of a periodic thread.
 
-#include <time.h>
-
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
+#include <ctime>
 
 #include "model/reading.h"
 
@@ -18,8 +18,8 @@ inline constexpr Nanoseconds ns_per_s = 1'000'000'000;
 [[nodiscard]] constexpr double seconds(Nanoseconds duration) noexcept {
   return static_cast<double>(duration) / 1e9;
 }
-[[nodiscard]] constexpr Nanoseconds nanoseconds(double duration_s) noexcept {
-  return static_cast<Nanoseconds>(duration_s * 1e9 + 0.5);
+[[nodiscard]] inline Nanoseconds nanoseconds(double duration_s) noexcept {
+  return std::llround(duration_s * 1e9);
 }
 
 /// Ticks lie at start + k * period. After an overrun the next tick is the next one on the grid: nothing is

@@ -1,8 +1,7 @@
 #include "daemon/recorder.h"
 
-#include <time.h>
-
 #include <array>
+#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <utility>

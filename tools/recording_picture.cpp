@@ -6,6 +6,7 @@
 
 #include "sysid/chart.h"
 #include "sysid/numbers.h"
+#include "tools/recording_tracking.h"
 
 namespace softgrip::tools {
 namespace {
@@ -82,20 +83,22 @@ Chart displacement_chart(const Recording& recording, const sysid::Log& log) {
   return displacement;
 }
 
-std::vector<double> errors_of(const sysid::Log& log) {
-  std::vector<double> errors = numbers_of(log, "reference_mm");
-  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] -= log.displacement_mm[i];
-  return errors;
-}
-
-Chart error_chart(const sysid::Log& log, std::vector<double> errors) {
+Chart error_chart(const sysid::Log& log, const std::vector<double>& errors) {
   const Tracking tracking = tracking_of(log);
-  Chart error =
-      chart(title_of("reference minus displacement, RMSE " + sysid::significant(tracking.rmse_mm, 3) +
-                         " mm, largest " + sysid::significant(tracking.largest_mm, 3) + " mm",
-                     log),
-            "error [mm]", low);
-  error.series.push_back(line("", log, std::move(errors), Colour::error));
+  const std::string rated = tracking.grips_known ? ", in free motion" : "";
+  const std::string figures = tracking.free_samples > 0
+                                  ? rated + " RMSE " + sysid::significant(tracking.free_rmse_mm, 3) +
+                                        " mm, largest " + sysid::significant(tracking.free_largest_mm, 3) +
+                                        " mm"
+                                  : std::string();
+  Chart error = chart(title_of("reference minus displacement" + figures, log), "error [mm]", low);
+  const std::vector<char> gripping = gripping_of(log);
+  std::vector<double> free = errors;
+  std::vector<double> held = errors;
+  for (std::size_t i = 0; i < errors.size(); ++i) (gripping[i] != 0 ? free : held)[i] = nothing;
+  const bool both = tracking.gripping_samples > 0;
+  if (both) error.series.push_back(line("gripping", log, std::move(held), Colour::faint));
+  error.series.push_back(line(both ? "free motion" : "", log, std::move(free), Colour::error));
   return error;
 }
 
@@ -123,26 +126,13 @@ void add_states(const Recording& recording, std::vector<Chart>& charts) {
 
 }  // namespace
 
-Tracking tracking_of(const sysid::Log& log) {
-  Tracking tracking;
-  double squares = 0;
-  for (const double error : errors_of(log)) {
-    if (!std::isfinite(error)) continue;
-    ++tracking.samples;
-    squares += error * error;
-    tracking.largest_mm = std::max(tracking.largest_mm, std::abs(error));
-  }
-  if (tracking.samples > 0) tracking.rmse_mm = std::sqrt(squares / static_cast<double>(tracking.samples));
-  return tracking;
-}
-
 std::string picture_of(const Recording& recording) {
   std::vector<Chart> charts;
   for (const sysid::Log& log : recording.channels) {
     charts.push_back(pressure_chart(log));
     charts.push_back(displacement_chart(recording, log));
-    if (std::vector<double> errors = errors_of(log); any_number(errors)) {
-      charts.push_back(error_chart(log, std::move(errors)));
+    if (const std::vector<double> errors = errors_of(log); any_number(errors)) {
+      charts.push_back(error_chart(log, errors));
     }
   }
   add_states(recording, charts);

@@ -2,9 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace softgrip::daemon {
 namespace {
@@ -100,6 +107,31 @@ TEST(ClientRequest, DepthCostsNothing) {
   std::string line = R"({"command":)";
   line += std::string(60'000, '[');
   EXPECT_FALSE(parse_client_request(line));
+}
+
+// The fuzzer's corpus in every build: each line whole, cut off at every byte, and with every byte damaged.
+TEST(ClientRequest, TheFuzzersCorpusIsHarmless) {
+  const auto feed = [](const std::string& line) {
+    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
+  };
+  std::size_t files = 0;
+  const std::filesystem::path folder =
+      std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/daemon/client_request_corpus";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string line{std::istreambuf_iterator<char>(file), {}};
+    feed(line);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      feed(line.substr(0, i));
+      for (const char byte : {'\0', '"', '[', '}', '9', '\xff'}) {
+        std::string damaged = line;
+        damaged[i] = byte;
+        feed(damaged);
+      }
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 13U);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "sysid/files.h"
 #include "tools/recording_picture.h"
+#include "tools/recording_tracking.h"
 
 namespace softgrip::tools {
 namespace {
@@ -56,16 +57,61 @@ TEST_F(RecordingTest, SplitsChannelsAndKeepsWhatHappened) {
   EXPECT_EQ(recording->events[0].code, "HOLDING");
 
   const Tracking left = tracking_of(recording->channels[0]);
-  EXPECT_EQ(left.samples, 2U);
-  EXPECT_NEAR(left.rmse_mm, std::sqrt((0.3 * 0.3 + 0.4 * 0.4) / 2), 1e-12);
-  EXPECT_NEAR(left.largest_mm, 0.4, 1e-12);
-  EXPECT_EQ(tracking_of(recording->channels[1]).samples, 1U) << "a sample without a reading does not count";
+  EXPECT_EQ(left.free_samples, 2U);
+  EXPECT_NEAR(left.free_rmse_mm, std::sqrt((0.3 * 0.3 + 0.4 * 0.4) / 2), 1e-12);
+  EXPECT_NEAR(left.free_largest_mm, 0.4, 1e-12);
+  EXPECT_FALSE(left.grips_known);
+  EXPECT_EQ(tracking_of(recording->channels[1]).free_samples, 1U)
+      << "a sample without a reading does not count";
 
   const std::string picture = picture_of(*recording);
   EXPECT_EQ(picture.rfind("<svg", 0), 0U);
   EXPECT_NE(picture.find("HOLDING"), std::string::npos);
   EXPECT_NE(picture.find("right: displacement"), std::string::npos);
   EXPECT_EQ(picture.find("<b>"), std::string::npos) << "texts are escaped";
+}
+
+// The reference of a grip lies beyond the object: 4 mm short of it on a stone is no tracking error.
+TEST_F(RecordingTest, WhatTheObjectTakesIsNoTrackingError) {
+  write("run.csv",
+        "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
+        "0,0,0,,resynchronising,0,none\n"
+        "0.1,10,5.7,6,running,0,none\n"
+        "0.2,10,6.4,6,running,0,none\n"
+        "0.3,20,8,8,running,1,none\n"
+        "0.4,20,8.5,12,running,1,none\n"
+        "0.5,20,8.5,12.5,running,2,holding\n"
+        "0.6,20,8.5,,running,3,holding\n"
+        "0.7,20,2,,idle,3,released\n");
+  const auto recording = read();
+  ASSERT_TRUE(recording);
+  const Tracking tracking = tracking_of(recording->channels[0]);
+  EXPECT_TRUE(tracking.grips_known);
+  EXPECT_EQ(tracking.free_samples, 2U);
+  EXPECT_NEAR(tracking.free_rmse_mm, std::sqrt((0.3 * 0.3 + 0.4 * 0.4) / 2), 1e-12);
+  EXPECT_NEAR(tracking.free_largest_mm, 0.4, 1e-12);
+  EXPECT_EQ(tracking.gripping_samples, 3U);
+  EXPECT_NEAR(tracking.gripping_largest_mm, 4, 1e-12);
+  EXPECT_EQ(to_text(tracking),
+            "free motion: RMSE 0.354 mm, largest 0.4 mm; gripping: up to 4 mm short of the reference");
+  const std::string picture = picture_of(*recording);
+  EXPECT_NE(picture.find("in free motion RMSE 0.354 mm, largest 0.4 mm"), std::string::npos);
+  EXPECT_NE(picture.find(">gripping<"), std::string::npos);
+}
+
+// An empty grip is free motion to its end.
+TEST_F(RecordingTest, AGripThatFoundNothingIsFreeMotion) {
+  write("run.csv",
+        "time_s,pressure_command_kpa,displacement_mm,reference_mm,state,step,result\n"
+        "0,10,6,6,running,0,none\n"
+        "0.1,10,16.8,17,running,1,none\n"
+        "0.2,10,16.9,,running,3,no_part\n"
+        "0.3,10,3,,running,3,no_part\n");
+  const auto recording = read();
+  ASSERT_TRUE(recording);
+  const Tracking tracking = tracking_of(recording->channels[0]);
+  EXPECT_EQ(tracking.free_samples, 2U);
+  EXPECT_EQ(tracking.gripping_samples, 0U);
 }
 
 TEST_F(RecordingTest, OneThatWasCutOffStillOpens) {

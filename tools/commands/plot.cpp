@@ -5,11 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "sysid/numbers.h"
 #include "tools/commands.h"
 #include "tools/output.h"
 #include "tools/recording.h"
 #include "tools/recording_picture.h"
+#include "tools/recording_tracking.h"
 
 namespace softgrip::tools {
 namespace {
@@ -27,20 +27,21 @@ void report(const Options& options, const Recording& recording) {
     const Tracking tracking = tracking_of(log);
     const std::string name = log.channel.empty() ? recording.name : log.channel;
     nlohmann::ordered_json entry{{"channel", log.channel}, {"samples", log.size()}};
-    entry["tracked_samples"] = tracking.samples;
-    if (tracking.samples > 0) {
-      entry["tracking_rmse_mm"] = tracking.rmse_mm;
-      entry["tracking_largest_mm"] = tracking.largest_mm;
+    if (tracking.free_samples > 0) {
+      entry["tracking"] = {{"grips_known", tracking.grips_known},
+                           {"samples", tracking.free_samples},
+                           {"rmse_mm", tracking.free_rmse_mm},
+                           {"largest_mm", tracking.free_largest_mm}};
+    }
+    if (tracking.gripping_samples > 0) {
+      entry["gripping"] = {{"samples", tracking.gripping_samples},
+                           {"short_of_reference_mm", tracking.gripping_largest_mm}};
     }
     json["channels"].push_back(std::move(entry));
     if (options.json) continue;
-    std::fprintf(stream, "%s: %zu samples", name.c_str(), log.size());
-    if (tracking.samples > 0) {
-      std::fprintf(stream, ", tracking RMSE %s mm, largest %s mm",
-                   sysid::significant(tracking.rmse_mm, 3).c_str(),
-                   sysid::significant(tracking.largest_mm, 3).c_str());
-    }
-    std::fprintf(stream, "\n");
+    const std::string told = to_text(tracking);
+    std::fprintf(stream, "%s: %zu samples%s%s\n", name.c_str(), log.size(), told.empty() ? "" : "; ",
+                 told.c_str());
   }
   if (options.json) {
     std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
