@@ -94,6 +94,9 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
   solver.parameter_tolerance = 1e-10;
   solver.gradient_tolerance = 0;
   solver.initial_trust_region_radius = 1e3;
+  // With bounds Ceres would search along every step, with the derivatives once more at each trial: steps are
+  // cut at the bounds all the same.
+  solver.max_num_line_search_step_size_iterations = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
   minimum.cost = summary.final_cost;
