@@ -74,6 +74,11 @@ FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records
   }
 }
 
+void FitSpace::hold_starts(const std::vector<StartState>& starts) {
+  std::erase_if(free_, [](const FreeParameter& p) { return p.kind != FreeParameter::Kind::model; });
+  base_starts_ = starts;
+}
+
 void FitSpace::bound(std::size_t index, double lower, double upper) {
   free_[index].lower = std::max(free_[index].lower, lower);
   free_[index].upper = std::min(free_[index].upper, upper);

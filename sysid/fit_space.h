@@ -51,6 +51,8 @@ class FitSpace {
 
   [[nodiscard]] std::size_t size() const noexcept { return free_.size(); }
   [[nodiscard]] const std::vector<FreeParameter>& free() const noexcept { return free_; }
+  /// Keeps the records' starts as they are given: they are not free any more.
+  void hold_starts(const std::vector<StartState>& starts);
   /// Narrows the bounds of one parameter (to within what its declaration allows).
   void bound(std::size_t index, double lower, double upper);
 

@@ -22,6 +22,10 @@ using Failure = tl::unexpected<std::string>;
 /// Share of the recalibrated model's excess (as a mean square) that a set of causes may leave and still be
 /// called the cause: beyond it something else is at work, or the cause has another form.
 constexpr double may_be_left = 0.15;
+/// The same when what is left stands this many times above the noise: then the data could have shown the cause
+/// whole, and did not. Less than the small share may have to do with the form of an equation alone.
+constexpr double clearly_left_noises = 3;
+constexpr double small_share = 0.02;
 constexpr double block_s = 8;
 constexpr std::size_t fewest_samples = 200;
 
@@ -95,6 +99,11 @@ tl::expected<StructureFit, std::string> recalibrate(const std::vector<Log>& logs
   auto found = identify(logs, data.given.model, wide);
   if (found) {
     FitPoint point{found->fitted, rest_starts(found->fitted, data.records)};
+    // What identification found out about unknown starts; a zero that is not free stays where it is.
+    for (std::size_t k = 0; k < data.records.size(); ++k) {
+      point.starts[k] = found->scores[k].start;
+      if (!data.records[k].offset_free) point.starts[k].offset_mm = 0;
+    }
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
   }
@@ -248,7 +257,9 @@ class Diagnostician {
   void conclude(const Selection& selection) {
     const bool structure = selection.left.present;
     const double left_share = d_.unexplained_percent / 100;
-    if (!selection.chosen.empty() && structure && left_share > may_be_left) {
+    const bool clearly = selection.left.excess_mm > clearly_left_noises * d_.noise_mm;
+    const double may_stay = clearly ? small_share : may_be_left;
+    if (!selection.chosen.empty() && structure && left_share > may_stay) {
       d_.verdict = Verdict::unexplained;
       d_.partial = std::move(causes_);
       return;

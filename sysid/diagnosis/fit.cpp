@@ -56,7 +56,8 @@ StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<
 
 StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                            const FitPoint& from, const FitEffort& effort) {
-  const FitSpace space(from.model, records, fitted_indices(from.model, causes));
+  FitSpace space(from.model, records, fitted_indices(from.model, causes));
+  if (effort.hold_starts) space.hold_starts(from.starts);
   const auto residuals = residuals_for(records, space);
   MinimiseOptions options;
   options.most_iterations = effort.most_iterations;

@@ -23,6 +23,7 @@ struct StructureFit {
 struct FitEffort {
   int most_iterations = 40;
   double tolerance = 1e-8;
+  bool hold_starts = false;  ///< the records begin as they do at the point from which the fit starts
 };
 
 /// The flat indices that a fit of this structure moves: all of the base but exponents and k0 where alpha is

@@ -9,9 +9,13 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6};
+/// The state in which a log begins is no part of the model's structure: without the first block it could not
+/// be told, and the rest would be simulated from anywhere.
+constexpr FitEffort refit{.most_iterations = 8, .tolerance = 1e-6, .hold_starts = true};
 constexpr std::size_t draws = 1000;
 constexpr std::size_t fewest_blocks = 8;
+/// With fewer blocks than this a half of them does not determine a model: quarters are held out instead.
+constexpr std::size_t enough_to_halve = 16;
 
 std::vector<Record> hidden(const std::vector<Record>& records, const Division& division, std::size_t fold) {
   std::vector<Record> rest = records;
@@ -85,10 +89,12 @@ Division divide(const std::vector<Record>& records, double block_s) {
           record.time_s.front() + record_s * static_cast<double>(part + 1) / static_cast<double>(parts);
       std::size_t last = first;
       while (last < record.size() && (record.time_s[last] < end_s || part + 1 == parts)) ++last;
-      if (last > first) division.blocks.push_back({k, first, last, division.blocks.size() % division.folds});
+      if (last > first) division.blocks.push_back({k, first, last, 0});
       first = last;
     }
   }
+  division.folds = division.blocks.size() < enough_to_halve ? 4 : 2;
+  for (std::size_t b = 0; b < division.blocks.size(); ++b) division.blocks[b].fold = b % division.folds;
   return division;
 }
 
