@@ -79,7 +79,10 @@ Values starts_of_load_and_sensor(std::string_view id, const Scales& s) {
     return grid({{-10000.0}, {0.97 * s.span_mm, 0.9 * s.span_mm, 0.75 * s.span_mm, 0.6 * s.span_mm}});
   }
   if (id == "periodic_disturbance") {
-    return grid({{0.003 * s.span_mm}, {0.003 * s.span_mm}, s.residual_peaks_hz});
+    Values starts;
+    for (const Line& line : s.residual_lines)
+      starts.push_back({line.sine_mm, line.cosine_mm, line.frequency_hz});
+    return starts;
   }
   return {};  // outliers
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/model.h"
+#include "sysid/diagnosis/spectrum_peaks.h"
 #include "sysid/record.h"
 
 namespace softgrip::sysid {
@@ -34,8 +35,8 @@ struct Scales {
   bool has_temperature = false;   ///< and it varies
   bool has_supply = false;        ///< and it varies
   bool has_valve = true;          ///< false: the measured pressure drives the model
-  /// Frequencies of the largest peaks of the residual's spectrum, largest first [Hz].
-  std::vector<double> residual_peaks_hz;
+  /// What stands out of the residual's spectrum, the clearest first.
+  std::vector<Line> residual_lines;
 };
 
 /// A block of the cause's type from which a fit may start.

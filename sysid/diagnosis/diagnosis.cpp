@@ -22,8 +22,8 @@ using Failure = tl::unexpected<std::string>;
 /// Share of the recalibrated model's excess (as a mean square) that a set of causes may leave and still be
 /// called the cause: beyond it something else is at work, or the cause has another form.
 constexpr double may_be_left = 0.15;
-/// The same when what is left stands this many times above the noise: then the data could have shown the cause
-/// whole, and did not. Less than the small share may have to do with the form of an equation alone.
+/// The same when what is left stands this many times above the noise: then the data could have shown the
+/// cause whole, and did not. Less than the small share may have to do with the form of an equation alone.
 constexpr double clearly_left_noises = 3;
 constexpr double small_share = 0.02;
 constexpr double block_s = 8;
@@ -161,7 +161,7 @@ class Diagnostician {
     auto base = recalibrate(logs_, data_, options_);
     if (!base) return Failure(base.error());
     d_.recalibrated = *base;
-    data_.scales.residual_peaks_hz = spectrum_peaks_hz(data_.records, base->residual_mm, 3);
+    data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm, 3);
     const Division division = divide(data_.records, block_s);
     SelectionOptions selection_options;
     selection_options.seed = options_.seed;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "sysid/diagnosis/fourier.h"
@@ -55,9 +56,8 @@ std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& 
 
 }  // namespace
 
-std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
-                                      const std::vector<std::vector<double>>& residual_mm,
-                                      std::size_t count) {
+std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
+                                 const std::vector<std::vector<double>>& residual_mm, std::size_t count) {
   double length_s = 0, interval_s = std::numeric_limits<double>::infinity();
   for (const Record& record : records) {
     const double record_s = record.time_s.back() - record.time_s.front();
@@ -77,11 +77,20 @@ std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
   std::vector<double> power(std::min(size / 2, static_cast<std::size_t>(highest_hz / step_hz)));
   for (std::size_t b = 0; b < power.size(); ++b) power[b] = std::norm(x[b]);
   const auto peaks = peaks_of(power, static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));
-  std::vector<double> found;
-  for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) {
-    found.push_back(step_hz * static_cast<double>(peaks[i].second));
+  double readings = 0;
+  for (const auto& r : residual_mm) {
+    for (const double value : r) readings += std::isnan(value) ? 0 : 1;
   }
-  return found;
+  const double began_s = records.front().campaign_time_s + records.front().time_s.front();
+  std::vector<Line> lines;
+  for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) {
+    const double frequency_hz = step_hz * static_cast<double>(peaks[i].second);
+    // The transform's time begins with the first sample, the line's with the campaign.
+    const Complex amplitude =
+        2 / readings * x[peaks[i].second] * std::polar(1.0, -2 * std::numbers::pi * frequency_hz * began_s);
+    lines.push_back({frequency_hz, -amplitude.imag(), amplitude.real()});
+  }
+  return lines;
 }
 
 }  // namespace softgrip::sysid

@@ -8,12 +8,19 @@
 
 namespace softgrip::sysid {
 
-/// Frequencies at which the residual's spectrum over the whole campaign stands out against its neighbourhood,
-/// the clearest first [Hz]. What is slower than a tenth of the campaign's reach, or than 0.2 Hz, is a
-/// wandering zero and no oscillation.
+/// An oscillation sine sin(2 pi f t) + cosine cos(2 pi f t), t in campaign time.
+struct Line {
+  double frequency_hz = 0;
+  double sine_mm = 0;
+  double cosine_mm = 0;
+};
+
+/// The lines that stand out against their neighbourhood in the residual's spectrum over the whole campaign,
+/// the clearest first. What is slower than 0.2 Hz, or than ten periods in the campaign, is a wandering zero
+/// and no oscillation.
 /// @param residual_mm  by record, as long as the record; NaN where there is no reading.
-[[nodiscard]] std::vector<double> spectrum_peaks_hz(const std::vector<Record>& records,
-                                                    const std::vector<std::vector<double>>& residual_mm,
-                                                    std::size_t count);
+[[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
+                                               const std::vector<std::vector<double>>& residual_mm,
+                                               std::size_t count);
 
 }  // namespace softgrip::sysid
