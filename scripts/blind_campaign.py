@@ -1,101 +1,53 @@
 #!/usr/bin/python3
-"""Hides effects in worlds (tests/blind), lets `softgrip diagnose` find them, counts.
+"""Hides effects in fresh worlds (tests/blind), lets `softgrip diagnose` find them, counts.
 
-    scripts/blind_campaign.py --build build/release --work DIR [--seeds 20] [--strengths 8 2] [--causes ID ...]
-                              [--clean 200] [--first-seed 1000] [--page docs/reference/blind-campaign.md]
+    scripts/blind_campaign.py --work DIR [--build build/release] [--seeds 20] [--clean 200] [--outside 60] [--pairs 60]
+                              [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--page docs/reference/blind-campaign.md]
 
 Resumable: every world's outcome is one line of DIR/results.jsonl, and worlds that stand there are not run again.
-The engine is called as a user calls it; it never sees the truth.
+--page writes the table, and the pictures beside it.
 """
 import argparse
-import collections
+import itertools
 import json
 import pathlib
-import shutil
-import subprocess
+import random
 import sys
-import tempfile
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests/blind"))
+sys.path.insert(0, str(ROOT / "scripts"))
+
+import blind_page  # noqa: E402
+import judging  # noqa: E402
+
+# Causes that give the same readings whatever the command, or nearly: hidden together, no data could tell them apart.
+TWINS = [{"valve_lag", "sensor_lag", "transport_delay"}, {"stiffening", "sensor_nonlinearity"},
+         {"pressure_saturation", "sensor_saturation", "contact"}, {"thermal_gain", "ageing"}]
 
 
-def outcome(truth, diagnosis):
-    """right, ambiguous_right, wrong, missed, false_alarm, quiet"""
-    verdict = diagnosis["verdict"]
-    named = [cause["id"] for cause in diagnosis["causes"]]
-    if not truth:
-        return "quiet" if not named and verdict in ("adequate", "recalibrate") else (
-            "false_alarm" if named else "unexplained")
-    if not named:
-        return "missed"
-    sets = [{cause, *rivals} for cause, rivals in zip(named, diagnosis["alternatives"])]
-    if set(named) == set(truth) and verdict == "cause_found":
-        return "right"
-    if len(sets) == len(truth) and all(any(t in s for s in sets) for t in truth):
-        return "ambiguous_right" if verdict == "ambiguous" else "wrong"
-    return "wrong"
+def pairs(ids, count, seed):
+    possible = [pair for pair in itertools.combinations(ids, 2) if not any(set(pair) <= twins for twins in TWINS)]
+    return random.Random(seed).sample(possible, min(count, len(possible)))
 
 
-def run_world(args, world):
-    folder = pathlib.Path(tempfile.mkdtemp(dir=args.work))
-    try:
-        make = [args.build / "tests/blind/blind-world", "--seed", str(world["seed"]), "--strength",
-                str(world["strength"]), "--out", folder / "logs", "--truth", folder / "truth.json"]
-        if world["causes"]:
-            make += ["--cause", ",".join(world["causes"])]
-        subprocess.run(make, check=True)
-        logs = sorted((folder / "logs").glob("*.csv"))
-        done = subprocess.run([args.build / "tools/softgrip", "diagnose", "--model", ROOT / "tests/blind/given.yaml",
-                               "--data", *logs, "--out", folder / "out", "--json"], capture_output=True, text=True)
-        if done.returncode != 0:
-            return {**world, "outcome": "failed", "message": done.stderr[-300:]}
-        diagnosis = json.loads(done.stdout)
-        truth = json.loads((folder / "truth.json").read_text())
-        library = [c for c in world["causes"] if not c.startswith("outside_")]
-        result = outcome(library, diagnosis)
-        if world["causes"] and not library:
-            result = {"false_alarm": "wrong", "quiet": "missed"}.get(outcome([], diagnosis), "unexplained")
-        return {**world, "outcome": result, "verdict": diagnosis["verdict"],
-                "named": [c["id"] for c in diagnosis["causes"]], "rivals": diagnosis["alternatives"],
-                "unexplained_percent": diagnosis["unexplained_percent"], "wall_s": diagnosis["wall_s"],
-                "reachable": all(e["reachable"] for e in truth["effects"].values())}
-    finally:
-        shutil.rmtree(folder)
-
-
-def worlds(args):
-    listed = subprocess.run([args.build / "tests/blind/blind-world", "--list"], check=True, capture_output=True,
-                            text=True).stdout.split()
-    seed = args.first_seed
-    for _ in range(args.clean):
-        seed += 1
-        yield {"causes": [], "strength": 0, "seed": seed}
-    for cause in args.causes or listed:
-        for strength in args.strengths:
-            for k in range(args.seeds):
-                yield {"causes": [cause], "strength": strength, "seed": args.first_seed + 1000 + k}
-
-
-def page(results, command):
-    lines = ["# Blind campaign", "", f"Written by `{command}`; {len(results)} worlds. A world is right when its cause is "
-             "named alone, ambiguous when the verdict lists it among rivals, missed when nothing is named (the verdict "
-             "is then recalibrate or unexplained), wrong when something else is named.", "",
-             "| hidden | strength | worlds | right | ambiguous | missed | wrong | named instead |",
-             "|---|---|---|---|---|---|---|---|"]
-    groups = collections.defaultdict(list)
-    for r in results:
-        groups[("+".join(r["causes"]) or "nothing", r["strength"])].append(r)
-    for (cause, strength), rows in sorted(groups.items()):
-        count = collections.Counter(r["outcome"] for r in rows)
-        instead = collections.Counter("+".join(r.get("named", [])) for r in rows
-                                      if r["outcome"] in ("wrong", "false_alarm"))
-        right = count["right"] + count["quiet"] + (count["unexplained"] if cause.startswith("outside_") else 0)
-        missed = count["missed"] + count["failed"] + (0 if cause.startswith("outside_") else count["unexplained"])
-        lines.append(f"| {cause} | {strength:g} | {len(rows)} | {right} | {count['ambiguous_right']} | {missed} | "
-                     f"{count['wrong'] + count['false_alarm']} | "
-                     f"{', '.join(f'{n} x{k}' for n, k in instead.items())} |")
-    lines += ["", "For worlds with an effect outside the library (`outside_`), right is the verdict unexplained."]
-    return "\n".join(lines) + "\n"
+def worlds(args, ids, outside):
+    """Rounds over all kinds, so that a campaign that is cut short still shows all of them."""
+    kinds = []
+    for cause, strength in itertools.product(args.causes or ids, args.strengths):
+        kinds.append([([cause], strength)] * args.seeds)
+    kinds.append([([], 0)] * args.clean)
+    if not args.causes:
+        kinds.append([([outside[k % len(outside)]], args.strengths[0]) for k in range(args.outside)])
+        kinds.append([(list(pair), args.strengths[0]) for pair in pairs(ids, args.pairs, args.first_seed)])
+    longest = max(len(kind) for kind in kinds)
+    placed = []
+    for kind in kinds:
+        placed += [((k + 0.5) / len(kind) if len(kind) else 0, k, *what) for k, what in enumerate(kind)]
+    placed.sort(key=lambda p: p[0])
+    for _, k, causes, strength in placed[: longest * len(kinds)]:
+        yield {"causes": causes, "strength": strength, "seed": args.first_seed + k}
 
 
 def main():
@@ -104,9 +56,12 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--clean", type=int, default=200)
+    parser.add_argument("--outside", type=int, default=60)
+    parser.add_argument("--pairs", type=int, default=60)
     parser.add_argument("--strengths", type=float, nargs="+", default=[8, 2])
     parser.add_argument("--causes", nargs="+")
     parser.add_argument("--first-seed", type=int, default=1000)
+    parser.add_argument("--most-minutes", type=float, help="stop after so long; run again to go on")
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     args.build = args.build.resolve()
@@ -114,20 +69,29 @@ def main():
     path = args.work / "results.jsonl"
     results = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
     known = {(tuple(r["causes"]), r["strength"], r["seed"]) for r in results}
-    planned = list(worlds(args))
+    ids, outside = judging.library(args.build)
+    planned = list(worlds(args, ids, outside))
+    began = time.monotonic()
     with path.open("a") as out:
         for number, world in enumerate(planned, 1):
             if (tuple(world["causes"]), world["strength"], world["seed"]) in known:
                 continue
-            result = run_world(args, world)
+            if args.most_minutes and time.monotonic() - began > 60 * args.most_minutes:
+                print(f"stopped after {args.most_minutes:g} minutes, {len(results)} of {len(planned)} worlds done")
+                break
+            result = judging.run_world(args.build, args.work, world)
             results.append(result)
             out.write(json.dumps(result) + "\n")
             out.flush()
             print(f"{number}/{len(planned)} {'+'.join(world['causes']) or 'clean'} {world['strength']:g} "
-                  f"seed {world['seed']}: {result['outcome']} {result.get('named', '')}", flush=True)
+                  f"seed {world['seed']}: {result['outcome']} {', '.join(result.get('named', []))} "
+                  f"{result.get('rivals') if result['outcome'] == 'ambiguous_right' else ''}", flush=True)
     if args.page:
-        words = [word for word in sys.argv[1:]]
-        args.page.write_text(page(results, "scripts/blind_campaign.py " + " ".join(words)))
+        command = f"scripts/blind_campaign.py --work DIR --first-seed {args.first_seed}"
+        for option in ("seeds", "clean", "outside", "pairs"):
+            if getattr(args, option) != parser.get_default(option):
+                command += f" --{option} {getattr(args, option)}"
+        blind_page.write(args.page, results, len(planned), f"{command} --page {args.page}")
 
 
 if __name__ == "__main__":

@@ -168,6 +168,7 @@ class Diagnostician {
     selection_options.progress = options_.progress;
     Selection selection = select_causes(data_, std::move(*base), d_.noise_mm, division, selection_options);
     measure(selection, division);
+    if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     name(selection);
     conclude(selection);
     return std::move(d_);
@@ -227,6 +228,25 @@ class Diagnostician {
     warn_unphysical(d_.recalibrated_model, d_.warnings);
   }
 
+  void calibrate(const Division& division) {
+    NullOptions nulls;
+    nulls.campaigns = options_.null_campaigns;
+    nulls.seed = options_.seed;
+    if (options_.progress) {
+      nulls.progress = [&](std::size_t done) {
+        options_.progress("null campaign " + std::to_string(done) + " of " +
+                          std::to_string(options_.null_campaigns));
+      };
+    }
+    d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
+  }
+
+  /// A gain that the search makes out of noise as well.
+  [[nodiscard]] bool reached_by_nulls() const {
+    return d_.null_calibration && d_.null_calibration->campaigns >= enough_nulls &&
+           d_.null_calibration->p_value > null_level;
+  }
+
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
     model.name = given_.name;
     std::string files;
@@ -259,7 +279,8 @@ class Diagnostician {
     const double left_share = d_.unexplained_percent / 100;
     const bool clearly = selection.left.excess_mm > clearly_left_noises * d_.noise_mm;
     const double may_stay = clearly ? small_share : may_be_left;
-    if (!selection.chosen.empty() && structure && left_share > may_stay) {
+    const bool too_much_left = structure && left_share > may_stay;
+    if (!selection.chosen.empty() && (too_much_left || reached_by_nulls())) {
       d_.verdict = Verdict::unexplained;
       d_.partial = std::move(causes_);
       return;

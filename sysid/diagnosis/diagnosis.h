@@ -11,6 +11,7 @@
 
 #include "model/model.h"
 #include "sysid/diagnosis/evidence.h"
+#include "sysid/diagnosis/null_calibration.h"
 #include "sysid/diagnosis/outliers.h"
 #include "sysid/diagnosis/reference.h"
 #include "sysid/diagnosis/selection.h"
@@ -44,6 +45,8 @@ struct DiagnosisOptions {
   RecordOptions record;
   std::uint64_t seed = 1;
   unsigned threads = 0;
+  /// Null campaigns on which the whole search is calibrated when it names something; 0: none.
+  std::size_t null_campaigns = 0;
   std::function<void(const std::string&)> progress;
 };
 
@@ -61,6 +64,7 @@ struct Diagnosis {
   std::optional<double> recalibrated_other_logs_rmse_mm;
   std::optional<double> extended_other_logs_rmse_mm;
   double unexplained_percent = 0;
+  std::optional<NullCalibration> null_calibration;  ///< where it was asked for and something was to be named
   OutlierEvidence outliers;
   Structure structure_recalibrated;
   Structure structure_left;

@@ -142,6 +142,13 @@ std::string to_json(const Diagnosis& d) {
   json["gain_percent"] = spread(d.gain);
   json["unexplained_percent"] = d.unexplained_percent;
   json["next_experiment"] = nullptr;
+  json["null_calibration"] = nullptr;
+  if (const auto& nulls = d.null_calibration) {
+    json["null_calibration"] = {{"campaigns", nulls->campaigns},
+                                {"named", nulls->named},
+                                {"largest_gain_percent", nulls->largest_gain_percent},
+                                {"p_value", nulls->p_value}};
+  }
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named));
   json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},

@@ -147,8 +147,18 @@ void add_cause(Page& page, const NamedCause& named, double extended_rmse_mm) {
     page.table(candidate_table(named.candidates, &named, extended_rmse_mm, "What was tried in its place"));
 }
 
+/// How often the search finds something where nothing is.
+void add_null_calibration(Page& page, const NullCalibration& nulls) {
+  page.paragraph(
+      "Searched in the same way, " + std::to_string(nulls.campaigns) +
+      " campaigns in which the recalibrated model and correlated noise are all there is gave a name in " +
+      std::to_string(nulls.named) + " cases, with a gain of at most " + fixed(nulls.largest_gain_percent, 1) +
+      " %; p = " + significant(nulls.p_value, 2) + " for the gain on the measured logs.");
+}
+
 void add_causes(Page& page, const Diagnosis& d) {
   page.section(d.verdict == Verdict::unexplained ? "What was tried" : "Causes");
+  if (d.null_calibration) add_null_calibration(page, *d.null_calibration);
   if (!d.partial.empty())
     page.paragraph("These explain part of the structure, but too little to be named the cause.");
   for (const NamedCause& named : d.causes) add_cause(page, named, d.extended_rmse_mm);

@@ -49,7 +49,7 @@ class Selector {
   /// first.
   std::vector<Scored> score(const StructureFit& current) {
     std::vector<Candidate> candidates = fit_candidates(data_, current, {}, [&](const Cause& cause) {
-      if (options_.progress) options_.progress(std::string(cause.id));
+      if (options_.progress) options_.progress("tried " + std::string(cause.id));
     });
     std::vector<Scored> scored;
     for (Candidate& candidate : candidates) scored.push_back({std::move(candidate), {}});

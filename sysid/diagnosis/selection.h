@@ -42,8 +42,8 @@ struct Selection {
 };
 
 struct SelectionOptions {
-  /// Three at once meet almost any curve, named or not: what two leave is said to be unexplained. The extended
-  /// model can be diagnosed again.
+  /// Three at once meet almost any curve, named or not: what two leave is said to be unexplained. The
+  /// extended model can be diagnosed again.
   std::size_t most_causes = 2;
   std::uint64_t seed = 1;
   std::function<void(const std::string&)> progress;

@@ -1,10 +1,10 @@
 // blind-world: writes the logs of one world, and its truth elsewhere.
 //
 //   blind-world --seed N --out DIR --truth FILE [--cause ID[,ID]] [--strength X] [--poor] [--pressure]
-//               [--command CSV --log FILE]
+//               [--command CSV ... --log FILE]
 //
 // DIR gets log_1.csv ... in the project's log format and nothing else. With --command the same world answers
-// another command after its campaign and writes that one log.
+// further commands after its campaign, in the order given, and writes the last answer as one log.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +24,8 @@ namespace {
 
 struct Arguments {
   std::uint64_t seed = 1;
-  std::string out, truth, cause, command, log;
+  std::string out, truth, cause, log;
+  std::vector<std::string> commands;
   double strength = 8;
   bool poor = false, pressure = false, list = false;
 };
@@ -58,7 +59,7 @@ Arguments arguments(int argc, char** argv) {
     else if (key == "--strength")
       a.strength = std::stod(value);
     else if (key == "--command")
-      a.command = value;
+      a.commands.push_back(value);
     else if (key == "--log")
       a.log = value;
     else
@@ -142,7 +143,7 @@ int run(const Arguments& a) {
     for (const auto& id : blind::outside_ids()) std::cout << id << "\n";
     return 0;
   }
-  if (a.command.empty() && (a.out.empty() || a.truth.empty()))
+  if (a.commands.empty() && (a.out.empty() || a.truth.empty()))
     throw std::invalid_argument("--out and --truth are needed");
   const blind::Base base = scattered(a.seed);
   const blind::Sensor sensor;
@@ -155,13 +156,15 @@ int run(const Arguments& a) {
     scaled[id] = blind::scale_to(id, a.strength * sensor.noise_mm, base, rich, a.seed);
     effects[id] = scaled[id].effect;
   }
-  if (!a.command.empty()) {
-    double rate_hz = 0, start_s = 0;
-    for (const auto& log : logs) start_s += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
-    auto command = read_command(a.command, rate_hz);
-    logs.push_back(blind::surrounded(std::move(command), rate_hz, start_s, a.seed));
+  if (!a.commands.empty()) {
+    for (const std::string& path : a.commands) {
+      double rate_hz = 0, start_s = 0;
+      for (const auto& log : logs) start_s += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
+      auto command = read_command(path, rate_hz);
+      logs.push_back(blind::surrounded(std::move(command), rate_hz, start_s, a.seed));
+    }
     const auto out = blind::simulate(base, effects, logs, a.seed);
-    write_log(a.log, logs.back(), out.back(), sensor, a.pressure, a.seed * 31 + 1000);
+    write_log(a.log, logs.back(), out.back(), sensor, a.pressure, a.seed * 31 + 1000 + 2 * a.commands.size());
     return 0;
   }
   std::filesystem::create_directories(a.out);

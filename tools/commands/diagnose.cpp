@@ -37,7 +37,7 @@ struct Options {
 };
 
 void show_progress(const std::string& what) {
-  std::fprintf(stderr, "\r\033[K  tried %s", what.c_str());
+  std::fprintf(stderr, "\r\033[K  %s", what.c_str());
   std::fflush(stderr);
 }
 
@@ -72,6 +72,10 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   for (const sysid::NamedCause& named : d.causes) print_cause(named);
   if (!d.partial.empty()) std::puts("  Part of it, but not enough to be named the cause:");
   for (const sysid::NamedCause& named : d.partial) print_cause(named);
+  if (const auto& nulls = d.null_calibration) {
+    std::printf("of %zu null campaigns the search named something in %zu; p = %s for the gain\n",
+                nulls->campaigns, nulls->named, sysid::significant(nulls->p_value, 2).c_str());
+  }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%s s; report: %s\n", sysid::significant(d.wall_s, 3).c_str(),
               (std::filesystem::path(out) / "report.html").c_str());
@@ -148,6 +152,10 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       ->add_option("--out", options->out,
                    "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html")
       ->required();
+  command
+      ->add_option("--nulls", options->diagnosis.null_campaigns,
+                   "Calibrate the search on so many campaigns without a cause (19 show p = 0.05)")
+      ->capture_default_str();
   command->add_option("--seed", options->diagnosis.seed, "Of starts and resampling")->capture_default_str();
   command->add_option("--threads", options->diagnosis.threads, "0: as many as there are cores")
       ->capture_default_str();

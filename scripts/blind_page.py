@@ -1,0 +1,177 @@
+"""The blind campaign's page: what was found where, as tables and two pictures (SVG) beside it."""
+import collections
+import html
+import math
+import pathlib
+import statistics
+
+OUTCOMES = [("right", "#2e7d4f"), ("ambiguous_right", "#8fbf9a"), ("partly", "#c9b458"), ("missed", "#b9bec6"),
+            ("unexplained", "#8a93a3"), ("wrong", "#b3372e"), ("failed", "#000000")]
+WORDS = {"ambiguous_right": "ambiguous, truth listed", "partly": "one of two"}
+
+
+def is_outside(cause):
+    return cause.startswith("outside_")
+
+
+def group_of(result):
+    causes = result["causes"]
+    if not causes:
+        return "clean"
+    if len(causes) > 1:
+        return "two causes"
+    return causes[0]
+
+
+def share(rows, *outcomes):
+    return 100 * sum(r["outcome"] in outcomes for r in rows) / len(rows) if rows else math.nan
+
+
+def interval(hits, count):
+    """Wilson's 95 % interval of a share [%]."""
+    if count == 0:
+        return "-"
+    p, z = hits / count, 1.96
+    middle = (p + z * z / (2 * count)) / (1 + z * z / count)
+    half = z / (1 + z * z / count) * math.sqrt(p * (1 - p) / count + z * z / (4 * count * count))
+    return f"{100 * p:.1f} % ({100 * max(0, middle - half):.1f} .. {100 * min(1, middle + half):.1f})"
+
+
+def summary(results):
+    """Rows (what, target, measured with its interval, number of worlds)."""
+    singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
+    clean = [r for r in results if not r["causes"]]
+    outside = [r for r in results if r["causes"] and is_outside(r["causes"][0])]
+    pairs = [r for r in results if len(r["causes"]) > 1]
+    rows = []
+
+    def row(what, target, among, *outcomes):
+        if among:
+            rows.append((what, target, interval(sum(r["outcome"] in outcomes for r in among), len(among)), len(among)))
+
+    for strength, target in ((8, "at least 98 %"), (2, "at least 90 %")):
+        among = [r for r in singles if r["strength"] == strength]
+        row(f"named right, or ambiguous with the truth listed, at strength {strength}", target, among, "right",
+            "ambiguous_right")
+        row(f"of these named alone, at strength {strength}", "-", among, "right")
+        row(f"wrong names at strength {strength}", "at most 2 %", among, "wrong")
+    row("clean worlds with a name (false alarms)", "at most 2 %", clean, "wrong")
+    row("clean worlds said to hold structure", "-", clean, "unexplained")
+    row("outside the library: given a name of the library", "at most 5 %", outside, "wrong")
+    row("outside the library: unexplained", "-", outside, "right")
+    row("pairs: both found", "at least 80 %", pairs, "right", "ambiguous_right")
+    held = [value for r in results if r["outcome"] == "right" for value in r.get("covered", {}).values()]
+    if held:
+        rows.append(("true parameter inside its 95 % interval, right verdicts", "90 to 98 %",
+                     interval(sum(held), len(held)), len(held)))
+    return rows
+
+
+def by_group(results):
+    groups = collections.defaultdict(list)
+    for r in results:
+        groups[(group_of(r), r["strength"])].append(r)
+    return sorted(groups.items(), key=lambda item: (is_outside(item[0][0]), item[0][0] in ("clean", "two causes"),
+                                                    item[0][0], -item[0][1]))
+
+
+def bars(results):
+    """Outcomes by hidden cause and strength as stacked bars."""
+    rows = by_group(results)
+    height, left, width = 15, 250, 460
+    total = 46 + height * len(rows)
+    svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + width + 60} {total}" font-family="sans-serif" '
+           'font-size="11"><rect width="100%" height="100%" fill="white"/>']
+    x = 10
+    for outcome, colour in OUTCOMES[:6]:
+        svg.append(f'<rect x="{x}" y="10" width="10" height="10" fill="{colour}"/>'
+                   f'<text x="{x + 14}" y="19">{WORDS.get(outcome, outcome)}</text>')
+        x += 40 + 6.3 * len(WORDS.get(outcome, outcome))
+    for k, ((name, strength), among) in enumerate(rows):
+        y = 34 + height * k
+        label = html.escape(f"{name}, {strength:g} x noise" if strength else name)
+        svg.append(f'<text x="{left - 6}" y="{y + 10}" text-anchor="end">{label}</text>')
+        at = left
+        for outcome, colour in OUTCOMES:
+            part = sum(r["outcome"] == outcome for r in among) / len(among) * width
+            if part:
+                svg.append(f'<rect x="{at:.1f}" y="{y}" width="{part:.1f}" height="{height - 3}" fill="{colour}"/>')
+            at += part
+        svg.append(f'<text x="{left + width + 6}" y="{y + 10}">n = {len(among)}</text>')
+    return "\n".join(svg) + "\n</svg>\n"
+
+
+def confusion(results):
+    """Hidden cause by what was named first, over all strengths; rivals count by their share."""
+    singles = [r for r in results if len(r["causes"]) == 1]
+    hidden = sorted({r["causes"][0] for r in singles}, key=lambda c: (is_outside(c), c)) + ["nothing"]
+    named = [c for c in hidden if c != "nothing" and not is_outside(c)] + ["nothing", "unexplained"]
+    table = {row: collections.Counter() for row in hidden}
+    for r in singles + [r for r in results if not r["causes"]]:
+        row = table[r["causes"][0] if r["causes"] else "nothing"]
+        if not r.get("named"):
+            row["unexplained" if r.get("verdict") == "unexplained" else "nothing"] += 1
+            continue
+        for cause, rivals in zip(r["named"], r["rivals"]):
+            for one in [cause, *rivals]:
+                row[one] += 1 / len(r["named"]) / (1 + len(rivals))
+    size, left, top = 21, 190, 175
+    svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + size * len(named) + 20} '
+           f'{top + size * len(hidden) + 20}" font-family="sans-serif" font-size="11">'
+           '<rect width="100%" height="100%" fill="white"/>'
+           f'<text x="10" y="{top - 10}">hidden</text><text x="{left - 50}" y="20">named</text>']
+    for j, name in enumerate(named):
+        x = left + size * j + 14
+        svg.append(f'<text transform="translate({x},{top - 6}) rotate(-60)">{name}</text>')
+    for i, row in enumerate(hidden):
+        y = top + size * i
+        svg.append(f'<text x="{left - 6}" y="{y + 14}" text-anchor="end">{row}</text>')
+        count = sum(table[row].values())
+        for j, name in enumerate(named):
+            part = table[row][name] / count if count else 0
+            x = left + size * j
+            right = name == row or (is_outside(row) and name == "unexplained")
+            colour = "46,125,79" if right else "70,80,100"
+            svg.append(f'<rect x="{x}" y="{y}" width="{size - 1}" height="{size - 1}" '
+                       f'fill="rgba({colour},{max(0.04, part):.2f})"/>')
+            if part >= 0.005:
+                ink = "white" if part > 0.5 else "black"
+                svg.append(f'<text x="{x + 10}" y="{y + 14}" text-anchor="middle" font-size="9" fill="{ink}">'
+                           f'{100 * part:.0f}</text>')
+    return "\n".join(svg) + "\n</svg>\n"
+
+
+def table(results):
+    lines = ["| hidden | strength | worlds | right | ambiguous, truth listed | partly | missed | wrong | named instead |",
+             "|---|---|---|---|---|---|---|---|---|"]
+    for (name, strength), rows in by_group(results):
+        count = collections.Counter(r["outcome"] for r in rows)
+        instead = collections.Counter("+".join(r.get("named", [])) for r in rows if r["outcome"] == "wrong")
+        lines.append(f"| {name} | {strength:g} | {len(rows)} | {count['right']} | {count['ambiguous_right']} | "
+                     f"{count['partly']} | {count['missed'] + count['failed'] + count['unexplained']} | "
+                     f"{count['wrong']} | {', '.join(f'{n} ({k})' for n, k in instead.most_common())} |")
+    return lines
+
+
+def write(path, results, planned, command):
+    path = pathlib.Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
+    bars_path.write_text(bars(results))
+    confusion_path.write_text(confusion(results))
+    unreachable = sum(not r.get("reachable", True) for r in results)
+    lines = ["# Blind campaign", "",
+             f"Written by `{command}`: {len(results)} of {planned} planned worlds. Every world is a program of its own "
+             "that hides an effect and writes logs; `softgrip diagnose` gets the logs and a model whose numbers are some "
+             "percent off. Strength is the effect's excess error after recalibration, in units of the noise (0.04 mm).",
+             "", "| measure | target | measured (95 % interval) | worlds |", "|---|---|---|---|"]
+    lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
+    walls = [r["wall_s"] for r in results if "wall_s" in r]
+    lines += ["", f"Median wall time of a diagnosis: {statistics.median(walls):.1f} s (three logs of 8,000 samples). In "
+              f"{unreachable} worlds the effect cannot physically be as strong as asked and has its largest size instead.",
+              "", f"![Outcomes by hidden cause]({bars_path.name})", "",
+              f"![What was named where something was hidden, in percent]({confusion_path.name})", "", *table(results), "",
+              "Right: the cause is named alone (a clean world: nothing is named and no structure is left; outside the "
+              "library: `unexplained`). Missed: nothing is named though something is there. Wrong: a name that is not "
+              "there, alone or beside the right one."]
+    path.write_text("\n".join(lines) + "\n")

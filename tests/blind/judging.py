@@ -1,0 +1,118 @@
+"""One blind world, from its making to a judgement: what the fixed worlds of the test suite and the campaign share.
+
+The engine is called as a user calls it and never sees the truth.
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+GIVEN = ROOT / "tests/blind/given.yaml"
+
+# The world's number, where the engine's parameter means the same: effect -> {engine's name: f(world's numbers)}.
+SAME_MEANING = {
+    "transport_delay": {"delay_s": lambda n: n["delay_s"]},
+    "valve_lag": {"time_constant_s": lambda n: n["time_constant_s"]},
+    "pressure_saturation": {"limit_kpa": lambda n: n["limit_kpa"]},
+    "actuator_threshold": {"threshold_kpa": lambda n: n["threshold_kpa"]},
+    "stiffening": {"stiffening_per_mm": lambda n: n["per_mm"]},
+    "slow_creep": {"gain_mm_per_kpa": lambda n: n["gain_mm_per_kpa"],
+                   "time_constant_s": lambda n: n["time_constant_s"]},
+    "thermal_gain": {"gain_per_c": lambda n: n["per_c"]},
+    "ageing": {"gain_per_h": lambda n: 3600 * n["per_s"]},
+    "contact": {"position_mm": lambda n: n["position_mm"], "stiffening": lambda n: n["stiffness_ratio"]},
+    "inertia": {"period_s": lambda n: 1 / n["frequency_hz"], "damping_ratio": lambda n: n["damping"]},
+    "backlash": {"gap_mm": lambda n: n["play_mm"]},
+    "sensor_lag": {"time_constant_s": lambda n: n["time_constant_s"]},
+    "sensor_saturation": {"upper_mm": lambda n: n["limit_mm"]},
+    "periodic_disturbance": {"frequency_hz": lambda n: n["frequency_hz"]},
+    "outliers": {"size_mm": lambda n: n["size_mm"], "probability": lambda n: n["share"]},
+}
+
+
+def is_outside(cause):
+    return cause.startswith("outside_")
+
+
+def judge(hidden, diagnosis):
+    """What a diagnosis is worth when `hidden` (ids) is the truth:
+
+    right            the verdict that the truth asks for, and no other name
+    ambiguous_right  ambiguous, with the truth among what is listed
+    partly           of several hidden causes some are named, and nothing that is not there
+    missed           nothing is named although something is there
+    unexplained      a clean world of which structure is said to be left
+    wrong            something is named that is not there
+    """
+    verdict = diagnosis["verdict"]
+    named = [cause["id"] for cause in diagnosis["causes"]]
+    sets = [{cause, *rivals} for cause, rivals in zip(named, diagnosis["alternatives"])]
+    if not hidden:
+        return "wrong" if named else "unexplained" if verdict == "unexplained" else "right"
+    if all(is_outside(cause) for cause in hidden):
+        return "wrong" if named else "right" if verdict == "unexplained" else "missed"
+    if not named:
+        return "missed"
+    if verdict == "cause_found" and set(named) == set(hidden):
+        return "right"
+    # Every set must hold another hidden cause.
+    left = list(hidden)
+    for one in sorted(sets, key=len):
+        held = [cause for cause in left if cause in one]
+        if not held:
+            return "wrong"
+        left.remove(held[0])
+    return "partly" if left else "ambiguous_right"
+
+
+def covered(hidden, truth, diagnosis):
+    """For each parameter with an interval whose true value is known: whether the interval holds it."""
+    found = {}
+    for cause in diagnosis["causes"]:
+        if cause["id"] not in hidden:
+            continue
+        numbers = truth["effects"][cause["id"]]["parameters"]
+        for name, of_world in SAME_MEANING.get(cause["id"], {}).items():
+            parameter = cause["parameters"].get(name)
+            if parameter is None or parameter["ci95"] is None:
+                continue
+            low, high = parameter["ci95"]
+            found[f"{cause['id']}.{name}"] = low <= of_world(numbers) <= high
+    return found
+
+
+def run_world(build, folder, world):
+    """Makes the world, diagnoses its logs; returns the world with what came of it."""
+    build = pathlib.Path(build).resolve()
+    work = pathlib.Path(tempfile.mkdtemp(dir=folder))
+    try:
+        make = [build / "tests/blind/blind-world", "--seed", str(world["seed"]), "--strength", str(world["strength"]),
+                "--out", work / "logs", "--truth", work / "truth.json"]
+        if world["causes"]:
+            make += ["--cause", ",".join(world["causes"])]
+        subprocess.run(make, check=True)
+        logs = sorted((work / "logs").glob("*.csv"))
+        done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", GIVEN, "--data", *logs, "--out",
+                               work / "out", "--json"], capture_output=True, text=True)
+        if done.returncode != 0:
+            return {**world, "outcome": "failed", "message": done.stderr[-300:]}
+        diagnosis = json.loads(done.stdout)
+        truth = json.loads((work / "truth.json").read_text())
+        return {**world, "outcome": judge(world["causes"], diagnosis), "verdict": diagnosis["verdict"],
+                "named": [c["id"] for c in diagnosis["causes"]], "rivals": diagnosis["alternatives"],
+                "separates": (diagnosis["next_experiment"] or {}).get("separates"),
+                "gain_percent": diagnosis["gain_percent"]["value"],
+                "unexplained_percent": diagnosis["unexplained_percent"],
+                "covered": covered(world["causes"], truth, diagnosis), "wall_s": diagnosis["wall_s"],
+                "reachable": all(e["reachable"] for e in truth["effects"].values())}
+    finally:
+        shutil.rmtree(work)
+
+
+def library(build):
+    """(ids of the library, ids outside it) that the worlds can hide."""
+    ids = subprocess.run([pathlib.Path(build) / "tests/blind/blind-world", "--list"], check=True, capture_output=True,
+                         text=True).stdout.split()
+    return [i for i in ids if not is_outside(i)], [i for i in ids if is_outside(i)]
