@@ -7,6 +7,7 @@
 
 #include "model/catalogue.h"
 #include "sysid/combinations.h"
+#include "sysid/diagnosis/coherence.h"
 #include "sysid/diagnosis/noise.h"
 #include "sysid/diagnosis/spectrum_peaks.h"
 #include "sysid/numbers.h"
@@ -161,6 +162,7 @@ class Diagnostician {
     auto base = recalibrate(logs_, data_, options_);
     if (!base) return Failure(base.error());
     d_.recalibrated = *base;
+    if (const auto wrong = why_not_about(data_.records, *base)) return Failure(*wrong);
     data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm, 3);
     const Division division = divide(data_.records, block_s);
     SelectionOptions selection_options;
@@ -171,6 +173,9 @@ class Diagnostician {
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     name(selection);
     conclude(selection);
+    if (d_.verdict == Verdict::unexplained) {
+      if (auto strangers = strangers_among(data_.records, d_.recalibrated)) d_.warnings.push_back(*strangers);
+    }
     return std::move(d_);
   }
 

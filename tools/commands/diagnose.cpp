@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -47,9 +48,12 @@ void print_cause(const sysid::NamedCause& named) {
               sysid::fixed(named.heldout_gain_percent.lower, 1).c_str(),
               sysid::fixed(named.heldout_gain_percent.upper, 1).c_str());
   for (const sysid::CauseParameter& p : named.parameters) {
-    const std::string interval = p.has_interval ? "(" + sysid::significant(p.ci95.lower, 4) + " .. " +
-                                                      sysid::significant(p.ci95.upper, 4) + ")"
-                                                : "";
+    // An interval many times the value says that the logs do not determine it.
+    const bool loose = p.ci95.upper - p.ci95.lower > 20 * std::abs(p.value);
+    const std::string interval = p.has_interval && loose ? "(not determined by these logs)"
+                                 : p.has_interval ? "(" + sysid::significant(p.ci95.lower, 4) + " .. " +
+                                                        sysid::significant(p.ci95.upper, 4) + ")"
+                                                  : "";
     std::printf("      %-22s %s %s\n", p.name.c_str(), sysid::significant(p.value, 5).c_str(),
                 interval.c_str());
   }
