@@ -21,7 +21,10 @@ import sysid_measured as measured  # noqa: E402
 
 def diagnose(args, log, drive, out):
     common = ["--data", log, "--drive", drive]
-    subprocess.run([args.softgrip, "identify", *common, "--out", out + "_identified"], check=True, capture_output=True)
+    # 6: identified, but the structure does not explain the log, which is why it is diagnosed.
+    fitted = subprocess.run([args.softgrip, "identify", *common, "--out", out + "_identified"], capture_output=True, text=True)
+    if fitted.returncode not in (0, 6):
+        sys.exit(f"{log}, {drive}: {fitted.stderr.strip()}")
     done = subprocess.run([args.softgrip, "diagnose", "--model", os.path.join(out + "_identified", "model.yaml"), *common,
                            "--out", out, "--no-closed-loop", "--nulls", str(args.nulls), "--json"], capture_output=True,
                           text=True)
