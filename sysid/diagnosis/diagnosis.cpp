@@ -246,12 +246,6 @@ class Diagnostician {
     d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
   }
 
-  /// A gain that the search makes out of noise as well.
-  [[nodiscard]] bool reached_by_nulls() const {
-    return d_.null_calibration && d_.null_calibration->campaigns >= enough_nulls &&
-           d_.null_calibration->p_value > null_level;
-  }
-
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
     model.name = given_.name;
     std::string files;
@@ -285,7 +279,8 @@ class Diagnostician {
     const bool clearly = selection.left.excess_mm > clearly_left_noises * d_.noise_mm;
     const double may_stay = clearly ? small_share : may_be_left;
     const bool too_much_left = structure && left_share > may_stay;
-    if (!selection.chosen.empty() && (too_much_left || reached_by_nulls())) {
+    const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
+    if (!selection.chosen.empty() && (too_much_left || by_chance)) {
       d_.verdict = Verdict::unexplained;
       d_.partial = std::move(causes_);
       return;

@@ -11,6 +11,11 @@
 
 namespace softgrip::sysid {
 
+/// A gain that nulls reach more often than this is none.
+inline constexpr double null_level = 0.05;
+/// So many campaigns can show a p-value of `null_level`.
+inline constexpr std::size_t enough_nulls = 19;
+
 /// Campaigns in which the recalibrated model is the truth, searched like the measured one.
 struct NullCalibration {
   std::size_t campaigns = 0;
@@ -19,12 +24,10 @@ struct NullCalibration {
   /// (1 + campaigns with at least the measured gain) / (1 + campaigns): the smallest that can be told is
   /// 1/(1 + campaigns).
   double p_value = 1;
-};
 
-/// A gain that nulls reach more often than this is none.
-inline constexpr double null_level = 0.05;
-/// So many campaigns can show a p-value of `null_level`.
-inline constexpr std::size_t enough_nulls = 19;
+  /// The gain is one that the search makes out of noise as well, or may be.
+  [[nodiscard]] bool reach_the_gain() const { return campaigns >= enough_nulls && p_value > null_level; }
+};
 
 struct NullOptions {
   std::size_t campaigns = enough_nulls;

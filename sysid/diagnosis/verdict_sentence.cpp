@@ -22,6 +22,20 @@ std::string listed(const std::vector<NamedCause>& causes) {
   return text;
 }
 
+std::string unexplained_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
+  if (d.partial.empty()) return "Something is wrong that no known cause explains.";
+  if (d.null_calibration && d.null_calibration->reach_the_gain()) {
+    return "Something is wrong, and it cannot be named: " + listed(d.partial) +
+           " would lower the held-out error from " + before + " to " + after +
+           ", but the search gains as much where nothing is (p = " +
+           significant(d.null_calibration->p_value, 2) + ").";
+  }
+  return "Something is wrong that no known cause explains in full: with " + listed(d.partial) +
+         " the held-out error falls from " + before + " to " + after + ", and " +
+         significant(d.structure_left.excess_mm, 2) + " mm of structure stays, " +
+         significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
+}
+
 }  // namespace
 
 std::string verdict_sentence(const Diagnosis& d) {
@@ -41,8 +55,7 @@ std::string verdict_sentence(const Diagnosis& d) {
       return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) +
              "): with it the held-out error falls from " + before + " to " + after + ".";
     case Verdict::unexplained:
-      return "Something is wrong that no known cause explains: of the structure in the error, " +
-             fixed(d.unexplained_percent, 0) + " % is left unexplained.";
+      return unexplained_sentence(d, before, after);
   }
   return {};
 }
