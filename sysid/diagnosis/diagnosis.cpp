@@ -1,7 +1,6 @@
 #include "sysid/diagnosis/diagnosis.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -158,24 +157,29 @@ class Diagnostician {
       : logs_(logs), given_(given), options_(options) {}
 
   tl::expected<Diagnosis, std::string> run() {
+    StageClock clock(d_);
     if (auto ready = prepare(); !ready) return Failure(ready.error());
     auto base = recalibrate(logs_, data_, options_);
     if (!base) return Failure(base.error());
     d_.recalibrated = *base;
     if (const auto wrong = why_not_about(data_.records, *base)) return Failure(*wrong);
     data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm, 3);
+    clock.ended("recalibration");
     const Division division = divide(data_.records, block_s);
     SelectionOptions selection_options;
     selection_options.seed = options_.seed;
     selection_options.progress = options_.progress;
     Selection selection = select_causes(data_, std::move(*base), d_.noise_mm, division, selection_options);
+    clock.ended("search");
     measure(selection, division);
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
+    if (d_.null_calibration) clock.ended("nulls");
     name(selection);
     conclude(selection);
     if (d_.verdict == Verdict::unexplained) {
       if (auto strangers = strangers_among(data_.records, d_.recalibrated)) d_.warnings.push_back(*strangers);
     }
+    clock.ended("held-out logs and intervals");
     return std::move(d_);
   }
 
@@ -283,6 +287,8 @@ class Diagnostician {
     if (!selection.chosen.empty() && (too_much_left || by_chance)) {
       d_.verdict = Verdict::unexplained;
       d_.partial = std::move(causes_);
+      d_.extended_model =
+          by_chance ? d_.recalibrated_model : named_model(selection.extended.point.model, "extended in part");
       return;
     }
     if (causes_.empty() && structure && selection.left.excess_mm > 0.2 * d_.noise_mm) {
@@ -331,13 +337,8 @@ const char* name_of(Verdict verdict) {
 
 tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs, const model::Model& given,
                                               const DiagnosisOptions& options) {
-  const auto began = std::chrono::steady_clock::now();
   if (logs.empty()) return Failure("no logs to diagnose");
-  auto diagnosis = Diagnostician(logs, given, options).run();
-  if (diagnosis) {
-    diagnosis->wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  }
-  return diagnosis;
+  return Diagnostician(logs, given, options).run();
 }
 
 }  // namespace softgrip::sysid

@@ -1,10 +1,12 @@
 #pragma once
 // The diagnosis: what a model gets wrong, the cause, the extension, the gain.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -79,6 +81,25 @@ struct Diagnosis {
   std::optional<Reference> reference;       ///< of the recalibrated model's residual
   std::optional<Reference> reference_left;  ///< of the extended model's residual, where it is another
   double wall_s = 0;
+  std::vector<std::pair<std::string, double>> stages_s;  ///< what the wall time went into
+};
+
+/// Takes the time of a diagnosis' stages, one after the other.
+class StageClock {
+ public:
+  explicit StageClock(Diagnosis& diagnosis) : diagnosis_(diagnosis) {}
+  /// What has run since construction or the last call was this stage.
+  void ended(std::string stage) {
+    const auto now = std::chrono::steady_clock::now();
+    const double took_s = std::chrono::duration<double>(now - began_).count();
+    diagnosis_.stages_s.emplace_back(std::move(stage), took_s);
+    diagnosis_.wall_s += took_s;
+    began_ = now;
+  }
+
+ private:
+  Diagnosis& diagnosis_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
 /// Fails with a sentence where the logs cannot be judged at all.

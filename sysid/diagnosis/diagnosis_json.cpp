@@ -166,6 +166,9 @@ std::string to_json(const Diagnosis& d) {
   if (d.reference_left) json["reference_left"] = reference_json(*d.reference_left);
   json["warnings"] = d.warnings;
   json["wall_s"] = d.wall_s;
+  Json stages = Json::object();
+  for (const auto& [stage, took_s] : d.stages_s) stages[stage] = took_s;
+  json["stages_s"] = std::move(stages);
   return json.dump(2) + "\n";
 }
 

@@ -1,5 +1,3 @@
-#include <chrono>
-
 #include "sysid/diagnosis/diagnosis.h"
 #include "sysid/trajectory.h"
 
@@ -19,11 +17,12 @@ Reference reference_of(const Diagnosis& d, const StructureFit& fit, const Diagno
 }  // namespace
 
 void examine(Diagnosis& d, const DiagnosisOptions& options) {
-  const auto began = std::chrono::steady_clock::now();
+  StageClock clock(d);
   d.evidence = examine_fits(d.records, d.as_given, d.recalibrated, d.extended, d.noise_mm, options.seed);
+  clock.ended("evidence");
   d.reference = reference_of(d, d.recalibrated, options);
   if (!d.extended.causes.empty()) d.reference_left = reference_of(d, d.extended, options);
-  d.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  clock.ended("reference");
 }
 
 }  // namespace softgrip::sysid
