@@ -12,16 +12,17 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Interval to which the first look is thinned; latencies of interest are longer.
-constexpr double look_interval_s = 0.025;
+/// Interval to which the first look is thinned: a ringing of 30 Hz must still be seen, and the command's
+/// corners.
+constexpr double look_interval_s = 0.0125;
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
 /// Starts that are looked at, and looks that are followed to the end.
-constexpr std::size_t looked_at = 3;
+constexpr std::size_t looked_at = 2;
 constexpr std::size_t followed = 2;
 /// So many candidates are followed to the end, first on thinned records, then of these so many on all
 /// samples, whatever the others do; more when they are as near.
-constexpr std::size_t always_followed = 7;
+constexpr std::size_t always_followed = 5;
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
