@@ -1,0 +1,23 @@
+#!/usr/bin/python3
+"""One world of fixed_worlds.csv: hides, diagnoses, judges. Exit code 0 when the outcome is one of those expected.
+
+    fixed_world.py --build BUILD CAUSE[+CAUSE] STRENGTH SEED OUTCOME[|OUTCOME]
+"""
+import argparse
+import sys
+import tempfile
+
+import judging
+
+parser = argparse.ArgumentParser()
+parser.add_argument("--build", required=True)
+parser.add_argument("causes")
+parser.add_argument("strength", type=float)
+parser.add_argument("seed", type=int)
+parser.add_argument("expected")
+args = parser.parse_args()
+causes = [] if args.causes == "clean" else args.causes.split("+")
+with tempfile.TemporaryDirectory() as folder:
+    result = judging.run_world(args.build, folder, {"causes": causes, "strength": args.strength, "seed": args.seed})
+print(result)
+sys.exit(0 if result["outcome"] in args.expected.split("|") else 1)
