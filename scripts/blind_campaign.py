@@ -62,6 +62,7 @@ def main():
     parser.add_argument("--causes", nargs="+")
     parser.add_argument("--first-seed", type=int, default=1000)
     parser.add_argument("--most-minutes", type=float, help="stop after so long; run again to go on")
+    parser.add_argument("--part", default="1/1", help="K/N: every N-th world only, from the K-th on; the parts can run side by side")
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     args.build = args.build.resolve()
@@ -71,10 +72,11 @@ def main():
     known = {(tuple(r["causes"]), r["strength"], r["seed"]) for r in results}
     ids, outside = judging.library(args.build)
     planned = list(worlds(args, ids, outside))
+    part, parts = (int(number) for number in args.part.split("/"))
     began = time.monotonic()
     with path.open("a") as out:
         for number, world in enumerate(planned, 1):
-            if (tuple(world["causes"]), world["strength"], world["seed"]) in known:
+            if (tuple(world["causes"]), world["strength"], world["seed"]) in known or number % parts != part % parts:
                 continue
             if args.most_minutes and time.monotonic() - began > 60 * args.most_minutes:
                 print(f"stopped after {args.most_minutes:g} minutes, {len(results)} of {len(planned)} worlds done")

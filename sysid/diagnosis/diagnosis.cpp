@@ -1,6 +1,7 @@
 #include "sysid/diagnosis/diagnosis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,10 +23,13 @@ using Failure = tl::unexpected<std::string>;
 /// Share of the recalibrated model's excess (as a mean square) that a set of causes may leave and still be
 /// called the cause: beyond it something else is at work, or the cause has another form.
 constexpr double may_be_left = 0.15;
-/// The same when what is left stands this many times above the noise: then the data could have shown the
-/// cause whole, and did not. Less than the small share may have to do with the form of an equation alone.
-constexpr double clearly_left_noises = 3;
-constexpr double small_share = 0.02;
+/// Less may be left where it stands clearly above the noise: then the data could have shown the cause whole,
+/// and did not. What is smaller than these may have to do with the form of an equation alone.
+struct Leftover {
+  double noises;  ///< above so many times the noise
+  double share;   ///< so much may be left
+};
+constexpr std::array clear_leftovers{Leftover{3, 0.05}, Leftover{5, 0.02}};
 constexpr double block_s = 8;
 constexpr std::size_t fewest_samples = 200;
 
@@ -280,8 +284,10 @@ class Diagnostician {
   void conclude(const Selection& selection) {
     const bool structure = selection.left.present;
     const double left_share = d_.unexplained_percent / 100;
-    const bool clearly = selection.left.excess_mm > clearly_left_noises * d_.noise_mm;
-    const double may_stay = clearly ? small_share : may_be_left;
+    double may_stay = may_be_left;
+    for (const Leftover& clear : clear_leftovers) {
+      if (selection.left.excess_mm > clear.noises * d_.noise_mm) may_stay = clear.share;
+    }
     const bool too_much_left = structure && left_share > may_stay;
     const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
     if (!selection.chosen.empty() && (too_much_left || by_chance)) {
