@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Lets `softgrip investigate` resolve what a poor log leaves ambiguous, on blind worlds (tests/blind) as the rig.
+"""Lets `softgrip investigate` resolve what is ambiguous, on blind worlds (tests/blind) as the rig.
 
-    scripts/blind_investigation.py --work DIR [--build build/release] [--seeds 5] [--strength 8] [--causes ID ...]
-                                   [--first-seed 3000] [--page docs/reference/blind-investigation.md]
+    scripts/blind_investigation.py --work DIR [--build build/release] [--campaign DIR] [--seeds 5] [--strengths 8 2]
+                                   [--causes ID ...] [--first-seed 3000] [--page docs/reference/blind-investigation.md]
 
-Every world first writes one log of triangles; where the diagnosis of it is ambiguous with the truth listed, the
+The worlds are the ambiguous ones of a campaign (scripts/blind_campaign.py --work DIR) and fresh ones that first write
+one log of triangles alone, where much is ambiguous. Where the diagnosis of the logs lists the truth among rivals, the
 investigation plays the experiments that it proposes on the same world. Resumable as the campaign is.
 """
 import argparse
@@ -30,8 +31,8 @@ def investigate(args, world):
     build = args.build
     with tempfile.TemporaryDirectory(dir=args.work) as name:
         work = pathlib.Path(name)
-        options = ["--seed", str(world["seed"]), "--strength", str(world["strength"]), "--poor", "--cause",
-                   ",".join(world["causes"])]
+        options = ["--seed", str(world["seed"]), "--strength", str(world["strength"]), "--cause",
+                   ",".join(world["causes"]), *(["--poor"] if world["poor"] else [])]
         program = build / "tests/blind/blind-world"
         subprocess.run([program, *options, "--out", work / "logs", "--truth", work / "truth.json"], check=True)
         logs = sorted((work / "logs").glob("*.csv"))
@@ -65,27 +66,40 @@ def is_twin(result):
     return all(any(set(one) <= twins for twins in INDISTINGUISHABLE) for one in result.get("after", [[]]) if len(one) > 1)
 
 
+def worlds(args, ids):
+    if args.campaign:
+        for line in (args.campaign / "results.jsonl").read_text().splitlines():
+            row = json.loads(line)
+            if row["outcome"] == "ambiguous_right":
+                yield {key: row[key] for key in ("causes", "strength", "seed")} | {"poor": False}
+    for k in range(args.seeds):
+        for strength in args.strengths:
+            for cause in args.causes or ids:
+                yield {"causes": [cause], "strength": strength, "seed": args.first_seed + k, "poor": True}
+
+
 def page(results, command):
     asked = [r for r in results if r["outcome"] != "not_ambiguous"]
     resolved = [r for r in asked if r["outcome"] == "right"]
     twins = [r for r in asked if r["outcome"] == "ambiguous_right" and is_twin(r)]
     others = len(asked) - len(twins)
     lines = ["# Blind investigations", "",
-             f"Written by `{command}`: {len(results)} worlds with one log of triangles each; {len(asked)} diagnoses were "
+             f"Written by `{command}`: {sum(not r['poor'] for r in results)} ambiguous worlds of the campaign and "
+             f"{sum(r['poor'] for r in results)} worlds that wrote one log of triangles alone. {len(asked)} diagnoses were "
              f"ambiguous with the truth listed. After `softgrip investigate` {len(resolved)} of them name the truth alone. "
-             f"In {len(twins)} the rivals left give equal readings whatever the command (a bent actuator and a bent scale, "
-             f"a stop and a sensor that clips, lags of valve and sensor): the diagnosis says so and what to change instead. "
-             f"Of the other {others}, {len(resolved)} are resolved"
-             f" ({100 * len(resolved) / others if others else 0:.0f} %).", "",
-             "| hidden | seed | ambiguous among | after | experiments | minutes of rig time | outcome |",
-             "|---|---|---|---|---|---|---|"]
-    for r in sorted(asked, key=lambda r: (r["causes"], r["seed"])):
+             f"In {len(twins)} the rivals that are left give equal readings whatever the command (a bent actuator and a "
+             f"bent scale, a stop and a sensor that clips, lags of valve and sensor): the diagnosis says so, and what to "
+             f"change instead. Of the other {others}, {len(resolved)} are resolved.", "",
+             "| hidden | strength | seed | logs | ambiguous among | after | experiments | minutes of rig time | outcome |",
+             "|---|---|---|---|---|---|---|---|---|"]
+    for r in sorted(asked, key=lambda r: (r["poor"], r["causes"], -r["strength"], r["seed"])):
         before = "; ".join(" or ".join(one) for one in r["rivals"])
         after = "; ".join(" or ".join(one) for one in r.get("after", []))
-        lines.append(f"| {'+'.join(r['causes'])} | {r['seed']} | {before} | {after} | {r.get('experiments', '-')} | "
-                     f"{r.get('minutes', 0):.1f} | {r['outcome']}{' (twins)' if r in twins else ''} |")
+        lines.append(f"| {'+'.join(r['causes'])} | {r['strength']:g} | {r['seed']} | {'triangles' if r['poor'] else 'three'} | "
+                     f"{before} | {after} | {r.get('experiments', '-')} | {r.get('minutes', 0):.1f} | "
+                     f"{r['outcome']}{' (twins)' if r in twins else ''} |")
     counts = collections.Counter(r["before"] for r in results if "before" in r)
-    lines += ["", "First diagnoses of all worlds: " + ", ".join(f"{k} {v}" for k, v in counts.most_common()) + "."]
+    lines += ["", "First diagnoses: " + ", ".join(f"{k} {v}" for k, v in counts.most_common()) + "."]
     return "\n".join(lines) + "\n"
 
 
@@ -93,8 +107,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
     parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--campaign", type=pathlib.Path)
     parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--strength", type=float, default=8)
+    parser.add_argument("--strengths", type=float, nargs="+", default=[8, 2])
     parser.add_argument("--causes", nargs="+")
     parser.add_argument("--first-seed", type=int, default=3000)
     parser.add_argument("--page", type=pathlib.Path)
@@ -103,23 +118,22 @@ def main():
     args.work.mkdir(parents=True, exist_ok=True)
     path = args.work / "investigations.jsonl"
     results = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
-    known = {(tuple(r["causes"]), r["strength"], r["seed"]) for r in results}
+    known = {(tuple(r["causes"]), r["strength"], r["seed"], r["poor"]) for r in results}
     ids, _ = judging.library(args.build)
     with path.open("a") as out:
-        for k in range(args.seeds):
-            for cause in args.causes or ids:
-                world = {"causes": [cause], "strength": args.strength, "seed": args.first_seed + k}
-                if (tuple(world["causes"]), world["strength"], world["seed"]) in known:
-                    continue
-                result = investigate(args, world)
-                results.append(result)
-                out.write(json.dumps(result) + "\n")
-                out.flush()
-                print(f"{cause} seed {world['seed']}: {result.get('before')} {result.get('rivals')} -> "
-                      f"{result['outcome']} {result.get('after', '')} {result.get('end', '')} {result.get('message', '')}",
-                      flush=True)
+        for world in worlds(args, ids):
+            if (tuple(world["causes"]), world["strength"], world["seed"], world["poor"]) in known:
+                continue
+            result = investigate(args, world)
+            results.append(result)
+            out.write(json.dumps(result) + "\n")
+            out.flush()
+            print(f"{'+'.join(world['causes'])} {world['strength']:g} seed {world['seed']}: {result.get('before')} "
+                  f"{result.get('rivals')} -> {result['outcome']} {result.get('after', '')} {result.get('end', '')} "
+                  f"{result.get('message', '')}", flush=True)
     if args.page:
-        args.page.write_text(page(results, f"scripts/blind_investigation.py --work DIR --seeds {args.seeds} "
+        campaign = " --campaign DIR" if args.campaign else ""
+        args.page.write_text(page(results, f"scripts/blind_investigation.py --work DIR{campaign} --seeds {args.seeds} "
                                            f"--first-seed {args.first_seed} --page {args.page}"))
 
 
