@@ -93,7 +93,8 @@ def main():
         for option in ("seeds", "clean", "outside", "pairs"):
             if getattr(args, option) != parser.get_default(option):
                 command += f" --{option} {getattr(args, option)}"
-        blind_page.write(args.page, results, len(planned), f"{command} --page {args.page}")
+        keys = {(tuple(w["causes"]), w["strength"], w["seed"]) for w in planned} | known
+        blind_page.write(args.page, results, len(keys), f"{command} --page {args.page}")
 
 
 if __name__ == "__main__":

@@ -141,6 +141,25 @@ def confusion(results):
     return "\n".join(svg) + "\n</svg>\n"
 
 
+def detection_limits(results):
+    """By cause: the share found at each strength, and the smallest strength found nine times in ten."""
+    singles = [r for r in results if len(r["causes"]) == 1 and not is_outside(r["causes"][0])]
+    strengths = sorted({r["strength"] for r in singles}, reverse=True)
+    lines = ["| cause | " + " | ".join(f"found at {s:g} x noise" for s in strengths) + " | found nine times in ten from |",
+             "|---|" + "---|" * (len(strengths) + 1)]
+    for cause in sorted({r["causes"][0] for r in singles}):
+        rates = {s: share([r for r in singles if r["causes"][0] == cause and r["strength"] == s], "right",
+                          "ambiguous_right") for s in strengths}
+        limit = None
+        for s in strengths:
+            if not rates[s] >= 90:
+                break
+            limit = s
+        cells = " | ".join("-" if math.isnan(rates[s]) else f"{rates[s]:.0f} %" for s in strengths)
+        lines.append(f"| {cause} | {cells} | {f'{limit:g} x noise' if limit else 'not reached'} |")
+    return lines
+
+
 def table(results):
     lines = ["| hidden | strength | worlds | right | ambiguous, truth listed | partly | missed | wrong | named instead |",
              "|---|---|---|---|---|---|---|---|---|"]
@@ -159,9 +178,10 @@ def write(path, results, planned, command):
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
     bars_path.write_text(bars(results))
     confusion_path.write_text(confusion(results))
+    of_planned = f" of {planned} planned (it was stopped before the end)" if len(results) < planned else ""
     unreachable = sum(not r.get("reachable", True) for r in results)
     lines = ["# Blind campaign", "",
-             f"Written by `{command}`: {len(results)} of {planned} planned worlds. Every world is a program of its own "
+             f"Written by `{command}`: {len(results)} worlds{of_planned}. Every world is a program of its own "
              "that hides an effect and writes logs; `softgrip diagnose` gets the logs and a model whose numbers are some "
              "percent off. Strength is the effect's excess error after recalibration, in units of the noise (0.04 mm).",
              "", "| measure | target | measured (95 % interval) | worlds |", "|---|---|---|---|"]
@@ -170,7 +190,8 @@ def write(path, results, planned, command):
     lines += ["", f"Median wall time of a diagnosis: {statistics.median(walls):.1f} s (three logs of 8,000 samples). In "
               f"{unreachable} worlds the effect cannot physically be as strong as asked and has its largest size instead.",
               "", f"![Outcomes by hidden cause]({bars_path.name})", "",
-              f"![What was named where something was hidden, in percent]({confusion_path.name})", "", *table(results), "",
+              f"![What was named where something was hidden, in percent]({confusion_path.name})", "", "Found: named alone, or listed in an ambiguous verdict.", "",
+              *detection_limits(results), "", *table(results), "",
               "Right: the cause is named alone (a clean world: nothing is named and no structure is left; outside the "
               "library: `unexplained`). Missed: nothing is named though something is there. Wrong: a name that is not "
               "there, alone or beside the right one."]
