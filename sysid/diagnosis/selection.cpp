@@ -13,6 +13,9 @@ namespace {
 
 /// Candidates that are refitted without held-out blocks.
 constexpr std::size_t finalists = 4;
+/// What one more cause must take of the recalibrated model's excess, as a mean square: less may make up for the
+/// form of an equation that the first cause does not quite have.
+constexpr double one_more_share = 0.01;
 /// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
 /// is no rival whatever the blocks say.
 constexpr double rival_share = 0.05;
@@ -74,7 +77,11 @@ class Selector {
   /// A gain whose interval excludes nothing and whose size is worth having.
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after) const {
     const Spread difference = mean_difference(before, after, options_.seed);
-    const double worth = 0.01 * noise_ * noise_;
+    double worth = 0.01 * noise_ * noise_;
+    if (!result_.extended.causes.empty()) {
+      const double excess_mm = result_.base_structure.excess_mm;
+      worth = std::max(worth, one_more_share * excess_mm * excess_mm);
+    }
     return difference.lower > 0 && difference.value > worth &&
            difference.value > 0.02 * rmse_mm(before) * rmse_mm(before) * 0.5;
   }
