@@ -4,12 +4,19 @@
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-demo-output}")
+# An existing build is brought up to date; otherwise the three programs alone, without debug information.
 build=build/release
+[ -f "$build/CMakeCache.txt" ] || build=build/demo
 
 bash scripts/packages.sh build
 echo "Building (a few minutes the first time) ..."
-[ -f "$build/CMakeCache.txt" ] || cmake --preset release -DSOFTGRIP_TESTS=OFF -DSOFTGRIP_BENCHMARKS=OFF >/dev/null
-cmake --build "$build" -j "$(nproc)" --target softgrip softgripd softgrip-rig | tail -n 1
+[ -f "$build/CMakeCache.txt" ] || cmake --preset demo >/dev/null
+build() { cmake --build "$build" -j "$(nproc)" --target softgrip softgripd softgrip-rig; }
+if [ -t 1 ]; then
+  build  # ninja keeps its progress on one line of a terminal
+else
+  build >"$build/demo.log" || { tail -n 40 "$build/demo.log" >&2; exit 1; }
+fi
 
 rm -rf "$out" && mkdir -p "$out/runs"
 work=$(mktemp -d) runs=$out/runs
