@@ -212,7 +212,7 @@ double PressurePlan::miss_mm(double time_s, double wanted_mm) const noexcept {
   if (displacement_mm.empty()) return 0;
   const double place =
       std::clamp((time_s - start_s) / step_s, 0.0, static_cast<double>(displacement_mm.size() - 1));
-  return std::abs(displacement_mm[static_cast<std::size_t>(place + 0.5)] - wanted_mm);
+  return std::abs(displacement_mm[static_cast<std::size_t>(std::lround(place))] - wanted_mm);
 }
 
 Planner::Planner(const model::Model& model, const LimitSettings& limits, double tick_s)

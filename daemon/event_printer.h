@@ -38,9 +38,9 @@ class EventPrinter {
   };
   [[nodiscard]] bool passes(const EventEntry& event);
 
-  std::shared_ptr<spdlog::details::thread_pool> writer_;  // must outlive the logger
   std::shared_ptr<spdlog::logger> logger_;
-  std::map<std::string, Flow> flows_;  // by kind
+  std::shared_ptr<spdlog::details::thread_pool> writer_;  // goes first: its thread writes through the logger
+  std::map<std::string, Flow> flows_;                     // by kind
 };
 
 }  // namespace softgrip::daemon

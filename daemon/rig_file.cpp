@@ -107,7 +107,7 @@ std::optional<model::Model> named_model(Context& context, MapReader& reader, std
 
 std::string read_name(MapReader& reader, std::string_view key) {
   constexpr std::size_t longest = 32;
-  const std::string name = reader.text(key);
+  std::string name = reader.text(key);
   const auto good = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
   };

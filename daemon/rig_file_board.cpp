@@ -21,7 +21,7 @@ std::chrono::nanoseconds read_duration(MapReader& reader, std::string_view key, 
 
 /// A numeric address: names would have to be resolved, which takes as long as it takes.
 std::string read_host(MapReader& reader) {
-  const std::string host = reader.text("host");
+  std::string host = reader.text("host");
   std::array<unsigned char, sizeof(in6_addr)> address{};
   if (host.empty() || ::inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
       ::inet_pton(AF_INET6, host.c_str(), address.data()) == 1) {

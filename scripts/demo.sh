@@ -31,7 +31,8 @@ cat "$work/rig.log"
 say "2. The daemon at 200 Hz (softgripd), and the pick sequence on both fingers"
 start_daemon
 sed 's/^/   /' "$work/daemon.log"
-"$softgrip" start --wait pick_stone
+"$softgrip" start --wait pick_stone ||
+  { echo "The pick did not succeed; the lines above say why. On a busy machine, try again." >&2; exit 1; }
 "$softgrip" vent
 "$softgrip" status
 stop_daemon

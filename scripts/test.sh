@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Installs what the tests need, builds, and runs them: everything in the release build, then what meets bytes from
-# outside under AddressSanitizer and UndefinedBehaviorSanitizer.
+# Installs what the tests need, builds, and runs them: the release build with every test; then, under
+# AddressSanitizer and UndefinedBehaviorSanitizer, what meets bytes from outside; then, under ThreadSanitizer, what has
+# threads; then clang-tidy over the sources that differ from origin's main (over all of them: scripts/tidy.sh).
 #   scripts/test.sh            all of it
 #   scripts/test.sh --quick    the release build and its tests only
+# docs/how-to/measure.md says what each part takes, and how to run every test under a sanitizer.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 
@@ -18,6 +20,24 @@ jobs=$(nproc)
 started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
 
+# sanitized PRESET TARGET ...: builds the targets and runs their tests. A test whose clock went wrong on a busy machine
+# is run once more; what a sanitizer reports is never forgiven, since the reports are files.
+sanitized() {
+  local preset=$1 reports=$PWD/build/$1/reports
+  shift
+  say "$preset: $*"
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset" -j "$jobs" --target "$@" | tail -n 1
+  rm -rf "$reports" && mkdir -p "$reports"
+  ASAN_OPTIONS=log_path=$reports/asan UBSAN_OPTIONS=print_stacktrace=1:log_path=$reports/ubsan \
+    TSAN_OPTIONS=log_path=$reports/tsan \
+    ctest --preset "$preset" -j "$jobs" --repeat until-pass:2 -E '_NOT_BUILT|^system\.|^BlocksPage' | tail -n 12
+  if [ -n "$(ls "$reports")" ]; then
+    cat "$reports"/* >&2
+    return 1
+  fi
+}
+
 say "format"
 git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 
@@ -25,20 +45,20 @@ say "build"
 cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=ON >/dev/null
 cmake --build --preset release -j "$jobs" | tail -n 1
 
-if ! $quick; then
-  # Parsers and the wire: the programs are run as they are, since only these are built.
-  sanitized=(model_document_test drivers_test modbus_session_test)
-  say "build with sanitizers: ${sanitized[*]}"
-  cmake --preset asan-ubsan >/dev/null
-  cmake --build --preset asan-ubsan -j "$jobs" --target "${sanitized[@]}" | tail -n 1
-  say "test with sanitizers"
-  for test in "${sanitized[@]}"; do
-    program=$(find build/asan-ubsan/tests -type f -name "$test" -perm -u+x)
-    "$program" --gtest_brief=1
-  done
-fi
-
 say "test"
 # Real sockets and real time on a machine that may be busy: what fails once is run once more, twice is a failure.
 ctest --preset release -j "$jobs" --repeat until-pass:2
+
+if ! $quick; then
+  sanitized asan-ubsan model_document_test drivers_test modbus_session_test modbus_tcp_board_test daemon_socket_test
+  sanitized tsan daemon_cells_test daemon_bus_test daemon_recorder_test daemon_loop_test daemon_socket_test \
+    daemon_process_test modbus_session_test modbus_tcp_board_test
+
+  mapfile -t changed < <(git diff --name-only --diff-filter=d origin/main...HEAD -- \
+    {model,control,drivers,daemon,sysid,tools}/'*.cpp' 2>/dev/null || true)
+  if [ ${#changed[@]} -gt 0 ] && [ ${#changed[@]} -le 40 ]; then
+    say "clang-tidy: ${#changed[@]} changed sources"
+    bash scripts/tidy.sh "${changed[@]}"
+  fi
+fi
 say "done"

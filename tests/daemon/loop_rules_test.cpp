@@ -37,13 +37,17 @@ namespace {
 thread_local bool armed = false;
 std::atomic<std::uint64_t> allocations{0};
 
+}  // namespace
+
+#if !SOFTGRIP_SANITIZED
+namespace {
+
 void count_allocation() noexcept {
   if (armed) allocations.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace
 
-#if !SOFTGRIP_SANITIZED
 // The C library's own functions behind counters: operator new ends here too.
 extern "C" {
 void* __libc_malloc(size_t);
