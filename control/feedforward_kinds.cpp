@@ -35,7 +35,10 @@ std::optional<double> value_in(const model::Model& model, std::string_view id, s
 }
 
 model::Model bouc_wen_of(const model::Model& model) {
-  return model::only(model, [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });
+  // Its asymmetry is a part of it.
+  return model::only(model, [](const model::BlockInfo& info) {
+    return info.id == "bouc_wen" || info.id == "asymmetric_hysteresis";
+  });
 }
 
 }  // namespace

@@ -114,8 +114,10 @@ std::string without_inverse(const model::Model& model) {
 
 tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const LimitSettings& limits,
                                            double tick_s) {
-  const auto part = model::only(model, [](const BlockInfo& info) { return info.id == "bouc_wen"; });
-  if (part.blocks.empty()) {
+  const auto part = model::only(model, [](const BlockInfo& info) {
+    return info.id == "bouc_wen" || info.id == "asymmetric_hysteresis";  // its asymmetry is a part of it
+  });
+  if (!model::position_of(part, "bouc_wen")) {
     return tl::unexpected(
         Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of"});
   }

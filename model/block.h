@@ -40,6 +40,9 @@
 // besides. A block whose parameters must fit each other declares
 // `static std::string_view objection(std::span<const double> values)`, empty when they do.
 //
+// A block that is a part of the chain's Bouc-Wen hysteresis declares `void shape(BoucWen<T>&) const` besides,
+// which the chain calls once when it is made.
+//
 // Blocks are copyable values; stepping allocates nothing once a block was prepared for a sample time.
 
 #include <array>

@@ -61,6 +61,16 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
     if (info.kind <= Kind::element) first_displacement_ = behind;
     if (info.kind <= Kind::displacement) first_reading_ = behind;
   }
+  // A block may shape the chain's hysteresis, of which it is a part.
+  for (const AnyBlock<T>& any : blocks_) {
+    visit_block(any, [&](const auto& block) {
+      if constexpr (requires(BoucWen<T> & hysteresis) { block.shape(hysteresis); }) {
+        for (AnyBlock<T>& other : blocks_) {
+          if (BoucWen<T>* const hysteresis = std::get_if<BoucWen<T>>(&other)) block.shape(*hysteresis);
+        }
+      }
+    });
+  }
   reset(T(0.0));
 }
 

@@ -1,6 +1,7 @@
 #include "model/model_file.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -28,6 +29,7 @@ std::vector<std::string> ids_of(Station station) {
 
 // Reads one value by its declaration.
 double read_value(MapReader& map, const ParameterSpec& spec, const std::string& name) {
+  if (!std::isnan(spec.if_left_out) && !map.has(name)) return spec.if_left_out;
   if (spec.whole) {
     return static_cast<double>(
         map.integer(name, static_cast<std::int64_t>(spec.lower), static_cast<std::int64_t>(spec.upper)));

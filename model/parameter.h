@@ -21,6 +21,9 @@ struct ParameterSpec {
   /// The value at which the block does nothing, when all its parameters that have one stand there;
   /// NaN where the value does not matter then.
   double neutral = std::numeric_limits<double>::quiet_NaN();
+  /// The value that a model file means when it leaves this one out; NaN: it must be given. For a parameter
+  /// that came to a block later, so that older files say what they always said.
+  double if_left_out = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace softgrip::model

@@ -2,12 +2,18 @@
 // Loading and unloading loops that differ in shape.
 
 #include "model/block.h"
+#include "model/blocks/bouc_wen.h"
 #include "model/exponential.h"
 
 namespace softgrip::model {
 
-/// An element that unloading winds up and loading unwinds, each over its own pressure: while the pressure
-/// falls, z approaches the unloading length; while it rises, z fades over the loading length. Rate
+/// Two shapes of it, each with its own neutral value.
+///
+/// delta skews the chain's own Bouc-Wen element, which levels off faster one way than the other: the standard
+/// form (bouc_wen.h says whose). It has no output of its own and does nothing in a chain without bouc_wen.
+///
+/// gain adds an element that unloading winds up and loading unwinds, each over its own pressure: while the
+/// pressure falls, z approaches the unloading length; while it rises, z fades over the loading length. Rate
 /// independent; nothing on the first loading. With both lengths equal the settled loop is point symmetric, as
 /// Bouc-Wen's own is; with different ones it is not. Exact for any step size.
 template <class T>
@@ -20,8 +26,8 @@ class AsymmetricHysteresis {
                                   .title = "Asymmetric hysteresis",
                                   .meaning = "Loading and unloading loops differ in shape.",
                                   .equation =
-                                      "y += gain z; falling: z' = |p'| (1 - z/memory); rising: "
-                                      "z' = -|p'| z/memory"};
+                                      "bouc_wen: h' -= delta |h| |p'|; y += gain z; falling: "
+                                      "z' = |p'| (1 - z/unloading); rising: z' = -|p'| z/loading"};
   static constexpr std::array parameters{
       ParameterSpec{.name = "gain_mm_per_kpa",
                     .unit = "mm/kPa",
@@ -44,10 +50,27 @@ class AsymmetricHysteresis {
                     .lower = 0.01,
                     .upper = 10000.0,
                     .scale = 5.0,
-                    .meaning = "rise of the pressure over which it fades"}};
+                    .meaning = "rise of the pressure over which it fades"},
+      ParameterSpec{.name = "delta_per_kpa",
+                    .unit = "1/kPa",
+                    .default_value = 0.01,
+                    .lower = -10.0,
+                    .upper = 10.0,
+                    .scale = 0.02,
+                    .meaning =
+                        "added to how fast the state of bouc_wen levels off on loading, taken from it on "
+                        "unloading; at most its eta",
+                    .neutral = 0.0,
+                    .if_left_out = 0.0}};
 
   AsymmetricHysteresis(std::span<const T> values, const Preparation&)
-      : gain_(values[0]), unloading_per_kpa_(1.0 / values[1]), loading_per_kpa_(1.0 / values[2]) {}
+      : gain_(values[0]),
+        unloading_per_kpa_(1.0 / values[1]),
+        loading_per_kpa_(1.0 / values[2]),
+        delta_per_kpa_(values[3]) {}
+
+  /// Called once by the chain, which has made all its blocks by then.
+  void shape(BoucWen<T>& hysteresis) const { hysteresis.skew(delta_per_kpa_); }
 
   void reset(const T& input) {
     falling_ = value_of(input) < 0.0;
@@ -97,6 +120,7 @@ class AsymmetricHysteresis {
   T gain_;
   T unloading_per_kpa_;  // 1/unloading
   T loading_per_kpa_;
+  T delta_per_kpa_;
   bool falling_ = false;
   T wound_kpa_{0.0};  // z
   T pressure_{0.0};

@@ -3,6 +3,14 @@
 // with signs and bars in their standard reading:
 //   B(t) = alpha p - h,   h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h
 // The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h), whatever the time.
+// An AsymmetricHysteresis beside it adds a term that differs between loading and unloading,
+//   dh/dp = beta - (gamma + eta s + delta sgn(p')) |h|^n
+// (the term in the sign of the velocity alone of the generalised Bouc-Wen models: Wang and Wen, Journal of
+// Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132, 2006).
+// A RateDependentHysteresis beside it makes the loop wider where the pressure moves fast,
+//   B = alpha p - h (1 + growth r/(r + rate)), settling r' = |p'| - r
+// (heights of the loop that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on
+// Mechatronics 12, 2007; here they level off).
 
 #include <array>
 #include <cmath>
@@ -81,8 +89,8 @@ class BoucWen {
   BoucWen(std::span<const T> values, const Preparation&)
       : alpha_(values[0]),
         beta_(values[1]),
-        growing_(values[2] + values[3]),
-        shrinking_(values[2] - values[3]),
+        growing_{T(values[2] + values[3]), T(values[2] + values[3])},
+        shrinking_{T(values[2] - values[3]), T(values[2] - values[3])},
         exponent_(static_cast<int>(std::lround(value_of(values[4])))) {}
 
   static std::string_view objection(std::span<const double> values) {
@@ -92,7 +100,30 @@ class BoucWen {
                : std::string_view{};
   }
 
+  /// Makes loading and unloading differ: h levels off faster by `delta_per_kpa` while the pressure rises and
+  /// slower by as much while it falls. At most +-eta, and +-(gamma + eta): beyond, the state would grow
+  /// while the pressure returns, and without bound; it counts as that much. Once per block.
+  void skew(const T& delta_per_kpa) {
+    const T eta = (growing_[0] - shrinking_[0]) * 0.5;
+    const T most = value_of(eta) < value_of(growing_[0]) ? eta : growing_[0];
+    T delta = delta_per_kpa;
+    if (value_of(delta) > value_of(most)) delta = most;
+    if (value_of(delta) < -value_of(most)) delta = -most;
+    growing_ = {growing_[0] - delta, growing_[1] + delta};
+    shrinking_ = {shrinking_[0] - delta, shrinking_[1] + delta};
+  }
+
+  /// Makes the loop wider by up to `growth` of itself where the pressure moves much faster than
+  /// `rate_kpa_per_s`, as averaged over `settling_s`. Exact at the end of a straight segment.
+  void widen(const T& growth, const T& rate_kpa_per_s, const T& settling_s) {
+    widens_ = true;
+    growth_ = growth;
+    half_kpa_per_s_ = rate_kpa_per_s;
+    settling_per_s_ = 1.0 / settling_s;
+  }
+
   void reset(const T& input) {
+    speed_kpa_per_s_ = T(0.0);
     hysteresis_ = T(0.0);
     direction_ = value_of(input) < 0.0 ? -1.0 : 1.0;
     hysteresis_ = moved(input, direction_);
@@ -111,26 +142,37 @@ class BoucWen {
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T change = in.end - in.begin;
     const T begin = output_;
-    if (is_zero(change)) return {in.duration_s, begin, begin, begin};
+    if (is_zero(change) && !widens_) return {in.duration_s, begin, begin, begin};
     const T before = hysteresis_;
     const double direction = direction_of(change);
     hysteresis_ = moved(change, direction);
     pressure_ = in.end;
     direction_ = direction;
-    output_ = alpha_ * pressure_ - hysteresis_;
     // Mean of h over the segment: the cubic through both ends and their slopes, moved along by the bend of p.
     const T slope_before = slope_at(before, direction);
     const T slope_after = slope_at(hysteresis_, direction);
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;
     const T mean_h = (before + hysteresis_) * 0.5 + change * (slope_before - slope_after) * (1.0 / 12.0) +
                      (slope_before + slope_after) * 0.5 * off_middle;
-    return {in.duration_s, begin, output_, alpha_ * in.mean - mean_h};
+    if (!widens_) {
+      output_ = alpha_ * pressure_ - hysteresis_;
+      return {in.duration_s, begin, output_, alpha_ * in.mean - mean_h};
+    }
+    const T wide_before = width(speed_kpa_per_s_);
+    speed_kpa_per_s_ = speed(change, in.duration_s);
+    const T wide = width(speed_kpa_per_s_);
+    output_ = alpha_ * pressure_ - hysteresis_ * wide;
+    const T together = (hysteresis_ - before) * (wide - wide_before) * (1.0 / 12.0);
+    return {in.duration_s, begin, output_,
+            alpha_ * in.mean - mean_h * ((wide_before + wide) * 0.5) - together};
   }
 
   template <class U>
-  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+  [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const {
     const U change = end_kpa - pressure_;
-    return alpha_ * end_kpa - moved(change, direction_of(change));
+    const U h = moved(change, direction_of(change));
+    if (!widens_) return alpha_ * end_kpa - h;
+    return alpha_ * end_kpa - h * width(speed(change, duration_s));
   }
 
  private:
@@ -142,9 +184,25 @@ class BoucWen {
     return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : direction_;
   }
 
-  // gamma + eta s for the state h and the direction of the pressure. At h = 0 the state follows the pressure.
+  // r after `duration_s`: it relaxes toward |p'|; a jump throws it up by the jump per settling time.
+  template <class U>
+  [[nodiscard]] U speed(const U& change, const T& duration_s) const {
+    const T z = duration_s * settling_per_s_;
+    const U size = value_of(change) < 0.0 ? U(-change) : change;
+    return speed_kpa_per_s_ + (size * settling_per_s_ - z * speed_kpa_per_s_) * phi1(T(-z));
+  }
+
+  // How many times its width without motion the loop has.
+  template <class U>
+  [[nodiscard]] U width(const U& speed_kpa_per_s) const {
+    return 1.0 + growth_ * (speed_kpa_per_s / (speed_kpa_per_s + half_kpa_per_s_));
+  }
+
+  // gamma + eta s + delta sgn(p') for the state h and the direction of the pressure. At h = 0 the state
+  // follows the pressure.
   [[nodiscard]] const T& rate(double h, double direction) const {
-    return h * direction >= 0.0 ? growing_ : shrinking_;
+    const std::size_t way = direction > 0.0 ? 1 : 0;
+    return h * direction >= 0.0 ? growing_[way] : shrinking_[way];
   }
 
   // |h|^n
@@ -185,19 +243,19 @@ class BoucWen {
     const T x = -k * hysteresis_ / beta_;
     const T stretch = std::abs(value_of(x)) < 1e-5 ? T(1.0 - x * 0.5 + x * x * (1.0 / 3.0)) : T(log1p(x) / x);
     const U rest = change + hysteresis_ / beta_ * stretch;
-    return rest * beta_ * phi1(U(-(growing_ * direction) * rest));
+    return rest * beta_ * phi1(U(-(rate(0.0, direction) * direction) * rest));
   }
 
   template <class U>
   [[nodiscard]] U moved_in_steps(const U& change, double direction) const {
-    const int steps = steps_for(std::abs(value_of(change)));
+    const int steps = steps_for(std::abs(value_of(change)), direction);
     const U piece = change * (1.0 / steps);
     U h = U(hysteresis_);
     for (int i = 0; i < steps; ++i) {
       const T& k = rate(value_of(h), direction);
       U next = runge_kutta(h, piece, k);
       if (value_of(h) * value_of(next) < 0.0) {
-        next = runge_kutta(U(0.0), U(piece - to_zero(h, k) * direction), growing_);
+        next = runge_kutta(U(0.0), U(piece - to_zero(h, k) * direction), rate(0.0, direction));
       }
       h = next;
     }
@@ -206,10 +264,11 @@ class BoucWen {
 
   // So many that over one n k |h|^(n-1) dp, the relative change of the slope, stays below 1/100, and h moves
   // by at most 1/40 of where it levels off.
-  [[nodiscard]] int steps_for(double change_kpa) const {
+  [[nodiscard]] int steps_for(double change_kpa, double direction) const {
     constexpr int most = 100000;
     const double beta = value_of(beta_);
-    const double growing = value_of(growing_);
+    const double growing = value_of(rate(direction, direction));
+    const double shrinking = value_of(rate(-direction, direction));
     double largest = std::abs(value_of(hysteresis_)) + beta * change_kpa;
     double wanted = 1.0;
     if (growing > 0.0) {
@@ -217,7 +276,7 @@ class BoucWen {
       largest = std::fmin(largest, std::fmax(std::abs(value_of(hysteresis_)), level));
       wanted = 40.0 * beta * change_kpa / level;
     }
-    const double k = std::fmax(growing, std::abs(value_of(shrinking_)));
+    const double k = std::fmax(growing, std::abs(shrinking));
     wanted =
         std::ceil(std::fmax(wanted, 100.0 * exponent_ * k * std::pow(largest, exponent_ - 1) * change_kpa));
     return wanted > most ? most : wanted < 1.0 ? 1 : static_cast<int>(wanted);
@@ -249,10 +308,15 @@ class BoucWen {
   }
 
   T alpha_, beta_;
-  T growing_;    // gamma + eta
-  T shrinking_;  // gamma - eta
+  std::array<T, 2> growing_;    // gamma + eta, while the pressure falls and while it rises
+  std::array<T, 2> shrinking_;  // gamma - eta, likewise
   int exponent_;
   double direction_ = 1.0;
+  bool widens_ = false;
+  T growth_{0.0};
+  T half_kpa_per_s_{1.0};  // rate at which it has grown by half of that
+  T settling_per_s_{0.0};
+  T speed_kpa_per_s_{0.0};  // r
   T hysteresis_{0.0};
   T pressure_{0.0};
   T output_{0.0};

@@ -2,13 +2,19 @@
 // Loop width that grows with rate beyond the viscous part.
 
 #include "model/block.h"
+#include "model/blocks/bouc_wen.h"
 #include "model/exponential.h"
 
 namespace softgrip::model {
 
-/// A friction that relaxes: z' = p' - z (|p'|/width + 1/tau), y -= gain z. Far faster than the width per tau
-/// it is a hysteresis of that width, far slower a viscous branch whose loop shrinks with the rate. Exact for
-/// straight pressure and any step size.
+/// Two shapes of it, each with its own neutral value.
+///
+/// growth widens the loop of the chain's own Bouc-Wen element with the rate (bouc_wen.h says how, and whose
+/// form it is). It has no output of its own and does nothing in a chain without bouc_wen.
+///
+/// gain adds a friction that relaxes: z' = p' - z (|p'|/width + 1/tau), y -= gain z. Far faster than the
+/// width per tau it is a hysteresis of that width, far slower a viscous branch whose loop shrinks with the
+/// rate. Exact for straight pressure and any step size.
 template <class T>
 class RateDependentHysteresis {
  public:
@@ -18,32 +24,71 @@ class RateDependentHysteresis {
                                   .inverse = Inverse::implicit,
                                   .title = "Rate-dependent hysteresis",
                                   .meaning = "Loop width grows with rate beyond the viscous part.",
-                                  .equation = "y -= gain z, z' = p' - z (|p'|/width + 1/tau)"};
-  static constexpr std::array parameters{ParameterSpec{.name = "gain_mm_per_kpa",
-                                                       .unit = "mm/kPa",
-                                                       .default_value = 0.03,
-                                                       .lower = -10.0,
-                                                       .upper = 10.0,
-                                                       .scale = 0.02,
-                                                       .meaning = "held back per pressure after a turn",
-                                                       .neutral = 0.0},
-                                         ParameterSpec{.name = "width_kpa",
-                                                       .unit = "kPa",
-                                                       .default_value = 10.0,
-                                                       .lower = 0.01,
-                                                       .upper = 10000.0,
-                                                       .scale = 5.0,
-                                                       .meaning = "largest z, reached at high rates"},
-                                         ParameterSpec{.name = "time_constant_s",
-                                                       .unit = "s",
-                                                       .default_value = 1.0,
-                                                       .lower = 1e-3,
-                                                       .upper = 1e4,
-                                                       .scale = 0.5,
-                                                       .meaning = "time over which z relaxes"}};
+                                  .equation =
+                                      "y -= gain z, z' = p' - z (|p'|/width + 1/tau); bouc_wen: "
+                                      "h counts h (1 + growth r/(r + rate)), settling r' = |p'| - r"};
+  static constexpr std::array parameters{
+      ParameterSpec{.name = "gain_mm_per_kpa",
+                    .unit = "mm/kPa",
+                    .default_value = 0.03,
+                    .lower = -10.0,
+                    .upper = 10.0,
+                    .scale = 0.02,
+                    .meaning = "held back per pressure after a turn",
+                    .neutral = 0.0},
+      ParameterSpec{.name = "width_kpa",
+                    .unit = "kPa",
+                    .default_value = 10.0,
+                    .lower = 0.01,
+                    .upper = 10000.0,
+                    .scale = 5.0,
+                    .meaning = "largest z, reached at high rates"},
+      ParameterSpec{.name = "time_constant_s",
+                    .unit = "s",
+                    .default_value = 1.0,
+                    .lower = 1e-3,
+                    .upper = 1e4,
+                    .scale = 0.5,
+                    .meaning = "time over which z relaxes"},
+      ParameterSpec{.name = "growth",
+                    .unit = "",
+                    .default_value = 0.2,
+                    .lower = -0.9,
+                    .upper = 100.0,
+                    .scale = 0.1,
+                    .meaning = "share by which the loop of bouc_wen is wider at "
+                               "high rates",
+                    .neutral = 0.0,
+                    .if_left_out = 0.0},
+      ParameterSpec{.name = "rate_kpa_per_s",
+                    .unit = "kPa/s",
+                    .default_value = 20.0,
+                    .lower = 0.01,
+                    .upper = 1e5,
+                    .scale = 10.0,
+                    .meaning = "rate at which it has grown by half of that",
+                    .if_left_out = 20.0},
+      ParameterSpec{.name = "settling_s",
+                    .unit = "s",
+                    .default_value = 0.05,
+                    .lower = 1e-3,
+                    .upper = 100.0,
+                    .scale = 0.05,
+                    .meaning = "time over which the rate is averaged",
+                    .if_left_out = 0.05}};
 
   RateDependentHysteresis(std::span<const T> values, const Preparation&)
-      : gain_(values[0]), per_kpa_(1.0 / values[1]), per_s_(1.0 / values[2]) {}
+      : gain_(values[0]),
+        per_kpa_(1.0 / values[1]),
+        per_s_(1.0 / values[2]),
+        growth_(values[3]),
+        rate_kpa_per_s_(values[4]),
+        settling_s_(values[5]) {}
+
+  /// Called once by the chain, which has made all its blocks by then.
+  void shape(BoucWen<T>& hysteresis) const {
+    if (!is_zero(growth_)) hysteresis.widen(growth_, rate_kpa_per_s_, settling_s_);
+  }
 
   void reset(const T& input) {
     held_kpa_ = T(0.0);  // relaxed
@@ -83,8 +128,11 @@ class RateDependentHysteresis {
   }
 
   T gain_;
-  T per_kpa_;        // 1/width
-  T per_s_;          // 1/tau
+  T per_kpa_;  // 1/width
+  T per_s_;    // 1/tau
+  T growth_;
+  T rate_kpa_per_s_;
+  T settling_s_;
   T held_kpa_{0.0};  // z
   T pressure_{0.0};
   T output_{0.0};

@@ -1,13 +1,16 @@
 #pragma once
-// The zero of the sensor wanders: steadily, or while it warms up.
+// The zero of the sensor wanders: steadily, while it warms up, or to and fro.
 
 #include <cmath>
+#include <numbers>
 
 #include "model/block.h"
 
 namespace softgrip::model {
 
-/// z = y + rate t + warm_up (1 - exp(-t/tau)), t the time of the campaign.
+/// z = y + rate t + warm_up (1 - exp(-t/tau)) + a sin(w t) + b (cos(w t) - 1), w = 2 pi / period, t the time
+/// of the campaign: nothing at its start. The wander is slow, as the temperature of a room; an oscillation is
+/// PeriodicDisturbance.
 template <class T>
 class SensorDrift {
  public:
@@ -17,7 +20,9 @@ class SensorDrift {
                                   .inverse = Inverse::ignored,
                                   .title = "Sensor drift",
                                   .meaning = "The zero wanders with the time of the campaign.",
-                                  .equation = "z = y + rate t + warm_up (1 - exp(-t/tau))"};
+                                  .equation =
+                                      "z = y + rate t + warm_up (1 - exp(-t/tau)) + "
+                                      "a sin(2 pi t/period) + b (cos(2 pi t/period) - 1)"};
   static constexpr std::array parameters{ParameterSpec{.name = "rate_mm_per_h",
                                                        .unit = "mm/h",
                                                        .default_value = 0.5,
@@ -40,24 +45,63 @@ class SensorDrift {
                                                        .lower = 0.1,
                                                        .upper = 1e5,
                                                        .scale = 30.0,
-                                                       .meaning = "time constant of warming up"}};
+                                                       .meaning = "time constant of warming up"},
+                                         ParameterSpec{.name = "wander_sin_mm",
+                                                       .unit = "mm",
+                                                       .default_value = 0.1,
+                                                       .lower = -100.0,
+                                                       .upper = 100.0,
+                                                       .scale = 0.1,
+                                                       .meaning = "a, of the wander",
+                                                       .neutral = 0.0,
+                                                       .if_left_out = 0.0},
+                                         ParameterSpec{.name = "wander_cos_mm",
+                                                       .unit = "mm",
+                                                       .default_value = 0.1,
+                                                       .lower = -100.0,
+                                                       .upper = 100.0,
+                                                       .scale = 0.1,
+                                                       .meaning = "b, of the wander",
+                                                       .neutral = 0.0,
+                                                       .if_left_out = 0.0},
+                                         ParameterSpec{.name = "wander_period_s",
+                                                       .unit = "s",
+                                                       .default_value = 300.0,
+                                                       .lower = 1.0,
+                                                       .upper = 1e5,
+                                                       .scale = 30.0,
+                                                       .meaning = "period of the wander",
+                                                       .if_left_out = 300.0}};
 
   SensorDrift(std::span<const T> values, const Preparation&)
-      : rate_mm_per_s_(values[0] / 3600.0), warm_up_mm_(values[1]), warm_up_time_s_(values[2]) {}
+      : rate_mm_per_s_(values[0] / 3600.0),
+        warm_up_mm_(values[1]),
+        warm_up_time_s_(values[2]),
+        sin_mm_(values[3]),
+        cos_mm_(values[4]),
+        period_s_(values[5]) {}
 
   void reset(const T& input) { output_ = input; }
   [[nodiscard]] T output() const { return output_; }
 
   T sample(const T& displacement_mm, const T&, const Surroundings& surroundings) {
+    using std::cos;
     using std::expm1;
+    using std::sin;
     const double t = surroundings.time_s;
-    return output_ = displacement_mm + rate_mm_per_s_ * t - warm_up_mm_ * expm1(-t / warm_up_time_s_);
+    output_ = displacement_mm + rate_mm_per_s_ * t - warm_up_mm_ * expm1(-t / warm_up_time_s_);
+    if (is_zero(sin_mm_) && is_zero(cos_mm_)) return output_;
+    const T turn = (2.0 * std::numbers::pi * t) / period_s_;
+    return output_ = output_ + sin_mm_ * sin(turn) + cos_mm_ * (cos(turn) - 1.0);
   }
 
  private:
   T rate_mm_per_s_;
   T warm_up_mm_;
   T warm_up_time_s_;
+  T sin_mm_;
+  T cos_mm_;
+  T period_s_;
   T output_{0.0};
 };
 

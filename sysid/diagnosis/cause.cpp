@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <map>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
 
 #include "model/catalogue.h"
+#include "sysid/trajectory.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -32,11 +35,25 @@ Values grid(const std::vector<std::vector<double>>& axes) {
   return all;
 }
 
+/// Bands of a valve that sticks and jumps. The misfit has a minimum wherever the staircase gains or loses a
+/// step on the way to the largest pressure: starts a step apart leave none out, down to bands of 1/60 of it.
+/// Smaller ones differ by little more than their size.
+std::vector<double> jumping_bands_kpa(const Scales& s) {
+  std::vector<double> bands;
+  double steps = 5;
+  for (; steps < 60; steps += 1) bands.push_back(s.largest_kpa / steps);
+  for (; steps < 350; steps *= 1.1) bands.push_back(s.largest_kpa / steps);
+  return bands;
+}
+
 Values starts_of_valve(std::string_view id, const Scales& s) {
   if (id == "transport_delay") return grid({{0.02, 0.1, 0.25, 0.5}});
   if (id == "valve_lag") return grid({{0.02, 0.1, 0.3, 0.6}});
-  if (id == "valve_deadband")
-    return grid({{0.01 * s.largest_kpa, 0.05 * s.largest_kpa, 0.15 * s.largest_kpa}});
+  if (id == "valve_deadband") {
+    Values values = grid({{0.01 * s.largest_kpa, 0.05 * s.largest_kpa, 0.15 * s.largest_kpa}, {0.0}});
+    for (const double band : jumping_bands_kpa(s)) values.push_back({band, 1.0});
+    return values;
+  }
   if (id == "pressure_saturation") {
     return grid({{0.97 * s.largest_kpa, 0.9 * s.largest_kpa, 0.75 * s.largest_kpa, 0.6 * s.largest_kpa}});
   }
@@ -49,10 +66,31 @@ Values starts_of_actuator(std::string_view id, const Scales& s) {
     return grid({{0.02 * s.largest_kpa, 0.08 * s.largest_kpa, 0.2 * s.largest_kpa}});
   if (id == "stiffening") return grid({{-0.3 / s.span_mm, 0.1 / s.span_mm, 0.5 / s.span_mm}});
   if (id == "asymmetric_hysteresis") {
-    return grid({{-0.05 * gain, 0.05 * gain}, {0.08 * s.largest_kpa, 0.3 * s.largest_kpa, s.largest_kpa}});
+    Values values = grid({{-0.05 * gain, 0.05 * gain},
+                          {0.3 * s.largest_kpa},
+                          {0.08 * s.largest_kpa, 0.3 * s.largest_kpa, s.largest_kpa},
+                          {0.0}});
+    // The state of the hysteresis levels off over some tenths of the pressures.
+    for (const double delta : {-2.0, -0.8, -0.3, 0.3, 0.8, 2.0}) {
+      values.push_back({0.0, 0.3 * s.largest_kpa, 0.3 * s.largest_kpa, delta / s.largest_kpa});
+    }
+    return values;
   }
   if (id == "rate_dependent_hysteresis") {
-    return grid({{0.05 * gain, -0.05 * gain}, {0.1 * s.largest_kpa, 0.5 * s.largest_kpa}, {0.3, 3.0}});
+    Values values = grid({{0.05 * gain, -0.05 * gain},
+                          {0.1 * s.largest_kpa, 0.5 * s.largest_kpa},
+                          {0.3, 3.0},
+                          {0.0},
+                          {s.largest_kpa},
+                          {0.05}});
+    for (const double rate : {0.2, 1.0, 5.0}) {  // the largest pressure in five seconds, in one, in a fifth
+      for (const double settling_s : {0.03, 0.2}) {
+        for (const double growth : {0.06, 0.2, 0.6}) {
+          values.push_back({0.0, 0.3 * s.largest_kpa, 1.0, growth, rate * s.largest_kpa, settling_s});
+        }
+      }
+    }
+    return values;
   }
   if (id == "stress_softening") return grid({{0.05 / s.largest_kpa, 0.3 / s.largest_kpa}});
   if (id == "slow_creep") {
@@ -60,6 +98,18 @@ Values starts_of_actuator(std::string_view id, const Scales& s) {
   }
   if (id == "thermal_gain") return grid({{-0.01, 0.01}});
   return grid({{-360 / s.campaign_s, 360 / s.campaign_s}});  // ageing: a tenth over the campaign
+}
+
+/// Sine and cosine parts of waves of every phase, small and not so small [mm].
+std::vector<std::pair<double, double>> waves(const Scales& s) {
+  std::vector<std::pair<double, double>> list;
+  for (const double size_mm : {0.004 * s.span_mm, 0.016 * s.span_mm}) {
+    for (int eighth = 0; eighth < 8; ++eighth) {
+      const double angle = eighth * std::numbers::pi / 4;
+      list.emplace_back(size_mm * std::cos(angle), size_mm * std::sin(angle));
+    }
+  }
+  return list;
 }
 
 Values starts_of_load_and_sensor(std::string_view id, const Scales& s) {
@@ -72,7 +122,13 @@ Values starts_of_load_and_sensor(std::string_view id, const Scales& s) {
   if (id == "sensor_lag") return grid({{0.02, 0.1, 0.3, 0.6}});
   if (id == "sensor_drift") {
     const double rate = 3600 * 0.05 * s.span_mm / s.campaign_s;
-    return grid({{-rate, rate}, {0.0}, {0.3 * s.campaign_s}});
+    Values values = grid({{-rate, rate}, {0.0}, {0.3 * s.campaign_s}, {0.0}, {0.0}, {s.campaign_s}});
+    for (const double campaigns : {0.15, 0.25, 0.4, 0.65, 1.0, 1.7}) {
+      for (const auto& [sine, cosine] : waves(s)) {
+        values.push_back({0.0, 0.0, 0.3 * s.campaign_s, sine, cosine, campaigns * s.campaign_s});
+      }
+    }
+    return values;
   }
   if (id == "sensor_nonlinearity") return grid({{-0.02 * s.span_mm, 0.02 * s.span_mm}, {0.0}, {s.span_mm}});
   if (id == "sensor_saturation") {
@@ -145,11 +201,78 @@ std::vector<CauseStart> cause_starts(const Cause& cause, const Scales& scales) {
   return starts;
 }
 
-bool is_fitted(const Cause& cause, std::size_t index) {
+bool is_fitted(const Cause& cause, const model::BlockSpec& block, std::size_t index) {
+  const std::vector<double>& v = block.values;
   if (cause.id == "supply_sag") return index == 0;
   if (cause.id == "sensor_nonlinearity") return index < 2;
   if (cause.id == "sensor_saturation") return index == 1;
+  if (cause.id == "asymmetric_hysteresis") return index == 3 ? v[3] != 0 : v[0] != 0;
+  if (cause.id == "rate_dependent_hysteresis") return index < 3 ? v[0] != 0 : v[3] != 0;
+  if (cause.id == "sensor_drift") return index < 3 ? v[0] != 0 || v[1] != 0 : v[3] != 0 || v[4] != 0;
   return true;
+}
+
+Scales scales_of(const std::vector<Record>& records) {
+  const auto varies = [](const std::vector<double>& column) {
+    if (column.empty()) return false;
+    const auto [low, high] = std::minmax_element(column.begin(), column.end());
+    return *high - *low > 1e-6 * std::max(1.0, std::abs(*high));
+  };
+  Scales s;
+  s.sample_s = std::numeric_limits<double>::infinity();
+  for (const Record& record : records) {
+    const double length_s = record.time_s.back() - record.time_s.front();
+    s.span_mm = std::max(s.span_mm, record.span_mm);
+    s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);
+    s.campaign_s += length_s;
+    s.sample_s =
+        std::min(s.sample_s, length_s / static_cast<double>(std::max<std::size_t>(1, record.size() - 1)));
+    s.has_temperature |= varies(record.temperature_c);
+    s.has_supply |= varies(record.supply_kpa);
+    for (const double supply : record.supply_kpa)
+      s.largest_supply_kpa = std::max(s.largest_supply_kpa, supply);
+  }
+  return s;
+}
+
+Range fit_range(const Cause& cause, std::size_t index, const model::Model& model, const Scales& s) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto is = [&](std::string_view id, std::size_t i) { return cause.id == id && index == i; };
+  // A z that no pressure of the data saturates is linear in the pressure: a viscous branch.
+  if (is("rate_dependent_hysteresis", 1)) return {0.01 * s.largest_kpa, 0.5 * s.largest_kpa};
+  // One that does not relax within the data's cycles does not know their rate.
+  if (is("rate_dependent_hysteresis", 2)) return {s.sample_s, 0.1 * s.campaign_s};
+  // A loop that is wider by the same at all rates of the data is only wider.
+  if (is("rate_dependent_hysteresis", 4)) return {0.05 * s.largest_kpa, 20 * s.largest_kpa};
+  // What looks back farther is not a rate but a history.
+  if (is("rate_dependent_hysteresis", 5)) return {0.5 * s.sample_s, 0.5};
+  // Longer than all pressures, the way is a straight line.
+  if (cause.id == "asymmetric_hysteresis" && (index == 1 || index == 2))
+    return {0.01 * s.largest_kpa, 3 * s.largest_kpa};
+  // From a damping of 1/sqrt(2) on nothing resonates: two lags in series.
+  if (is("inertia", 1)) return {0.005, 0.7};
+  // A shorter period than two samples is not seen.
+  if (is("inertia", 0)) return {2 * s.sample_s, infinity};
+  // A contact from the beginning on is a smaller gain; one that is hardly reached could be anything.
+  if (is("contact", 0)) return {0.05 * s.span_mm, s.span_mm};
+  // Below nearly all pressures nothing moves: then the data are of another actuator.
+  if (is("actuator_threshold", 0)) return {0, 0.6 * s.largest_kpa};
+  if (is("backlash", 0)) return {0, 0.5 * s.span_mm};
+  // As fast as a branch of the base it is that branch; much slower than the campaign only gain per time
+  // shows.
+  if (is("slow_creep", 1)) {
+    double slowest_s = 0;
+    for (const double tau_s : branch_time_constants_s(model)) slowest_s = std::max(slowest_s, tau_s);
+    return {std::min(1.5 * slowest_s, 0.15 * s.campaign_s), 20 * s.campaign_s};
+  }
+  // Warming up faster than this is creep of the actuator, slower a steady drift.
+  if (is("sensor_drift", 2)) return {0.02 * s.campaign_s, s.campaign_s};
+  // A wander turns a dozen times in a campaign at most; of a slower one than three campaigns only the trend
+  // shows.
+  if (is("sensor_drift", 5)) return {s.campaign_s / 12, 3 * s.campaign_s};
+  // Slower than this it is a wandering zero.
+  if (is("periodic_disturbance", 2)) return {std::max(0.2, 10 / std::max(s.campaign_s, 1.0)), infinity};
+  return {-infinity, infinity};
 }
 
 }  // namespace softgrip::sysid

@@ -51,8 +51,24 @@ struct CauseStart {
 /// found by fitting a trajectory (outliers).
 [[nodiscard]] std::vector<CauseStart> cause_starts(const Cause& cause, const Scales& scales);
 
-/// Whether a fit may move value `index` of the cause's block (a calibration range or a ceiling that the data
-/// do not reach stays where the start put it).
-[[nodiscard]] bool is_fitted(const Cause& cause, std::size_t index);
+/// Whether a fit may move value `index` of the cause's block. A calibration range or a ceiling that the data
+/// do not reach stays where the start put it; of a block with several forms only those move that the start
+/// has (the others stand at their neutral values).
+[[nodiscard]] bool is_fitted(const Cause& cause, const model::BlockSpec& block, std::size_t index);
+
+/// Between what a value may be.
+struct Range {
+  double lower = 0;
+  double upper = 0;
+};
+
+/// Within what a fit may move value `index` of the cause's block in `model`, besides its declared bounds: as
+/// far as the block is still what it is called. Beyond, it would pass as a form of something else (a
+/// hysteresis wider than all pressures is a viscous branch) and stand as a rival that is none.
+[[nodiscard]] Range fit_range(const Cause& cause, std::size_t index, const model::Model& model,
+                              const Scales& scales);
+
+/// The scales of a campaign, but for the residual's peaks.
+[[nodiscard]] Scales scales_of(const std::vector<Record>& records);
 
 }  // namespace softgrip::sysid

@@ -17,7 +17,7 @@ bool moves(const model::Model& model, const std::vector<Cause>& causes, std::siz
   const model::ParameterPlace place = model::place_of(model, flat_index);
   const model::BlockSpec& block = model.blocks[place.block];
   for (const Cause& cause : causes) {
-    if (cause.type == block.type) return is_fitted(cause, place.value);
+    if (cause.type == block.type) return is_fitted(cause, block, place.value);
   }
   // alpha and 1/k0 enter only as their sum.
   const bool is_k0 = model::catalogue()[block.type].info.id == "kelvin_voigt" && place.value == 0;
@@ -32,6 +32,23 @@ std::vector<std::size_t> fitted_indices(const model::Model& model, const std::ve
     if (moves(model, causes, i)) indices.push_back(i);
   }
   return indices;
+}
+
+FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
+                         const std::vector<Cause>& causes) {
+  FitSpace space(model, records, fitted_indices(model, causes));
+  const Scales scales = scales_of(records);
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const FreeParameter& free = space.free()[i];
+    if (free.kind != FreeParameter::Kind::model) continue;
+    const model::ParameterPlace place = model::place_of(model, free.flat_index);
+    for (const Cause& cause : causes) {
+      if (cause.type != model.blocks[place.block].type) continue;
+      const Range range = fit_range(cause, place.value, model, scales);
+      space.bound(i, range.lower, range.upper);
+    }
+  }
+  return space;
 }
 
 StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
@@ -56,7 +73,7 @@ StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<
 
 StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                            const FitPoint& from, const FitEffort& effort) {
-  FitSpace space(from.model, records, fitted_indices(from.model, causes));
+  FitSpace space = structure_space(records, from.model, causes);
   if (effort.hold_starts) space.hold_starts(from.starts);
   const auto residuals = residuals_for(records, space);
   MinimiseOptions options;

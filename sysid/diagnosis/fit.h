@@ -31,6 +31,10 @@ struct FitEffort {
 [[nodiscard]] std::vector<std::size_t> fitted_indices(const model::Model& model,
                                                       const std::vector<Cause>& causes);
 
+/// What a fit of this structure moves, within the bounds of fit_range().
+[[nodiscard]] FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
+                                       const std::vector<Cause>& causes);
+
 /// Least squares from `from`, over all readings of `records`.
 [[nodiscard]] StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                          const FitPoint& from, const FitEffort& effort = {});

@@ -55,7 +55,9 @@ void write_parameter(std::ostream& out, const ParameterSpec& spec) {
   out << "| `" << spec.name << "` | " << (spec.unit.empty() ? "-" : spec.unit) << " | "
       << range(spec.default_value) << " | " << range(spec.lower) << " to " << range(spec.upper)
       << (spec.whole ? ", whole" : "") << " | "
-      << (spec.neutral == spec.neutral ? range(spec.neutral) : "any") << " | " << spec.meaning << " |\n";
+      << (spec.neutral == spec.neutral ? range(spec.neutral) : "any") << " | " << spec.meaning;
+  if (spec.if_left_out == spec.if_left_out) out << " (may be left out: " << range(spec.if_left_out) << ")";
+  out << " |\n";
 }
 
 void write_block(std::ostream& out, const Descriptor& descriptor) {
@@ -80,9 +82,9 @@ std::string page() {
          "u is the command, p the pressure, y a displacement that comes in, z what goes out, t the time of "
          "the"
          " campaign, ' a derivative with respect to time. Inside a station blocks stand by what they act on:"
-         " pressure, elements, displacement, reading. Every number of a block must be given; a model file "
-         "refuses"
-         " what is outside the allowed range.\n\n"
+         " pressure, elements, displacement, reading. Every number of a block must be given,"
+         " but for those that say what is meant when they are left out; a model file refuses what is outside"
+         " the allowed range.\n\n"
          "This page is written by `model_blocks_page --write` from the declarations in `model/blocks/`.\n";
   Station station = Station::valve;
   bool first = true;

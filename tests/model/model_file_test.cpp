@@ -75,6 +75,20 @@ TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
   EXPECT_EQ(number(twin, "kelvin_voigt.c1_kpa_s_per_mm"), 299.8);
 }
 
+// Parameters that came to a block later: older files say what they always said.
+TEST(ModelFile, LaterParametersMayBeLeftOut) {
+  const Outcome outcome = read(
+      "name: old\nsource: before\n"
+      "valve:\n  - valve_deadband: {band_kpa: 2}\n"
+      "actuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 5, k1_kpa_per_mm: 5, c1_kpa_s_per_mm: 5}\n"
+      "  - asymmetric_hysteresis: {gain_mm_per_kpa: 0.05, unloading_kpa: 15, loading_kpa: 5}\n"
+      "sensor:\n  - sensor_drift: {rate_mm_per_h: 1, warm_up_mm: 0.1, warm_up_time_s: 50}\n");
+  ASSERT_TRUE(outcome.model) << outcome.problems.format();
+  EXPECT_EQ(outcome.model->blocks[0].values, (std::vector<double>{2, 0}));
+  EXPECT_EQ(outcome.model->blocks[2].values, (std::vector<double>{0.05, 15, 5, 0}));
+  EXPECT_EQ(outcome.model->blocks[3].values, (std::vector<double>{1, 0.1, 50, 0, 0, 300}));
+}
+
 TEST(ModelFile, HashStandsForTheNumbers) {
   const Model twin = preset("bench_twin");
   EXPECT_EQ(model_hash(twin).size(), 16u);

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
+#include "model/chain.h"
+#include "model/dual.h"
 #include "tests/model/drive.h"
 
 namespace softgrip::model::testing {
@@ -13,13 +17,13 @@ namespace {
 using Block = AsymmetricHysteresis<double>;
 
 TEST(AsymmetricHysteresis, FirstLoadingIsFreeOfIt) {
-  Block block = make<Block>({0.05, 15.0, 5.0});
+  Block block = make<Block>({0.05, 15.0, 5.0, 0.0});
   double from = 0;
   EXPECT_EQ(move(block, from, 40, 1), 0);
 }
 
 TEST(AsymmetricHysteresis, UnloadingWindsItUpAndLoadingLetsItFade) {
-  Block block = make<Block>({0.05, 15.0, 5.0});
+  Block block = make<Block>({0.05, 15.0, 5.0, 0.0});
   double from = 0;
   move(block, from, 40, 1);
   const double wound = -15 * 0.05 * std::expm1(-30 / 15.0);
@@ -28,7 +32,7 @@ TEST(AsymmetricHysteresis, UnloadingWindsItUpAndLoadingLetsItFade) {
 }
 
 TEST(AsymmetricHysteresis, NeitherTimeNorStepSizeMatters) {
-  Block once = make<Block>({0.05, 15.0, 5.0}), often = make<Block>({0.05, 15.0, 5.0});
+  Block once = make<Block>({0.05, 15.0, 5.0, 0.0}), often = make<Block>({0.05, 15.0, 5.0, 0.0});
   double a = 0, b = 0;
   for (const double to : {40.0, 12.0, 33.0, 5.0, 60.0, 0.0}) {
     const double start = b;
@@ -39,7 +43,7 @@ TEST(AsymmetricHysteresis, NeitherTimeNorStepSizeMatters) {
 
 // A symmetric loop, settled between 10 and 50 kPa, falls on itself when it is turned about its centre.
 double asymmetry(double unloading_kpa, double loading_kpa) {
-  Block block = make<Block>({0.05, unloading_kpa, loading_kpa});
+  Block block = make<Block>({0.05, unloading_kpa, loading_kpa, 0.0});
   double from = 0;
   for (int i = 0; i < 20; ++i) {
     move(block, from, 50, 1);
@@ -57,6 +61,103 @@ TEST(AsymmetricHysteresis, LoopIsPointSymmetricOnlyForEqualLengths) {
   EXPECT_GT(asymmetry(15, 5), 0.05);
   EXPECT_GT(asymmetry(5, 15), 0.05);
   EXPECT_LT(asymmetry(10, 10), 1e-12);
+}
+
+// alpha, beta, gamma, eta, exponent of the element that is skewed.
+const std::vector<std::vector<double>> materials{
+    {0.35, 0.2, 0.03, 0.05, 1}, {0.35, 0.2, -0.02, 0.05, 1}, {0.211, 0.171, 0.004, 0.006, 2}};
+
+Model skewed(const std::vector<double>& material, double delta_per_kpa) {
+  Model model{"skewed", "test", {BlockSpec{*find_block("bouc_wen"), material}}};
+  return with_block(model, {*find_block("asymmetric_hysteresis"), {0.0, 20.0, 5.0, delta_per_kpa}});
+}
+
+const std::vector<double> turns{40, 12, 33, -15, 8, -3, 60, 0, 25, 0};
+
+// The equation as it stands in the papers, by Runge-Kutta in steps of 1/200 kPa.
+double integrated(const std::vector<double>& v, double delta, const std::vector<double>& turning_points,
+                  const std::function<void(double p, double y)>& at) {
+  const auto sign = [](double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; };
+  const auto slope = [&](double h, double way) {
+    return v[1] - std::pow(std::fabs(h), v[4]) * (v[2] + v[3] * sign(way * h) + delta * sign(way));
+  };
+  double p = 0, h = 0;
+  for (const double to : turning_points) {
+    const int steps = static_cast<int>(std::ceil(std::fabs(to - p) * 200));
+    const double d = (to - p) / steps;
+    for (int i = 0; i < steps; ++i) {
+      const double k1 = slope(h, d), k2 = slope(h + 0.5 * d * k1, d), k3 = slope(h + 0.5 * d * k2, d),
+                   k4 = slope(h + d * k3, d);
+      h += d / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+      p += d;
+    }
+    p = to;
+    at(p, v[0] * p - h);
+  }
+  return v[0] * p - h;
+}
+
+TEST(AsymmetricHysteresis, SkewsTheChainsBoucWenByItsEquation) {
+  for (const std::vector<double>& material : materials) {
+    for (const double share : {-0.8, 0.6}) {
+      const double delta = share * std::min(material[3], material[2] + material[3]);
+      Chain<double> chain(skewed(material, delta));
+      integrated(material, delta, turns, [&](double p, double y) {
+        // 2e-5 is what the integration of the kink at h = 0 leaves.
+        ASSERT_NEAR(chain.step(1.0, p), y, 2e-5) << "exponent " << material[4] << " at " << p;
+      });
+    }
+  }
+}
+
+TEST(AsymmetricHysteresis, SkewedStepSizeDoesNotMatter) {
+  for (const std::vector<double>& material : materials) {
+    const Model model = skewed(material, 0.7 * material[3]);
+    Chain<double> once(model), often(model);
+    double from = 0;
+    for (const double to : turns) {
+      for (int i = 1; i <= 40; ++i) often.step(1.0 / 40, from + (to - from) * i / 40);
+      ASSERT_NEAR(once.step(1.0, to), often.reading_mm(), material[4] == 1 ? 1e-12 : 1e-7);
+      from = to;
+    }
+  }
+}
+
+TEST(AsymmetricHysteresis, SkewLeavesNoTraceAtZero) {
+  for (const std::vector<double>& material : materials) {
+    Chain<double> plain(Model{"plain", "test", {BlockSpec{*find_block("bouc_wen"), material}}});
+    Chain<double> with(skewed(material, 0.0));
+    for (const double p : turns) ASSERT_EQ(with.step(1.0, p), plain.step(1.0, p));
+  }
+}
+
+// What the inverse asks of the chain knows of the skew.
+TEST(AsymmetricHysteresis, PeekKnowsOfTheSkew) {
+  for (const std::vector<double>& material : materials) {
+    Chain<double> chain(skewed(material, -0.7 * material[3]));
+    for (const double p : turns) {
+      const double h = 1e-5;
+      const Dual<double> trial = chain.peek(1.0, Dual<double>(p, 1.0));
+      const double up = chain.peek(1.0, p + h), down = chain.peek(1.0, p - h);
+      ASSERT_NEAR(trial.v, (up - down) / (2 * h), 1e-6);
+      ASSERT_NEAR(trial.a, chain.step(1.0, p), 1e-12);
+    }
+  }
+}
+
+// On loading alone delta is a part of gamma + eta; the way back tells them apart.
+TEST(AsymmetricHysteresis, FirstLoadingSeesTheSkewAsPartOfTheSum) {
+  const std::vector<double> other{0.35, 0.2, 0.02, 0.04, 1};
+  Chain<double> a(skewed({0.35, 0.2, 0.03, 0.05, 1}, -0.02));
+  Chain<double> b(Model{"plain", "test", {BlockSpec{*find_block("bouc_wen"), other}}});
+  for (int p = 1; p <= 60; ++p) ASSERT_NEAR(a.step(1.0, p), b.step(1.0, p), 1e-12);
+  EXPECT_GT(std::fabs(a.step(1.0, 20) - b.step(1.0, 20)), 0.05);
+}
+
+TEST(AsymmetricHysteresis, SkewBeyondEtaCountsAsEta) {
+  Chain<double> most(skewed({0.35, 0.2, 0.03, 0.05, 1}, 0.05));
+  Chain<double> more(skewed({0.35, 0.2, 0.03, 0.05, 1}, 5.0));
+  for (const double p : turns) ASSERT_EQ(most.step(1.0, p), more.step(1.0, p));
 }
 
 }  // namespace
