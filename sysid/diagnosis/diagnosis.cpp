@@ -30,6 +30,7 @@ struct Leftover {
   double share;   ///< so much may be left
 };
 constexpr std::array clear_leftovers{Leftover{3, 0.05}, Leftover{5, 0.02}};
+constexpr double clearly_correlated = 0.05;
 constexpr double block_s = 8;
 constexpr std::size_t fewest_samples = 200;
 
@@ -165,6 +166,7 @@ class Diagnostician {
     if (auto ready = prepare(); !ready) return Failure(ready.error());
     auto base = recalibrate(logs_, data_, options_);
     if (!base) return Failure(base.error());
+    hide_more_outliers(*base);
     d_.recalibrated = *base;
     if (const auto wrong = why_not_about(data_.records, *base)) return Failure(*wrong);
     data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm, 3);
@@ -203,15 +205,30 @@ class Diagnostician {
     d_.noise_mm = measured_noise_mm(records);
     if (d_.noise_mm <= 0) return Failure("the readings have no noise at all: this is not measured data");
     d_.outliers = hide_outliers(records, d_.noise_mm);
-    const model::Model part = deterministic_part(given_, options_.record.drive);
-    data_ = make_search_data(std::move(records), part);
+    use(std::move(records));
+    warn_of_data(logs_, data_.scales, d_.warnings);
+    return {};
+  }
+
+  void use(std::vector<Record> records) {
+    data_ = make_search_data(std::move(records), deterministic_part(given_, options_.record.drive));
     data_.threads = options_.threads;
     data_.scales.has_valve = options_.record.drive == Drive::command;
     d_.records = data_.records;
     d_.as_given = evaluate_structure(data_.records, {}, data_.given);
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
-    warn_of_data(logs_, data_.scales, d_.warnings);
-    return {};
+  }
+
+  /// With a recalibrated model outliers stand out in the midst of a motion too; without them it fits better,
+  /// and may show more.
+  void hide_more_outliers(StructureFit& base) {
+    constexpr int most_rounds = 3;
+    for (int round = 0; round < most_rounds; ++round) {
+      std::vector<Record> records = data_.records;
+      if (hide_outliers_beside(records, base.residual_mm, d_.noise_mm, d_.outliers) == 0) return;
+      use(std::move(records));
+      base = fit_structure(data_.records, {}, base.point);
+    }
   }
 
   void measure(const Selection& selection, const Division& division) {
@@ -265,8 +282,8 @@ class Diagnostician {
   void name(const Selection& selection) {
     if (d_.outliers.present) causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm));
     if (selection.chosen.empty()) return;
-    const FitSpace space(selection.extended.point.model, data_.records,
-                         fitted_indices(selection.extended.point.model, selection.extended.causes));
+    const FitSpace space =
+        structure_space(data_.records, selection.extended.point.model, selection.extended.causes);
     const auto residuals = residuals_for(data_.records, space);
     const std::vector<double> z = space.z(selection.extended.point);
     const Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
@@ -297,8 +314,12 @@ class Diagnostician {
           by_chance ? d_.recalibrated_model : named_model(selection.extended.point.model, "extended in part");
       return;
     }
-    if (causes_.empty() && structure && selection.left.excess_mm > 0.2 * d_.noise_mm) {
+    // Wrong samples that were not found stand alone; what resembles itself from sample to sample is something
+    // else, which outliers do not explain.
+    const bool other = causes_.empty() || selection.left.slow_correlation > clearly_correlated;
+    if (selection.chosen.empty() && other && structure && selection.left.excess_mm > 0.2 * d_.noise_mm) {
       d_.verdict = Verdict::unexplained;
+      d_.partial = std::move(causes_);
       d_.unexplained_percent = 100;
       return;
     }
