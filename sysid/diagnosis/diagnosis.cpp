@@ -175,6 +175,7 @@ class Diagnostician {
     SelectionOptions selection_options;
     selection_options.seed = options_.seed;
     selection_options.progress = options_.progress;
+    if (left_by_outliers(structure_of(base->residual_mm, d_.noise_mm))) selection_options.most_causes = 0;
     Selection selection = select_causes(data_, std::move(*base), d_.noise_mm, division, selection_options);
     clock.ended("search");
     measure(selection, division);
@@ -298,6 +299,12 @@ class Diagnostician {
     }
   }
 
+  /// Wrong samples that were not found stand alone; what a cause does resembles itself from sample to sample.
+  [[nodiscard]] bool left_by_outliers(const Structure& structure) const {
+    return d_.outliers.present && structure.slow_correlation <= clearly_correlated &&
+           structure.excess_mm < d_.noise_mm;
+  }
+
   void conclude(const Selection& selection) {
     const bool structure = selection.left.present;
     const double left_share = d_.unexplained_percent / 100;
@@ -314,9 +321,7 @@ class Diagnostician {
           by_chance ? d_.recalibrated_model : named_model(selection.extended.point.model, "extended in part");
       return;
     }
-    // Wrong samples that were not found stand alone; what resembles itself from sample to sample is something
-    // else, which outliers do not explain.
-    const bool other = causes_.empty() || selection.left.slow_correlation > clearly_correlated;
+    const bool other = !left_by_outliers(selection.left);
     if (selection.chosen.empty() && other && structure && selection.left.excess_mm > 0.2 * d_.noise_mm) {
       d_.verdict = Verdict::unexplained;
       d_.partial = std::move(causes_);
@@ -324,6 +329,10 @@ class Diagnostician {
       return;
     }
     d_.causes = std::move(causes_);
+    if (d_.outliers.present && selection.chosen.empty()) {
+      const double left = square(selection.left.excess_mm);
+      d_.unexplained_percent = structure ? 100 * left / (left + square(d_.outliers.excess_mm)) : 0;
+    }
     if (!d_.causes.empty()) {
       const bool rivals = std::any_of(d_.causes.begin(), d_.causes.end(),
                                       [](const NamedCause& c) { return !c.rivals.empty(); });

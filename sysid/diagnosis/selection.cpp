@@ -13,8 +13,8 @@ namespace {
 
 /// Candidates that are refitted without held-out blocks.
 constexpr std::size_t finalists = 4;
-/// What one more cause must take of the recalibrated model's excess, as a mean square: less may make up for the
-/// form of an equation that the first cause does not quite have.
+/// What one more cause must take of the recalibrated model's excess, as a mean square: less may make up for
+/// the form of an equation that the first cause does not quite have.
 constexpr double one_more_share = 0.01;
 /// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
 /// is no rival whatever the blocks say.

@@ -22,6 +22,14 @@ std::string listed(const std::vector<NamedCause>& causes) {
   return text;
 }
 
+/// Nothing but wrong samples was found.
+std::string outlier_sentence(const Diagnosis& d) {
+  return "Isolated wrong samples stand among the readings (" + significant(100 * d.outliers.share, 2) +
+         " %, about " + significant(d.outliers.size_mm, 2) +
+         " mm off); on the others the recalibrated model's error is " +
+         significant(d.recalibrated_rmse_mm, 2) + " mm.";
+}
+
 std::string unexplained_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   if (d.partial.empty()) return "Something is wrong that no known cause explains.";
   if (d.null_calibration && d.null_calibration->reach_the_gain()) {
@@ -49,6 +57,7 @@ std::string verdict_sentence(const Diagnosis& d) {
       return "The structure is right and its numbers are not: recalibrated, the error falls from " +
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:
+      if (d.extended.causes.empty()) return outlier_sentence(d);
       return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
              " to " + after + ".";
     case Verdict::ambiguous:
