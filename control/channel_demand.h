@@ -21,7 +21,7 @@ struct ChannelDemand {
   const Reference* reference = nullptr;  ///< of displacement [mm]; on the clock of `time_s`
   double time_s = 0;                     ///< now, on that clock
   /// Of displacement with feedforward `planned`: the plan for the reference; nullptr where there is none. Its
-  /// clock is the reference's, less plan_origin_s.
+  /// clock is that of `time_s` less plan_origin_s.
   const PressurePlan* plan = nullptr;
   double plan_origin_s = 0;
   /// Of displacement: the finger meets an object. The feedback stays as it is, so that it does not press

@@ -28,7 +28,7 @@ bool append_ramp(Reference& reference, const Target& target, double value) noexc
 void ChannelPlayer::reset() noexcept {
   step_ = nullptr;
   stage_ = Stage::done;
-  mode_ = Mode::hold;
+  freeze();
   contact_.reset();
   answer(GripResult::none, GripEvidence::none);
 }
@@ -51,8 +51,13 @@ GripEvidence ChannelPlayer::evidence_of(VerifyBy by) const noexcept {
   return sighted_ ? GripEvidence::displacement : GripEvidence::none;
 }
 
-void ChannelPlayer::begin(const Step& step, double time_s, const ChannelView& view) noexcept {
+void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double time_s,
+                          const ChannelView& view) noexcept {
   step_ = &step;
+  if (step.kind != StepKind::hold) {
+    plan_ = plan;
+    plan_origin_s_ = plan != nullptr ? time_s - plan->begin_s : 0;
+  }
   sighted_ = view.sighted;
   failure_ = GripResult::error;
   deadline_s_ = step.timeout_s ? time_s + *step.timeout_s : infinite;
@@ -114,6 +119,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
 
 void ChannelPlayer::back_off(double time_s, const ChannelView& view) noexcept {
   const double value = start_value_;
+  plan_ = nullptr;
   go_to(step_->target, value, time_s, view);
   deadline_s_ = infinite;
   stage_ = Stage::back;
@@ -123,11 +129,7 @@ Progress ChannelPlayer::tick(double time_s, const ChannelView& view) noexcept {
   contact_.observe(view);
   deficit_mm_ = view.deficit_mm;
   Progress progress = advance(time_s, view);
-  if (mode_ == Mode::pressure) {
-    const bool profile = step_->kind == StepKind::pressure;
-    pressure_kpa_ =
-        profile ? value_at(step_->profile, time_s - profile_start_s_) : pressure_.at(time_s).value;
-  }
+  if (mode_ == Mode::pressure) pressure_kpa_ = pressure_at(time_s);
   if (progress == Progress::pending && time_s >= deadline_s_) {
     failure_ = stage_ == Stage::verify ? GripResult::no_part : GripResult::error;
     progress = Progress::failed;
@@ -136,6 +138,11 @@ Progress ChannelPlayer::tick(double time_s, const ChannelView& view) noexcept {
     stage_ = Stage::done;
   }
   return progress;
+}
+
+double ChannelPlayer::pressure_at(double time_s) const noexcept {
+  if (step_->kind == StepKind::pressure) return value_at(step_->profile, time_s - profile_start_s_);
+  return pressure_.at(time_s).value;
 }
 
 Progress ChannelPlayer::advance(double time_s, const ChannelView& view) noexcept {
@@ -271,6 +278,8 @@ ChannelDemand ChannelPlayer::demand(double time_s) const noexcept {
   demand.pressure_kpa = pressure_kpa_;
   demand.reference = &displacement_;
   demand.time_s = time_s;
+  demand.plan = plan_;
+  demand.plan_origin_s = plan_origin_s_;
   const bool closing = step_ != nullptr && (step_->kind == StepKind::grip || step_->kind == StepKind::hold);
   demand.feedback_held = contact_.touching() && (closing || result_ == GripResult::holding);
   return demand;

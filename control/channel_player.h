@@ -20,8 +20,9 @@ class ChannelPlayer {
 
   /// Before the first step: keeps its command, touches nothing, forgets the last answer.
   void reset() noexcept;
-  /// The first or another attempt at a step. `step` outlives it.
-  void begin(const Step& step, double time_s, const ChannelView& view) noexcept;
+  /// The first or another attempt at a step. `step` and `plan` (nullptr: none) outlive it. A hold step goes
+  /// on with the plan of the step before.
+  void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelView& view) noexcept;
   /// Back to where the attempt started, as fast as it went.
   void back_off(double time_s, const ChannelView& view) noexcept;
   /// One tick of the step, or of backing off (passed: there).
@@ -47,7 +48,16 @@ class ChannelPlayer {
   [[nodiscard]] double deficit_mm() const noexcept { return deficit_mm_; }
 
   /// Keeps the command where it is.
-  void freeze() noexcept { mode_ = ChannelDemand::Mode::hold; }
+  void freeze() noexcept {
+    mode_ = ChannelDemand::Mode::hold;
+    plan_ = nullptr;
+  }
+  /// When the ramp or the profile of the present step ends.
+  [[nodiscard]] double motion_end_s() const noexcept {
+    return stage_ == Stage::profile ? stage_end_s_ : ramp_end_s_;
+  }
+  /// In mode pressure: what the present step asks for at a time [kPa].
+  [[nodiscard]] double pressure_at(double time_s) const noexcept;
 
  private:
   enum class Stage : std::uint8_t { ramp, settle, verify, watch, purge, free, profile, back, done };
@@ -69,6 +79,8 @@ class ChannelPlayer {
   ChannelDemand::Mode mode_ = ChannelDemand::Mode::hold;
   Reference displacement_;  ///< of mode displacement [mm]
   Reference pressure_;      ///< of mode pressure [kPa], but for profiles
+  const PressurePlan* plan_ = nullptr;
+  double plan_origin_s_ = 0;
   double profile_start_s_ = 0;
   double pressure_kpa_ = 0;
   double start_value_ = 0;  ///< where the attempt started, in the target's unit

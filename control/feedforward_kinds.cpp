@@ -23,8 +23,13 @@ constexpr double peak_speed = 1.875;
 constexpr double late_kpa = 1e-6;
 /// A plan whose model is further from the reference than this is called out of reach.
 constexpr double missed_mm = 0.2;
+/// A reference that begins further from where its plan begins than this is not what was planned for: a plan
+/// moves at the speed of another way, and is worse then than none.
+constexpr double off_plan_mm = 1;
+/// Two clocks that count the same may differ by so much.
+constexpr double clock_rounding_s = 1e-6;
 /// How long the difference between the pressure before and the start of a plan takes to fade.
-constexpr double plan_fade_s = 1;
+constexpr double plan_fade_s = 3;
 
 /// The value of a parameter of the first block with that id, or nothing.
 std::optional<double> value_in(const model::Model& model, std::string_view id, std::string_view parameter) {
@@ -157,32 +162,58 @@ FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexce
   return {command_kpa_, late || !solution.reached};
 }
 
+double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings, double tick_s) {
+  return 0.5 * tick_s + dead_time_s(model) + settings.extra_latency_s;
+}
+
 PlannedFeedforward::PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,
-                                       double tick_s)
-    : tick_s_(tick_s), ahead_s_(0.5 * tick_s + dead_time_s(model) + settings.extra_latency_s) {}
+                                       const LimitSettings& limits, double tick_s)
+    : limits_(limits),
+      settled_(settled_line(model, limits)),
+      tick_s_(tick_s),
+      ahead_s_(plan_ahead_s(model, settings, tick_s)) {}
 
 void PlannedFeedforward::enter(const RunningModel&, const FeedforwardQuery&, double command_kpa) noexcept {
-  plan_ = nullptr;
+  entering_ = true;
   last_kpa_ = command_kpa;
 }
 
-FeedforwardStep PlannedFeedforward::step(const FeedforwardQuery& query) noexcept {
-  if (query.plan == nullptr) {
-    plan_ = nullptr;
-    return {last_kpa_, false};
+double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wanted_mm,
+                                        double then_s) const noexcept {
+  double least_mm = std::numeric_limits<double>::max();
+  // Where the reference jumps, the two clocks must not differ by a rounding.
+  for (const double aside_s : {0.0, -clock_rounding_s, clock_rounding_s}) {
+    const double on_plan_s = then_s - query.plan_origin_s + aside_s;
+    const double planned_mm =
+        limit_reference(limits_, query.plan->reference.at(on_plan_s).value).reference_mm;
+    const double difference_mm = wanted_mm - planned_mm;
+    if (std::abs(difference_mm) < std::abs(least_mm)) least_mm = difference_mm;
   }
-  const double then_s = query.time_s + ahead_s_ - query.plan_origin_s;
-  const double planned_kpa = query.plan->at(then_s);
-  if (query.plan != plan_ || query.plan_origin_s != origin_s_) {
+  return least_mm;
+}
+
+FeedforwardStep PlannedFeedforward::step(const FeedforwardQuery& query) noexcept {
+  const double then_s = query.time_s + ahead_s_;
+  const double wanted_mm =
+      limit_reference(limits_, query.reference->at(then_s).value).reference_mm - query.offset_mm;
+  const double aside_mm = query.plan != nullptr ? unplanned_mm(query, wanted_mm, then_s) : 0;
+  const bool changed = entering_ || query.plan != plan_ || query.plan_origin_s != origin_s_;
+  if (changed) on_plan_ = query.plan != nullptr && std::abs(aside_mm) <= off_plan_mm;
+  const double source =
+      on_plan_ ? query.plan->at(then_s - query.plan_origin_s) + aside_mm / settled_.gain_mm_per_kpa
+               : settled_.pressure_kpa(wanted_mm);
+  if (changed) {
+    entering_ = false;
     plan_ = query.plan;
     origin_s_ = query.plan_origin_s;
-    difference_kpa_ = last_kpa_ - planned_kpa;
+    difference_kpa_ = last_kpa_ - source;
     fade_left_s_ = plan_fade_s;
   }
-  last_kpa_ = planned_kpa + difference_kpa_ * fade_left_s_ / plan_fade_s;
+  const double faded = source + difference_kpa_ * fade_left_s_ / plan_fade_s;
   fade_left_s_ = std::max(0.0, fade_left_s_ - tick_s_);
-  const double wanted_mm = query.reference->at(query.time_s + ahead_s_).value;
-  return {last_kpa_, plan_->miss_mm(then_s, wanted_mm) > missed_mm};
+  last_kpa_ = std::clamp(faded, limits_.pressure_min_kpa, limits_.pressure_max_kpa);
+  const bool missed = on_plan_ && plan_->miss_mm(then_s - origin_s_) > missed_mm;
+  return {last_kpa_, missed || std::abs(faded - last_kpa_) > late_kpa};
 }
 
 Feedforward::Feedforward(const model::Model& model, const FeedforwardSettings& settings,
@@ -197,7 +228,7 @@ Feedforward::Feedforward(const model::Model& model, const FeedforwardSettings& s
       kind_.emplace<FullModelFeedforward>(model, settings, limits, tick_s);
       break;
     case FeedforwardKind::planned:
-      kind_.emplace<PlannedFeedforward>(model, settings, tick_s);
+      kind_.emplace<PlannedFeedforward>(model, settings, limits, tick_s);
       break;
   }
 }

@@ -102,24 +102,39 @@ class FullModelFeedforward {
 };
 
 /// A plan that was made before the run (control/planned_feedforward.h), read ahead by all dead time and the
-/// hold's half tick. Without a plan the pressure stays where it was and the rest is the PID's.
+/// hold's half tick. A finger that stands off its model (offset_mm) is not in the plan: the difference is
+/// added at the settled gain. Where there is no plan, or the reference begins more than 1 mm from where the
+/// plan does, the settled gain alone follows the reference until the next step. Whenever the source changes,
+/// the difference to the pressure before fades out over 3 s; the rest is the PID's.
 class PlannedFeedforward {
  public:
-  PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings, double tick_s);
+  PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,
+                     const LimitSettings& limits, double tick_s);
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
   /// More than the dead time: a plan acts before its reference does.
   [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + Planner::lead_s; }
 
  private:
+  [[nodiscard]] double unplanned_mm(const FeedforwardQuery& query, double wanted_mm,
+                                    double then_s) const noexcept;
+
+  LimitSettings limits_;
+  SettledLine settled_;
   double tick_s_;
   double ahead_s_;
   const PressurePlan* plan_ = nullptr;
   double origin_s_ = 0;
+  bool on_plan_ = false;
   double last_kpa_ = 0;
-  double difference_kpa_ = 0;  ///< between where the pressure was and where the plan began
+  double difference_kpa_ = 0;  ///< between where the pressure was and where the source began
   double fade_left_s_ = 0;     ///< until it is gone
+  bool entering_ = true;
 };
+
+/// How far ahead of now a plan is read: all dead time and half a tick [s].
+[[nodiscard]] double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings,
+                                  double tick_s);
 
 /// One of them.
 class Feedforward {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "control/planned_feedforward.h"
 #include "control/running_model.h"
 #include "model/chain.h"
 #include "model/dual.h"
@@ -125,10 +126,14 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
 }
 
 /// Any model can be planned for that moves the finger.
-tl::expected<void, Refusal> check_planned(const model::Model& model) {
+tl::expected<void, Refusal> check_planned(const model::Model& model, const LimitSettings& limits) {
   const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
-  if (!elements.blocks.empty()) return {};
-  return tl::unexpected(Refusal{"the model has no element that moves the finger"});
+  if (elements.blocks.empty())
+    return tl::unexpected(Refusal{"the model has no element that moves the finger"});
+  const double gain = settled_line(model, limits).gain_mm_per_kpa;
+  if (gain > 0) return {};
+  return tl::unexpected(Refusal{"the model's settled gain between the lowest and the highest command is " +
+                                number(gain) + " mm/kPa: planning needs one above 0"});
 }
 
 tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,
@@ -164,7 +169,7 @@ tl::expected<void, Refusal> check_feedforward(const model::Model& model, const F
     case FeedforwardKind::full_model:
       return check_full_model(model, limits, tick_s);
     case FeedforwardKind::planned:
-      return check_planned(model);
+      return check_planned(model, limits);
   }
   return {};
 }

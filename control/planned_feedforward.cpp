@@ -27,7 +27,9 @@ constexpr double smooth_mm_per_kpa = 1e-3;
 constexpr double bound_mm_per_kpa = 30;
 /// For the derivatives of the chain.
 constexpr double aside_kpa = 1e-6;
+/// Of one search, and of all searches of a window together: the time that planning takes at most.
 constexpr int most_iterations = 25;
+constexpr int most_iterations_of_window = 60;
 /// A window whose root mean square miss is below this needs no other guess.
 constexpr double good_mm = 0.01;
 /// A window is done when an iteration lowers its cost by less than this share.
@@ -55,7 +57,7 @@ class Window {
   Vector solve(Vector u) {
     double cost = cost_of(u);
     double damping = 1e-4;
-    for (int i = 0; i < most_iterations; ++i) {
+    for (int i = 0; i < most_iterations && iterations_left_ > 0; ++i, --iterations_left_) {
       Matrix normal;
       Vector gradient;
       linearise(u, normal, gradient);
@@ -176,6 +178,7 @@ class Window {
   double step_s_;
   double rise_kpa_;
   double fall_kpa_;
+  int iterations_left_ = most_iterations_of_window;
 };
 
 /// The best command from several guesses, as long as what was found is not good: where the command turns the
@@ -208,69 +211,110 @@ double PressurePlan::at(double time_s) const noexcept {
   return pressure_kpa[whole] + share * (pressure_kpa[whole + 1] - pressure_kpa[whole]);
 }
 
-double PressurePlan::miss_mm(double time_s, double wanted_mm) const noexcept {
+double PressurePlan::miss_mm(double time_s) const noexcept {
   if (displacement_mm.empty()) return 0;
-  const double place =
-      std::clamp((time_s - start_s) / step_s, 0.0, static_cast<double>(displacement_mm.size() - 1));
-  return std::abs(displacement_mm[static_cast<std::size_t>(std::lround(place))] - wanted_mm);
+  const double last = static_cast<double>(displacement_mm.size() - 1);
+  const double place = std::round(std::clamp((time_s - start_s) / step_s, 0.0, last));
+  return std::abs(displacement_mm[static_cast<std::size_t>(place)] -
+                  reference.at(start_s + place * step_s).value);
+}
+
+SettledLine settled_line(const model::Model& model, const LimitSettings& limits) {
+  const model::Model finger = model::only(model, without_dead_time);
+  model::Chain<double> chain(finger);
+  SettledLine line;
+  line.lowest_kpa = limits.pressure_min_kpa;
+  chain.reset(limits.pressure_min_kpa);
+  line.at_lowest_mm = chain.after(model::Station::load);
+  chain.reset(limits.pressure_max_kpa);
+  line.gain_mm_per_kpa = (chain.after(model::Station::load) - line.at_lowest_mm) /
+                         (limits.pressure_max_kpa - limits.pressure_min_kpa);
+  return line;
 }
 
 Planner::Planner(const model::Model& model, const LimitSettings& limits, double tick_s)
     : model_(model::only(model, without_dead_time)),
       limits_(limits),
-      step_s_(std::max(tick_s, finest_step_s)) {}
+      step_s_(std::max(tick_s, finest_step_s)),
+      settled_(settled_line(model, limits)) {}
 
-PressurePlan Planner::plan(const Reference& reference, double from_s, double to_s) {
-  PressurePlan result;
-  result.start_s = from_s;
-  result.step_s = step_s_;
+double Planner::command_kpa() const noexcept {
+  return past_kpa_.empty() ? limits_.pressure_min_kpa : past_kpa_.back();
+}
+
+model::Chain<double> Planner::finger() const {
   model::Chain<double> chain(model_, {}, step_s_);
   chain.reset(limits_.pressure_min_kpa);
   for (const double pressure : past_kpa_) chain.step(step_s_, pressure);
-  std::array<double, 2> before{limits_.pressure_min_kpa, limits_.pressure_min_kpa};
-  if (past_kpa_.size() > 1) before = {past_kpa_.back(), past_kpa_[past_kpa_.size() - 2]};
+  return chain;
+}
+
+double Planner::displacement_mm() const {
+  return finger().after(model::Station::load);
+}
+
+void Planner::drive(const std::function<double(double time_s)>& command_kpa, double duration_s) {
+  const auto points = static_cast<std::size_t>(std::lround(std::max(0.0, duration_s) / step_s_));
+  for (std::size_t i = 1; i <= points; ++i) {
+    const double wanted = command_kpa(static_cast<double>(i) * step_s_);
+    past_kpa_.push_back(limit(limits_, wanted, this->command_kpa(), step_s_).command_kpa);
+  }
+}
+
+/// One more point: what the limits make of a command, and what the model does under it.
+void Planner::add_point(double wanted_kpa, model::Chain<double>& chain, PressurePlan& plan) {
+  const double command = limit(limits_, wanted_kpa, command_kpa(), step_s_).command_kpa;
+  chain.step(step_s_, command);
+  past_kpa_.push_back(command);
+  plan.pressure_kpa.push_back(command);
+  plan.displacement_mm.push_back(chain.after(model::Station::load));
+}
+
+PressurePlan Planner::plan(const Reference& reference, double from_s, double to_s,
+                           const std::stop_token& stop) {
+  PressurePlan result;
+  result.start_s = from_s;
+  result.step_s = step_s_;
+  result.reference = reference;
+  model::Chain<double> chain = finger();
+  result.pressure_kpa.push_back(command_kpa());
+  result.displacement_mm.push_back(chain.after(model::Station::load));
 
   const auto wanted_at = [&](std::size_t i) {
     return limit_reference(limits_, reference.at(from_s + static_cast<double>(i) * step_s_).value)
         .reference_mm;
   };
+  const auto in_proportion = [&](double displacement_mm) {
+    return std::clamp(settled_.pressure_kpa(displacement_mm), limits_.pressure_min_kpa,
+                      limits_.pressure_max_kpa);
+  };
   const auto points = static_cast<std::size_t>(std::ceil((to_s - from_s) / step_s_ - 1e-9)) + 1;
   const auto keep = static_cast<std::size_t>(std::lround(decided_s / step_s_));
   const auto look = static_cast<std::size_t>(std::lround(ahead_s / step_s_));
-  result.pressure_kpa.push_back(before[0]);
-  result.displacement_mm.push_back(chain.after(model::Station::load));
-  const double lowest = limits_.pressure_min_kpa;
-  const double highest = limits_.pressure_max_kpa;
-  model::Chain<double> settled(model_, {}, step_s_);
-  settled.reset(highest);
-  const double settled_gain = settled.after(model::Station::load) / highest;
+  const auto n = static_cast<Eigen::Index>(keep + look);
   double squares = 0;
   Vector guess;
-  for (std::size_t done = 1; done < points;) {
-    const auto n = static_cast<Eigen::Index>(keep + look);
+  for (std::size_t done = 1; done < points && !stop.stop_requested();) {
     Vector wanted(n);
     for (Eigen::Index i = 0; i < n; ++i) wanted[i] = wanted_at(done + static_cast<std::size_t>(i));
     // What the window before thought beyond what it decided; then in proportion. A guess that stands still
     // would be a bad place for derivatives: hysteresis has one slope up and another down.
+    const Vector proportional = wanted.unaryExpr(in_proportion);
     const Eigen::Index known = guess.size();
     guess.conservativeResize(n);
-    for (Eigen::Index i = known; i < n; ++i) guess[i] = std::clamp(wanted[i] / settled_gain, lowest, highest);
-    Vector proportional = (wanted / settled_gain).cwiseMax(lowest).cwiseMin(highest);
-    Window window(chain, before, std::move(wanted), limits_, step_s_);
+    guess.tail(n - known) = proportional.tail(n - known);
+    const double before = past_kpa_.size() > 1 ? past_kpa_[past_kpa_.size() - 2] : command_kpa();
+    Window window(chain, {command_kpa(), before}, std::move(wanted), limits_, step_s_);
     const Vector u = best_of(window, guess, proportional);
     const std::size_t now = std::min(keep, points - done);
     for (std::size_t i = 0; i < now; ++i) {
-      const double command = limit(limits_, u[static_cast<Eigen::Index>(i)], before[0], step_s_).command_kpa;
-      chain.step(step_s_, command);
-      before = {command, before[0]};
-      result.pressure_kpa.push_back(command);
-      result.displacement_mm.push_back(chain.after(model::Station::load));
-      past_kpa_.push_back(command);
-      const double miss = result.displacement_mm.back() - wanted_at(done + i);
+      add_point(u[static_cast<Eigen::Index>(i)], chain, result);
+      const double miss = std::abs(result.displacement_mm.back() - wanted_at(done + i));
       squares += miss * miss;
+      result.worst_mm = std::max(result.worst_mm, miss);
     }
     done += now;
-    guess = u.tail(u.size() - static_cast<Eigen::Index>(now));
+    guess = u.tail(n - static_cast<Eigen::Index>(now));
   }
   result.rmse_mm = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(points - 1, 1)));
   return result;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "control/sequence.h"
+#include "control/sequence_plans.h"
 #include "model/document/node.h"
 
 namespace softgrip::control {
@@ -28,6 +29,10 @@ std::string text_of(double value) {
   return text;
 }
 
+double rounded(double value) {
+  return std::round(value * 100) / 100;
+}
+
 class Fitting {
  public:
   Fitting(const Sequence& sequence, const RigSettings& settings, Problems& problems)
@@ -43,7 +48,7 @@ class Fitting {
     result.rig = rig_key(settings_);
     const std::uint32_t all = mask_of(sequence_.channels, {}, (1U << settings_.channels.size()) - 1);
     for (const Step& step : sequence_.steps) {
-      PreparedStep prepared{step, mask_of(step.channels, step.at, all), 0};
+      PreparedStep prepared{step, mask_of(step.channels, step.at, all), 0, {}};
       if ((prepared.channels & ~all) != 0) {
         report(step, "names a channel that the sequence does not use");
       }
@@ -56,6 +61,25 @@ class Fitting {
     }
     point_to_releases(result.steps);
     return result;
+  }
+
+  void plan(PreparedSequence& prepared, const std::stop_token& stop) {
+    for (const MissedPlan& missed : plan_steps(prepared, settings_, stop)) {
+      const Step& step = sequence_.steps[missed.step];
+      problems_.warn(source_.problem(step.at,
+                                     "step '" + step.name + "': the model of channel '" +
+                                         settings_.channels[missed.channel].name +
+                                         "' cannot follow within the limits: it stays up to " +
+                                         text_of(rounded(missed.worst_mm)) + " mm from the reference",
+                                     "a slower or smaller motion, or wider limits"));
+    }
+    if (stop.stop_requested()) report(sequence_.steps.front(), "its planning was stopped");
+    if (prepared.planned_s > most_planned_s) {
+      report(
+          sequence_.steps.front(),
+          "more than " + text_of(most_planned_s) + " s of motion would have to be planned before the start",
+          "split the sequence, or use another feedforward");
+    }
   }
 
  private:
@@ -269,14 +293,26 @@ std::uint64_t rig_key(const RigSettings& settings) noexcept {
     key.add(channel.limits.displacement_min_mm);
     key.add(channel.limits.displacement_max_mm);
     key.add_bits((channel.pressure_measured ? 1U : 0U) | (channel.displacement_used ? 2U : 0U));
+    if (channel.feedforward.kind != FeedforwardKind::planned) continue;
+    key.add(channel.limits.slew_up_kpa_per_s);
+    key.add(channel.limits.slew_down_kpa_per_s);
+    key.add(channel.feedforward.extra_latency_s);
+    for (const model::BlockSpec& block : channel.model.blocks) {
+      key.add_bits(block.type);
+      for (const double value : block.values) key.add(value);
+    }
   }
   return key.value();
 }
 
 std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
-                                        document::Problems& problems) {
+                                        document::Problems& problems, const std::stop_token& stop) {
   const std::size_t before = problems.size();
-  PreparedSequence result = Fitting(sequence, settings, problems).run();
+  Fitting fitting(sequence, settings, problems);
+  PreparedSequence result = fitting.run();
+  if (problems.size() == before) {
+    fitting.plan(result, stop);
+  }
   if (problems.size() != before) {
     return std::nullopt;
   }

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "control/planned_feedforward.h"
 #include "control/settings.h"
 #include "model/document/problem.h"
 #include "model/signals.h"
@@ -136,6 +138,12 @@ struct PreparedStep {
   Step step;
   std::uint32_t channels = 0;      ///< bit i: channel i takes part
   std::uint16_t release_step = 0;  ///< where on_fail: release goes; the number of steps: nowhere
+  /// By channel of the rig, for feedforward `planned`; empty where nothing is planned.
+  std::vector<PressurePlan> plans;
+  /// nullptr if there is none.
+  [[nodiscard]] const PressurePlan* plan_of(std::size_t channel) const noexcept {
+    return channel < plans.size() && !plans[channel].empty() ? &plans[channel] : nullptr;
+  }
 };
 
 /// A sequence fitted to one rig: names resolved, targets checked against the limits. Immutable while it runs.
@@ -147,14 +155,17 @@ struct PreparedSequence {
       0;                  ///< those that are verified by detection: their free model must agree at rest
   std::uint64_t rig = 0;  ///< rig_key() of the settings it was prepared for
   std::vector<PreparedStep> steps;
+  double planned_s = 0;  ///< how much motion the plans are for; the channel with the most of it
 };
 
 /// Distinguishes rigs as far as a prepared sequence depends on them.
 [[nodiscard]] std::uint64_t rig_key(const RigSettings& settings) noexcept;
 
-/// Fits a sequence to a rig. What does not fit is added to `problems`, each at its step; nothing is returned
-/// then.
+/// Fits a sequence to a rig, and plans its motion for the channels that want it (control/sequence_plans.h).
+/// What does not fit is added to `problems`, each at its step; nothing is returned then. What is planned but
+/// out of reach is a warning. Planning can be asked to stop; then nothing is returned, for that reason.
 [[nodiscard]] std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
-                                                      document::Problems& problems);
+                                                      document::Problems& problems,
+                                                      const std::stop_token& stop = {});
 
 }  // namespace softgrip::control

@@ -41,7 +41,8 @@ void SequencePlayer::begin_step(std::uint16_t index, double time_s, std::span<co
   backing_off_ = false;
   done_ = 0;
   refused_ = 0;
-  for_each_of_step([&](std::size_t i) { channels_[i].begin(now().step, time_s, views[i]); });
+  for_each_of_step(
+      [&](std::size_t i) { channels_[i].begin(now().step, now().plan_of(i), time_s, views[i]); });
   events.add(Event::Kind::step_started, index, 0, attempts_);
 }
 

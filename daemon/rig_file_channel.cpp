@@ -67,12 +67,6 @@ std::string read_channel_name(Context& context, MapReader& reader) {
 void read_feedforward(Context& context, MapReader& reader, control::ChannelSettings& channel) {
   channel.feedforward.kind = static_cast<control::FeedforwardKind>(
       reader.choice("feedforward", {"none", "bouc_wen", "full_model", "planned"}));
-  if (channel.feedforward.kind == control::FeedforwardKind::planned && reader.good("feedforward")) {
-    reader.report("feedforward",
-                  "`planned` exists in `softgrip study control` only, the daemon does not run it",
-                  "`full_model`, or `none` for a model without an inverse");
-    channel.feedforward.kind = control::FeedforwardKind::none;
-  }
   // A command waits for the bus thread, which lags the loop by this.
   const double lag_s = context.rig.loop.bus_offset_fraction * context.period_s();
   channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 1}).value_or(lag_s);
@@ -135,7 +129,14 @@ void read_own_or_shared(Context& context, MapReader& reader, const std::string& 
 void check_feedforward_exists(Context& context, MapReader& reader, const control::ChannelSettings& channel) {
   const auto exists =
       control::check_feedforward(channel.model, channel.feedforward, channel.limits, context.period_s());
-  if (!exists) reader.report("feedforward", exists.error().text);
+  if (exists) return;
+  // What needs no inverse is left for most models that have none.
+  const control::FeedforwardSettings planned{control::FeedforwardKind::planned,
+                                             channel.feedforward.extra_latency_s};
+  const bool plannable =
+      control::check_feedforward(channel.model, planned, channel.limits, context.period_s()).has_value();
+  reader.report("feedforward", exists.error().text,
+                plannable ? "`planned` needs no inverse: sequences are planned before they start" : "");
 }
 
 void read_channel(Context& context, const Node& node, const Shared& shared) {

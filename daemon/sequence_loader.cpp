@@ -1,5 +1,6 @@
 #include "daemon/sequence_loader.h"
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -7,11 +8,16 @@
 #include <fmt/format.h>
 
 #include "control/sequence_file.h"
+#include "control/sequence_plans.h"
 #include "model/document/sha256.h"
 
 namespace softgrip::daemon {
 
 namespace {
+
+/// How long planning may delay a start before it is told: so much of the motion, and a hiccup of the machine.
+constexpr double longest_planning_share = 0.1;
+constexpr double planning_slack_s = 0.2;
 
 /// One step down from the directory, nothing hidden.
 bool is_plain_name(const std::string& name) {
@@ -24,13 +30,18 @@ bool is_plain_name(const std::string& name) {
 SequenceLoader::SequenceLoader(const control::RigSettings& rig, std::string directory)
     : rig_(rig), directory_(std::move(directory)) {}
 
-SequenceLoader::Result SequenceLoader::load_file(const std::string& path) const {
-  document::Problems problems;
-  auto sequence = control::load_sequence(path, problems);
-  return fit(std::move(sequence), std::move(problems));
+bool SequenceLoader::plans() const noexcept {
+  return control::plans_sequences(rig_);
 }
 
-SequenceLoader::Result SequenceLoader::load_named(const std::string& name) const {
+SequenceLoader::Result SequenceLoader::load_file(const std::string& path, const std::stop_token& stop) const {
+  document::Problems problems;
+  auto sequence = control::load_sequence(path, problems);
+  return fit(std::move(sequence), std::move(problems), stop);
+}
+
+SequenceLoader::Result SequenceLoader::load_named(const std::string& name,
+                                                  const std::stop_token& stop) const {
   if (!is_plain_name(name)) {
     document::Problems problems;
     problems.add({name,
@@ -43,22 +54,36 @@ SequenceLoader::Result SequenceLoader::load_named(const std::string& name) const
   std::string path = directory_ + "/" + name;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) path += ".yaml";
-  return load_file(path);
+  return load_file(path, stop);
 }
 
-SequenceLoader::Result SequenceLoader::load_text(const std::string& name, const std::string& text) const {
+SequenceLoader::Result SequenceLoader::load_text(const std::string& name, const std::string& text,
+                                                 const std::stop_token& stop) const {
   document::Problems problems;
   const document::Document document = document::parse(name, text, problems);
   auto sequence = control::read_sequence(document, problems);
-  return fit(std::move(sequence), std::move(problems));
+  return fit(std::move(sequence), std::move(problems), stop);
 }
 
 SequenceLoader::Result SequenceLoader::fit(std::optional<control::Sequence> sequence,
-                                           document::Problems problems) const {
+                                           document::Problems problems, const std::stop_token& stop) const {
   if (!sequence || !problems.empty()) return tl::unexpected(std::move(problems));
-  auto prepared = control::prepare(*sequence, rig_, problems);
+  const auto began = std::chrono::steady_clock::now();
+  auto prepared = control::prepare(*sequence, rig_, problems, stop);
   if (!prepared || !problems.empty()) return tl::unexpected(std::move(problems));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+  if (took.count() > longest_planning_share * prepared->planned_s + planning_slack_s) {
+    problems.warn(
+        {sequence->file,
+         {},
+         "",
+         fmt::format("planning took {:.1f} s for {:.1f} s of motion: every start of this sequence is "
+                     "late by that",
+                     took.count(), prepared->planned_s),
+         "channels with the same model and limits are planned together"});
+  }
   auto loaded = std::make_shared<LoadedSequence>();
+  loaded->remarks = std::move(problems);
   loaded->sha256 = document::sha256(sequence->text);
   loaded->written = std::move(*sequence);
   loaded->prepared = std::move(*prepared);

@@ -15,7 +15,8 @@ namespace softgrip::daemon {
 struct LoadedSequence {
   control::Sequence written;
   control::PreparedSequence prepared;
-  std::string sha256;  ///< of the text
+  std::string sha256;          ///< of the text
+  document::Problems remarks;  ///< warnings only: what it will not do as written
 };
 
 /// By the request that starts them. The loop holds a bare pointer into an entry; the entry stays until its

@@ -1,6 +1,7 @@
 #include "daemon/socket_api.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -28,9 +29,9 @@ Json error_json(std::string_view code, std::string_view message) {
   return {{"code", code}, {"message", message}};
 }
 
-Json json_of(const document::Problems& problems) {
+Json json_of(const std::vector<document::Problem>& problems) {
   Json list = Json::array();
-  for (const document::Problem& problem : problems.list()) {
+  for (const document::Problem& problem : problems) {
     list.push_back({{"file", problem.file},
                     {"line", problem.at.line},
                     {"column", problem.at.column},
@@ -45,6 +46,10 @@ Json json_of(const document::Problems& problems) {
 
 SocketApi::SocketApi(StatusSources sources, const SequenceLoader& loader, const EventLog& events, Send send)
     : sources_(sources), loader_(loader), events_(events), send_(std::move(send)) {}
+
+SocketApi::~SocketApi() {
+  if (planned_) abandon_planned();
+}
 
 void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now) {
   const auto request = parse_client_request(line);
@@ -67,13 +72,15 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       start(client, *request, now);
       break;
     case Command::stop:
-      ask(client, *request, Kind::stop, nullptr, now);
+      refuse_planned();
+      ask(client, request->id, Kind::stop, nullptr, now);
       break;
     case Command::vent:
-      ask(client, *request, Kind::vent, nullptr, now);
+      refuse_planned();
+      ask(client, request->id, Kind::vent, nullptr, now);
       break;
     case Command::acknowledge:
-      ask(client, *request, Kind::acknowledge, nullptr, now);
+      ask(client, request->id, Kind::acknowledge, nullptr, now);
       break;
     case Command::events:
       tell_events(client, *request);
@@ -87,9 +94,11 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
 void SocketApi::on_closed(ClientId client) {
   watches_.erase(client);
   std::erase_if(asked_, [client](const auto& entry) { return entry.second.client == client; });
+  if (planned_ && planned_->client == client) abandon_planned();
 }
 
 Nanoseconds SocketApi::on_time(Nanoseconds now) {
+  take_planned(now);
   for (auto entry = asked_.begin(); entry != asked_.end();) {
     const auto& [request, asked] = *entry;
     const Service::Answer said = sources_.service.take_answer(request);
@@ -115,30 +124,71 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
 }
 
 void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds now) {
-  auto loaded = request.sequence_text.empty() ? loader_.load_named(request.sequence)
-                                              : loader_.load_text(request.sequence, request.sequence_text);
-  if (!loaded) {
-    Json error = error_json("sequence_refused", "the sequence cannot be run on this rig");
-    error["problems"] = json_of(loaded.error());
-    fail(client, request.id, error);
-    return;
+  const std::stop_source stop;
+  const auto load = [&loader = loader_, name = request.sequence, text = request.sequence_text,
+                     token = stop.get_token()] {
+    return text.empty() ? loader.load_named(name, token) : loader.load_text(name, text, token);
+  };
+  if (!loader_.plans()) {
+    loaded(client, request.id, load(), now);
+  } else if (planned_) {
+    fail(client, request.id, error_json("busy", "the sequence of an earlier start is still being planned"));
+  } else {
+    // Nobody who asks for a vent or a stop waits for a plan.
+    planned_ = Planned{client, request.id, std::async(std::launch::async, load), stop};
   }
-  ask(client, request, Kind::start, std::move(*loaded), now);
 }
 
-void SocketApi::ask(ClientId client, const ClientRequest& request, Kind kind,
-                    std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
-  const auto number = sources_.service.submit(kind, std::move(sequence));
-  if (!number) {
-    fail(client, request.id, error_json("busy", "the loop has not yet taken the requests before this one"));
+void SocketApi::abandon_planned() noexcept {
+  planned_->abandoned = true;
+  planned_->stop.request_stop();
+}
+
+/// Who stops or vents does not want motion a moment later.
+void SocketApi::refuse_planned() {
+  if (!planned_ || planned_->abandoned) return;
+  abandon_planned();
+  fail(planned_->client, planned_->id,
+       error_json("abandoned", "a stop or a vent came while the sequence was being planned"));
+}
+
+void SocketApi::take_planned(Nanoseconds now) {
+  if (!planned_ || planned_->loaded.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  Planned planned = std::move(*planned_);
+  planned_.reset();
+  SequenceLoader::Result sequence = planned.loaded.get();
+  // Who left before the motion could begin does not want it any more.
+  if (!planned.abandoned) loaded(planned.client, planned.id, std::move(sequence), now);
+}
+
+void SocketApi::loaded(ClientId client, std::optional<std::uint64_t> id, SequenceLoader::Result sequence,
+                       Nanoseconds now) {
+  if (sequence) {
+    ask(client, id, Kind::start, std::move(*sequence), now);
     return;
   }
-  asked_[*number] = {client, request.id, now + longest_answer};
+  Json error = error_json("sequence_refused", "the sequence cannot be run on this rig");
+  error["problems"] = json_of(sequence.error().list());
+  fail(client, id, error);
+}
+
+void SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
+                    std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
+  document::Problems remarks;
+  if (sequence) remarks = sequence->remarks;
+  const auto number = sources_.service.submit(kind, std::move(sequence));
+  if (!number) {
+    fail(client, id, error_json("busy", "the loop has not yet taken the requests before this one"));
+    return;
+  }
+  asked_[*number] = {client, id, now + longest_answer, std::move(remarks)};
 }
 
 void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer) {
   if (answer.kind == Service::Answer::Kind::accepted) {
-    ok(asked.client, asked.id, {{"request", request}});
+    Json result{{"request", request}};
+    if (!asked.remarks.warnings().empty()) result["warnings"] = json_of(asked.remarks.warnings());
+    ok(asked.client, asked.id, result);
     return;
   }
   Json error = error_json("refused", control::name_of(answer.refusal));

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +29,10 @@ class SocketApi {
   using Send = std::function<void(ClientId client, std::string_view line, bool skippable)>;
 
   SocketApi(StatusSources sources, const SequenceLoader& loader, const EventLog& events, Send send);
+  SocketApi(const SocketApi&) = delete;
+  SocketApi& operator=(const SocketApi&) = delete;
+  /// What is being planned is stopped and waited for.
+  ~SocketApi();
 
   /// One line of a client, without its line break.
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
@@ -40,6 +46,7 @@ class SocketApi {
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     Nanoseconds give_up = 0;
+    document::Problems remarks;  ///< on the sequence
   };
   struct Watch {
     std::optional<std::uint64_t> id;
@@ -47,8 +54,21 @@ class SocketApi {
     Nanoseconds due = 0;
   };
 
+  struct Planned {  // being read by a thread of its own
+    ClientId client = 0;
+    std::optional<std::uint64_t> id;
+    std::future<SequenceLoader::Result> loaded;
+    std::stop_source stop;
+    bool abandoned = false;  ///< nobody waits for it any more
+  };
+
   void start(ClientId client, const ClientRequest& request, Nanoseconds now);
-  void ask(ClientId client, const ClientRequest& request, control::Request::Kind kind,
+  void loaded(ClientId client, std::optional<std::uint64_t> id, SequenceLoader::Result sequence,
+              Nanoseconds now);
+  void take_planned(Nanoseconds now);
+  void abandon_planned() noexcept;
+  void refuse_planned();
+  void ask(ClientId client, std::optional<std::uint64_t> id, control::Request::Kind kind,
            std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
   void answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer);
   void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
@@ -62,6 +82,7 @@ class SocketApi {
   Send send_;
   std::map<std::uint32_t, Asked> asked_;  // by the request's id in the loop
   std::map<ClientId, Watch> watches_;
+  std::optional<Planned> planned_;
 };
 
 /// The line that refuses a client before it could say anything, or for what cannot be parsed.

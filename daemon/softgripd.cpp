@@ -124,6 +124,7 @@ int run(const Arguments& arguments) {
   if (!arguments.sequence.empty()) {
     auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(arguments.sequence);
     if (!sequence) return refuse(sequence.error());
+    std::fputs((*sequence)->remarks.format().c_str(), stderr);
     options.sequence = std::move(*sequence);
   }
   daemon::EventPrinter printer(!arguments.virtual_time);

@@ -48,9 +48,11 @@ std::string watchdog_line(const RigFile& rig, const drivers::Board& board) {
 }
 
 std::string channel_line(const control::ChannelSettings& channel, const ValveFacts& valve) {
-  return fmt::format("channel {}: {:g} to {:g} kPa, feedforward {} accepted, valve {} on power loss\n",
+  const bool planned = channel.feedforward.kind == control::FeedforwardKind::planned;
+  return fmt::format("channel {}: {:g} to {:g} kPa, feedforward {} accepted{}, valve {} on power loss\n",
                      channel.name, channel.limits.pressure_min_kpa, channel.limits.pressure_max_kpa,
                      name_of_feedforward(channel.feedforward.kind),
+                     planned ? " (a sequence is planned before it starts)" : "",
                      valve.on_power_loss == PowerLoss::vents ? "vents" : "holds");
 }
 

@@ -16,7 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // The daemon answers within a second whatever happens; then something is wrong.
-constexpr std::chrono::milliseconds longest_answer{5000};
 constexpr std::size_t longest_line = std::size_t{8} << 20U;
 
 constexpr const char* how_to_start =
@@ -37,7 +36,8 @@ ClientFailure cannot_connect(const std::string& path, int error) {
   }
 }
 
-/// "file:line:col: message" of each problem of a refused sequence.
+}  // namespace
+
 std::string listed(const Json& problems) {
   std::string text;
   for (const Json& problem : problems) {
@@ -47,6 +47,8 @@ std::string listed(const Json& problems) {
   }
   return text;
 }
+
+namespace {
 
 ClientFailure failure_of(const Json& error) {
   const std::string code = error.value("code", "");
@@ -58,7 +60,7 @@ ClientFailure failure_of(const Json& error) {
     const Json refusal = error.value("refusal", Json::object());
     return {ExitCode::state_refused, "refused: " + message + " (" + refusal.value("code", "?") + ")"};
   }
-  if (code == "busy") return {ExitCode::state_refused, message};
+  if (code == "busy" || code == "abandoned") return {ExitCode::state_refused, message};
   return {ExitCode::failed, message};
 }
 
@@ -83,7 +85,7 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
   return DaemonClient{std::move(socket), path};
 }
 
-tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request) {
+tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request, std::chrono::milliseconds patience) {
   std::string line = request.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t count = ::send(socket_.get(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
@@ -92,7 +94,7 @@ tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request) {
     if (count < 0) break;
     sent += static_cast<std::size_t>(count);
   }
-  const auto answer = next_line(longest_answer);
+  const auto answer = next_line(patience);
   if (!answer) return tl::unexpected{answer.error()};
   if (!*answer)
     return tl::unexpected{ClientFailure{ExitCode::io, "the daemon at " + path_ + " does not answer"}};

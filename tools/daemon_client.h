@@ -16,6 +16,9 @@ namespace softgrip::tools {
 /// Where softgripd listens unless told otherwise: $SOFTGRIP_SOCKET, or the packaged service's path.
 [[nodiscard]] std::string default_socket_path();
 
+/// "file:line:col: message" of each problem that the daemon has with a sequence, each on a line begun anew.
+[[nodiscard]] std::string listed(const nlohmann::ordered_json& problems);
+
 /// Why a request came to nothing, for the user, and what the program exits with.
 struct ClientFailure {
   ExitCode code = ExitCode::io;
@@ -30,7 +33,8 @@ class DaemonClient {
   /// Sends a request and returns the `result` of its answer. Refusals of the daemon are failures with
   /// ExitCode::state_refused, refused sequences with ExitCode::input_refused.
   [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> ask(
-      const nlohmann::ordered_json& request);
+      const nlohmann::ordered_json& request, std::chrono::milliseconds patience = longest_answer);
+  static constexpr std::chrono::milliseconds longest_answer{5000};
 
   /// The next line that the daemon sends by itself (a watched state); nothing when `patience` ends first.
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(

@@ -67,6 +67,7 @@ ExitCode run(const Options& options) {
     return fail(ExitCode::usage, "--seed needs a simulated board");
   auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence);
   if (!sequence) return refuse(sequence.error());
+  std::fputs((*sequence)->remarks.format().c_str(), stderr);
 
   daemon::DaemonOptions daemon_options;
   daemon_options.virtual_time = options.virtual_time;

@@ -67,8 +67,12 @@ ExitCode run(const Options& options) {
   if (!client) return fail(client.error().code, client.error().message);
   const auto newest = newest_event(*client);
   if (!newest) return fail(newest.error().code, newest.error().message);
-  const auto accepted = client->ask(request);
+  // Its motion may have to be planned first.
+  constexpr std::chrono::seconds longest_planning{90};
+  const auto accepted = client->ask(request, longest_planning);
   if (!accepted) return fail(accepted.error().code, accepted.error().message);
+  if (const Json warnings = accepted->value("warnings", Json::array()); !warnings.empty())
+    std::fprintf(stderr, "softgrip: warning:%s\n", listed(warnings).c_str());
   if (options.wait) return follow(*client, options, accepted->value("request", std::uint64_t{0}), *newest);
   if (options.daemon.json) {
     print_json(*accepted);

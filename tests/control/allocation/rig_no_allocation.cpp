@@ -80,5 +80,25 @@ TEST(TickAllocation, NoneInAnyState) {
   EXPECT_EQ(allocations, 0U);
 }
 
+// Planned motion, the grip that is not planned for (backing off), another start.
+TEST(TickAllocation, NoneOfAPlan) {
+  RigSettings settings = two_finger_settings();
+  for (ChannelSettings& channel : settings.channels) channel.feedforward.kind = FeedforwardKind::planned;
+  SimulatedRig rig(settings);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  ASSERT_NE(pick.steps[0].plan_of(0), nullptr);
+  rig.around_tick = [](bool begins) { counting = begins; };
+  allocations = 0;
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  for (int i = 0; i < 2; ++i) {
+    rig.request(Request::Kind::start, &pick);
+    ASSERT_TRUE(rig.run_until(State::running, 12));
+    rig.run(9);
+    rig.request(Request::Kind::stop);
+    rig.run(15);
+  }
+  EXPECT_EQ(allocations, 0U);
+}
+
 }  // namespace
 }  // namespace softgrip::control
