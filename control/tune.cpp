@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
-#include <utility>
 
+#include "control/gain_search.h"
 #include "control/running_model.h"
 #include "model/chain.h"
 #include "model/random.h"
@@ -15,7 +16,7 @@ namespace softgrip::control {
 namespace {
 
 /// ln kp, ln ki, derivative time [s] (negative: none)
-using Point = std::array<double, 3>;
+using Point = GainPoint;
 
 constexpr double filter_share = 0.125;
 /// What a loop costs that lacks margin [mm]; more the more it lacks.
@@ -111,52 +112,6 @@ class Cost {
   std::vector<PressurePlan> plans_;
 };
 
-Point along(const Point& from, const Point& to, double share) {
-  Point result{};
-  for (std::size_t i = 0; i < result.size(); ++i) result[i] = from[i] + share * (to[i] - from[i]);
-  return result;
-}
-
-Point nelder_mead(Cost& cost, const Point& start, double at_start, int iterations) {
-  using Corner = std::pair<double, Point>;
-  std::array<Corner, 4> simplex{Corner{at_start, start}};
-  constexpr Point edges{0.4, 0.4, 0.03};
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    Point point = start;
-    point[i] += edges[i];
-    simplex[i + 1] = {cost(point), point};
-  }
-  for (int k = 0; k < iterations; ++k) {
-    std::sort(simplex.begin(), simplex.end());
-    if (simplex[3].first - simplex[0].first < 1e-3 * simplex[0].first) break;
-    Point centre{};
-    for (std::size_t i = 0; i < centre.size(); ++i) {
-      centre[i] = (simplex[0].second[i] + simplex[1].second[i] + simplex[2].second[i]) / 3;
-    }
-    const auto at = [&](double share) {
-      const Point point = along(centre, simplex[3].second, share);
-      return Corner{cost(point), point};
-    };
-    const Corner mirrored = at(-1);
-    if (mirrored.first < simplex[0].first) {
-      simplex[3] = std::min(mirrored, at(-2));
-    } else if (mirrored.first < simplex[2].first) {
-      simplex[3] = mirrored;
-    } else {
-      const Corner nearer = at(mirrored.first < simplex[3].first ? -0.5 : 0.5);
-      if (nearer.first < std::min(mirrored.first, simplex[3].first)) {
-        simplex[3] = nearer;
-      } else {
-        for (std::size_t i = 1; i < simplex.size(); ++i) {
-          const Point point = along(simplex[0].second, simplex[i].second, 0.5);
-          simplex[i] = {cost(point), point};
-        }
-      }
-    }
-  }
-  return std::min_element(simplex.begin(), simplex.end())->second;
-}
-
 std::string number(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -200,7 +155,8 @@ Tuned tune(const TuneTask& task) {
       if (value < least) least = value, best = point;
     }
   }
-  best = nelder_mead(cost, best, least, task.iterations);
+  best = nelder_mead(std::ref(cost), best, least,
+                     {.edges = {0.4, 0.4, 0.03}, .iterations = task.iterations, .done_share = 1e-3});
   Tuned tuned;
   tuned.pid = cost.gains(best);
   const LoopMargins margins = cost.margins(tuned.pid);
