@@ -1,0 +1,24 @@
+#pragma once
+// CSV as text: lines and cells with their places. What they mean is the reader's business.
+
+#include <string_view>
+#include <vector>
+
+namespace softgrip::sysid {
+
+/// The text, line by line, without line breaks; without the empty lines at its end.
+[[nodiscard]] std::vector<std::string_view> lines_of(std::string_view text);
+
+/// A cell and the byte column at which it stands.
+struct Cell {
+  std::string_view text;
+  int column;
+};
+
+/// Splits at commas outside double quotes. The cells keep their quotes.
+void split(std::string_view line, std::vector<Cell>& cells);
+
+/// Without the blanks around it, and without the double quotes around that.
+[[nodiscard]] std::string_view unquoted(std::string_view text);
+
+}  // namespace softgrip::sysid
