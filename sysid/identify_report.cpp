@@ -45,6 +45,10 @@ Tone tone_of(const Identification& r) {
   return is_noise(r) && !moves_the_wrong_way(r) && r.converged ? Tone::good : Tone::doubtful;
 }
 
+std::string logs_in_words(const Identification& r) {
+  return r.scores.size() == 1 ? r.scores.front().name : std::to_string(r.scores.size()) + " logs";
+}
+
 std::string range(const std::optional<Interval>& interval, int digits) {
   if (!interval) return "";
   return significant(interval->lower, digits) + " to " + significant(interval->upper, digits);
@@ -190,10 +194,11 @@ void add_notes(Page& page, const std::vector<Log>& logs) {
 }  // namespace
 
 std::string verdict_of(const Identification& r) {
-  const std::string logs =
-      r.scores.size() == 1 ? r.scores.front().name : std::to_string(r.scores.size()) + " logs";
-  const std::string size = "RMSE " + significant(r.rmse_mm, 3) + " mm, at most " +
-                           significant(largest_percent(r), 2) + " % of a log's span";
+  const std::string logs = logs_in_words(r);
+  const std::string size =
+      "RMSE of " + significant(r.rmse_mm, 3) + " mm, " +
+      (r.scores.size() == 1 ? significant(largest_percent(r), 2) + " % of its span"
+                            : "at most " + significant(largest_percent(r), 2) + " % of a log's span");
   if (largest_percent(r) > bad_percent) {
     return "The model does not explain " + logs + ": " + size + ".";
   }
@@ -208,7 +213,7 @@ std::string verdict_of(const Identification& r) {
 
 std::string identify_html(const IdentifyReport& report) {
   const Identification& r = report.result;
-  Page page("Identification of " + r.model.name, verdict_of(r), tone_of(r));
+  Page page("Identification: " + r.model.name + " from " + logs_in_words(r), verdict_of(r), tone_of(r));
   auto provenance = provenance_of(report.logs, {{"start", &report.start}, {"identified model", &r.model}});
   provenance.emplace_back("seed of the starts", std::to_string(report.seed));
   page.provenance(std::move(provenance));

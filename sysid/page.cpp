@@ -20,7 +20,7 @@ dt{font-weight:600}dd{margin:0;overflow-wrap:anywhere}
 table{border-collapse:collapse;font-size:13.5px;margin:12px 0;font-variant-numeric:tabular-nums}
 caption{text-align:left;color:#5b666e;padding-bottom:4px}
 th{text-align:left;font-weight:600;border-bottom:2px solid #b8c4cc}th,td{padding:3px 14px 3px 0;vertical-align:top}
-td{border-bottom:1px solid #e8ecef}.n{text-align:right;white-space:nowrap}
+td{border-bottom:1px solid #e8ecef}.n{text-align:right}td.n{white-space:nowrap}
 figure{margin:14px 0}figure svg{max-width:100%;height:auto;display:block}
 .row{display:flex;flex-wrap:wrap;gap:8px}.row svg{flex:1 1 340px;min-width:300px;max-width:520px}
 figcaption{font-size:13px;color:#5b666e;margin-top:4px;max-width:80ch}

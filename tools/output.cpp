@@ -1,5 +1,7 @@
 #include "tools/output.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -34,6 +36,22 @@ tl::expected<void, std::string> write_output(const std::string& path, std::strin
     return tl::unexpected{"cannot write " + path + ": " + std::strerror(errno)};
   }
   return {};
+}
+
+tl::expected<void, std::string> prepare_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return tl::unexpected{"cannot create " + folder + ": " + error.message()};
+  if (::access(folder.c_str(), W_OK) != 0) {
+    return tl::unexpected{"cannot write into " + folder + ": " + std::strerror(errno)};
+  }
+  return {};
+}
+
+tl::expected<void, std::string> prepare_parent(const std::string& path) {
+  if (path == "-" || is_stream(path)) return {};
+  const std::string parent = std::filesystem::path(path).parent_path().string();
+  return prepare_folder(parent.empty() ? "." : parent);
 }
 
 std::FILE* report_stream(const std::string& path) {

@@ -13,6 +13,12 @@ namespace softgrip::tools {
 /// (/dev/stdout, a pipe) is written to as it is. The error is one sentence.
 [[nodiscard]] tl::expected<void, std::string> write_output(const std::string& path, std::string_view text);
 
+/// Creates the folder if it is missing. The error says why nothing can be written into it: to be asked before
+/// what takes minutes, not after.
+[[nodiscard]] tl::expected<void, std::string> prepare_folder(const std::string& folder);
+/// The same for the folder of a file; "-" is always writable.
+[[nodiscard]] tl::expected<void, std::string> prepare_parent(const std::string& path);
+
 /// Where to say what was done: the standard output, unless the output itself goes there.
 [[nodiscard]] std::FILE* report_stream(const std::string& path);
 

@@ -19,6 +19,7 @@
 #include "sysid/validate.h"
 #include "tools/commands.h"
 #include "tools/log_input.h"
+#include "tools/option_check.h"
 
 namespace softgrip::tools {
 namespace {
@@ -106,13 +107,17 @@ ExitCode run(Options options) {
     if (!read) return read.error();
     validation_logs = std::move(*read);
   }
-  const auto start = start_model(options, *logs);
+  auto start = start_model(options, *logs);
   if (!start) return start.error();
   options.fit.record = options.logs.record_options();
   if (::isatty(STDERR_FILENO) == 1) options.fit.progress = show_progress;
   auto result = sysid::identify(*logs, *start, options.fit);
   if (!result) return fail(ExitCode::input_refused, result.error());
-  if (!options.start.empty()) result->model.name = start->name + "_identified";
+  if (options.start.empty()) {
+    start->name = "base structure, from the data's scale";
+  } else {
+    result->model.name = start->name + "_identified";
+  }
   result->model.source = source_of(*logs, result->rmse_mm, *start);
 
   sysid::IdentifyReport report{*result, *logs, *start, options.fit.seed, {}, {}, nullptr};
@@ -152,7 +157,7 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
   command.add_flag("--robust", fit.robust, "Outliers count linearly (Huber)");
   command.add_flag("--profile", fit.profile, "Intervals by profile likelihood besides");
   command.add_option("--fit-share", fit.fit_share, "Fit this first share of every log, hold out the rest")
-      ->check(CLI::Range(0.05, 1.0))
+      ->check(number_between(0.05, 1.0))
       ->capture_default_str();
   command.add_option("--threads", fit.threads, "0: as many as there are cores")->capture_default_str();
 }

@@ -12,6 +12,8 @@
 
 #include "sysid/files.h"
 #include "tools/commands.h"
+#include "tools/option_check.h"
+#include "tools/output.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/published.h"
 
@@ -70,6 +72,10 @@ void add_published(CLI::App& study, ExitCode& outcome) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->callback([options, &outcome] {
+    if (const auto writable = prepare_folder(options->output.out); !writable) {
+      outcome = fail(ExitCode::io, writable.error());
+      return;
+    }
     if (on_error_terminal()) options->study.progress = show_progress;
     const PublishedStudy result = study_published(options->study);
     end_progress();
@@ -92,12 +98,16 @@ void add_control(CLI::App& study, ExitCode& outcome) {
       ->capture_default_str();
   command->add_option("--seed", options->study.seed, "Of fingers, noise and logs")->capture_default_str();
   command->add_option("--frequencies-hz", options->study.frequencies_hz, "Of the references")
-      ->check(CLI::Range(0.01, 2.0))
+      ->check(number_between(0.01, 2.0))
       ->capture_default_str();
   command->add_option("--max-sensitivity", options->study.most_sensitivity, "Ms of every loop, at most")
-      ->check(CLI::Range(1.05, 5.0))
+      ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->callback([options, &outcome] {
+    if (const auto writable = prepare_folder(options->output.out); !writable) {
+      outcome = fail(ExitCode::io, writable.error());
+      return;
+    }
     if (on_error_terminal()) options->study.progress = show_progress;
     const ControlStudy result = study_control(options->study);
     end_progress();

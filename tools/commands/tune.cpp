@@ -15,6 +15,7 @@
 #include "model/model_file.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
+#include "tools/option_check.h"
 #include "tools/output.h"
 
 namespace softgrip::tools {
@@ -146,6 +147,8 @@ ExitCode run(Options& options) {
   const auto accepted =
       control::check_feedforward(*model, task.channel.feedforward, task.channel.limits, 1 / task.rate_hz);
   if (!accepted) return fail(ExitCode::input_refused, options.model + ": " + accepted.error().text);
+  if (const auto writable = prepare_parent(options.out); !writable)
+    return fail(ExitCode::io, writable.error());
   task.channel.plausibility.max_speed_mm_per_s = 1e6;
   task.mismatch = 0.01 * options.mismatch_percent;
   control::choose_reference(task);
@@ -176,21 +179,22 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   command->add_option("--rig", options->rig, "Rig file: rate, limits, feedforward and latency of a channel");
   command->add_option("--channel", options->channel, "Which channel of the rig [the first]");
   command->add_option("--rate-hz", options->rate_hz, "Of the loop, without a rig [200]")
-      ->check(CLI::Range(10.0, 2000.0));
+      ->check(number_between(10.0, 2000.0));
   command->add_option("--feedforward", options->feedforward, "In place of the rig's, or of none")
       ->check(CLI::IsMember({"none", "bouc_wen", "full_model", "planned"}));
   command->add_option("--pressure-max-kpa", options->pressure_max_kpa, "Highest pressure, without a rig [60]")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(number_between(1.0, 1000.0));
   command->add_option("--mismatch-percent", options->mismatch_percent, "Every parameter is off by up to this")
-      ->check(CLI::Range(0.0, 50.0))
+      ->check(number_between(0.0, 50.0))
       ->capture_default_str();
   command->add_option("--max-sensitivity", options->task.most_sensitivity, "Ms of the loop, at most")
-      ->check(CLI::Range(1.05, 5.0))
+      ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->add_option("--frequencies-hz", options->task.frequencies_hz, "Sines that are tracked")
-      ->check(CLI::Range(0.01, 5.0))
+      ->check(number_between(0.01, 5.0))
       ->capture_default_str();
   command->add_option("--noise-mm", options->task.noise_mm, "Of the sensor, without a rig")
+      ->check(number_between(0.0, 10.0))
       ->capture_default_str();
   command->add_option("--draws", options->task.draws, "Fingers")
       ->check(CLI::Range(1, 1000))

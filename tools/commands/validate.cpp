@@ -14,6 +14,7 @@
 #include "sysid/validate.h"
 #include "tools/commands.h"
 #include "tools/log_input.h"
+#include "tools/option_check.h"
 
 namespace softgrip::tools {
 namespace {
@@ -80,7 +81,7 @@ void add_validate(CLI::App& program, ExitCode& outcome) {
   command
       ->add_option("--at-most-percent", options->at_most_percent,
                    "Exit with 6 if the RMSE of a log is a larger share of its span")
-      ->check(CLI::PositiveNumber);
+      ->check(number_between(0.0, 100.0));
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print validate.json");
   command->callback([options, &outcome] { outcome = run(*options); });

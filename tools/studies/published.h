@@ -5,6 +5,7 @@
 //    far beta/(alpha + 1/k0) is from the truth.
 // 2. The published response, matched by an ordinary, invertible actuator behind lag and delay.
 // 3. What follows for an inverse of the Bouc-Wen element: the explicit form and the implicit one.
+// 4. The paper's four RMSE figures, beside those of simulated fingers.
 
 #include <cstdint>
 #include <functional>
@@ -14,6 +15,7 @@
 
 #include "model/model.h"
 #include "sysid/log.h"
+#include "tools/studies/paper_table.h"
 
 namespace softgrip::tools {
 
@@ -75,6 +77,7 @@ struct PublishedStudy {
   std::vector<HiddenLatency> latency;
   std::vector<PublishedMatch> matches;
   std::vector<InverseTrial> inverses;
+  std::vector<PaperRow> paper;
   std::vector<double> inverse_time_s;
   std::vector<double> inverse_true_kpa;
   double twin_rmse_mm = 0;         ///< of bench_twin against the published response with eta 2 /bar

@@ -91,12 +91,11 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
       "fitted "
       "model moves the wrong way first and has no inverse.");
   sysid::Table table;
-  table.caption = "Published: beta/(alpha + 1/k0) " + fixed(study.published_ratio, 2) +
+  table.caption = "Ratio: beta/(alpha + 1/k0). Published: ratio " + fixed(study.published_ratio, 2) +
                   ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm; truth: k2 0.04, c2 0.016, tau2 0.4 s.";
-  table.header = {
-      "lag / delay [s]", "beta/(alpha+1/k0)", "other triangles", "planning simulation", "RMSE [mm]",
-      "span [mm]",       "tau2 [s]",          "k2 [bar/mm]",     "c2 [bar s/mm]",       "inverse"};
-  table.numeric = {false, true, true, true, true, true, true, true, true, false};
+  table.header = {"lag / delay [s]", "ratio",    "other triangles", "planning simulation", "RMSE [mm]",
+                  "span [mm]",       "tau2 [s]", "k2 [bar/mm]",     "c2 [bar s/mm]",       "inverse"};
+  table.numeric = {true, true, true, true, true, true, true, true, true, false};
   for (const HiddenLatency& row : study.latency) {
     table.rows.push_back(
         {fixed(row.lag_s, 2) + " / " + fixed(row.delay_s, 2), significant(row.ratio, 3),
@@ -128,7 +127,7 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
       "0.056 to 0.064 mm and 0.15 to 0.17 s; the paper's own residual on its TP1 is 0.194 mm.");
   sysid::Table table;
   table.header = {"eta [1/bar]", "RMSE [mm]", "on tp2, unseen [mm]", "span [mm]",
-                  "lag [s]",     "delay [s]", "lag + delay [s]",     "beta/(alpha+1/k0)"};
+                  "lag [s]",     "delay [s]", "lag + delay [s]",     "beta / (alpha + 1/k0)"};
   table.numeric.assign(table.header.size(), true);
   for (const PublishedMatch& row : study.matches) {
     table.rows.push_back({significant(row.eta_per_bar), fixed(row.rmse_mm, 4), fixed(row.other_rmse_mm, 4),
@@ -204,6 +203,29 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
            study.bouc_wen_refusal + ". full_model: " + study.full_model_refusal + "."});
 }
 
+void paper_section(sysid::Page& page, const PublishedStudy& study) {
+  page.section("4. The paper's four figures");
+  page.paragraph(
+      "The paper's section 4: its structure, identified on TP1, predicts TP2, SP1 and SP2. The same on "
+      "simulated "
+      "logs of two fingers, noise " +
+      significant(study.options.noise_mm) + " mm.");
+  sysid::Table table;
+  table.caption = "RMSE in mm; in brackets % of the log's span, which the paper does not give.";
+  table.header = {"signal", "the paper's finger", "finger = published model",
+                  "finger = bench_twin (latency)"};
+  table.numeric = {false, true, true, true};
+  const auto figure = [](const PaperFigure& f) {
+    return fixed(f.rmse_mm, 3) + " (" + fixed(f.rmse_percent_of_span, 2) + ")";
+  };
+  for (const PaperRow& row : study.paper) {
+    table.rows.push_back({std::string(model::name_of(row.signal)), fixed(row.paper_mm, 3),
+                          figure(row.published), figure(row.twin)});
+  }
+  page.table(table);
+  page.list(paper_table_remarks());
+}
+
 }  // namespace
 
 std::string published_html(const PublishedStudy& study) {
@@ -221,6 +243,7 @@ std::string published_html(const PublishedStudy& study) {
   latency_section(page, study);
   match_section(page, study);
   inverse_section(page, study);
+  paper_section(page, study);
   return page.to_html();
 }
 

@@ -31,6 +31,20 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+std::string paper_text(const std::vector<PaperRow>& rows) {
+  std::string text =
+      "4. RMSE [mm] of the published structure, identified on tp1 (% of span)\n"
+      "   signal   the paper's finger   the published model   bench_twin: latency behind it\n";
+  for (const PaperRow& row : rows) {
+    const auto figure = [](const PaperFigure& f) {
+      return fixed(f.rmse_mm, 4) + " (" + fixed(f.rmse_percent_of_span, 2) + ")";
+    };
+    text += "   " + cell(std::string(model::name_of(row.signal)), 6) + cell(fixed(row.paper_mm, 3), 21) +
+            cell(figure(row.published), 22) + cell(figure(row.twin), 32) + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string ratio_text(double ratio) {
@@ -86,6 +100,7 @@ std::string published_text(const PublishedStudy& study) {
       (std::isfinite(study.back_at_kpa) ? " and is back at 0 mm at " + fixed(study.back_at_kpa, 1) + " kPa"
                                         : " and is not back at 0 mm below 60 kPa") +
       ".\n   bouc_wen:   " + study.bouc_wen_refusal + "\n   full_model: " + study.full_model_refusal + "\n";
+  text += paper_text(study.paper);
   return text + "seed " + std::to_string(study.options.seed) + ", " + significant(study.wall_s, 3) + " s\n";
 }
 
@@ -134,6 +149,15 @@ std::string published_json(const PublishedStudy& study) {
                                {"true_jump_kpa", row.true_jump_kpa},
                                {"unreached_share", row.unreached_share},
                                {"refused", row.refused}});
+  }
+  json["paper_rmse"] = Json::array();
+  for (const PaperRow& row : study.paper) {
+    json["paper_rmse"].push_back({{"signal", model::name_of(row.signal)},
+                                  {"paper_mm", row.paper_mm},
+                                  {"published_mm", row.published.rmse_mm},
+                                  {"published_percent_of_span", row.published.rmse_percent_of_span},
+                                  {"bench_twin_mm", row.twin.rmse_mm},
+                                  {"bench_twin_percent_of_span", row.twin.rmse_percent_of_span}});
   }
   json["published"] = {{"ratio", study.published_ratio},
                        {"bench_twin_rmse_mm", study.twin_rmse_mm},

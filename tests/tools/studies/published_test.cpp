@@ -120,5 +120,17 @@ TEST(PublishedStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg"));
 }
 
+TEST(PaperTable, TheSameStructureLeavesTheNoiseAndLatencyLeavesMore) {
+  const std::vector<PaperRow> rows = paper_table({1, 100, 0.05, 4, 1});
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].signal, model::SignalName::tp1);
+  EXPECT_EQ(rows[2].paper_mm, 0.540);
+  for (const PaperRow& row : rows) {
+    EXPECT_NEAR(row.published.rmse_mm, 0.05, 0.05 * 0.05) << model::name_of(row.signal);
+    EXPECT_GT(row.twin.rmse_mm, 1.05 * row.published.rmse_mm) << model::name_of(row.signal);
+    EXPECT_LT(row.twin.rmse_mm, row.paper_mm) << model::name_of(row.signal);
+  }
+}
+
 }  // namespace
 }  // namespace softgrip::tools
