@@ -1,5 +1,6 @@
 #include "daemon/event_printer.h"
 
+#include <csignal>
 #include <cstdlib>
 #include <sstream>
 
@@ -32,7 +33,14 @@ spdlog::level::level_enum level_of(Severity severity) {
 EventPrinter::EventPrinter(bool beside) {
   auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
   if (beside) {
+    // The writer's thread takes no signal: one that came to it would end the process without the safe
+    // outputs.
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
     writer_ = std::make_shared<spdlog::details::thread_pool>(lines_kept, 1);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
     logger_ = std::make_shared<spdlog::async_logger>("softgripd", sink, writer_,
                                                      spdlog::async_overflow_policy::overrun_oldest);
   } else {
