@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "model/model.h"
 #include "sysid/numbers.h"
+#include "sysid/trajectory.h"
 
 namespace softgrip::sysid {
 namespace {
 
-constexpr FitEffort alone{.most_iterations = 20, .tolerance = 1e-5};
+constexpr FitEffort alone{.most_iterations = 40, .tolerance = 1e-6};
 constexpr double least_explained_share = 0.2;
 constexpr double apart_share = 0.1;
 
@@ -29,6 +31,34 @@ double explained_share(const std::vector<Record>& records, const StructureFit& f
   return variance > 0 ? 1 - fit.mean_square_mm2 / variance : 0;
 }
 
+/// How much larger one log's motion is than what a model predicts of it.
+double relative_gain(const Record& record, const std::vector<double>& prediction_mm) {
+  double count = 0, p = 0, y = 0, pp = 0, py = 0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!std::isfinite(record.reading_mm[i])) continue;
+    count += 1;
+    p += prediction_mm[i];
+    y += record.reading_mm[i];
+    pp += prediction_mm[i] * prediction_mm[i];
+    py += prediction_mm[i] * record.reading_mm[i];
+  }
+  const double spread = pp - p * p / count;
+  const double gain = spread > 0 ? (py - p * y / count) / spread : 1;
+  return gain > 0.1 ? gain : 1;
+}
+
+/// The model of an actuator that moves so many times as far.
+model::Model amplified(model::Model model, double gain) {
+  if (const auto at = model::position_of(model, "bouc_wen")) {
+    model.blocks[*at].values[0] *= gain;
+    model.blocks[*at].values[1] *= gain;
+  }
+  if (const auto at = model::position_of(model, "kelvin_voigt")) {
+    for (double& stiffness_or_damping : model.blocks[*at].values) stiffness_or_damping /= gain;
+  }
+  return model;
+}
+
 /// RMSE if every log had numbers of its own: the structure fitted to each alone, from where it stands.
 double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit) {
   double squares = 0, count = 0;
@@ -36,9 +66,12 @@ double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit
     std::vector<Record> one{records[k]};
     // A rig of its own has a zero of its own.
     one.front().offset_free = true;
+    const double gain = relative_gain(records[k], predict(fit.point.model, records[k], fit.point.starts[k]));
     const FitPoint from{fit.point.model, {fit.point.starts[k]}};
-    const StructureFit own = fit_structure(one, fit.causes, from, alone);
-    squares += own.mean_square_mm2 * static_cast<double>(records[k].readings);
+    const FitPoint scaled{amplified(fit.point.model, gain), {fit.point.starts[k]}};
+    const double own = std::min(fit_structure(one, fit.causes, from, alone).mean_square_mm2,
+                                fit_structure(one, fit.causes, scaled, alone).mean_square_mm2);
+    squares += own * static_cast<double>(records[k].readings);
     count += static_cast<double>(records[k].readings);
   }
   return count > 0 ? std::sqrt(squares / count) : 0;
