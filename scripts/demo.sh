@@ -53,7 +53,7 @@ say "5. The published structure, fitted to them: it looks good"
 "$softgrip" identify --start config/models/zhang2025.yaml --data "$out/tp1.csv" --validate "$out/steps.csv" "$out/sp2.csv" \
   --out "$out/identified" | sed -n '1,12p'
 
-say "6. What is wrong with it, and why (a minute)"
+say "6. What is wrong with it, and why"
 "$softgrip" diagnose --model config/models/zhang2025.yaml --data "$out/tp1.csv" "$out/steps.csv" "$out/sp2.csv" --out "$out/diagnosis"
 
 say "Everything is vented and stopped. In $out:"
