@@ -63,7 +63,9 @@ std::vector<Tick> Scale::ticks(int most) const {
   }
   if (axis_.logarithmic) {
     const bool few = std::log10(upper_ / lower_) < 2;
-    for (double power = std::pow(10.0, std::floor(std::log10(lower_))); power <= upper_; power *= 10) {
+    const int last = static_cast<int>(std::floor(std::log10(upper_)));
+    for (int exponent = static_cast<int>(std::floor(std::log10(lower_))); exponent <= last; ++exponent) {
+      const double power = std::pow(10.0, exponent);
       for (const double factor : {1.0, 2.0, 5.0}) {
         const double at = factor * power;
         if ((factor == 1 || few) && at >= lower_ && at <= upper_) ticks.push_back({at, significant(at, 3)});

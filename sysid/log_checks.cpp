@@ -9,7 +9,6 @@
 namespace softgrip::sysid {
 namespace {
 
-using document::Location;
 using document::Problem;
 using document::Problems;
 

@@ -101,6 +101,7 @@ std::vector<SearchResult> search_separable(const SeparableSearch& all, const Fit
   const std::size_t stride = starts.size() > 1 ? samples / samples_of_a_look : 1;
   if (stride <= 1) return look(all, starts, threads, progress);
   std::vector<Record> thin;
+  thin.reserve(records.size());
   for (const Record& record : records) thin.push_back(thinned_record(record, stride));
   std::vector<SearchResult> results = look(*SeparableSearch::make(thin, space), starts, threads, progress);
 

@@ -92,8 +92,8 @@ class Drawer {
     }
   }
 
-  static FitPoint valid(FitPoint point, const FitPoint& given) {
-    return model::validate(point.model).empty() ? std::move(point) : given;
+  static FitPoint valid(const FitPoint& point, const FitPoint& given) {
+    return model::validate(point.model).empty() ? point : given;
   }
 
   const FitSpace& space_;

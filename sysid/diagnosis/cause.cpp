@@ -40,9 +40,8 @@ Values grid(const std::vector<std::vector<double>>& axes) {
 /// Smaller ones differ by little more than their size.
 std::vector<double> jumping_bands_kpa(const Scales& s) {
   std::vector<double> bands;
-  double steps = 5;
-  for (; steps < 60; steps += 1) bands.push_back(s.largest_kpa / steps);
-  for (; steps < 350; steps *= 1.1) bands.push_back(s.largest_kpa / steps);
+  for (int steps = 5; steps < 60; ++steps) bands.push_back(s.largest_kpa / steps);
+  for (int i = 0; i < 19; ++i) bands.push_back(s.largest_kpa / (60 * std::pow(1.1, i)));
   return bands;
 }
 

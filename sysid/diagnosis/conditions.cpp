@@ -185,6 +185,7 @@ std::vector<Condition> conditions_of(const std::vector<Record>& records,
                                      const std::vector<std::vector<double>>& prediction_mm,
                                      const Samples& samples) {
   std::vector<DriveHistory> h;
+  h.reserve(records.size());
   for (const Record& record : records) h.push_back(history_of(record));
   std::vector<Condition> list;
   list.push_back(

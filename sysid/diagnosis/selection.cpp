@@ -55,6 +55,7 @@ class Selector {
       if (options_.progress) options_.progress("tried " + std::string(cause.id));
     });
     std::vector<Scored> scored;
+    scored.reserve(candidates.size());
     for (Candidate& candidate : candidates) scored.push_back({std::move(candidate), {}});
     const auto square = [](const Scored& s) {
       return s.candidate.fit ? s.candidate.fit->mean_square_mm2 : std::numeric_limits<double>::infinity();

@@ -162,6 +162,7 @@ SpectrumEvidence spectrum_of(const std::vector<Record>& records,
   }
   add_curve(p, evidence);
   std::vector<std::vector<double>> drive;
+  drive.reserve(records.size());
   for (const Record& record : records) drive.push_back(record.drive_kpa);
   find_line(p, periodogram(records, drive), structural_mm2, evidence);
   return evidence;
