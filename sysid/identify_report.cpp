@@ -93,8 +93,7 @@ Chart correlation_chart(const Identification& r) {
   const Score& s = r.scores.front();
   const Record& record = r.records.front();
   const std::size_t reach = std::max<std::size_t>(2, s.error_mm.size() / 10);
-  const double interval_s =
-      (record.time_s.back() - record.time_s.front()) / static_cast<double>(record.size() - 1);
+  const double interval_s = record.mean_interval_s();
   for (std::size_t lag = 0; lag < reach; lag += std::max<std::size_t>(1, reach / 200)) {
     double product = 0;
     double square = 0;

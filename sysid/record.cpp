@@ -82,6 +82,12 @@ std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptio
   return records;
 }
 
+Record thinned_to(const Record& record, double interval_s) {
+  const auto stride =
+      static_cast<std::size_t>(std::max(1.0, std::floor(interval_s / record.mean_interval_s())));
+  return stride > 1 ? thinned_record(record, stride) : record;
+}
+
 Record thinned_record(const Record& record, std::size_t stride) {
   Record thin = record;
   thin.readings = 0;

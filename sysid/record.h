@@ -63,6 +63,12 @@ struct Record {
   bool offset_free = false;  ///< the start is unknown, or pressure and reading do not begin at 0 together
 
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }
+  /// From the first sample to the last [s]. There is one at least.
+  [[nodiscard]] double length_s() const noexcept { return time_s.back() - time_s.front(); }
+  /// Mean time between samples [s]; the nominal one may not be known (sample_time_s).
+  [[nodiscard]] double mean_interval_s() const noexcept {
+    return length_s() / static_cast<double>(size() > 2 ? size() - 1 : 1);
+  }
 };
 
 /// The records of a campaign, in order. Measured pressures that are missing are taken straight between their
@@ -71,6 +77,8 @@ struct Record {
 
 /// Every `stride`-th sample of a record, from the first on: for a first look at many starts.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
+/// Thinned so that samples stand at most `interval_s` apart, where they are not farther apart already.
+[[nodiscard]] Record thinned_to(const Record& record, double interval_s);
 
 /// The readings' noise, from second differences of neighbours (robust; white noise assumed) [mm].
 [[nodiscard]] double fast_noise_mm(const Record& record);

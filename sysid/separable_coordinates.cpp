@@ -20,9 +20,8 @@ void SeparableSearch::add_coordinates(const FreeParts& parts) {
   for (const SeparableRecord& r : records_) {
     const Record& record = r.record();
     largest_kpa = std::max(largest_kpa, record.largest_kpa);
-    longest_s = std::max(longest_s, record.time_s.back() - record.time_s.front());
-    shortest_s = std::min(
-        shortest_s, (record.time_s.back() - record.time_s.front()) / static_cast<double>(record.size()));
+    longest_s = std::max(longest_s, record.length_s());
+    shortest_s = std::min(shortest_s, record.length_s() / static_cast<double>(record.size()));
   }
   const auto at = [&](int index) -> const FreeParameter& { return free[static_cast<std::size_t>(index)]; };
   if (parts.gamma >= 0) {

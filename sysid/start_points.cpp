@@ -22,7 +22,7 @@ DataScale scale_of(const std::vector<Record>& records) {
   for (const Record& record : records) {
     scale.largest_kpa = std::max(scale.largest_kpa, record.largest_kpa);
     scale.span_mm = std::max(scale.span_mm, record.span_mm);
-    scale.longest_s = std::max(scale.longest_s, record.time_s.back() - record.time_s.front());
+    scale.longest_s = std::max(scale.longest_s, record.length_s());
   }
   return scale;
 }

@@ -220,12 +220,10 @@ Scales scales_of(const std::vector<Record>& records) {
   Scales s;
   s.sample_s = std::numeric_limits<double>::infinity();
   for (const Record& record : records) {
-    const double length_s = record.time_s.back() - record.time_s.front();
     s.span_mm = std::max(s.span_mm, record.span_mm);
     s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);
-    s.campaign_s += length_s;
-    s.sample_s =
-        std::min(s.sample_s, length_s / static_cast<double>(std::max<std::size_t>(1, record.size() - 1)));
+    s.campaign_s += record.length_s();
+    s.sample_s = std::min(s.sample_s, record.mean_interval_s());
     s.has_temperature |= varies(record.temperature_c);
     s.has_supply |= varies(record.supply_kpa);
     for (const double supply : record.supply_kpa)
@@ -269,8 +267,7 @@ Range fit_range(const Cause& cause, std::size_t index, const model::Model& model
   // A wander turns a dozen times in a campaign at most; of a slower one than three campaigns only the trend
   // shows.
   if (is("sensor_drift", 5)) return {s.campaign_s / 12, 3 * s.campaign_s};
-  // Slower than this it is a wandering zero.
-  if (is("periodic_disturbance", 2)) return {std::max(0.2, 10 / std::max(s.campaign_s, 1.0)), infinity};
+  if (is("periodic_disturbance", 2)) return {slowest_oscillation_hz(s.campaign_s), infinity};
   return {-infinity, infinity};
 }
 

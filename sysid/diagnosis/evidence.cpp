@@ -333,7 +333,7 @@ ResidualEvidence examine_residual(const std::vector<Record>& records,
   const std::vector<double> residual = pooled(samples, residual_mm);
   const auto n = static_cast<double>(residual.size());
   double length_s = 0;
-  for (const Record& record : records) length_s += record.time_s.back() - record.time_s.front();
+  for (const Record& record : records) length_s += record.length_s();
   const double mean = std::accumulate(residual.begin(), residual.end(), 0.0) / n;
   double variance = 0, mean_square = 0;
   for (const double r : residual) {

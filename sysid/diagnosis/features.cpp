@@ -147,7 +147,7 @@ Features features_of(const std::vector<Record>& records, const ByRecord& predict
   double campaign_s = 0;
   for (const Record& record : records) {
     h.push_back(history_of(record));
-    campaign_s += record.time_s.back() - record.time_s.front();
+    campaign_s += record.length_s();
   }
   Builder b(records, samples);
   add_pressure(b, h, campaign_s);

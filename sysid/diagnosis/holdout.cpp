@@ -75,13 +75,13 @@ Spread bootstrap(std::size_t blocks, std::uint64_t seed, Statistic&& statistic) 
 
 Division divide(const std::vector<Record>& records, double block_s) {
   double length_s = 0;
-  for (const Record& record : records) length_s += record.time_s.back() - record.time_s.front();
+  for (const Record& record : records) length_s += record.length_s();
   const double wanted_s = std::min(block_s, length_s / fewest_blocks);
   Division division;
   division.gap_s = 0.1 * wanted_s;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const Record& record = records[k];
-    const double record_s = record.time_s.back() - record.time_s.front();
+    const double record_s = record.length_s();
     const auto parts = static_cast<std::size_t>(std::max(1.0, std::round(record_s / wanted_s)));
     std::size_t first = 0;
     for (std::size_t part = 0; part < parts; ++part) {

@@ -21,7 +21,7 @@ constexpr double largest_size = 1.4;
 
 Scan::Scan(const std::vector<Record>& records, const std::vector<Cause>& causes, FitPoint place)
     : records_(records), place_(std::move(place)) {
-  const FitSpace space(place_.model, records_, fitted_indices(place_.model, causes));
+  const FitSpace space = structure_space(records_, place_.model, causes);
   const auto residuals = residuals_for(records_, space);
   const auto rows = static_cast<Eigen::Index>(residuals->count());
   const auto columns = static_cast<Eigen::Index>(space.size());

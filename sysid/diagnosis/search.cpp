@@ -27,12 +27,6 @@ constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
 
-bool varies(const std::vector<double>& column) {
-  if (column.empty()) return false;
-  const auto [low, high] = std::minmax_element(column.begin(), column.end());
-  return *high - *low > 1e-6 * std::max(1.0, std::abs(*high));
-}
-
 void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   std::erase_if(fits, [](const StructureFit& fit) { return !std::isfinite(fit.mean_square_mm2); });
   std::stable_sort(fits.begin(), fits.end(), [](const StructureFit& a, const StructureFit& b) {
@@ -92,22 +86,8 @@ SearchData make_search_data(std::vector<Record> records, const model::Model& giv
   SearchData data;
   data.records = std::move(records);
   data.given = {given, rest_starts(given, data.records)};
-  Scales& s = data.scales;
-  s.sample_s = std::numeric_limits<double>::infinity();
-  for (const Record& record : data.records) {
-    s.span_mm = std::max(s.span_mm, record.span_mm);
-    s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);
-    s.campaign_s += record.time_s.back() - record.time_s.front();
-    const double interval = (record.time_s.back() - record.time_s.front()) /
-                            static_cast<double>(std::max<std::size_t>(1, record.size() - 1));
-    s.sample_s = std::min(s.sample_s, interval);
-    s.has_temperature |= varies(record.temperature_c);
-    s.has_supply |= varies(record.supply_kpa);
-    for (const double supply : record.supply_kpa)
-      s.largest_supply_kpa = std::max(s.largest_supply_kpa, supply);
-    const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(look_interval_s / interval)));
-    data.thinned.push_back(stride > 1 ? thinned_record(record, stride) : record);
-  }
+  data.scales = scales_of(data.records);
+  for (const Record& record : data.records) data.thinned.push_back(thinned_to(record, look_interval_s));
   return data;
 }
 

@@ -72,13 +72,6 @@ double norm(const std::vector<double>& values) {
   return std::sqrt(sum);
 }
 
-Record thin(const Record& record) {
-  const double length_s = record.time_s.back() - record.time_s.front();
-  const double interval_s = length_s / static_cast<double>(std::max<std::size_t>(1, record.size() - 1));
-  const auto stride = static_cast<std::size_t>(std::max(1.0, std::floor(thinned_interval_s / interval_s)));
-  return stride > 1 ? thinned_record(record, stride) : record;
-}
-
 }  // namespace
 
 std::vector<double> whitened(const std::vector<double>& series, const NoiseModel& noise) {
@@ -130,11 +123,11 @@ double Hypothesis::linear_distance(const Record& record, const std::vector<doubl
 
 double Hypothesis::refitted_distance(const Record& record, const std::vector<double>& truth_mm) const {
   std::vector<Record> records;
-  for (const Record& old : records_) records.push_back(thin(old));
+  for (const Record& old : records_) records.push_back(thinned_to(old, thinned_interval_s));
   records.push_back(record);
   records.back().reading_mm = truth_mm;
   records.back().readings = truth_mm.size();
-  records.back() = thin(records.back());
+  records.back() = thinned_to(records.back(), thinned_interval_s);
   FitPoint point = fit_.point;
   point.starts.push_back(rest_starts(point.model, {record}).front());
   const StructureFit refitted = fit_structure(records, fit_.causes, point, few_iterations);

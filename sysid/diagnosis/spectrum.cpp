@@ -37,9 +37,7 @@ Periodogram periodogram(const std::vector<Record>& records,
   Periodogram p;
   for (const Record& record : records) {
     p.longest = std::max(p.longest, record.size());
-    p.interval_s =
-        std::max(p.interval_s, (record.time_s.back() - record.time_s.front()) /
-                                   static_cast<double>(std::max<std::size_t>(1, record.size() - 1)));
+    p.interval_s = std::max(p.interval_s, record.mean_interval_s());
   }
   const std::size_t size = std::bit_ceil(p.longest);
   p.step_hz = 1 / (p.interval_s * static_cast<double>(size));

@@ -60,10 +60,8 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                  const std::vector<std::vector<double>>& residual_mm, std::size_t count) {
   double length_s = 0, interval_s = std::numeric_limits<double>::infinity();
   for (const Record& record : records) {
-    const double record_s = record.time_s.back() - record.time_s.front();
-    length_s += record_s;
-    interval_s =
-        std::min(interval_s, record_s / static_cast<double>(std::max<std::size_t>(1, record.size() - 1)));
+    length_s += record.length_s();
+    interval_s = std::min(interval_s, record.mean_interval_s());
   }
   const double campaign_s = records.back().campaign_time_s + records.back().time_s.back() -
                             records.front().campaign_time_s - records.front().time_s.front();
@@ -73,7 +71,7 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   fourier_transform(x);
   const double step_hz = 1 / (interval_s * static_cast<double>(size));
   const double highest_hz = std::min(0.45 / interval_s, highest_looked_at_hz);
-  const double lowest_hz = std::max(0.2, 10 / std::max(length_s, 1.0));
+  const double lowest_hz = slowest_oscillation_hz(length_s);
   std::vector<double> power(std::min(size / 2, static_cast<std::size_t>(highest_hz / step_hz)));
   for (std::size_t b = 0; b < power.size(); ++b) power[b] = std::norm(x[b]);
   const auto peaks = peaks_of(power, static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));

@@ -1,6 +1,7 @@
 #pragma once
 // Where a search for a steady oscillation begins.
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -15,9 +16,13 @@ struct Line {
   double cosine_mm = 0;
 };
 
+/// What is slower than this in a campaign of such a length is a wandering zero and no oscillation [Hz].
+[[nodiscard]] inline double slowest_oscillation_hz(double campaign_s) {
+  return std::max(0.2, 10 / std::max(campaign_s, 1.0));
+}
+
 /// The lines that stand out against their neighbourhood in the residual's spectrum over the whole campaign,
-/// the clearest first. What is slower than 0.2 Hz, or than ten periods in the campaign, is a wandering zero
-/// and no oscillation.
+/// the clearest first.
 /// @param residual_mm  by record, as long as the record; NaN where there is no reading.
 [[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                                const std::vector<std::vector<double>>& residual_mm,

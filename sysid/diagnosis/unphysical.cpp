@@ -35,7 +35,7 @@ void add_branches(const model::Model& model, const std::vector<Record>& records,
   for (const Record& record : records) {
     span_mm = std::max(span_mm, record.span_mm);
     largest_kpa = std::max(largest_kpa, record.largest_kpa);
-    longest_s = std::max(longest_s, record.time_s.back() - record.time_s.front());
+    longest_s = std::max(longest_s, record.length_s());
   }
   const model::BlockSpec& block = model.blocks[*position];
   const std::vector<double> constants_s = branch_time_constants_s(model);
