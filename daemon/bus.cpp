@@ -109,15 +109,19 @@ bool Bus::ensure_session() noexcept {
   const BusStatus status = board_.connect(reconnect_.connect_deadline);
   if (status == BusStatus::ok) {
     session_ = true;
-    pause_ = reconnect_.first_pause.count();
+    proven_ = false;
     statistics_.sessions.add();
     tell(BusEvent::Kind::connected, status);
     return true;
   }
-  next_attempt_ = clock_.now() + pause_;
-  pause_ = std::min<Nanoseconds>(2 * pause_, reconnect_.longest_pause.count());
+  put_off_next_attempt();
   note_failure(status);
   return false;
+}
+
+void Bus::put_off_next_attempt() noexcept {
+  next_attempt_ = clock_.now() + pause_;
+  pause_ = std::min<Nanoseconds>(2 * pause_, reconnect_.longest_pause.count());
 }
 
 void Bus::exchange() noexcept {
@@ -129,11 +133,17 @@ void Bus::exchange() noexcept {
                       std::chrono::nanoseconds(nanoseconds(loop_.exchange_deadline_s)));
   statistics_.exchanges.add();
   if (status != BusStatus::ok) {
-    if (loses_session(status)) session_ = false;
+    if (loses_session(status)) {
+      session_ = false;
+      // A board whose every session fails at its first exchange must not be connected to in every cycle.
+      if (!proven_) put_off_next_attempt();
+    }
     ++report_.health.consecutive_failures;
     note_failure(status);
     return;
   }
+  proven_ = true;
+  pause_ = reconnect_.first_pause.count();
   statistics_.exchange.add(clock_.now() - begin);
   report_.health = {true, silent_ ? FaultCode::cycles_lost : FaultCode::none, silent_ ? unheard_ : 0};
   if (repeats_ > 0) {

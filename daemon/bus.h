@@ -42,6 +42,7 @@ class Bus {
  private:
   bool fetch_commands() noexcept;
   bool ensure_session() noexcept;
+  void put_off_next_attempt() noexcept;
   void exchange() noexcept;
   void note_failure(drivers::BusStatus status) noexcept;
   void tell(BusEvent::Kind kind, drivers::BusStatus status, const char* detail = "") noexcept;
@@ -58,6 +59,7 @@ class Bus {
   BusReport report_;
   bool commanded_ = false;                              // the loop has sent something
   bool session_ = false;                                // connect() succeeded and nothing poisoned it since
+  bool proven_ = false;                                 // ... and an exchange in it was good
   bool told_failed_ = false;                            // the log knows about the present failure
   control::FaultCode said_ = control::FaultCode::none;  // by the board, and still to be reported ...
   std::uint32_t repeats_ = 0;                           // ... so often

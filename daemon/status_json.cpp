@@ -114,7 +114,8 @@ Json status_json(const StatusSources& sources) {
   Json json{{"version", sources.provenance.software_version},
             {"rig", sources.provenance.rig},
             {"rate_hz", sources.provenance.rate_hz},
-            {"time_s", seconds(snapshot.at - sources.origin)},
+            // Before the first tick there is nothing whose age could be told.
+            {"time_s", snapshot.ticks == 0 ? 0.0 : seconds(snapshot.at - sources.origin)},
             {"state", control::name_of(snapshot.state)},
             {"fault", json_of_fault(snapshot.first_fault)},
             {"sequence", json_of_sequence(sources.service, snapshot)}};

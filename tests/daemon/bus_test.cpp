@@ -118,6 +118,35 @@ TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
                                                    BusEvent::Kind::connected, BusEvent::Kind::recovered}));
 }
 
+TEST_F(BusTest, SessionsThatFailAtTheirFirstExchangeAreAsRareAsFailedAttempts) {
+  reconnect_.longest_pause = std::chrono::milliseconds(400);
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::bad_reply;
+  step();
+  board_.connect_attempts.clear();
+  for (Nanoseconds begin = clock_.now(); clock_.now() - begin < 2 * ns_per_s;) {
+    command(12, 0, true);
+    step();
+  }
+  const auto& attempts = board_.connect_attempts;
+  ASSERT_GE(attempts.size(), 5U);
+  ASSERT_LE(attempts.size(), 8U);
+  const std::vector<Nanoseconds> pauses_ms{100, 200, 400, 400};
+  for (std::size_t i = 0; i < pauses_ms.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
+                static_cast<double>(period));
+  }
+  // A good exchange makes the next loss an ordinary one: the session is rebuilt at once.
+  board_.next_exchange = BusStatus::ok;
+  for (int i = 0; i < 100; ++i) step();
+  board_.next_exchange = BusStatus::timed_out;
+  step();
+  board_.connect_attempts.clear();
+  step();
+  EXPECT_EQ(board_.connect_attempts.size(), 1U);
+}
+
 TEST_F(BusTest, CyclesWithoutASessionCountAsFailuresWhileItWaits) {
   board_.next_connect = BusStatus::disconnected;
   for (int i = 0; i < 10; ++i) {

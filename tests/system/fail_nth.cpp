@@ -1,0 +1,241 @@
+// Fails the Nth call of one function, for every program that it is preloaded into (LD_PRELOAD):
+//
+//   FAIL_CALL=open FAIL_NTH=3 FAIL_TOLD=/tmp/told LD_PRELOAD=.../libfail_nth.so softgripd ...
+//
+// FAIL_CALL is a name of the table below; several functions that do one thing count together (open, openat,
+// fopen). FAIL_FROM=1 fails every call from the Nth on, as a full disk does. When a call was failed,
+// FAIL_TOLD is created; as long as that file appears, there is an Nth call, and a test goes on with N+1 until
+// it does not, as SQLite's do.
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+/// What is asked for, read from the environment once.
+struct Order {
+  const char* call = std::getenv("FAIL_CALL");
+  const char* told = std::getenv("FAIL_TOLD");
+  long nth = std::getenv("FAIL_NTH") != nullptr ? std::atol(std::getenv("FAIL_NTH")) : 0;
+  bool from = std::getenv("FAIL_FROM") != nullptr;
+};
+
+const Order& order() noexcept {
+  static const Order asked;
+  return asked;
+}
+
+std::atomic<long> calls{0};
+
+template <class Function>
+Function real(const char* name) noexcept {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+/// Creates the file that says so, by calls that are not counted.
+void tell() noexcept {
+  if (order().told == nullptr) return;
+  using Open = int (*)(const char*, int, ...);
+  static const auto open_file = real<Open>("open");
+  const int descriptor = open_file(order().told, O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor >= 0) ::close(descriptor);
+}
+
+/// True if this call, of a function that belongs to `call`, is to fail with `error`.
+bool fails(const char* call, int error) noexcept {
+  if (order().call == nullptr || std::strcmp(order().call, call) != 0) return false;
+  const long number = ++calls;
+  if (number != order().nth && !(order().from && number > order().nth)) return false;
+  tell();
+  errno = error;
+  return true;
+}
+
+}  // namespace
+
+extern "C" {
+
+// NOLINTBEGIN(readability-identifier-naming): the C library's names
+int open(const char* path, int flags, ...) {
+  va_list more;
+  va_start(more, flags);
+  const mode_t mode = va_arg(more, mode_t);
+  va_end(more);
+  if (fails("open", EMFILE)) return -1;
+  static const auto next = real<int (*)(const char*, int, ...)>("open");
+  return next(path, flags, mode);
+}
+
+int open64(const char* path, int flags, ...) {
+  va_list more;
+  va_start(more, flags);
+  const mode_t mode = va_arg(more, mode_t);
+  va_end(more);
+  if (fails("open", EMFILE)) return -1;
+  static const auto next = real<int (*)(const char*, int, ...)>("open64");
+  return next(path, flags, mode);
+}
+
+int openat(int folder, const char* path, int flags, ...) {
+  va_list more;
+  va_start(more, flags);
+  const mode_t mode = va_arg(more, mode_t);
+  va_end(more);
+  if (fails("open", EMFILE)) return -1;
+  static const auto next = real<int (*)(int, const char*, int, ...)>("openat");
+  return next(folder, path, flags, mode);
+}
+
+FILE* fopen(const char* path, const char* mode) {
+  if (fails("open", EMFILE)) return nullptr;
+  static const auto next = real<FILE* (*)(const char*, const char*)>("fopen");
+  return next(path, mode);
+}
+
+FILE* fopen64(const char* path, const char* mode) {
+  if (fails("open", EMFILE)) return nullptr;
+  static const auto next = real<FILE* (*)(const char*, const char*)>("fopen64");
+  return next(path, mode);
+}
+
+ssize_t write(int descriptor, const void* data, size_t size) {
+  if (fails("write", ENOSPC)) return -1;
+  static const auto next = real<ssize_t (*)(int, const void*, size_t)>("write");
+  // Half of it now and the rest refused at the next call: what a disk does that becomes full.
+  if (size > 1 && fails("short_write", ENOSPC)) return next(descriptor, data, size / 2);
+  return next(descriptor, data, size);
+}
+
+ssize_t writev(int descriptor, const iovec* parts, int count) {
+  if (fails("write", ENOSPC)) return -1;
+  static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
+  return next(descriptor, parts, count);
+}
+
+size_t fwrite(const void* data, size_t size, size_t count, FILE* file) {
+  if (fails("write", ENOSPC)) return 0;
+  static const auto next = real<size_t (*)(const void*, size_t, size_t, FILE*)>("fwrite");
+  return next(data, size, count, file);
+}
+
+int fsync(int descriptor) {
+  if (fails("fsync", EIO)) return -1;
+  static const auto next = real<int (*)(int)>("fsync");
+  return next(descriptor);
+}
+
+int fdatasync(int descriptor) {
+  if (fails("fsync", EIO)) return -1;
+  static const auto next = real<int (*)(int)>("fdatasync");
+  return next(descriptor);
+}
+
+int rename(const char* from, const char* to) {
+  if (fails("rename", EACCES)) return -1;
+  static const auto next = real<int (*)(const char*, const char*)>("rename");
+  return next(from, to);
+}
+
+int mkdir(const char* path, mode_t mode) {
+  if (fails("mkdir", EROFS)) return -1;
+  static const auto next = real<int (*)(const char*, mode_t)>("mkdir");
+  return next(path, mode);
+}
+
+int socket(int domain, int type, int protocol) noexcept {
+  if (fails("socket", EMFILE)) return -1;
+  static const auto next = real<int (*)(int, int, int)>("socket");
+  return next(domain, type, protocol);
+}
+
+int connect(int descriptor, const sockaddr* address, socklen_t size) {
+  if (fails("connect", ECONNREFUSED)) return -1;
+  static const auto next = real<int (*)(int, const sockaddr*, socklen_t)>("connect");
+  return next(descriptor, address, size);
+}
+
+int bind(int descriptor, const sockaddr* address, socklen_t size) noexcept {
+  if (fails("bind", EADDRINUSE)) return -1;
+  static const auto next = real<int (*)(int, const sockaddr*, socklen_t)>("bind");
+  return next(descriptor, address, size);
+}
+
+int listen(int descriptor, int backlog) noexcept {
+  if (fails("listen", EADDRINUSE)) return -1;
+  static const auto next = real<int (*)(int, int)>("listen");
+  return next(descriptor, backlog);
+}
+
+ssize_t send(int descriptor, const void* data, size_t size, int flags) {
+  if (fails("send", EPIPE)) return -1;
+  static const auto next = real<ssize_t (*)(int, const void*, size_t, int)>("send");
+  return next(descriptor, data, size, flags);
+}
+
+ssize_t recv(int descriptor, void* data, size_t size, int flags) {
+  if (fails("recv", ECONNRESET)) return -1;
+  static const auto next = real<ssize_t (*)(int, void*, size_t, int)>("recv");
+  return next(descriptor, data, size, flags);
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*body)(void*),
+                   void* argument) noexcept {
+  if (fails("thread", EAGAIN)) return EAGAIN;
+  using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
+  static const auto next = real<Create>("pthread_create");
+  return next(thread, attributes, body, argument);
+}
+
+int clock_gettime(clockid_t clock, timespec* time) noexcept {
+  if (fails("clock", EINVAL)) return -1;
+  static const auto next = real<int (*)(clockid_t, timespec*)>("clock_gettime");
+  return next(clock, time);
+}
+
+int clock_nanosleep(clockid_t clock, int flags, const timespec* until, timespec* left) {
+  if (fails("sleep", EINTR)) return EINTR;
+  static const auto next = real<int (*)(clockid_t, int, const timespec*, timespec*)>("clock_nanosleep");
+  return next(clock, flags, until, left);
+}
+
+void* mmap(void* address, size_t size, int protection, int flags, int descriptor, off_t offset) noexcept {
+  if (fails("mmap", ENOMEM)) return MAP_FAILED;
+  static const auto next = real<void* (*)(void*, size_t, int, int, int, off_t)>("mmap");
+  return next(address, size, protection, flags, descriptor, offset);
+}
+
+int mlockall(int flags) noexcept {
+  if (fails("mlockall", ENOMEM)) return -1;
+  static const auto next = real<int (*)(int)>("mlockall");
+  return next(flags);
+}
+
+int sched_setscheduler(pid_t process, int policy, const sched_param* parameters) noexcept {
+  if (fails("scheduler", EPERM)) return -1;
+  static const auto next = real<int (*)(pid_t, int, const sched_param*)>("sched_setscheduler");
+  return next(process, policy, parameters);
+}
+
+int pthread_setschedparam(pthread_t thread, int policy, const sched_param* parameters) noexcept {
+  if (fails("scheduler", EPERM)) return EPERM;
+  static const auto next = real<int (*)(pthread_t, int, const sched_param*)>("pthread_setschedparam");
+  return next(thread, policy, parameters);
+}
+// NOLINTEND(readability-identifier-naming)
+
+}  // extern "C"

@@ -1,0 +1,418 @@
+"""Runs cells of fault_matrix.yaml: a real softgripd, a real softgrip-rig, real sockets, and a spoiled wire between.
+
+scripts/fault_matrix.sh runs all of them and publishes docs/reference/fault-matrix.md; test_fault_matrix.py has a few.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import re
+import shutil
+import sys
+import tempfile
+import time
+import traceback
+
+import yaml
+
+import bench
+import wire_proxy
+
+TABLE = pathlib.Path(__file__).with_name("fault_matrix.yaml")
+PAGE = bench.SOURCE / "docs" / "reference" / "fault-matrix.md"
+# In the phase of the rig file's safe_action; `connect` is none.
+PHASE_OF = {"idle": "idle", "closing": "closing", "holding": "holding", "venting": "releasing"}
+# How long a fault that shows nothing is looked at, in cycles.
+OBSERVED_CYCLES = 80
+SETTLED_KPA = 0.1
+SEQUENCE = """name: matrix
+steps:
+  - grip:
+      displacement_mm: 17
+      speed_mm_per_s: 8
+      settle_s: 0.3
+      verify: {{by: detection, window_s: 0.2}}
+      timeout_s: 8
+      on_fail: release
+  - hold: {{hold_s: {hold_s}, reverify_every_s: 0.25, on_fail: release}}
+  - release: {{duration_s: 3, purge_s: 0.5, timeout_s: 8, on_fail: vent}}
+"""
+
+
+class Wrong(AssertionError):
+    """A cell did not come to what the table says."""
+
+
+def require(holds, sentence):
+    if not holds:
+        raise Wrong(sentence)
+
+
+class Table:
+    def __init__(self, path=TABLE):
+        data = yaml.safe_load(path.read_text())
+        self.rig = data["rig"]
+        self.phases = data["phases"]
+        self.faults = {fault["name"]: fault for fault in data["faults"]}
+
+    def cells(self):
+        return [(name, phase) for name in self.faults for phase in self.phases]
+
+    def cell(self, name, phase):
+        cells = self.faults[name]["cells"]
+        return cells.get(phase, cells.get("all"))
+
+    def names(self):
+        """What an expression of `within` may use, in cycles."""
+        rig, shipped = self.rig, shipped_rig()
+        rate = rig["rate_hz"]
+        return {**{k: v for k, v in rig.items() if k.endswith("_cycles")},
+                "readback_delay_cycles": math.ceil(shipped["faults"]["readback_delay_s"] * rate),
+                "frozen_cycles": math.ceil(shipped["plausibility"]["frozen_after_s"] * rate),
+                "age_cycles": math.ceil(rig["max_age_s"] * rate)}
+
+    def bound(self, expression):
+        names = self.names()
+        text = str(expression)
+        if not re.fullmatch(r"[a-z_0-9 +*]+", text):
+            raise ValueError(f"no expression of cycles: {text}")
+        return eval(text, {"__builtins__": {}}, names)  # letters, digits, + and * only
+
+
+def shipped_rig():
+    return yaml.safe_load((bench.SOURCE / "config" / "rig_tcp.yaml").read_text())
+
+
+class Cell:
+    """One fault in one phase."""
+
+    def __init__(self, table, name, phase):
+        self.table = table
+        self.name = name
+        self.phase = phase
+        self.fault = table.faults[name]
+        self.expected = table.cell(name, phase)
+        self.rate = table.rig["rate_hz"]
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_matrix_"))
+        self.processes = []
+        self.proxy = None
+        self.measured = {}
+
+    # --- what runs
+
+    def rig_file(self, port):
+        text = (self.folder / "config" / "rig_tcp.yaml").read_text()
+        changes = {"port": port, **self.table.rig}
+        for key, value in changes.items():
+            text, count = re.subn(rf"\b{key}: [-\d.]+", f"{key}: {value}", text)
+            require(count > 0, f"rig_tcp.yaml has no {key}")
+        for old, new in ((r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
+                         (r"directory: /tmp/softgrip-runs", f"directory: {self.folder}/runs"),
+                         (r"path: /tmp/softgrip.sock", f"path: {self.folder}/softgripd.sock")):
+            text = re.sub(old, new, text)
+        path = self.folder / "config" / "matrix.yaml"
+        path.write_text(text)
+        return path
+
+    def start_emulator(self):
+        arguments = ["--object", "stone"]
+        if "plant" in self.fault["do"]:
+            faults = self.folder / "faults.yaml"
+            faults.write_text(f"faults:\n  - {{name: it, kind: {self.fault['do']['plant']}}}\n")
+            arguments += ["--faults", faults]
+        self.emulator = bench.Emulator(self.folder, *arguments)
+        self.processes.append(self.emulator)
+        self.proxy = wire_proxy.Proxy(self.emulator.port)
+
+    def start_daemon(self):
+        self.daemon = bench.Daemon(self.folder, self.rig_file(self.proxy.port))
+        self.processes.append(self.daemon)
+
+    def find_origin(self):
+        """time.monotonic() of the daemon's time 0. A status is as old as the last tick: the youngest of some counts."""
+        self.origin = math.inf
+        for n in range(20):
+            now_s = self.daemon.status()["time_s"]
+            self.origin = min(self.origin, time.monotonic() - now_s)
+            time.sleep((0.3 + n % 3) / self.rate)
+
+    def begin_fault(self):
+        self.began = time.monotonic()
+        if "plant" in self.fault["do"]:
+            self.emulator.ask("fault it")
+        else:
+            self.wire_fault = wire_proxy.Fault(**self.fault["do"])
+            self.proxy.begin(self.wire_fault)
+
+    def clear_fault(self):
+        if "plant" in self.fault["do"]:
+            self.emulator.ask("clear it")
+        else:
+            if self.wire_fault.first_touch is not None:
+                self.began = self.wire_fault.first_touch
+            self.proxy.clear()
+
+    def reach_phase(self):
+        self.daemon.wait_for_state("idle")
+        if self.phase in ("connect", "idle"):
+            time.sleep(0.2)
+            return
+        text = SEQUENCE.format(hold_s=0.2 if self.phase == "venting" else 6)
+        def accepted():
+            reply = self.daemon.ask("start", sequence="matrix", sequence_text=text)
+            require(reply["ok"] or "refusal" in reply["error"], f"start: {reply}")
+            return reply["ok"]
+        bench.wait_for("a start", accepted)
+        step = {"closing": "0", "holding": "1", "venting": "2"}[self.phase]
+        self.daemon.wait_for_event("step_started", code=step)
+        time.sleep({"closing": 0.6, "holding": 0.4, "venting": 0.4}[self.phase])
+        status = self.daemon.status()
+        require(status["state"] == "running", f"before the fault the state was {status['state']}")
+        if self.phase == "holding":
+            require(self.daemon.results() == ["HOLDING", "HOLDING"], f"before the fault: {self.daemon.results()}")
+
+    # --- what must come of it
+
+    def latched(self):
+        return next((e for e in self.daemon.events() if e["kind"] == "fault_latched"), None)
+
+    def observe(self, cycles=OBSERVED_CYCLES):
+        """Lets so many ticks pass."""
+        ticks = self.daemon.status()["loop"]["ticks"]
+        bench.wait_for("ticks", lambda: self.daemon.status()["loop"]["ticks"] >= ticks + cycles)
+
+    def outputs_kpa(self):
+        return self.emulator.commands_kpa()
+
+    def check_waits(self):
+        self.observe()
+        status = self.daemon.status()
+        require(status["state"] == "starting" and not self.latched(), f"{status['state']}, {self.latched()}")
+        require(max(self.outputs_kpa()) < SETTLED_KPA, f"outputs {self.outputs_kpa()}")
+        self.clear_fault()
+        self.daemon.wait_for_state("idle")
+
+    def check_faulted(self):
+        try:
+            fault = bench.wait_for("a fault", self.latched, 15)
+        except AssertionError:
+            raise Wrong(f"no fault: {self.daemon.status()['state']}, {self.daemon.results()}") from None
+        self.measured["code"] = fault["code"]
+        require(fault["code"] in self.expected["codes"], f"{fault['code']} ({fault['text']})")
+        require(self.daemon.status()["state"] == "faulted", self.daemon.status()["state"])
+        writes_before = len(self.proxy.writes)
+        if self.expected.get("outputs") != "spoiled":
+            self.check_outputs(fault["code"])
+            self.check_no_motion(writes_before)
+        self.find_origin()
+        self.observe(60)  # the recording's tail
+        self.clear_fault()
+        self.acknowledge()
+        return fault
+
+    def action(self, code):
+        safety = shipped_rig()["safety"]
+        if code.startswith("F1") or code == "F303" or self.phase == "connect":
+            return "vent"  # the ADAM's watchdog vents
+        return safety["safe_action"][PHASE_OF[self.phase]]
+
+    def check_outputs(self, code):
+        """As the emulator has them, which is what a valve would get."""
+        action = self.action(code)
+        self.measured["outputs"] = action
+        if action == "vent":
+            bench.wait_for("vented outputs", lambda: max(self.outputs_kpa()) <= SETTLED_KPA, 10)
+            self.measured["by"] = "board" if self.emulator.status()["watchdog_tripped"] else "daemon"
+            return
+        held = self.outputs_kpa()
+        require(min(held) > 5, f"held outputs {held}")
+        self.observe(30)
+        require(all(abs(a - b) <= SETTLED_KPA for a, b in zip(held, self.outputs_kpa())), f"{held} became {self.outputs_kpa()}")
+
+    def check_no_motion(self, since):
+        writes = [words for _, words in self.proxy.writes[since:]]
+        for before, after in zip(writes, writes[1:]):
+            require(all(b <= a for a, b in zip(before, after)), f"an output rose after the fault: {before} to {after}")
+
+    def acknowledge(self):
+        """The cause is gone: it is accepted, the rig becomes idle, and nothing moves."""
+        since = len(self.proxy.writes)
+        bench.wait_for("an acknowledged fault", lambda: self.daemon.ask("acknowledge")["ok"], 15, 0.1)
+        self.daemon.wait_for_state("idle")
+        self.observe(20)
+        if self.expected.get("outputs") != "spoiled":
+            self.check_no_motion(since)
+
+    def check_ridden(self):
+        self.observe()
+        fault = self.latched()
+        require(not fault, f"{fault and fault['code']}: {fault and fault['text']}")
+        if self.phase == "closing":
+            bench.wait_for("an answer", lambda: "-" not in self.daemon.results(), 15)
+            self.measured["result"] = self.daemon.results()[0]
+            require(self.daemon.results() == ["HOLDING"] * 2, f"{self.daemon.results()}")
+        elif self.phase == "holding":
+            self.measured["result"] = self.daemon.results()[0]
+            require(self.daemon.results() == ["HOLDING"] * 2, f"{self.daemon.results()}")
+        elif self.phase == "venting":
+            self.daemon.wait_for_event("sequence_finished", code="done")
+            require(max(self.outputs_kpa()) <= SETTLED_KPA, f"outputs {self.outputs_kpa()}")
+        self.clear_fault()
+        require(not self.latched(), "a fault at the end")
+
+    def check_unseen(self):
+        """No fault although something is wrong. What the grip's result says of it is measured, not judged."""
+        self.observe()
+        fault = self.latched()
+        require(not fault, f"it is seen: {fault and fault['code']}: {fault and fault['text']}")
+        if self.phase in ("closing", "holding"):
+            bench.wait_for("an answer", lambda: "-" not in self.daemon.results() or self.latched(), 15)
+        self.measured["result"] = "/".join(self.daemon.results())
+        self.clear_fault()
+
+    # --- the recording
+
+    def recordings(self):
+        return sorted(path.parent for path in (self.folder / "runs").glob("*/run.csv"))
+
+    def check_recordings(self, slips):
+        for recording in self.recordings():
+            about = json.loads((recording / "run.json").read_text())
+            with open(recording / "run.csv", newline="") as file:
+                rows = [row for row in csv.DictReader(file) if row["channel"] == "left"]
+            require(about["state"] == "complete" and not about["dropped_rows"] and not about["error"],
+                    f"{recording.name}: {about['state']}, {about['dropped_rows']} dropped, {about['error']}")
+            require(about["rows"] == 2 * len(rows), f"{recording.name}: {2 * len(rows)} rows, {about['rows']} counted")
+            times = [float(row["time_s"]) for row in rows]
+            missing = round((times[-1] - times[0]) * self.rate) + 1 - len(times)
+            require(missing <= slips, f"{recording.name}: {missing} ticks missing, {slips} slipped")
+
+    def reaction(self, fault):
+        """Ticks from the fault's first effect to its latch, counted in the recording's rows."""
+        for recording in self.recordings():
+            about = json.loads((recording / "run.json").read_text())
+            same = next((e for e in about["faults"] if e["code"] == fault["code"]), None)
+            if same is None:
+                continue
+            begin = fault["time_s"] - same["time_s"] + self.origin
+            with open(recording / "run.csv", newline="") as file:
+                times = [begin + float(row["time_s"]) for row in csv.DictReader(file) if row["channel"] == "left"]
+            require(times[0] < self.began, "the recording begins after the fault began")
+            latch = fault["time_s"] + self.origin
+            return sum(1 for t in times if self.began < t <= latch + 1e-6)
+        raise Wrong(f"no recording has {fault['code']} among its faults")
+
+    def run(self):
+        self.start_emulator()
+        if self.phase == "connect":
+            self.begin_fault()
+            self.start_daemon()
+            # Short faults are over before anything could be looked at.
+            if self.expected["ends"] in ("ridden", "unseen"):
+                self.daemon.wait_for_state("idle")
+        else:
+            self.start_daemon()
+            self.reach_phase()
+            self.begin_fault()
+        fault = {"waits": self.check_waits, "faulted": self.check_faulted, "ridden": self.check_ridden,
+                 "unseen": self.check_unseen}[self.expected["ends"]]()
+        self.daemon.ask("vent")
+        loop = self.daemon.result("statistics")["loop"]
+        slips = loop["slips_woken_late"] + loop["slips_took_long"]
+        require(self.daemon.end() == 0, "softgripd did not end with 0")
+        require(max(self.outputs_kpa()) <= SETTLED_KPA or self.expected.get("outputs") == "spoiled",
+                f"outputs at the end {self.outputs_kpa()}")
+        self.check_recordings(slips)
+        if fault and "within" in self.expected:
+            cycles = self.reaction(fault)
+            bound = self.table.bound(self.expected["within"])
+            self.measured |= {"cycles": cycles, "bound": bound}
+            require(cycles <= bound, f"{fault['code']} after {cycles} cycles, {bound} are allowed")
+
+    def close(self):
+        for process in reversed(self.processes):
+            if process.running():
+                process.kill()
+            for lines in (getattr(process, "control", None), getattr(process, "lines", None)):
+                if lines:
+                    lines.close()
+        if self.proxy:
+            self.proxy.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def run_once(name, phase):
+    cell = Cell(Table(), name, phase)
+    wrong = log = None
+    try:
+        shutil.copytree(bench.SOURCE / "config", cell.folder / "config")
+        cell.run()
+    except Wrong as error:
+        wrong = str(error)
+    except Exception as error:  # one broken cell must not hide the others
+        wrong = f"{type(error).__name__}: {error}\n{traceback.format_exc(limit=4)}"
+    if wrong:
+        log = "\n".join(p.errors()[-1800:] for p in cell.processes if p.name == "softgripd")
+    cell.close()
+    return {"fault": name, "phase": phase, "expected": cell.expected, "measured": cell.measured, "wrong": wrong, "log": log}
+
+
+def run_cell(name, phase, attempts=2):
+    """Once more if it went wrong: the machine may have stood still. How often is told and published."""
+    for attempt in range(1, attempts + 1):
+        result = run_once(name, phase)
+        result["attempts"] = attempt
+        if not result["wrong"]:
+            break
+    return result
+
+
+def show(result):
+    measured = ", ".join(f"{k} {v}" for k, v in result["measured"].items())
+    head = f"{result['fault']} x {result['phase']}: {result['expected']['ends']}"
+    again = f" (attempt {result['attempts']})" if result["attempts"] > 1 else ""
+    print(f"{'WRONG' if result['wrong'] else 'ok   '} {head}{'; ' + measured if measured else ''}{again}", flush=True)
+    if result["wrong"]:
+        print(f"      {result['wrong']}\n{result['log'] or ''}", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("cells", nargs="*", help="FAULT or FAULT/PHASE or /PHASE; without: all")
+    parser.add_argument("--jobs", type=int, default=3, help="cells at a time; they mostly wait")
+    parser.add_argument("--attempts", type=int, default=2)
+    parser.add_argument("--out", type=pathlib.Path, help="keep the results as JSON")
+    parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(bench.SOURCE)}")
+    arguments = parser.parse_args()
+    table = Table()
+
+    def wanted(name, phase):
+        return not arguments.cells or any(c in (name, f"{name}/{phase}", f"/{phase}") for c in arguments.cells)
+
+    cells = [cell for cell in table.cells() if wanted(*cell)]
+    if not cells:
+        parser.error("no such cell")
+    began = time.monotonic()
+    results = []
+    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
+        futures = [pool.submit(run_cell, *cell, arguments.attempts) for cell in cells]
+        for future in concurrent.futures.as_completed(futures):
+            results.append(future.result())
+            show(results[-1])
+    results.sort(key=lambda r: cells.index((r["fault"], r["phase"])))
+    if arguments.out:
+        arguments.out.write_text(json.dumps(results, indent=1))
+    wrong = [r for r in results if r["wrong"]]
+    print(f"{len(results)} cells in {time.monotonic() - began:.0f} s: {len(results) - len(wrong)} as the table says, "
+          f"{len(wrong)} not, {sum(r['attempts'] > 1 for r in results)} tried more than once")
+    if arguments.page:
+        import fault_matrix_page
+        PAGE.write_text(fault_matrix_page.page(table, results))
+    return 6 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,507 @@
+"""A Modbus TCP wire between daemon and board that can be spoiled, and that is a witness of what was written.
+
+It knows the shipped ADAM-6024 map: six inputs from 0, two outputs from 10, input status from 20. What it does to a
+message is named by a kind (KINDS); fault_matrix.yaml describes each by the class it stands for.
+"""
+
+import contextlib
+import math
+import random
+import select
+import socket
+import struct
+import threading
+import time
+
+INPUTS, OUTPUTS, STATUS = 0, 10, 20
+# 0-10 V are -5 to 45 mm on a +/-10 V input of 16 bits, and 0-100 kPa on an output of 12.
+RAW_PER_MM = 65535 / 20 * 10 / 50
+RAW_PER_KPA = 4095 / 100
+HIGHEST_INPUT = 65535
+
+
+class Frame:
+    """One Modbus TCP message in parts that can be changed."""
+
+    def __init__(self, raw):
+        self.transaction, self.protocol, self.length, self.unit = struct.unpack(">HHHB", raw[:7])
+        self.pdu = bytearray(raw[7:])
+
+    def bytes(self):
+        return struct.pack(">HHHB", self.transaction, self.protocol, len(self.pdu) + 1, self.unit) + bytes(self.pdu)
+
+    @property
+    def function(self):
+        return self.pdu[0]
+
+    def address(self):
+        return struct.unpack(">H", self.pdu[1:3])[0]
+
+    def words(self):
+        """Of a reply that read registers."""
+        return list(struct.unpack(f">{self.pdu[1] // 2}H", self.pdu[2:2 + self.pdu[1]]))
+
+    def set_words(self, words):
+        self.pdu[2:] = struct.pack(f">{len(words)}H", *words)
+
+    def written(self):
+        """Of a request that writes several registers."""
+        return list(struct.unpack(f">{self.pdu[5] // 2}H", self.pdu[6:6 + self.pdu[5]]))
+
+    def set_written(self, words):
+        self.pdu[6:] = struct.pack(f">{len(words)}H", *words)
+
+
+class Fault:
+    """What goes wrong while it is active. `times`: only for so many messages."""
+
+    def __init__(self, kind, times=None, seed=1, **keys):
+        self.kind = KINDS[kind]
+        self.left = math.inf if times is None else times
+        self.keys = keys
+        self.random = random.Random(seed)
+        self.first_touch = None  # time.monotonic() of the first message that it changed
+        self.memory = {}  # what a kind must remember
+
+    def touch(self):
+        """True if this message is one of those to be spoiled."""
+        if self.left <= 0:
+            return False
+        self.left -= 1
+        if self.first_touch is None:
+            self.first_touch = time.monotonic()
+        return True
+
+    def key(self, name, default):
+        return self.keys.get(name, default)
+
+
+class Session:
+    """One connection of the daemon and its own one to the board."""
+
+    def __init__(self, proxy, client):
+        self.proxy = proxy
+        self.client = client
+        self.board = socket.create_connection(("127.0.0.1", proxy.board_port), 10)
+        for end in (self.client, self.board):
+            end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.previous = None  # reply
+
+    def read(self, end):
+        header = self.read_exactly(end, 7)
+        return header and Frame(header + self.read_exactly(end, struct.unpack(">H", header[4:6])[0] - 1))
+
+    @staticmethod
+    def read_exactly(end, count):
+        data = b""
+        while len(data) < count:
+            more = end.recv(count - len(data))
+            if not more:
+                return b""
+            data += more
+        return data
+
+    def send(self, data):
+        self.client.sendall(data)
+
+    def ask_board(self, request):
+        self.board.sendall(request.bytes())
+        reply = self.read(self.board)
+        if not reply:
+            raise ConnectionError("the board is gone")
+        return reply
+
+    def run(self):
+        while not self.proxy.closed:
+            request = self.read(self.client)
+            if not request:
+                return
+            fault = self.proxy.fault
+            if fault is not None and fault.left > 0 and fault.kind(self, fault, request):
+                continue
+            self.pass_on(request)
+
+    def pass_on(self, request):
+        reply = self.ask_board(request)
+        self.proxy.note(request)
+        self.previous = reply
+        self.send(reply.bytes())
+
+    def wait_until_gone(self):
+        """Nothing more is said or heard; ends when the daemon gives the session up."""
+        while not self.proxy.closed:
+            ready, _, _ = select.select([self.client], [], [], 0.05)
+            if ready and not self.client.recv(4096):
+                raise ConnectionError("given up")
+
+    def close(self):
+        for end in (self.client, self.board):
+            end.close()
+
+
+# What can be done to a request and its reply. True: dealt with; False: it was not meant.
+
+def is_read_of(request, address):
+    return request.function == 4 and request.address() == address
+
+
+def lost_request(session, fault, request):
+    return fault.touch()
+
+
+def lost_reply(session, fault, request):
+    if not fault.touch():
+        return False
+    session.ask_board(request)
+    session.proxy.note(request)
+    return True
+
+
+def delayed(session, fault, request):
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    time.sleep(fault.key("delay_s", 0.2))
+    session.send(reply.bytes())
+    return True
+
+
+def repeated(session, fault, request):
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request).bytes()
+    session.proxy.note(request)
+    session.send(reply + reply)
+    return True
+
+
+def replayed(session, fault, request):
+    """Old contents in a new frame, as a gateway with a cache gives them."""
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    if request.function == 4 and fault.touch():
+        old = fault.memory.setdefault((request.address(), len(reply.pdu)), bytes(reply.pdu))
+        reply.pdu = bytearray(old)
+    session.send(reply.bytes())
+    return True
+
+
+def inserted(session, fault, request):
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    stranger = Frame(reply.bytes())
+    stranger.transaction = (reply.transaction + 0x4000) & 0xFFFF
+    session.send(stranger.bytes() + reply.bytes())
+    return True
+
+
+def other_function(session, fault, request):
+    """A well-formed answer to a question that nobody asked."""
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    reply.pdu = bytearray(b"\x03\x04\x00\x00\x00\x00")
+    session.send(reply.bytes())
+    return True
+
+
+def twin(session, fault, request):
+    """Another board of the same kind answers, at rest and vented; nothing in the form gives it away."""
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    if request.function == 4 and fault.touch():
+        rest_mm = round((0 + 5) * RAW_PER_MM + HIGHEST_INPUT / 2)
+        zero = round(HIGHEST_INPUT / 2)
+        words = {INPUTS: [rest_mm, rest_mm, zero, zero, zero, zero], OUTPUTS: [0, 0], STATUS: [0] * 6}[request.address()]
+        if request.address() == INPUTS:
+            words = [w + fault.random.randint(-3, 3) for w in words]
+        reply.set_words(words[:reply.pdu[1] // 2])
+    session.send(reply.bytes())
+    return True
+
+
+def to_other_unit(session, fault, request):
+    if not fault.touch():
+        return False
+    request.unit += 1
+    reply = session.ask_board(request)
+    reply.unit -= 1
+    session.send(reply.bytes())
+    return True
+
+
+def from_other_unit(session, fault, request):
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    reply.unit += 1
+    session.send(reply.bytes())
+    return True
+
+
+def out_of_order(session, fault, request):
+    """Each question is answered by the answer to the one before."""
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    session.send((session.previous or reply).bytes())
+    session.previous = reply
+    return True
+
+
+def wrong_sequence(session, fault, request):
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    reply.transaction = (reply.transaction - 1) & 0xFFFF
+    session.send(reply.bytes())
+    return True
+
+
+def corrupted_header(session, fault, request):
+    """One bit of the frame's first eight bytes."""
+    if not fault.touch():
+        return False
+    raw = bytearray(session.ask_board(request).bytes())
+    session.proxy.note(request)
+    bit = fault.random.randrange(64)
+    raw[bit // 8] ^= 1 << (bit % 8)
+    session.send(bytes(raw))
+    return True
+
+
+def changed_words(session, fault, request, change):
+    """Passes on with what `change` makes of the words of an input read."""
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    if is_read_of(request, INPUTS) and len(reply.pdu) > 2 and reply.function == 4 and fault.touch():
+        words = reply.words()
+        change(words)
+        reply.set_words([min(max(int(round(w)), 0), HIGHEST_INPUT) for w in words])
+    session.send(reply.bytes())
+    return True
+
+
+def corrupted_value(session, fault, request):
+    """One bit of the left finger's displacement."""
+    def change(words):
+        words[0] ^= 1 << fault.key("bit", 14)
+    return changed_words(session, fault, request, change)
+
+
+def sensor_stuck(session, fault, request):
+    def change(words):
+        words[0] = fault.memory.setdefault("words", words[0])
+    return changed_words(session, fault, request, change)
+
+
+def sensor_jump(session, fault, request):
+    def change(words):
+        words[0] += fault.key("by_mm", 15) * RAW_PER_MM
+    return changed_words(session, fault, request, change)
+
+
+def sensor_drift(session, fault, request):
+    def change(words):
+        words[0] += (time.monotonic() - fault.first_touch) * fault.key("mm_per_s", 0.5) * RAW_PER_MM
+    return changed_words(session, fault, request, change)
+
+
+def sensor_noise(session, fault, request):
+    def change(words):
+        words[0] += fault.random.gauss(0, fault.key("sigma_mm", 0.3)) * RAW_PER_MM
+    return changed_words(session, fault, request, change)
+
+
+def sensor_dropout(session, fault, request):
+    """Every so often the signal is gone for a reading."""
+    def change(words):
+        fault.memory["n"] = fault.memory.get("n", 0) + 1
+        if fault.memory["n"] % fault.key("every", 3) == 0:
+            words[0] = HIGHEST_INPUT / 2  # 0 V: a broken wire
+    return changed_words(session, fault, request, change)
+
+
+def sensor_out_of_range(session, fault, request):
+    def change(words):
+        words[0] = HIGHEST_INPUT
+    return changed_words(session, fault, request, change)
+
+
+def sensor_error(session, fault, request):
+    """The board's own status word of the left input says `over`."""
+    reply = session.ask_board(request)
+    session.proxy.note(request)
+    if is_read_of(request, STATUS) and fault.touch():
+        words = reply.words()
+        words[0] = 1
+        reply.set_words(words)
+    session.send(reply.bytes())
+    return True
+
+
+def changed_write(session, fault, request, change):
+    if request.function != 16 or request.address() != OUTPUTS or not fault.touch():
+        return False
+    words = request.written()
+    change(words)
+    request.set_written(words)
+    session.pass_on(request)
+    return True
+
+
+def asymmetric(session, fault, request):
+    """The left output gets another number than was sent, the right one what was sent."""
+    def change(words):
+        words[0] = min(4095, round(words[0] + fault.key("by_kpa", 10) * RAW_PER_KPA))
+    return changed_write(session, fault, request, change)
+
+
+def received_by_some(session, fault, request):
+    """Only the right output hears; the left one keeps what it had when this began."""
+    def change(words):
+        words[0] = fault.memory.setdefault("word", words[0])
+    return changed_write(session, fault, request, change)
+
+
+def blocked(session, fault, request):
+    """Somebody talks without a pause; no answer gets through."""
+    if not fault.touch():
+        return False
+    session.ask_board(request)
+    session.proxy.note(request)
+    noise = Frame(struct.pack(">HHHB", 0x7FFF, 0, 5, 1) + b"\x04\x02\x00\x00").bytes()
+    while not session.proxy.closed and session.proxy.fault is fault:
+        session.send(noise * 8)
+        time.sleep(0.002)
+    raise ConnectionError("the channel is free again")
+
+
+def reset(session, fault, request):
+    if not fault.touch():
+        return False
+    session.client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+    raise ConnectionError("reset")
+
+
+def half_open(session, fault, request):
+    """This session is dead and nobody says so; new ones are as good as any."""
+    sessions = fault.memory.setdefault("dead", set())
+    if not sessions:
+        sessions.add(id(session))
+        fault.touch()
+    if id(session) not in sessions:
+        return False
+    session.wait_until_gone()
+    return True
+
+
+def silent(session, fault, request):
+    """Sessions stand, new ones are accepted, nothing is ever answered."""
+    if not fault.touch():
+        return False
+    session.wait_until_gone()
+    return True
+
+
+def dripped(session, fault, request):
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request).bytes()
+    session.proxy.note(request)
+    for i in range(len(reply)):
+        session.send(reply[i:i + 1])
+        time.sleep(fault.key("interval_s", 0.02))
+    return True
+
+
+def stalled(session, fault, request):
+    if not fault.touch():
+        return False
+    reply = session.ask_board(request).bytes()
+    session.proxy.note(request)
+    session.send(reply[:len(reply) // 2])
+    session.wait_until_gone()
+    return True
+
+
+def exception(session, fault, request):
+    """Nothing is carried out."""
+    if not fault.touch():
+        return False
+    request.pdu = bytearray([request.function | 0x80, fault.key("code", 4)])
+    session.send(request.bytes())
+    return True
+
+
+def refused(session, fault, request):
+    """Sessions end, new ones end at once."""
+    if not fault.touch():
+        return False
+    raise ConnectionError("refused")
+
+
+KINDS = {f.__name__: f for f in (
+    lost_request, lost_reply, delayed, repeated, replayed, inserted, other_function, twin, to_other_unit, from_other_unit,
+    out_of_order, wrong_sequence, corrupted_header, corrupted_value, asymmetric, received_by_some, blocked, reset,
+    half_open, silent, dripped, stalled, exception, refused, sensor_stuck, sensor_jump, sensor_drift, sensor_noise,
+    sensor_dropout, sensor_out_of_range, sensor_error)}
+
+
+class Proxy:
+    """Listens for the daemon, talks to the board. `writes` are (time.monotonic(), [raw outputs]) that it passed on."""
+
+    def __init__(self, board_port):
+        self.board_port = board_port
+        self.fault = None
+        self.writes = []
+        self.closed = False
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
+        self.sessions = set()
+        self.thread = threading.Thread(target=self.accept, daemon=True)
+        self.thread.start()
+
+    def note(self, request):
+        if request.function == 16 and request.address() == OUTPUTS:
+            self.writes.append((time.monotonic(), request.written()))
+
+    def begin(self, fault):
+        self.fault = fault
+
+    def clear(self):
+        self.fault = None
+
+    def accept(self):
+        while not self.closed:
+            try:
+                client, _ = self.listener.accept()
+            except OSError:
+                return
+            threading.Thread(target=self.serve, args=(client,), daemon=True).start()
+
+    def serve(self, client):
+        try:
+            session = Session(self, client)
+        except OSError:
+            client.close()
+            return
+        self.sessions.add(session)
+        with contextlib.suppress(OSError, struct.error, IndexError):
+            session.run()
+        self.sessions.discard(session)
+        session.close()
+
+    def close(self):
+        self.closed = True
+        self.listener.close()
+        for session in list(self.sessions):
+            with contextlib.suppress(OSError):
+                session.client.shutdown(socket.SHUT_RDWR)
