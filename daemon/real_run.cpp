@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "daemon/daemon_parts.h"
+#include "daemon/heartbeat.h"
 #include "daemon/real_time.h"
 #include "daemon/service_manager.h"
 #include "daemon/signals.h"
@@ -33,6 +34,9 @@ constexpr std::chrono::nanoseconds leave_deadline = std::chrono::seconds(1);
 constexpr Nanoseconds longest_join = ns_per_s;
 /// Between two looks of this thread at everything else.
 constexpr Nanoseconds look_pause = ns_per_s / 20;
+/// How long loop and bus may stand still beyond what the rig file allows them before the service manager's
+/// watchdog starves: a machine that is busy for a moment is no hung daemon.
+constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
 /// Between two looks of the service thread when nothing listens.
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 /// From the start of the threads to the first tick.
@@ -81,6 +85,7 @@ class RealRun {
   void service_body();
   void note_broken(const std::string& what);
   [[nodiscard]] bool over(Nanoseconds now);
+  [[nodiscard]] Heartbeat make_heartbeat() const;
   [[nodiscard]] std::string status_line();
 
   DaemonParts& parts_;
@@ -236,14 +241,22 @@ std::string RealRun::status_line() {
                      parts_.bus_statistics.failures.value());
 }
 
+Heartbeat RealRun::make_heartbeat() const {
+  const Nanoseconds pause = parts_.period() + heartbeat_patience;
+  const Nanoseconds longest_bus_call = std::max<Nanoseconds>(
+      parts_.rig.reconnect.connect_deadline.count(), nanoseconds(parts_.rig.loop.exchange_deadline_s));
+  return Heartbeat({pause, pause + longest_bus_call});
+}
+
 void RealRun::look_after() {
+  Heartbeat heartbeat = make_heartbeat();
   Nanoseconds status_due = 0;
   while (signals_.wait(look_pause) == 0) {
     const Nanoseconds now = parts_.clock.now();
     parts_.deliver_events();
     if (over(now)) return;
-    // Both must go on: the smaller count stands still soon after either does.
-    manager_.feed(now, std::min(parts_.loop_statistics.ticks.value(), parts_.bus_statistics.steps.value()));
+    manager_.feed(now, heartbeat.beats(
+                           now, {parts_.loop_statistics.ticks.value(), parts_.bus_statistics.steps.value()}));
     if (now >= status_due) {
       manager_.status(status_line());
       status_due = now + ns_per_s;

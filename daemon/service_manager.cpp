@@ -8,7 +8,7 @@ namespace softgrip::daemon {
 
 ServiceManager::ServiceManager() {
   std::uint64_t timeout_us = 0;
-  if (sd_watchdog_enabled(0, &timeout_us) > 0) interval_ = static_cast<Nanoseconds>(timeout_us) * 1000 / 2;
+  if (sd_watchdog_enabled(0, &timeout_us) > 0) interval_ = static_cast<Nanoseconds>(timeout_us) * 1000 / 4;
 }
 
 void ServiceManager::ready(const std::string& text) {
@@ -25,11 +25,10 @@ void ServiceManager::stopping() {
   sd_notify(0, "STOPPING=1\nSTATUS=writing the safe outputs");
 }
 
-void ServiceManager::feed(Nanoseconds now, std::uint64_t progress) {
-  if (interval_ == 0 || now - fed_ < interval_ / 2 || progress == progress_) return;
+void ServiceManager::feed(Nanoseconds now, bool alive) {
+  if (interval_ == 0 || !alive || now - fed_ < interval_) return;
   sd_notify(0, "WATCHDOG=1");
   fed_ = now;
-  progress_ = progress;
 }
 
 }  // namespace softgrip::daemon

@@ -1,7 +1,6 @@
 #pragma once
 // What the service manager (systemd) is told, when there is one.
 
-#include <cstdint>
 #include <string>
 
 #include "daemon/grid.h"
@@ -17,14 +16,13 @@ class ServiceManager {
   void status(const std::string& status);
   void stopping();
 
-  /// Feeds the unit's watchdog (WatchdogSec=) at half its time, but only while `progress` grows: a daemon
-  /// whose loop or bus thread hangs is killed and restarted.
-  void feed(Nanoseconds now, std::uint64_t progress);
+  /// Feeds the unit's watchdog (WatchdogSec=) four times in its time, as long as it is told that all threads
+  /// go on (`alive`, see Heartbeat); otherwise not at all, and the service manager kills and restarts.
+  void feed(Nanoseconds now, bool alive);
 
  private:
   Nanoseconds interval_ = 0;  // 0: no watchdog
   Nanoseconds fed_ = 0;
-  std::uint64_t progress_ = 0;
   std::string status_;
 };
 

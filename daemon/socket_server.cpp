@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,11 +37,25 @@ Failure failure(const std::string& path, std::string_view what) {
   return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
 }
 
-/// Removes the file of a daemon that is gone. False if one answers.
-bool clear_away(const sockaddr_un& address) {
+/// Nothing if the path is too long for a socket.
+std::optional<sockaddr_un> address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) return std::nullopt;
+  std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
+}
+
+/// Whether somebody listens there; if not, errno says why.
+bool answers(const sockaddr_un& address) {
   const FileDescriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-  if (connect(probe.number(), generic, sizeof address) == 0 || errno == EAGAIN) return false;
+  return connect(probe.number(), generic, sizeof address) == 0 || errno == EAGAIN;
+}
+
+/// Removes the file of a daemon that is gone. False if one answers.
+bool clear_away(const sockaddr_un& address) {
+  if (answers(address)) return false;
   // A file that is no socket refuses a connection, too; it is somebody's, and bind() will say that it is
   // there.
   struct stat status {};
@@ -64,15 +79,19 @@ bool give_rights(const SocketSettings& settings) {
 
 }  // namespace
 
+bool socket_answers(const std::string& path) {
+  const auto address = address_of(path);
+  return !path.empty() && address && answers(*address);
+}
+
 tl::expected<SocketServer, std::string> SocketServer::listen(const SocketSettings& settings) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (settings.path.size() >= sizeof address.sun_path) {
+  const auto address = address_of(settings.path);
+  if (!address) {
     return Failure(fmt::format("{}: the path of a socket has at most {} bytes", settings.path,
-                               sizeof address.sun_path - 1));
+                               sizeof address->sun_path - 1));
   }
-  std::memcpy(address.sun_path, settings.path.data(), settings.path.size());
-  if (!clear_away(address)) return Failure(fmt::format("{}: another softgripd answers there", settings.path));
+  if (!clear_away(*address))
+    return Failure(fmt::format("{}: another softgripd answers there", settings.path));
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(settings.path).parent_path(), ignored);
 
@@ -80,7 +99,7 @@ tl::expected<SocketServer, std::string> SocketServer::listen(const SocketSetting
   if (!listener.open()) return failure(settings.path, "socket");
   // Between bind and chmod nobody else may connect.
   const mode_t before = umask(0177);
-  const int bound = bind(listener.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  const int bound = bind(listener.number(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
   umask(before);
   if (bound != 0) return failure(settings.path, "bind");
   if (!give_rights(settings)) {

@@ -17,6 +17,9 @@ namespace softgrip::daemon {
 
 using model::Nanoseconds;
 
+/// Whether a daemon listens on the socket at `path`.
+[[nodiscard]] bool socket_answers(const std::string& path);
+
 /// A listening socket and its clients. All calls come from one thread.
 class SocketServer {
  public:

@@ -14,6 +14,7 @@
 #include "daemon/check.h"
 #include "daemon/daemon.h"
 #include "daemon/event_printer.h"
+#include "daemon/safe_outputs.h"
 #include "daemon/startup_report.h"
 #include "model/document/version.h"
 
@@ -33,6 +34,7 @@ struct Arguments {
   std::string record;
   std::string histograms;
   bool check = false;
+  bool safe_outputs = false;
   bool virtual_time = false;
   bool no_socket = false;
   std::optional<std::uint64_t> seed;
@@ -43,6 +45,10 @@ void declare(CLI::App& program, Arguments& arguments) {
   program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
   program.add_flag("--check", arguments.check,
                    "say what is wrong with the rig file and the sequence, start nothing");
+  program.add_flag(
+      "--safe-outputs", arguments.safe_outputs,
+      "vent: connect to the board, write the lowest pressure of every channel until the board confirms "
+      "it, and end. For ExecStopPost= of the unit: does nothing where $SERVICE_RESULT is success");
   program.add_flag("--virtual-time", arguments.virtual_time,
                    "as fast as possible on a simulated board, repeatable bit by bit; ends with --sequence or "
                    "--duration-s");
@@ -89,6 +95,16 @@ int check(const Arguments& arguments) {
   fmt::print("{}{}: fit to run\n", daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr),
              arguments.config);
   return 0;
+}
+
+int safe_outputs(const Arguments& arguments) {
+  document::Problems problems;
+  const auto rig = daemon::load_rig(arguments.config, problems);
+  if (!rig || !problems.empty()) return refuse(problems);
+  const char* result = std::getenv("SERVICE_RESULT");
+  const daemon::SafeOutputsReport report = daemon::leave_safe_outputs(*rig, result == nullptr ? "" : result);
+  fmt::print("safe outputs: {}\n", report.text);
+  return daemon::exit_code_of(report.end);
 }
 
 /// False if the file cannot be written.
@@ -157,6 +173,7 @@ int main(int argc, char** argv) {
     return program.exit(error) == 0 ? 0 : usage;
   }
   try {
+    if (arguments.safe_outputs) return safe_outputs(arguments);
     return arguments.check ? check(arguments) : run(arguments);
   } catch (const std::exception& error) {
     fmt::print(stderr, "softgripd: {}\n", error.what());

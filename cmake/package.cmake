@@ -1,0 +1,92 @@
+# The Debian package: `cpack` in the build folder, or scripts/package.sh. Programs go to /usr, whatever prefix the build
+# was configured with; the configuration always lives in /etc/softgrip.
+set(packaging ${PROJECT_SOURCE_DIR}/packaging)
+set(packaged ${CMAKE_CURRENT_BINARY_DIR}/packaging)
+
+# Units name programs by their full path, which only the installation knows.
+install(CODE "set(CMAKE_INSTALL_FULL_BINDIR \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
+set(SOFTGRIP_CONFIGURATION \"${SOFTGRIP_CONFIGURATION}\")
+configure_file(\"${PROJECT_SOURCE_DIR}/systemd/softgripd.service.in\" \"${packaged}/softgripd.service\" @ONLY)
+file(INSTALL \"${packaged}/softgripd.service\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/lib/systemd/system\")")
+install(FILES systemd/softgrip.sysusers DESTINATION lib/sysusers.d RENAME softgrip.conf)
+install(FILES systemd/softgrip.tmpfiles DESTINATION lib/tmpfiles.d RENAME softgrip.conf)
+install(FILES systemd/softgrip.rules DESTINATION lib/udev/rules.d RENAME 70-softgrip.rules)
+
+# Man pages, where pandoc is there to make them.
+find_program(SOFTGRIP_PANDOC pandoc)
+string(TIMESTAMP man_date "%Y-%m-%d" UTC)
+set(man_pages "")
+# man_page(NAME SECTION SUMMARY [PROGRAM] REFERENCE.md)
+function(man_page name section summary)
+  set(page ${packaged}/man/${name}.${section}.gz)
+  set(reference ${ARGV})
+  list(GET reference -1 reference)
+  if(ARGC GREATER 4)
+    set(program $<TARGET_FILE:${ARGV3}>)
+  endif()
+  add_custom_command(OUTPUT ${page}
+    COMMAND bash ${packaging}/man/page.sh ${PROJECT_VERSION} ${man_date} ${page} ${name} ${summary} ${program}
+            ${PROJECT_SOURCE_DIR}/docs/${reference}
+    DEPENDS ${packaging}/man/page.sh ${packaging}/man/help.awk ${packaging}/man/plain.lua
+            ${PROJECT_SOURCE_DIR}/docs/${reference} ${program}
+    VERBATIM)
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section})
+  list(APPEND man_pages ${page})
+  set(man_pages ${man_pages} PARENT_SCOPE)
+endfunction()
+if(SOFTGRIP_PANDOC)
+  file(MAKE_DIRECTORY ${packaged}/man)
+  man_page(softgripd 8 "controller daemon of soft pneumatic grippers" softgripd explanation/real-time.md)
+  man_page(softgrip 1 "command line of the soft gripper controller" softgrip reference/commands.md)
+  man_page(softgrip-rig 1 "board, valves, fingers and object over the wire" softgrip-rig reference/emulator.md)
+  man_page(softgrip-rig-file 5 "what softgripd must know of a rig" reference/rig-file.md)
+  man_page(softgrip-sequence-file 5 "what a gripper shall do, step by step" reference/sequence-file.md)
+  add_custom_target(man_pages ALL DEPENDS ${man_pages})
+else()
+  message(STATUS "pandoc is missing: no man pages")
+endif()
+
+# What only the package has.
+set(SOFTGRIP_PACKAGE_RELEASE 1 CACHE STRING "Debian revision of the package")
+string(TIMESTAMP SOFTGRIP_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
+configure_file(${packaging}/deb/changelog.in ${packaged}/changelog.Debian @ONLY)
+execute_process(COMMAND gzip -9nkf ${packaged}/changelog.Debian)
+install(FILES ${packaged}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT package)
+install(FILES ${packaging}/deb/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT package)
+install(FILES ${packaging}/deb/lintian-overrides DESTINATION share/lintian/overrides RENAME softgrip
+        COMPONENT package)
+
+# Everything in /etc is a file that its owner may have changed.
+file(GLOB_RECURSE conffiles CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/config ${PROJECT_SOURCE_DIR}/config/*)
+list(TRANSFORM conffiles PREPEND ${SOFTGRIP_CONFIGURATION}/)
+list(JOIN conffiles "\n" conffiles)
+file(WRITE ${packaged}/conffiles "${conffiles}\n")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_SET_DESTDIR ON)
+set(CPACK_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+    WORLD_READ WORLD_EXECUTE)
+set(CPACK_PACKAGE_NAME softgrip)
+set(CPACK_PACKAGE_CONTACT "The softgrip developers <developers@softgrip.example>")
+set(CPACK_DEB_COMPONENT_INSTALL OFF)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE ${SOFTGRIP_PACKAGE_RELEASE})
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "systemd, udev")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "linux-image-rt-amd64 | linux-image-rt-arm64")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA
+    "${packaging}/deb/postinst;${packaging}/deb/prerm;${packaging}/deb/postrm;${packaged}/conffiles")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "controller of soft pneumatic grippers")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+"softgripd reads displacement sensors and drives proportional pressure valves
+through Modbus or analog boards at a fixed rate: model-based feedforward with
+hysteresis and creep, feedback, grip sequences with an answer to every grip.
+
+softgrip talks to it, and at the desk identifies models from recordings and
+finds out what a model gets wrong. softgrip-rig stands in for the board, the
+valves and the fingers.")
+include(CPack)

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Builds the Debian package and checks it with lintian: scripts/package.sh [OUT_DIR [REVISION]]
+# OUT_DIR: default build/; prints the package's path as the last line. Uses build/release, which the tests use, too.
+set -euo pipefail
+cd "$(dirname "$(realpath "$0")")/.."
+out=$(realpath -m "${1:-build}")
+revision=${2:-1}
+
+bash scripts/packages.sh build package
+cmake --preset release -DSOFTGRIP_PACKAGE_RELEASE="$revision" >/dev/null
+cmake --build --preset release -j "$(nproc)" --target softgripd softgrip softgrip-rig man_pages | tail -n 1
+mkdir -p "$out"
+log=$(mktemp) && trap 'rm -f "$log"' EXIT
+(cd build/release && cpack -B "$out" >"$log" 2>&1) || { cat "$log" >&2; exit 1; }
+rm -rf "$out/_CPack_Packages"
+package=$(ls -t "$out"/softgrip_*-"$revision"_*.deb | head -n 1)
+lintian --fail-on warning,error "$package"
+echo "$package"
