@@ -26,6 +26,7 @@ enum class FaultCode : std::uint16_t {
   board_watchdog_tripped = 303,
   model_unfit = 401,
   emergency_stop = 501,
+  inputs_lost = 502,  ///< the digital inputs cannot be read
   cycles_lost = 901,  ///< the loop lost more cycles at once than allowed
   not_finite = 902,   ///< a command was not a finite number
 };

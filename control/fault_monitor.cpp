@@ -45,7 +45,7 @@ FaultMonitor::FaultMonitor(const RigSettings& settings)
 
 Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelStep> steps,
                             bool starting) noexcept {
-  cause_present_ = input.emergency_stop;
+  cause_present_ = input.emergency_stop || input.inputs_lost;
   Fault first;
   const auto note = [&first](const Fault& fault) {
     if (first.code == FaultCode::none) {
@@ -54,6 +54,9 @@ Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelStep>
   };
   if (input.emergency_stop) {
     note({FaultCode::emergency_stop, whole_rig, 0});
+  }
+  if (input.inputs_lost) {
+    note({FaultCode::inputs_lost, whole_rig, 0});
   }
   note(bus(input.bus, starting));
   for (std::size_t i = 0; i < channels_.size(); ++i) {

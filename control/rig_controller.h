@@ -56,6 +56,7 @@ struct TickInput {
   Request request;
   bool emergency_stop = false;       ///< the level of the input, true = stop
   bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence
+  bool inputs_lost = false;          ///< the digital inputs cannot be read: nobody knows what they say
   std::uint32_t slipped_cycles = 0;  ///< cycles that the loop lost just before this tick
 };
 

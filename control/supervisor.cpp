@@ -69,7 +69,8 @@ SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   if (code == FaultCode::board_watchdog_tripped) {
     return SafeAction::vent;
   }
-  if (code == FaultCode::emergency_stop) {
+  // Inputs that cannot be read may hide an emergency stop.
+  if (code == FaultCode::emergency_stop || code == FaultCode::inputs_lost) {
     return safety_.on_emergency_stop;
   }
   if (number / 100 == 1 && safety_.board_vents_when_silent) {

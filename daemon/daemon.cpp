@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "daemon/daemon_parts.h"
 #include "model/document/sha256.h"
 #include "model/document/version.h"
@@ -127,7 +129,12 @@ void DaemonParts::conclude(Outcome& outcome) {
       break;
     case Errand::State::not_idle:
       outcome.ending = Ending::not_idle;
-      outcome.message = "the rig did not become idle within 10 s";
+      outcome.message = fmt::format("the rig did not become idle within {} s{}", patience / ns_per_s,
+                                    outcome.last.first_fault == control::FaultCode::none
+                                        ? ""
+                                        : fmt::format(": {} {} is latched, `softgrip acknowledge` clears it",
+                                                      control::info_of(outcome.last.first_fault).id,
+                                                      control::info_of(outcome.last.first_fault).name));
       break;
     default:
       outcome.ending = Ending::sequence_ended;
@@ -151,7 +158,10 @@ int exit_code_of(const Outcome& outcome) noexcept {
     case Ending::sequence_ended:
       if (outcome.sequence_end == control::SequenceEnd::done) return outcome.left_safely ? 0 : 1;
       return outcome.sequence_end == control::SequenceEnd::failed ? 6 : 1;
+    case Ending::gpio_refused:
+      return 3;
     case Ending::socket_failed:
+    case Ending::gpio_failed:
       return 4;
     case Ending::sequence_refused:
     case Ending::not_idle:
@@ -168,6 +178,9 @@ tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(RigFile rig, D
     if (!std::holds_alternative<drivers::SimulatedBoardSettings>(rig.board)) {
       return tl::unexpected(
           std::string("virtual time needs a simulated board; a real one keeps its own time"));
+    }
+    if (rig.gpio) {
+      return tl::unexpected(std::string("virtual time has no digital lines: this rig file has `gpio`"));
     }
     if (!options.sequence && !options.duration_s) {
       return tl::unexpected(std::string("virtual time needs an end: a sequence or a duration"));

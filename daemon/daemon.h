@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "daemon/wires.h"
 #include "drivers/board.h"
 #include "drivers/clock.h"
+#include "drivers/gpio_lines.h"
 
 namespace softgrip::daemon {
 
@@ -30,6 +32,10 @@ struct DaemonOptions {
   std::optional<double> duration_s;  ///< run() ends after it; in virtual time one of the two is needed
   std::string record_folder;         ///< everything is recorded into this one folder
   bool listen = true;                ///< on the socket of the rig file
+  /// Where the digital lines come from; without it the GPIO chips of this machine.
+  std::function<tl::expected<std::unique_ptr<drivers::GpioLines>, drivers::GpioFailure>(
+      std::span<const drivers::GpioLineSettings>)>
+      open_gpio;
   /// Called in the thread that called run(), for every event, in order.
   std::function<void(const EventEntry&)> on_event;
   /// Called once in the thread that called run(), when all is set up and before anything moves: the start-up
@@ -45,6 +51,8 @@ enum class Ending : std::uint8_t {
   not_idle,           ///< the rig did not become idle, so the sequence was not started
   real_time_refused,  ///< `real_time: required: true`, and something could not be verified
   socket_failed,      ///< the socket could not be opened
+  gpio_refused,       ///< the rig file names a digital line that is not there, or not like that
+  gpio_failed,        ///< a digital line is in use, or this user may not have it
   broken,             ///< an exception in a thread, or a loop that did not end
 };
 
@@ -61,7 +69,7 @@ struct Outcome {
   double wall_s = 0;  ///< how long it took
 };
 
-/// 0, 1, 4, 5 or 6: see the exit codes of the manual.
+/// 0, 1, 3, 4, 5 or 6: see the exit codes of the manual.
 [[nodiscard]] int exit_code_of(const Outcome& outcome) noexcept;
 
 /// The board of a rig file, not yet connected. `clock` outlives it.

@@ -83,7 +83,9 @@ void EventPrinter::print_end(const Outcome& outcome) {
     logger_->info("{}: {}", outcome.channel_names[i], control::title_of(outcome.last.channels[i].result));
   }
   logger_->info("{} ticks, {} slips, {:.3f} s", outcome.ticks, outcome.slips, outcome.wall_s);
-  if (outcome.ending == Ending::socket_failed) return;
+  const bool never_began = outcome.ending == Ending::socket_failed ||
+                           outcome.ending == Ending::gpio_refused || outcome.ending == Ending::gpio_failed;
+  if (never_began) return;
   if (outcome.left_safely) {
     logger_->info("the board confirmed the safe outputs");
   } else {

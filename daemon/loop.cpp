@@ -71,6 +71,7 @@ void Loop::read(control::TickInput& input) noexcept {
   if (unreported_ > 1) input.bus.consecutive_failures += unreported_ - 1;
   input.emergency_stop = wires_.inputs.emergency_stop.load(std::memory_order_relaxed);
   input.interlock_open = wires_.inputs.interlock_open.load(std::memory_order_relaxed);
+  input.inputs_lost = inputs_lost(input.now);
   input.slipped_cycles = slipped_;
   slipped_ = 0;
   wires_.requests.pop(input.request);
@@ -78,6 +79,13 @@ void Loop::read(control::TickInput& input) noexcept {
   Nanoseconds oldest = input.now;
   for (const model::Reading& reading : input.readings) oldest = std::min(oldest, reading.sampled_at);
   if (oldest > 0) statistics_.reading_age.add(input.now - oldest);
+}
+
+bool Loop::inputs_lost(Nanoseconds now) const noexcept {
+  const InputLevels& inputs = wires_.inputs;
+  if (inputs.longest_silence == 0) return false;
+  return inputs.lost.load(std::memory_order_relaxed) ||
+         now - inputs.looked_at.load(std::memory_order_relaxed) > inputs.longest_silence;
 }
 
 void Loop::command() noexcept {
@@ -126,6 +134,7 @@ void Loop::show(const control::BusHealth& bus) noexcept {
   std::copy_n(output_.channels.begin(), channels_, snapshot.channels.begin());
   snapshot.bus = bus;
   wires_.snapshot.publish();
+  wires_.state.store(output_.state, std::memory_order_relaxed);
 }
 
 void Loop::count_slips(std::uint64_t skipped, bool woken_late) noexcept {

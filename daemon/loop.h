@@ -32,6 +32,7 @@ class Loop {
 
  private:
   void read(control::TickInput& input) noexcept;
+  [[nodiscard]] bool inputs_lost(Nanoseconds now) const noexcept;
   void command() noexcept;
   void record_events() noexcept;
   void record_rows() noexcept;

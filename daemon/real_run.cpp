@@ -16,6 +16,7 @@
 
 #include "daemon/daemon_parts.h"
 #include "daemon/heartbeat.h"
+#include "daemon/panel_run.h"
 #include "daemon/real_time.h"
 #include "daemon/service_manager.h"
 #include "daemon/signals.h"
@@ -65,7 +66,8 @@ class Stop {
 
 class RealRun {
  public:
-  explicit RealRun(DaemonParts& parts) : parts_(parts) {}
+  explicit RealRun(DaemonParts& parts)
+      : parts_(parts), panel_(parts.rig, parts.options, parts.clock, parts.wires, parts.loop_statistics) {}
 
   Outcome run();
 
@@ -90,6 +92,7 @@ class RealRun {
 
   DaemonParts& parts_;
   Signals signals_;
+  PanelRun panel_;
   ServiceManager manager_;
   Outcome outcome_;
 
@@ -154,9 +157,17 @@ void RealRun::recorder_body() {
 }
 
 void RealRun::service_body() {
-  StatusSources sources{parts_.rig.settings, parts_.provenance,      parts_.service,
-                        parts_.recorder,     parts_.loop_statistics, parts_.bus_statistics,
-                        parts_.board_text,   parts_.origin,          &report_};
+  StatusSources sources{parts_.rig.settings,
+                        parts_.provenance,
+                        parts_.service,
+                        parts_.recorder,
+                        parts_.loop_statistics,
+                        parts_.bus_statistics,
+                        parts_.board_text,
+                        parts_.origin,
+                        &report_,
+                        parts_.rig.gpio ? &*parts_.rig.gpio : nullptr,
+                        &parts_.wires};
   SocketApi api(sources, parts_.loader, parts_.events,
                 [this](ClientId client, std::string_view line, bool skippable) {
                   if (server_) server_->send(client, line, skippable);
@@ -194,6 +205,7 @@ void RealRun::start_threads() {
   ready_.wait();
   report_.append(loop_report_);
   report_.append(bus_report_);
+  panel_.start(report_);
   recorder_ = Thread(
       {.name = "softgrip-record"}, [this] { recorder_body(); }, broken("recorder thread"));
   service_ = Thread(
@@ -280,6 +292,7 @@ void RealRun::stop() {
   parts_.tell("daemon_stopping", Severity::information, "Stopping: the safe outputs are written.");
   manager_.stopping();
   const bool ended = stop_loop_and_bus();
+  panel_.stop();
   stop_recorder_.set();
   stop_service_.set();
   recorder_.join();
@@ -309,7 +322,7 @@ bool RealRun::listen() {
 
 Outcome RealRun::run() {
   const ProcessorLatencyRequest latency = prepare_process(parts_.rig.real_time, report_);
-  if (!listen()) return outcome_;
+  if (!panel_.open(outcome_) || !listen()) return outcome_;
   parts_.bus.open();
   start();
   if (outcome_.ending == Ending::asked) {

@@ -149,6 +149,7 @@ std::optional<RigFile> read_rig(const document::Document& document, document::Pr
   read_real_time(context, top);
   read_recorder(context, top);
   read_socket(context, top);
+  read_gpio(context, top);
   top.finish();
   if (problems.size() == before && document.complete) check_whole(context, top);
   if (problems.size() != before || !document.complete) return std::nullopt;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "control/settings.h"
+#include "daemon/gpio_settings.h"
 #include "daemon/loop_settings.h"
 #include "daemon/real_time_settings.h"
 #include "daemon/recorder_settings.h"
@@ -43,9 +44,10 @@ struct InputFile {
 /// feedforward was accepted by control::check_feedforward(), the wiring fits the board.
 struct RigFile {
   std::string name;
-  std::string path;                ///< as the user named it
-  control::RigSettings settings;   ///< channels in the order of the file
-  std::vector<ValveFacts> valves;  ///< one per channel
+  std::string path;                            ///< as the user named it
+  control::RigSettings settings;               ///< channels in the order of the file
+  std::vector<ValveFacts> valves;              ///< one per channel
+  std::vector<drivers::ChannelWiring> wiring;  ///< one per channel, as the file says, on every board
   std::variant<drivers::SimulatedBoardSettings, drivers::ModbusTcpSettings> board;
   std::optional<std::uint64_t> seed;  ///< of a simulated board, as written
   /// The sentence by which the file accepts a board that does not vent by itself; empty: it has a watchdog.
@@ -57,6 +59,7 @@ struct RigFile {
   RealTimeSettings real_time;
   RecorderSettings recorder;  ///< paths made absolute or relative to the working directory
   SocketSettings socket;
+  std::optional<GpioSettings> gpio;
   std::vector<InputFile> inputs;  ///< the rig file first, each file once
 };
 

@@ -73,6 +73,7 @@ bool board_vents_when_silent(const Context& context) {
 }
 
 void check_whole(Context& context, MapReader& top) {
+  context.rig.wiring = context.wiring;
   if (auto* const modbus = std::get_if<drivers::ModbusTcpSettings>(&context.rig.board)) {
     modbus->wiring = context.wiring;
     for (std::string& sentence : drivers::wiring_problems(modbus->map, modbus->wiring)) {

@@ -59,6 +59,7 @@ void read_loop(Context& context, MapReader& top);
 void read_real_time(Context& context, MapReader& top);
 void read_recorder(Context& context, MapReader& top);
 void read_socket(Context& context, MapReader& top);
+void read_gpio(Context& context, MapReader& top);
 
 /// Maps that may stand at the top, for all channels, or in a channel, for itself.
 [[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);

@@ -33,6 +33,11 @@ void Service::pump() {
     entry.time_s = seconds(event.at - origin_);
     log_.add(std::move(entry));
   }
+  for (PanelEvent event; wires_.panel_events.pop(event);) {
+    EventEntry entry = describe(event);
+    entry.time_s = seconds(event.at - origin_);
+    log_.add(std::move(entry));
+  }
   for (StampedEvent event; wires_.events.pop(event);) take(event);
   const std::uint64_t dropped = wires_.events_dropped.load(std::memory_order_relaxed);
   if (dropped != events_dropped_) {

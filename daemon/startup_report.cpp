@@ -56,6 +56,28 @@ std::string channel_line(const control::ChannelSettings& channel, const ValveFac
                      valve.on_power_loss == PowerLoss::vents ? "vents" : "holds");
 }
 
+/// How soon an emergency stop is seen: the debounced line, the next tick, the exchange that follows it.
+std::string gpio_lines(const RigFile& rig) {
+  std::string text;
+  const GpioSettings& gpio = *rig.gpio;
+  for (const drivers::GpioLineSettings& line : gpio.lines) {
+    text += fmt::format("gpio: {} is {}", drivers::name_of(line.role), drivers::text_of(line));
+    if (line.role == drivers::GpioRole::enable) {
+      text += gpio.enable_drops_on_fault ? ", drops on a fault" : ", kept on a fault";
+    }
+    text += "\n";
+  }
+  if (!gpio.has(drivers::GpioRole::emergency_stop)) return text;
+  const double period_s = 1 / rig.settings.rate_hz;
+  const double latched_s = gpio.debounce_s + period_s;
+  return text + fmt::format(
+                    "emergency stop: latched {:.3g} ms after the contact (debounce {:.3g} ms, one cycle), "
+                    "written to "
+                    "the board {:.3g} ms later; acknowledge before the first start\n",
+                    latched_s * ms_per_s, gpio.debounce_s * ms_per_s,
+                    rig.loop.bus_offset_fraction * period_s * ms_per_s);
+}
+
 }  // namespace
 
 std::string startup_report(const RigFile& rig, const drivers::Board& board, const RealTimeReport* real_time) {
@@ -73,6 +95,7 @@ std::string startup_report(const RigFile& rig, const drivers::Board& board, cons
   for (std::size_t i = 0; i < rig.settings.channels.size(); ++i) {
     text += channel_line(rig.settings.channels[i], rig.valves[i]);
   }
+  if (rig.gpio) text += gpio_lines(rig);
   if (real_time == nullptr) return text;
   text += fmt::format("real time: {}\n", real_time->degraded() ? "DEGRADED" : "as asked for");
   std::string_view rest;

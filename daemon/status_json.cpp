@@ -90,6 +90,19 @@ Json json_of(const RealTimeReport* report) {
   return {{"degraded", report->degraded()}, {"steps", std::move(steps)}};
 }
 
+/// What is known of the digital lines; null for those that the rig does not have.
+Json json_of_gpio(const GpioSettings* gpio, const Wires* wires) {
+  if (gpio == nullptr || wires == nullptr) return nullptr;
+  const InputLevels& inputs = wires->inputs;
+  Json json{{"emergency_stop", nullptr}, {"part_in_position", nullptr}, {"enable", nullptr}};
+  using drivers::GpioRole;
+  if (gpio->has(GpioRole::emergency_stop)) json["emergency_stop"] = inputs.emergency_stop.load();
+  if (gpio->has(GpioRole::part_in_position)) json["part_in_position"] = !inputs.interlock_open.load();
+  if (gpio->has(GpioRole::enable)) json["enable"] = wires->enable_on.load();
+  json["lost"] = inputs.lost.load();
+  return json;
+}
+
 Json json_of(const Histogram& histogram, bool with_bins) {
   const Histogram::Summary summary = histogram.summary();
   const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * us_per_ns; };
@@ -133,6 +146,7 @@ Json status_json(const StatusSources& sources) {
                   {"wake_up_p99_us", static_cast<double>(wake_up.p99_ns) * us_per_ns},
                   {"wake_up_max_us", static_cast<double>(wake_up.max_ns) * us_per_ns}};
   json["recording"] = json_of(sources.recorder.status());
+  json["gpio"] = json_of_gpio(sources.gpio, sources.wires);
   json["real_time"] = json_of(sources.real_time);
   return json;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "control/settings.h"
+#include "daemon/gpio_settings.h"
 #include "daemon/provenance.h"
 #include "daemon/real_time.h"
 #include "daemon/recorder.h"
@@ -26,6 +27,8 @@ struct StatusSources {
   const std::string& board;  ///< in one line
   Nanoseconds origin = 0;
   const RealTimeReport* real_time = nullptr;  ///< absent in virtual time
+  const GpioSettings* gpio = nullptr;         ///< absent without digital lines
+  const Wires* wires = nullptr;               ///< needed with them
 };
 
 [[nodiscard]] nlohmann::ordered_json status_json(const StatusSources& sources);

@@ -73,10 +73,30 @@ struct Snapshot {
   control::BusHealth bus;
 };
 
-/// Inputs that are levels, not requests; whoever reads the lines stores them.
+/// Inputs that are levels, not requests; whoever reads the lines (daemon/panel.h) stores them.
 struct InputLevels {
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> interlock_open{false};
+  std::atomic<bool> lost{false};          ///< the lines cannot be read any more
+  std::atomic<Nanoseconds> looked_at{0};  ///< when the lines were read last
+  /// A look that is older than this means that nobody reads the lines: they are lost; 0: there are none.
+  Nanoseconds longest_silence = 0;
+};
+
+/// From the reader of the digital lines to the log.
+struct PanelEvent {
+  enum class Kind : std::uint8_t {
+    emergency_stop_pressed,
+    emergency_stop_released,
+    part_in_position,
+    part_away,
+    enable_on,
+    enable_off,
+    loop_hangs,  ///< no tick for too long: the enable output was dropped
+    gpio_lost,   ///< the chip failed
+  };
+  Kind kind = Kind::gpio_lost;
+  Nanoseconds at = 0;
 };
 
 struct Wires {
@@ -89,7 +109,10 @@ struct Wires {
   Ring<BusEvent> bus_events{256};
   Ring<Record> records;
   Ring<StampedEvent> events{1024};
+  Ring<PanelEvent> panel_events{64};
   Ring<control::Request> requests{64};
+  std::atomic<control::State> state{control::State::starting};  ///< of the last tick
+  std::atomic<bool> enable_on{false};                           ///< the enable output, as it was written
   InputLevels inputs;
   std::atomic<std::uint64_t> records_dropped{0};  ///< no room: the recorder lagged
   std::atomic<std::uint64_t> events_dropped{0};

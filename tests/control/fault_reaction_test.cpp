@@ -64,6 +64,8 @@ std::vector<FaultCase> fault_cases() {
        [](SimulatedRig& rig) { rig.fault[0].readback_offset_kpa = 0; }},
       {"emergency_stop", FaultCode::emergency_stop, 1, [](SimulatedRig& rig) { rig.emergency_stop = true; },
        [](SimulatedRig& rig) { rig.emergency_stop = false; }, true},
+      {"inputs_lost", FaultCode::inputs_lost, 1, [](SimulatedRig& rig) { rig.inputs_lost = true; },
+       [](SimulatedRig& rig) { rig.inputs_lost = false; }, true},
       {"cycles_lost", FaultCode::cycles_lost, 1, [](SimulatedRig& rig) { rig.slipped_cycles = 10; }, nothing},
   };
 }

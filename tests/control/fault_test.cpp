@@ -27,6 +27,7 @@ TEST(Faults, CodesAreStable) {
                                                                   {"F303", "board_watchdog_tripped"},
                                                                   {"F401", "model_unfit"},
                                                                   {"F501", "emergency_stop"},
+                                                                  {"F502", "inputs_lost"},
                                                                   {"F901", "cycles_lost"},
                                                                   {"F902", "not_finite"}};
   ASSERT_EQ(all_faults().size(), expected.size());

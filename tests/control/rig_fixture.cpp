@@ -83,6 +83,7 @@ const TickOutput& SimulatedRig::tick() {
   input.request = request_;
   input.emergency_stop = emergency_stop;
   input.interlock_open = interlock_open;
+  input.inputs_lost = inputs_lost;
   input.slipped_cycles = slipped_cycles;
   slipped_cycles = 0;
   request_ = {};

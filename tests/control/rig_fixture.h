@@ -33,6 +33,7 @@ class SimulatedRig {
   bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time
   bool board_vents = true;  ///< its watchdog puts the outputs to the lowest pressure
   bool emergency_stop = false;
+  bool inputs_lost = false;
   bool interlock_open = false;
   std::uint32_t slipped_cycles = 0;  ///< for the next tick only
   FaultCode bus_fault = FaultCode::none;

@@ -1,0 +1,99 @@
+#pragma once
+// Digital lines that a test holds in its hands.
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "drivers/clock.h"
+#include "drivers/gpio_lines.h"
+
+namespace softgrip::daemon::testing {
+
+/// What stands at the terminals; outlives the lines, which the panel owns. Thread-safe.
+class Terminals {
+ public:
+  /// The logical level of an input; an edge is told if it changes.
+  void set(drivers::GpioRole role, bool active, bool with_edge = true) {
+    const std::scoped_lock lock(mutex_);
+    bool& level = levels_[index(role)];
+    if (level != active && with_edge) edges_.push_back({role, active, clock_.now()});
+    level = active;
+    changed_.notify_all();
+  }
+  /// The chip goes away.
+  void fail() {
+    const std::scoped_lock lock(mutex_);
+    failed_ = true;
+    changed_.notify_all();
+  }
+  [[nodiscard]] bool level(drivers::GpioRole role) const {
+    const std::scoped_lock lock(mutex_);
+    return levels_[index(role)];
+  }
+  /// Everything that was written to an output, in order.
+  [[nodiscard]] std::vector<bool> written(drivers::GpioRole role) const {
+    const std::scoped_lock lock(mutex_);
+    return written_[index(role)];
+  }
+  [[nodiscard]] std::unique_ptr<drivers::GpioLines> lines();
+
+ private:
+  class Lines;
+  static std::size_t index(drivers::GpioRole role) { return static_cast<std::size_t>(role); }
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  drivers::MonotonicClock clock_;
+  std::array<bool, drivers::gpio_role_count> levels_{};
+  std::array<std::vector<bool>, drivers::gpio_role_count> written_;
+  std::deque<drivers::GpioEdge> edges_;
+  bool failed_ = false;
+};
+
+class Terminals::Lines final : public drivers::GpioLines {
+ public:
+  explicit Lines(Terminals& terminals) : terminals_(terminals) {}
+
+  std::optional<std::size_t> wait(drivers::Nanoseconds timeout,
+                                  std::span<drivers::GpioEdge> edges) noexcept override {
+    std::unique_lock lock(terminals_.mutex_);
+    terminals_.changed_.wait_for(lock, std::chrono::nanoseconds(timeout),
+                                 [&] { return terminals_.failed_ || !terminals_.edges_.empty(); });
+    if (terminals_.failed_) return std::nullopt;
+    std::size_t count = 0;
+    while (count < edges.size() && !terminals_.edges_.empty()) {
+      edges[count++] = terminals_.edges_.front();
+      terminals_.edges_.pop_front();
+    }
+    return count;
+  }
+  std::optional<bool> read(drivers::GpioRole role) noexcept override {
+    const std::scoped_lock lock(terminals_.mutex_);
+    if (terminals_.failed_) return std::nullopt;
+    return terminals_.levels_[index(role)];
+  }
+  bool write(drivers::GpioRole role, bool active) noexcept override {
+    const std::scoped_lock lock(terminals_.mutex_);
+    terminals_.levels_[index(role)] = active;
+    terminals_.written_[index(role)].push_back(active);
+    return !terminals_.failed_;
+  }
+  [[nodiscard]] bool sees_edges() const noexcept override { return true; }
+
+ private:
+  Terminals& terminals_;
+};
+
+inline std::unique_ptr<drivers::GpioLines> Terminals::lines() {
+  return std::make_unique<Lines>(*this);
+}
+
+}  // namespace softgrip::daemon::testing
