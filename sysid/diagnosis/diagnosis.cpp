@@ -10,6 +10,7 @@
 #include "sysid/diagnosis/coherence.h"
 #include "sysid/diagnosis/noise.h"
 #include "sysid/diagnosis/spectrum_peaks.h"
+#include "sysid/diagnosis/staircase_selection.h"
 #include "sysid/numbers.h"
 #include "sysid/residuals.h"
 #include "sysid/trajectory.h"
@@ -178,6 +179,7 @@ class Diagnostician {
     if (left_by_outliers(structure_of(base->residual_mm, d_.noise_mm))) selection_options.most_causes = 0;
     Selection selection = select_causes(data_, std::move(*base), d_.noise_mm, division, selection_options);
     clock.ended("search");
+    if (leaves_too_much(selection) && look_for_staircase(selection, division)) clock.ended("staircase");
     measure(selection, division);
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     if (d_.null_calibration) clock.ended("nulls");
@@ -230,6 +232,35 @@ class Diagnostician {
       use(std::move(records));
       base = fit_structure(data_.records, {}, base.point);
     }
+  }
+
+  /// Whether a selection leaves more than what is named may leave, or structure where nothing is named.
+  [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
+    if (!selection.left.present) return false;
+    if (selection.chosen.empty()) {
+      return !left_by_outliers(selection.left) && selection.left.excess_mm > 0.2 * d_.noise_mm;
+    }
+    double may_stay = may_be_left;
+    for (const Leftover& clear : clear_leftovers) {
+      if (selection.left.excess_mm > clear.noises * d_.noise_mm) may_stay = clear.share;
+    }
+    return square(selection.left.excess_mm) > may_stay * square(selection.base_structure.excess_mm);
+  }
+
+  /// A valve that sticks leaves what no simulation from the command alone can foretell. True where that is
+  /// what was missing; the selection is then the one behind the staircase.
+  bool look_for_staircase(Selection& selection, const Division& division) {
+    if (options_.record.drive != Drive::command) return false;
+    if (options_.progress) options_.progress("looks for a staircase");
+    SelectionOptions one_more;
+    one_more.most_causes = 1;
+    one_more.seed = options_.seed;
+    one_more.progress = options_.progress;
+    auto found = select_behind_staircase(data_, selection, d_.noise_mm, division, one_more);
+    if (!found || leaves_too_much(found->selection)) return false;
+    selection = std::move(found->selection);
+    d_.staircase = found->evidence;
+    return true;
   }
 
   void measure(const Selection& selection, const Division& division) {
@@ -292,6 +323,10 @@ class Diagnostician {
       NamedCause named;
       named.cause = chosen.cause;
       named.parameters = parameters_of(selection.extended, chosen.cause, space, z, uncertainty);
+      if (d_.staircase && chosen.cause.id == "valve_deadband") {
+        // Of the staircase itself; the extended model's may be that of its mean.
+        named.parameters.front() = {"band_kpa", "kPa", d_.staircase->band_kpa, d_.staircase->band_ci95, true};
+      }
       named.heldout_gain_percent = chosen.gain_percent;
       named.rivals = chosen.rivals;
       named.candidates = chosen.candidates;
@@ -306,13 +341,7 @@ class Diagnostician {
   }
 
   void conclude(const Selection& selection) {
-    const bool structure = selection.left.present;
-    const double left_share = d_.unexplained_percent / 100;
-    double may_stay = may_be_left;
-    for (const Leftover& clear : clear_leftovers) {
-      if (selection.left.excess_mm > clear.noises * d_.noise_mm) may_stay = clear.share;
-    }
-    const bool too_much_left = structure && left_share > may_stay;
+    const bool too_much_left = leaves_too_much(selection);
     const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
     if (!selection.chosen.empty() && (too_much_left || by_chance)) {
       d_.verdict = Verdict::unexplained;
@@ -321,8 +350,7 @@ class Diagnostician {
           by_chance ? d_.recalibrated_model : named_model(selection.extended.point.model, "extended in part");
       return;
     }
-    const bool other = !left_by_outliers(selection.left);
-    if (selection.chosen.empty() && other && structure && selection.left.excess_mm > 0.2 * d_.noise_mm) {
+    if (selection.chosen.empty() && too_much_left) {
       d_.verdict = Verdict::unexplained;
       d_.partial = std::move(causes_);
       d_.unexplained_percent = 100;
@@ -331,7 +359,8 @@ class Diagnostician {
     d_.causes = std::move(causes_);
     if (d_.outliers.present && selection.chosen.empty()) {
       const double left = square(selection.left.excess_mm);
-      d_.unexplained_percent = structure ? 100 * left / (left + square(d_.outliers.excess_mm)) : 0;
+      d_.unexplained_percent =
+          selection.left.present ? 100 * left / (left + square(d_.outliers.excess_mm)) : 0;
     }
     if (!d_.causes.empty()) {
       const bool rivals = std::any_of(d_.causes.begin(), d_.causes.end(),

@@ -17,6 +17,7 @@
 #include "sysid/diagnosis/outliers.h"
 #include "sysid/diagnosis/reference.h"
 #include "sysid/diagnosis/selection.h"
+#include "sysid/diagnosis/staircase_selection.h"
 #include "sysid/identify.h"
 #include "sysid/log.h"
 
@@ -68,6 +69,7 @@ struct Diagnosis {
   double unexplained_percent = 0;
   std::optional<NullCalibration> null_calibration;  ///< where it was asked for and something was to be named
   OutlierEvidence outliers;
+  std::optional<StaircaseEvidence> staircase;  ///< where the named dead band is one
   Structure structure_recalibrated;
   Structure structure_left;
   StructureFit as_given;

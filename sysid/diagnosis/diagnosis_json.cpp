@@ -149,6 +149,13 @@ std::string to_json(const Diagnosis& d) {
                                 {"largest_gain_percent", nulls->largest_gain_percent},
                                 {"p_value", nulls->p_value}};
   }
+  json["staircase"] = nullptr;
+  if (const auto& staircase = d.staircase) {
+    json["staircase"] = {{"jumps", staircase->jumps},
+                         {"scatter_percent", 100 * staircase->scatter},
+                         {"heldout_rmse_mm", staircase->heldout_rmse_mm},
+                         {"gain_percent", spread(staircase->gain_percent)}};
+  }
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named));
   json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},

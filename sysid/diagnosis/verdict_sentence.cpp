@@ -30,6 +30,16 @@ std::string outlier_sentence(const Diagnosis& d) {
          significant(d.recalibrated_rmse_mm, 2) + " mm.";
 }
 
+/// The command does not tell where in its staircase a valve stands; the readings do.
+std::string staircase_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
+  return "The model lacks " + listed(d.causes) +
+         ": the valve sticks and jumps. When it jumps the command alone does not tell, and with it the "
+         "held-out error "
+         "falls from " +
+         before + " to " + after + " only; with the moment of every jump taken from the readings, to " +
+         significant(d.staircase->heldout_rmse_mm, 2) + " mm.";
+}
+
 std::string unexplained_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   if (d.partial.empty()) return "Something is wrong that no known cause explains.";
   if (d.null_calibration && d.null_calibration->reach_the_gain()) {
@@ -58,6 +68,7 @@ std::string verdict_sentence(const Diagnosis& d) {
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:
       if (d.extended.causes.empty()) return outlier_sentence(d);
+      if (d.staircase) return staircase_sentence(d, before, after);
       return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
              " to " + after + ".";
     case Verdict::ambiguous:

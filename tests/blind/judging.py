@@ -15,6 +15,7 @@ GIVEN = ROOT / "tests/blind/given.yaml"
 SAME_MEANING = {
     "transport_delay": {"delay_s": lambda n: n["delay_s"]},
     "valve_lag": {"time_constant_s": lambda n: n["time_constant_s"]},
+    "valve_deadband": {"band_kpa": lambda n: n["band_kpa"]},
     "pressure_saturation": {"limit_kpa": lambda n: n["limit_kpa"]},
     "actuator_threshold": {"threshold_kpa": lambda n: n["threshold_kpa"]},
     "stiffening": {"stiffening_per_mm": lambda n: n["per_mm"]},

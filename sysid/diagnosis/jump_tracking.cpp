@@ -1,0 +1,172 @@
+#include "sysid/diagnosis/jump_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/chain.h"
+#include "sysid/trajectory.h"
+#include "sysid/trajectory_walk.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::size_t most_tracks = 40;
+constexpr std::size_t most_landings = 24;
+/// A course that is behind by so much of squared error [in squares of what the resolution makes] is given up.
+constexpr double hopeless = 4000;
+/// A jump is resolved well where the command moves by less than this share of the band during its sample.
+constexpr double slow_share = 0.2;
+
+constexpr std::size_t no_jump = std::numeric_limits<std::size_t>::max();
+
+struct Jump {
+  std::size_t sample = 0;
+  double held_kpa = 0;
+  double distance_kpa = 0;
+  bool resolved = false;
+  std::size_t before = no_jump;  ///< index of the jump before it
+};
+
+struct Track {
+  model::Chain<double> chain;
+  double held_kpa = 0;
+  double cost_mm2 = 0;
+  std::size_t last = no_jump;
+};
+
+class JumpTracker {
+ public:
+  JumpTracker(const Record& record, const FitPoint& point, const StartState& start, double band_kpa,
+              double resolution_kpa)
+      : record_(record), band_kpa_(band_kpa), resolution_kpa_(resolution_kpa) {
+    Track first{model::Chain<double>(point.model, {}, record.sample_time_s), record.drive_kpa.front(), 0,
+                no_jump};
+    sysid::start(first.chain, record, start.peak_before_kpa);
+    Record still = record;
+    // What the start adds to every prediction, whatever drives the chain.
+    const StartState rest{.peak_before_kpa = start.peak_before_kpa, .unsettled_mm = {}};
+    offset_mm_ = predict(point.model, still, start);
+    const std::vector<double> plain = predict(point.model, still, rest);
+    for (std::size_t i = 0; i < record.size(); ++i) offset_mm_[i] -= plain[i];
+    const double gain = record.largest_kpa > 0 ? record.span_mm / record.largest_kpa : 1;
+    give_up_mm2_ = hopeless * resolution_kpa * resolution_kpa * gain * gain;
+    tracks_.push_back(std::move(first));
+  }
+
+  ValveCourse run() {
+    for (std::size_t i = 1; i < record_.size(); ++i) step(i);
+    return course();
+  }
+
+ private:
+  void step(std::size_t i) {
+    around_.time_s = record_.campaign_time_s + record_.time_s[i];
+    if (!record_.temperature_c.empty()) around_.temperature_c = record_.temperature_c[i];
+    if (!record_.supply_kpa.empty()) around_.supply_kpa = record_.supply_kpa[i];
+    const double to = record_.held ? record_.drive_kpa[i - 1] : record_.drive_kpa[i];
+    const double from = record_.held ? to : record_.drive_kpa[i - 1];
+    next_.clear();
+    for (Track& track : tracks_) {
+      const std::vector<double>& landings = landings_of(track.held_kpa, from, to);
+      for (const double held : landings) {
+        Track child = track;
+        child.last = jumps_.size();
+        jumps_.push_back({i, held, std::abs(held - track.held_kpa),
+                          !record_.held && std::abs(to - from) < slow_share * band_kpa_ && to != from,
+                          track.last});
+        advance(child, i, held);
+        next_.push_back(std::move(child));
+      }
+      if (std::abs(to - track.held_kpa) <= breaks_loose_by * band_kpa_ || landings.empty()) {
+        advance(track, i, track.held_kpa);
+        next_.push_back(std::move(track));
+      }
+    }
+    prune();
+  }
+
+  void advance(Track& track, std::size_t i, double held_kpa) {
+    track.held_kpa = held_kpa;
+    const double y = track.chain.step(record_.duration_s[i], held_kpa, around_) + offset_mm_[i];
+    const double error = record_.reading_mm[i] - y;
+    if (!std::isnan(error)) track.cost_mm2 += error * error;
+  }
+
+  /// Where a valve that stands at `held` may stand after the command went from `from` to `to`, if it jumped.
+  const std::vector<double>& landings_of(double held, double from, double to) {
+    landings_.clear();
+    if (from == to) {
+      if (std::abs(to - held) > breaks_loose_from * band_kpa_) landings_.push_back(to);
+      return landings_;
+    }
+    const double way = to > from ? 1 : -1;
+    const double loose = std::max(way * from, way * held + breaks_loose_from * band_kpa_);
+    const double first = std::max(loose, way * to - breaks_loose_by * band_kpa_);
+    const double length = way * to - first;
+    if (length < 0) return landings_;
+    const auto parts = std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(length / resolution_kpa_)),
+                                               1, most_landings);
+    for (std::size_t k = 0; k < parts; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(parts);
+      landings_.push_back(way * (first + share * length));
+    }
+    return landings_;
+  }
+
+  /// Keeps the best, of those that stand in the same place one.
+  void prune() {
+    std::sort(next_.begin(), next_.end(),
+              [](const Track& a, const Track& b) { return a.cost_mm2 < b.cost_mm2; });
+    tracks_.clear();
+    for (Track& track : next_) {
+      if (tracks_.size() >= most_tracks || track.cost_mm2 > next_.front().cost_mm2 + give_up_mm2_) break;
+      const bool twin = std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& kept) {
+        return std::abs(kept.held_kpa - track.held_kpa) < 0.25 * resolution_kpa_;
+      });
+      if (!twin) tracks_.push_back(track);
+    }
+  }
+
+  [[nodiscard]] ValveCourse course() const {
+    ValveCourse found;
+    found.held_kpa.assign(record_.size(), record_.drive_kpa.front());
+    found.sum_of_squares_mm2 = tracks_.front().cost_mm2;
+    std::size_t end = record_.size();
+    for (std::size_t at = tracks_.front().last; at != no_jump; at = jumps_[at].before) {
+      const Jump& jump = jumps_[at];
+      std::fill(found.held_kpa.begin() + static_cast<long>(jump.sample),
+                found.held_kpa.begin() + static_cast<long>(end), jump.held_kpa);
+      end = jump.sample;
+      if (jump.resolved) found.distances_kpa.push_back(jump.distance_kpa);
+    }
+    std::reverse(found.distances_kpa.begin(), found.distances_kpa.end());
+    return found;
+  }
+
+  const Record& record_;
+  double band_kpa_, resolution_kpa_;
+  double give_up_mm2_ = 0;
+  std::vector<double> offset_mm_;
+  model::Surroundings around_;
+  std::vector<Track> tracks_, next_;
+  std::vector<Jump> jumps_;
+  std::vector<double> landings_;
+};
+
+}  // namespace
+
+ValveCourse track_jumps(const Record& record, std::size_t index, const FitPoint& point, double band_kpa,
+                        double resolution_kpa) {
+  return JumpTracker(record, point, point.starts[index], band_kpa, resolution_kpa).run();
+}
+
+Record driven_by(const Record& record, const ValveCourse& course) {
+  Record driven = record;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    driven.drive_kpa[record.held ? i - 1 : i] = course.held_kpa[i];
+  }
+  return driven;
+}
+
+}  // namespace softgrip::sysid

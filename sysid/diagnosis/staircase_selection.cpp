@@ -1,0 +1,82 @@
+#include "sysid/diagnosis/staircase_selection.h"
+
+#include <utility>
+
+#include "sysid/diagnosis/spectrum_peaks.h"
+#include "sysid/diagnosis/staircase.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// What stands behind the valve, as far as a dead band that is simulated from the command can show it: the
+/// recalibrated model has swallowed the valve's mean lag.
+std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& base,
+                                             const Cause& dead_band) {
+  std::vector<Candidate> fits = fit_candidates(data, base, {dead_band});
+  if (fits.empty() || !fits.front().fit) return std::nullopt;
+  StructureFit behind = std::move(*fits.front().fit);
+  behind.causes.clear();
+  behind.point.model = model::without_block(behind.point.model, dead_band.type);
+  return behind;
+}
+
+/// With the valve in front again.
+FitPoint with_valve(const FitPoint& behind, const Cause& dead_band, double band_kpa, double form) {
+  FitPoint point = behind;
+  model::BlockSpec block = model::neutral_block(dead_band.type);
+  block.values[*model::find_parameter(block, "band_kpa")] = band_kpa;
+  block.values[*model::find_parameter(block, "form")] = form;
+  point.model = model::with_block(point.model, block);
+  return point;
+}
+
+/// What can be foretold from the command alone: the staircase as long as it is in step, or else its mean.
+void extend(Selection& selection, const SearchData& data, const StructureFit& behind, const Cause& dead_band,
+            double band_kpa, const Division& division) {
+  std::vector<Cause> causes{dead_band};
+  causes.insert(causes.end(), behind.causes.begin(), behind.causes.end());
+  StructureFit staircase =
+      evaluate_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, 1));
+  StructureFit mean = fit_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, 0));
+  staircase.free_parameters = mean.free_parameters;
+  BlockLosses staircase_losses = held_out_losses(data.records, division, staircase);
+  BlockLosses mean_losses = held_out_losses(data.records, division, mean);
+  const bool in_step = rmse_mm(staircase_losses) < rmse_mm(mean_losses);
+  selection.extended = in_step ? std::move(staircase) : std::move(mean);
+  selection.extended_losses = in_step ? std::move(staircase_losses) : std::move(mean_losses);
+}
+
+}  // namespace
+
+std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data, const Selection& plain,
+                                                          double noise_mm, const Division& division,
+                                                          const SelectionOptions& options) {
+  const Cause dead_band = *find_cause("valve_deadband");
+  if (model::position_of(data.given.model, dead_band.type)) return std::nullopt;
+  const auto behind = behind_the_valve(data, plain.base, dead_band);
+  if (!behind) return std::nullopt;
+  const auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
+  if (!found) return std::nullopt;
+
+  SearchData driven = make_search_data(found->records, data.given.model);
+  driven.threads = data.threads;
+  driven.scales.residual_lines = spectrum_peaks(driven.records, found->fit.residual_mm, 3);
+  Selection beyond = select_causes(driven, found->fit, noise_mm, division, options);
+
+  StaircaseSelection result;
+  result.evidence = {found->band_kpa,
+                     found->band_ci95,
+                     found->jumps,
+                     found->scatter,
+                     rmse_mm(beyond.extended_losses),
+                     gain_percent(plain.base_losses, beyond.extended_losses, options.seed)};
+  result.selection = plain;
+  result.selection.chosen = {
+      {dead_band, {}, gain_percent(plain.base_losses, beyond.base_losses, options.seed), {}}};
+  for (ChosenCause& more : beyond.chosen) result.selection.chosen.push_back(std::move(more));
+  result.selection.left = beyond.left;
+  extend(result.selection, data, beyond.extended, dead_band, found->band_kpa, division);
+  return result;
+}
+
+}  // namespace softgrip::sysid
