@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "model/model_file.h"
 #include "sysid/diagnosis/diagnosis.h"
 #include "sysid/diagnosis/report.h"
 #include "sysid/files.h"
@@ -20,6 +19,7 @@
 #include "tools/commands.h"
 #include "tools/diagnosis_folder.h"
 #include "tools/log_input.h"
+#include "tools/model_input.h"
 
 namespace softgrip::tools {
 namespace {
@@ -110,10 +110,8 @@ std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences&
 }
 
 ExitCode run(Options options) {
-  if (const auto code = unreadable(options.model)) return *code;
-  document::Problems problems;
-  const auto model = model::load_model(options.model, problems);
-  if (!model) return refuse(problems);
+  const auto model = read_model(options.model);
+  if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   options.diagnosis.record = options.logs.record_options();

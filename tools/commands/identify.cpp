@@ -19,6 +19,7 @@
 #include "sysid/validate.h"
 #include "tools/commands.h"
 #include "tools/log_input.h"
+#include "tools/model_input.h"
 #include "tools/option_check.h"
 
 namespace softgrip::tools {
@@ -46,11 +47,7 @@ void show_progress(const sysid::Progress& progress) {
 tl::expected<model::Model, ExitCode> start_model(const Options& options,
                                                  const std::vector<sysid::Log>& logs) {
   if (options.start.empty()) return sysid::base_model(logs, options.branches);
-  if (const auto code = unreadable(options.start)) return tl::unexpected(*code);
-  document::Problems problems;
-  auto model = model::load_model(options.start, problems);
-  if (!model) return tl::unexpected(refuse(problems));
-  return std::move(*model);
+  return read_model(options.start);
 }
 
 std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const model::Model& start) {

@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "daemon/rig_file.h"
-#include "model/model_file.h"
 #include "sysid/files.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
 #include "tools/experiment_rig.h"
 #include "tools/investigation.h"
 #include "tools/log_input.h"
+#include "tools/model_input.h"
 #include "tools/rig_tracking.h"
 
 namespace softgrip::tools {
@@ -189,10 +189,8 @@ ExitCode conclude(const Options& options, const Playground& ground, const Invest
 ExitCode run(const Options& options) {
   if (options.rig.empty() == options.rig_command.empty())
     return fail(ExitCode::usage, "an investigation needs --rig or --rig-command, and not both");
-  if (const auto code = unreadable(options.model)) return *code;
-  document::Problems problems;
-  const auto model = model::load_model(options.model, problems);
-  if (!model) return refuse(problems);
+  const auto model = read_model(options.model);
+  if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   const CampaignScales scales = scales_of(*logs);

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "model/model_file.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
+#include "tools/model_input.h"
 #include "tools/option_check.h"
 #include "tools/output.h"
 #include "tools/simulation.h"
@@ -88,10 +88,8 @@ void report(const Options& options, const model::Model& model, const sysid::Log&
 }
 
 ExitCode run(const Options& options) {
-  if (const auto code = unreadable(options.model)) return *code;
-  document::Problems problems;
-  const auto model = model::load_model(options.model, problems);
-  if (!model) return refuse(problems);
+  const auto model = read_model(options.model);
+  if (!model) return model.error();
   auto log = read_input(options);
   if (!log) return log.error();
   simulate(*model, options.settings, *log);

@@ -12,9 +12,9 @@
 
 #include "control/invertibility.h"
 #include "daemon/rig_file.h"
-#include "model/model_file.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
+#include "tools/model_input.h"
 #include "tools/option_check.h"
 #include "tools/output.h"
 
@@ -129,10 +129,8 @@ std::string json_of(const Options& options, const control::TuneTask& task, const
 }
 
 ExitCode run(Options& options) {
-  if (const auto code = unreadable(options.model)) return *code;
-  document::Problems problems;
-  const auto model = model::load_model(options.model, problems);
-  if (!model) return refuse(problems);
+  const auto model = read_model(options.model);
+  if (!model) return model.error();
   control::TuneTask& task = options.task;
   task.channel.model = *model;
   task.finger = *model;

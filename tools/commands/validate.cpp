@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "model/model_file.h"
 #include "sysid/files.h"
 #include "sysid/numbers.h"
 #include "sysid/validate.h"
 #include "tools/commands.h"
 #include "tools/log_input.h"
+#include "tools/model_input.h"
 #include "tools/option_check.h"
 
 namespace softgrip::tools {
@@ -41,10 +41,8 @@ void print_summary(const sysid::Validation& v) {
 }
 
 ExitCode run(const Options& options) {
-  if (const auto code = unreadable(options.model)) return *code;
-  document::Problems problems;
-  const auto model = model::load_model(options.model, problems);
-  if (!model) return refuse(problems);
+  const auto model = read_model(options.model);
+  if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   const sysid::Validation v = sysid::validate_logs(*model, *logs, options.logs.record_options());
