@@ -9,7 +9,6 @@ Resumable: every world's outcome is one line of DIR/results.jsonl, and worlds th
 """
 import argparse
 import itertools
-import json
 import pathlib
 import random
 import sys
@@ -21,6 +20,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 
 import blind_page  # noqa: E402
 import judging  # noqa: E402
+from ledger import Ledger  # noqa: E402
 
 # Causes that give the same readings whatever the command, or nearly: hidden together, no data could tell them apart.
 TWINS = [{"valve_lag", "sensor_lag", "transport_delay"}, {"stiffening", "sensor_nonlinearity"},
@@ -66,35 +66,29 @@ def main():
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     args.build = args.build.resolve()
-    args.work.mkdir(parents=True, exist_ok=True)
-    path = args.work / "results.jsonl"
-    results = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
-    known = {(tuple(r["causes"]), r["strength"], r["seed"]) for r in results}
+    ledger = Ledger(args.work / "results.jsonl", ("causes", "strength", "seed"))
     ids, outside = judging.library(args.build)
     planned = list(worlds(args, ids, outside))
     part, parts = (int(number) for number in args.part.split("/"))
     began = time.monotonic()
-    with path.open("a") as out:
-        for number, world in enumerate(planned, 1):
-            if (tuple(world["causes"]), world["strength"], world["seed"]) in known or number % parts != part % parts:
-                continue
-            if args.most_minutes and time.monotonic() - began > 60 * args.most_minutes:
-                print(f"stopped after {args.most_minutes:g} minutes, {len(results)} of {len(planned)} worlds done")
-                break
-            result = judging.run_world(args.build, args.work, world)
-            results.append(result)
-            out.write(json.dumps(result) + "\n")
-            out.flush()
-            print(f"{number}/{len(planned)} {'+'.join(world['causes']) or 'clean'} {world['strength']:g} "
-                  f"seed {world['seed']}: {result['outcome']} {', '.join(result.get('named', []))} "
-                  f"{result.get('rivals') if result['outcome'] == 'ambiguous_right' else ''}", flush=True)
+    for number, world in enumerate(planned, 1):
+        if world in ledger or number % parts != part % parts:
+            continue
+        if args.most_minutes and time.monotonic() - began > 60 * args.most_minutes:
+            print(f"stopped after {args.most_minutes:g} minutes, {len(ledger.rows)} of {len(planned)} worlds done")
+            break
+        result = judging.run_world(args.build, args.work, world)
+        ledger.add(result)
+        print(f"{number}/{len(planned)} {'+'.join(world['causes']) or 'clean'} {world['strength']:g} "
+              f"seed {world['seed']}: {result['outcome']} {', '.join(result.get('named', []))} "
+              f"{result.get('rivals') if result['outcome'] == 'ambiguous_right' else ''}", flush=True)
     if args.page:
         command = f"scripts/blind_campaign.py --work DIR --first-seed {args.first_seed}"
         for option in ("seeds", "clean", "outside", "pairs"):
             if getattr(args, option) != parser.get_default(option):
                 command += f" --{option} {getattr(args, option)}"
-        keys = {(tuple(w["causes"]), w["strength"], w["seed"]) for w in planned} | known
-        blind_page.write(args.page, results, len(keys), f"{command} --page {args.page}")
+        keys = {ledger.key(world) for world in planned} | ledger.known
+        blind_page.write(args.page, ledger.rows, len(keys), f"{command} --page {args.page}")
 
 
 if __name__ == "__main__":

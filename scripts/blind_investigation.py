@@ -21,6 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/blind"))
 
 import judging  # noqa: E402
+from ledger import Ledger  # noqa: E402
 
 # Equal for every command as long as nothing else changes: an object, a second sensor, a gauge.
 INDISTINGUISHABLE = [{"stiffening", "sensor_nonlinearity"}, {"contact", "sensor_saturation"},
@@ -115,25 +116,19 @@ def main():
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     args.build = args.build.resolve()
-    args.work.mkdir(parents=True, exist_ok=True)
-    path = args.work / "investigations.jsonl"
-    results = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
-    known = {(tuple(r["causes"]), r["strength"], r["seed"], r["poor"]) for r in results}
+    ledger = Ledger(args.work / "investigations.jsonl", ("causes", "strength", "seed", "poor"))
     ids, _ = judging.library(args.build)
-    with path.open("a") as out:
-        for world in worlds(args, ids):
-            if (tuple(world["causes"]), world["strength"], world["seed"], world["poor"]) in known:
-                continue
-            result = investigate(args, world)
-            results.append(result)
-            out.write(json.dumps(result) + "\n")
-            out.flush()
-            print(f"{'+'.join(world['causes'])} {world['strength']:g} seed {world['seed']}: {result.get('before')} "
-                  f"{result.get('rivals')} -> {result['outcome']} {result.get('after', '')} {result.get('end', '')} "
-                  f"{result.get('message', '')}", flush=True)
+    for world in worlds(args, ids):
+        if world in ledger:
+            continue
+        result = investigate(args, world)
+        ledger.add(result)
+        print(f"{'+'.join(world['causes'])} {world['strength']:g} seed {world['seed']}: {result.get('before')} "
+              f"{result.get('rivals')} -> {result['outcome']} {result.get('after', '')} {result.get('end', '')} "
+              f"{result.get('message', '')}", flush=True)
     if args.page:
         campaign = " --campaign DIR" if args.campaign else ""
-        args.page.write_text(page(results, f"scripts/blind_investigation.py --work DIR{campaign} --seeds {args.seeds} "
+        args.page.write_text(page(ledger.rows, f"scripts/blind_investigation.py --work DIR{campaign} --seeds {args.seeds} "
                                            f"--first-seed {args.first_seed} --page {args.page}"))
 
 

@@ -5,13 +5,11 @@ import math
 import pathlib
 import statistics
 
+from judging import is_outside
+
 OUTCOMES = [("right", "#2e7d4f"), ("ambiguous_right", "#8fbf9a"), ("partly", "#c9b458"), ("missed", "#b9bec6"),
             ("unexplained", "#8a93a3"), ("wrong", "#b3372e"), ("failed", "#000000")]
 WORDS = {"ambiguous_right": "ambiguous, truth listed", "partly": "one of two"}
-
-
-def is_outside(cause):
-    return cause.startswith("outside_")
 
 
 def group_of(result):

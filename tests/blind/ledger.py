@@ -1,0 +1,24 @@
+"""Outcomes as lines of JSON, so that a long run can be stopped and taken up again."""
+import json
+
+
+class Ledger:
+    """`rows` are those that stand in the file; what has the same values of `keys` as one of them is known."""
+
+    def __init__(self, path, keys):
+        self.path, self.keys = path, keys
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self.rows = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+        self.known = {self.key(row) for row in self.rows}
+
+    def key(self, world):
+        return tuple(json.dumps(world[key]) for key in self.keys)
+
+    def __contains__(self, world):
+        return self.key(world) in self.known
+
+    def add(self, row):
+        self.rows.append(row)
+        self.known.add(self.key(row))
+        with self.path.open("a") as out:
+            out.write(json.dumps(row) + "\n")
