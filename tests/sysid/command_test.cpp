@@ -1,15 +1,12 @@
 // softgrip identify and validate as a user calls them: exit codes, files, nothing written on refusal.
 
-#include <sys/wait.h>
-
-#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "model/model_file.h"
-#include "sysid/files.h"
+#include "tests/sysid/command_fixture.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid {
@@ -17,34 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Command : public testing::Test {
+class Command : public CommandInFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("softgrip_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  /// Exit code of `softgrip ARGUMENTS`; what it printed is in out.txt and err.txt.
-  int run(const std::string& arguments) {
-    const std::string line =
-        "cd '" + folder_.string() + "' && '" SOFTGRIP_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(line.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  void write(const std::string& name, const std::string& text) {
-    ASSERT_TRUE(write_file((folder_ / name).string(), text));
-  }
   void write_log(const std::string& name, model::SignalName signal) {
     write(name, format_log(simulated(loaded("zhang2025"), signal, 20, 0.05, 7)));
   }
-  std::string read(const std::string& name) {
-    return read_file((folder_ / name).string(), 10'000'000).value_or("");
-  }
-
-  fs::path folder_;
 };
 
 TEST_F(Command, IdentifyWritesModelJsonAndReport) {

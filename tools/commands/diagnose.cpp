@@ -1,7 +1,5 @@
 // softgrip diagnose: what a model gets wrong on measured data, the cause, the extension, the gain.
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -20,6 +18,7 @@
 #include "tools/diagnosis_folder.h"
 #include "tools/log_input.h"
 #include "tools/model_input.h"
+#include "tools/progress_line.h"
 
 namespace softgrip::tools {
 namespace {
@@ -37,9 +36,13 @@ struct Options {
   bool json = false;
 };
 
-void show_progress(const std::string& what) {
-  std::fprintf(stderr, "\r\033[K  %s", what.c_str());
-  std::fflush(stderr);
+/// Diagnoses with its progress shown.
+tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::Log>& logs,
+                                                      const model::Model& model,
+                                                      sysid::DiagnosisOptions options) {
+  const ProgressLine line;
+  options.progress = line.show();
+  return sysid::diagnose(logs, model, options);
 }
 
 void print_cause(const sysid::NamedCause& named) {
@@ -115,10 +118,7 @@ ExitCode run(Options options) {
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   options.diagnosis.record = options.logs.record_options();
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  if (terminal) options.diagnosis.progress = show_progress;
-  auto result = sysid::diagnose(*logs, *model, options.diagnosis);
-  if (terminal) std::fputs("\r\033[K", stderr);
+  auto result = diagnosed(*logs, *model, options.diagnosis);
   if (!result) return fail(ExitCode::input_refused, result.error());
 
   sysid::examine(*result, options.diagnosis);

@@ -1,7 +1,5 @@
 // softgrip identify: a model's parameters from logs.
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -21,6 +19,7 @@
 #include "tools/log_input.h"
 #include "tools/model_input.h"
 #include "tools/option_check.h"
+#include "tools/progress_line.h"
 
 namespace softgrip::tools {
 namespace {
@@ -36,11 +35,22 @@ struct Options {
   bool json = false;
 };
 
-void show_progress(const sysid::Progress& progress) {
-  std::fprintf(stderr, "\r  start %zu of %zu, best RMSE %s mm   ", progress.done, progress.starts,
-               sysid::significant(progress.best_rmse_mm, 4).c_str());
-  if (progress.done == progress.starts) std::fputs("\r\033[K", stderr);
-  std::fflush(stderr);
+sysid::ShowProgress progress_on(const ProgressLine& line) {
+  const auto show = line.show();
+  if (!show) return {};
+  return [show](const sysid::Progress& progress) {
+    show("start " + std::to_string(progress.done) + " of " + std::to_string(progress.starts) +
+         ", best RMSE " + sysid::significant(progress.best_rmse_mm, 4) + " mm");
+  };
+}
+
+/// Fits with its progress shown.
+tl::expected<sysid::Identification, std::string> identified(const std::vector<sysid::Log>& logs,
+                                                            const model::Model& start,
+                                                            sysid::IdentifyOptions fit) {
+  const ProgressLine line;
+  fit.progress = progress_on(line);
+  return sysid::identify(logs, start, fit);
 }
 
 /// The model to start from: the given file's, or the base structure.
@@ -107,8 +117,7 @@ ExitCode run(Options options) {
   auto start = start_model(options, *logs);
   if (!start) return start.error();
   options.fit.record = options.logs.record_options();
-  if (::isatty(STDERR_FILENO) == 1) options.fit.progress = show_progress;
-  auto result = sysid::identify(*logs, *start, options.fit);
+  auto result = identified(*logs, *start, options.fit);
   if (!result) return fail(ExitCode::input_refused, result.error());
   if (options.start.empty()) {
     start->name = "base structure, from the data's scale";

@@ -1,7 +1,5 @@
 // softgrip study: the project's studies, each by one command.
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +12,7 @@
 #include "tools/commands.h"
 #include "tools/option_check.h"
 #include "tools/output.h"
+#include "tools/progress_line.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/published.h"
 
@@ -24,20 +23,6 @@ struct Output {
   std::string out;
   bool json = false;
 };
-
-/// One line that is overwritten, on a terminal only.
-void show_progress(const std::string& text) {
-  std::fprintf(stderr, "\r\033[K  %s ", text.c_str());
-  std::fflush(stderr);
-}
-
-bool on_error_terminal() {
-  return ::isatty(STDERR_FILENO) == 1;
-}
-
-void end_progress() {
-  if (on_error_terminal()) std::fputs("\r\033[K", stderr);
-}
 
 ExitCode write_all(const Output& output, const std::string& json_name, const std::string& json,
                    const std::string& html, const std::string& text) {
@@ -51,6 +36,21 @@ ExitCode write_all(const Output& output, const std::string& json_name, const std
   std::fputs(output.json ? json.c_str() : text.c_str(), stdout);
   if (!output.json) std::printf("report: %s\n", (folder / "report.html").c_str());
   return ExitCode::done;
+}
+
+/// Runs a study with its progress shown and writes what came of it.
+template <class Options, class Result>
+ExitCode run_study(const Output& output, Options options, Result (*study)(const Options&),
+                   const std::string& json_name, std::string (*json)(const Result&),
+                   std::string (*html)(const Result&), std::string (*text)(const Result&)) {
+  if (const auto writable = prepare_folder(output.out); !writable)
+    return fail(ExitCode::io, writable.error());
+  const Result result = [&] {
+    const ProgressLine line;
+    options.progress = line.show();
+    return study(options);
+  }();
+  return write_all(output, json_name, json(result), html(result), text(result));
 }
 
 void add_output(CLI::App& command, Output& output) {
@@ -72,15 +72,8 @@ void add_published(CLI::App& study, ExitCode& outcome) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->callback([options, &outcome] {
-    if (const auto writable = prepare_folder(options->output.out); !writable) {
-      outcome = fail(ExitCode::io, writable.error());
-      return;
-    }
-    if (on_error_terminal()) options->study.progress = show_progress;
-    const PublishedStudy result = study_published(options->study);
-    end_progress();
-    outcome = write_all(options->output, "published.json", published_json(result), published_html(result),
-                        published_text(result));
+    outcome = run_study(options->output, options->study, study_published, "published.json", published_json,
+                        published_html, published_text);
   });
 }
 
@@ -104,15 +97,8 @@ void add_control(CLI::App& study, ExitCode& outcome) {
       ->check(number_between(1.05, 5.0))
       ->capture_default_str();
   command->callback([options, &outcome] {
-    if (const auto writable = prepare_folder(options->output.out); !writable) {
-      outcome = fail(ExitCode::io, writable.error());
-      return;
-    }
-    if (on_error_terminal()) options->study.progress = show_progress;
-    const ControlStudy result = study_control(options->study);
-    end_progress();
-    outcome = write_all(options->output, "control.json", control_json(result), control_html(result),
-                        control_text(result));
+    outcome = run_study(options->output, options->study, study_control, "control.json", control_json,
+                        control_html, control_text);
   });
 }
 

@@ -1,11 +1,8 @@
 // softgrip diagnose as a user calls it: the founding finding, and logs that cannot answer. The logs of the
 // latter are written here, by formulas that are not the model's.
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -14,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/model_file.h"
-#include "sysid/files.h"
+#include "tests/sysid/command_fixture.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -31,29 +28,11 @@ double triangles_kpa(double t) {
   return top * (1 - std::abs(phase - 1));
 }
 
-class DiagnoseCommand : public testing::Test {
+class DiagnoseCommand : public CommandInFolder {
  protected:
-  void SetUp() override {
-    folder_ =
-        fs::path(testing::TempDir()) /
-        ("softgrip_diagnose_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  int run(const std::string& arguments) {
-    const std::string line =
-        "cd '" + folder_.string() + "' && '" SOFTGRIP_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
-    const int status = std::system(line.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
   int diagnose(const std::string& logs) {
     return run("diagnose --model '" SOFTGRIP_SOURCE_DIR "/config/models/zhang2025.yaml' --data " + logs +
                " --out result --no-closed-loop");
-  }
-  std::string read(const std::string& name) {
-    return read_file((folder_ / name).string(), 20'000'000).value_or("");
   }
   Json diagnosis() { return Json::parse(read("result/diagnosis.json")); }
   [[nodiscard]] bool warned_of(const Json& json, const std::string& words) {
@@ -73,10 +52,8 @@ class DiagnoseCommand : public testing::Test {
       text += std::to_string(t) + "," + std::to_string(command_kpa(t)) + "," +
               std::to_string(displacement_mm(t) + noise(random)) + "\n";
     }
-    ASSERT_TRUE(write_file((folder_ / name).string(), text));
+    write(name, text);
   }
-
-  fs::path folder_;
 };
 
 TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionInvertible) {
@@ -129,7 +106,7 @@ TEST_F(DiagnoseCommand, AClippedLogIsRefused) {
   std::string text = "time_s,pressure_command_kpa,displacement_mm\n";
   for (int i = 0; i < 3000; ++i)
     text += std::to_string(i / rate_hz) + "," + std::to_string(triangles_kpa(i / rate_hz)) + ",5\n";
-  ASSERT_TRUE(write_file((folder_ / "clipped.csv").string(), text));
+  write("clipped.csv", text);
   EXPECT_EQ(diagnose("clipped.csv"), 3);
   EXPECT_NE(read("err.txt").find("the displacement never changes"), std::string::npos) << read("err.txt");
   EXPECT_FALSE(fs::exists(folder_ / "result"));
@@ -140,7 +117,7 @@ TEST_F(DiagnoseCommand, TimeThatRunsBackwardsIsRefused) {
   for (int i = 3000; i > 0; --i)
     text += std::to_string(i / rate_hz) + "," + std::to_string(triangles_kpa(i / rate_hz)) + "," +
             std::to_string(i % 7) + "\n";
-  ASSERT_TRUE(write_file((folder_ / "back.csv").string(), text));
+  write("back.csv", text);
   EXPECT_EQ(diagnose("back.csv"), 3);
   EXPECT_NE(read("err.txt").find("the time goes back"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder_ / "result"));
