@@ -8,16 +8,27 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What stands behind the valve, as far as a dead band that is simulated from the command can show it: the
-/// recalibrated model has swallowed the valve's mean lag.
-std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& base,
+StructureFit without(StructureFit fit, const Cause& cause) {
+  std::erase_if(fit.causes, [&](const Cause& c) { return c.type == cause.type; });
+  fit.point.model = model::without_block(fit.point.model, cause.type);
+  return fit;
+}
+
+/// What stands behind the valve, as far as a dead band that is simulated from the command can show it: a
+/// model without one has swallowed the valve's mean lag.
+std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& selected,
                                              const Cause& dead_band) {
-  std::vector<Candidate> fits = fit_candidates(data, base, {dead_band});
+  if (model::position_of(selected.point.model, dead_band.type)) return without(selected, dead_band);
+  std::vector<Candidate> fits = fit_candidates(data, selected, {dead_band});
   if (fits.empty() || !fits.front().fit) return std::nullopt;
-  StructureFit behind = std::move(*fits.front().fit);
-  behind.causes.clear();
-  behind.point.model = model::without_block(behind.point.model, dead_band.type);
-  return behind;
+  return without(*fits.front().fit, dead_band);
+}
+
+/// The base alone, fitted to records whose drive is where the valve stood.
+StructureFit base_behind(const Staircase& found) {
+  StructureFit base = found.fit;
+  for (const Cause& cause : found.fit.causes) base = without(base, cause);
+  return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
 }
 
 /// With the valve in front again.
@@ -53,15 +64,16 @@ std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data
                                                           const SelectionOptions& options) {
   const Cause dead_band = *find_cause("valve_deadband");
   if (model::position_of(data.given.model, dead_band.type)) return std::nullopt;
-  const auto behind = behind_the_valve(data, plain.base, dead_band);
+  const auto behind = behind_the_valve(data, plain.extended, dead_band);
   if (!behind) return std::nullopt;
   const auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
   if (!found) return std::nullopt;
 
   SearchData driven = make_search_data(found->records, data.given.model);
   driven.threads = data.threads;
-  driven.scales.residual_lines = spectrum_peaks(driven.records, found->fit.residual_mm, 3);
-  Selection beyond = select_causes(driven, found->fit, noise_mm, division, options);
+  StructureFit base = base_behind(*found);
+  driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm, 3);
+  Selection beyond = select_causes(driven, std::move(base), noise_mm, division, options);
 
   StaircaseSelection result;
   result.evidence = {found->band_kpa,

@@ -28,7 +28,7 @@ struct StaircaseSelection {
   StaircaseEvidence evidence;
 };
 
-/// Looks for a staircase in front of the recalibrated model, then for one more cause behind it. Nothing where
+/// Looks for a staircase in front of what was selected, then for one more cause behind it. Nothing where
 /// there is no staircase, or where the model has a dead band already.
 /// @param plain  what was selected without it.
 /// @param options  of the search behind it.
