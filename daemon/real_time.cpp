@@ -75,15 +75,20 @@ RealTimeStep prepare_heap(std::size_t bytes) {
   return step;
 }
 
-/// Whether a page mapped now is there at once: the proof of MCL_FUTURE.
-bool new_mapping_is_resident() {
+/// Why a page mapped now is not known to be there at once, the proof of MCL_FUTURE; empty if it is.
+std::string doubt_of_a_new_mapping() {
   const auto bytes = static_cast<std::size_t>(page_bytes());
   void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (page == MAP_FAILED) return false;
+  if (page == MAP_FAILED) return fmt::format("no page can be mapped afterwards: {}", text_of_errno(errno));
   unsigned char resident = 0;
-  const bool asked = mincore(page, bytes, &resident) == 0;
+  const int error = mincore(page, bytes, &resident) == 0 ? 0 : errno;
   munmap(page, bytes);
-  return asked && (resident & 1) != 0;
+  if (error != 0) {
+    return fmt::format(
+        "whether pages mapped afterwards are resident could not be asked: {} (mincore in SystemCallFilter=)",
+        text_of_errno(error));
+  }
+  return (resident & 1) != 0 ? "" : "a page mapped afterwards was not resident";
 }
 
 /// Whether the limit on locked memory does not apply to this process.
@@ -111,8 +116,8 @@ RealTimeStep lock_memory(bool wanted) {
     getrlimit(RLIMIT_MEMLOCK, &limit);
     step.detail = fmt::format("{}; the limit is {} KiB (LimitMEMLOCK=infinity in the unit, or CAP_IPC_LOCK)",
                               text_of_errno(error), limit.rlim_cur / 1024);
-  } else if (!new_mapping_is_resident()) {
-    step.detail = "the kernel accepted it, but a page mapped afterwards was not resident";
+  } else if (const std::string doubt = doubt_of_a_new_mapping(); !doubt.empty()) {
+    step.detail = "the kernel accepted it, but " + doubt;
   } else {
     step.outcome = Outcome::verified;
     step.detail = "all pages resident, those mapped later too";

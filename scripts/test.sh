@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what the tests need, builds, and runs them: the release build with every test; then, under
+# Installs what the tests need, builds, and runs them: the release build with every test; the Debian package; then, under
 # AddressSanitizer and UndefinedBehaviorSanitizer, what meets bytes from outside; then, under ThreadSanitizer, what has
 # threads; then clang-tidy over the sources that differ from origin's main (over all of them: scripts/tidy.sh).
 #   scripts/test.sh            all of it
@@ -15,7 +15,7 @@ case "${1:-}" in
   *) echo "usage: scripts/test.sh [--quick]" >&2; exit 2 ;;
 esac
 
-bash scripts/packages.sh build tests
+bash scripts/packages.sh build tests package
 jobs=$(nproc)
 started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
@@ -50,6 +50,9 @@ say "test"
 ctest --preset release -j "$jobs" --repeat until-pass:2
 
 if ! $quick; then
+  say "package"
+  bash scripts/package.sh | tail -n 1
+
   sanitized asan-ubsan model_document_test drivers_test modbus_session_test modbus_tcp_board_test
   sanitized tsan daemon_cells_test daemon_bus_test daemon_recorder_test daemon_loop_test daemon_socket_test \
     daemon_process_test modbus_session_test modbus_tcp_board_test

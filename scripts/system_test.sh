@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# The system test: builds the package, boots a Debian 12 guest with the PREEMPT_RT kernel under QEMU, installs the
+# package there and works through the service's bad day (tests/system/vm/drive/steps.py says what).
+#   scripts/system_test.sh [--latency] [--seed N] [--work DIR] [--log FILE]
+#   --latency   instead: wake-up latency of softgripd beside cyclictest in a guest whose clock counts instructions
+# DIR (default $SOFTGRIP_GUEST, else build/guest) keeps the guest; its first preparation downloads about 250 MB. Needs
+# root for Debian packages and the guest's root file system, but no KVM. The exit code is 0 if every step passed.
+set -euo pipefail
+cd "$(dirname "$(realpath "$0")")/.."
+work=${SOFTGRIP_GUEST:-build/guest} log= seed= latency=false
+while [ $# -gt 0 ]; do
+  case $1 in
+    --latency) latency=true ;;
+    --seed) seed=$2 && shift ;;
+    --work) work=$2 && shift ;;
+    --log) log=$2 && shift ;;
+    *) sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  esac
+  shift
+done
+mkdir -p "$work"
+work=$(realpath "$work")
+log=$(realpath -m "${log:-$work/$($latency && echo latency || echo system_test).log}")
+vm=tests/system/vm
+drive=$(mktemp -d -p "$work" folder.XXXXXX)
+trap 'rm -rf "$drive"' EXIT
+
+bash scripts/packages.sh build package guest
+cp $vm/drive/* "$drive/"
+# Two packages of the same programs; the second one is the upgrade.
+for revision in 1 2; do
+  bash scripts/package.sh "$work/packages" "$revision" >"$work/package.log" 2>&1 || { cat "$work/package.log" >&2; exit 1; }
+  package=$(tail -n 1 "$work/package.log")
+  cp "$package" "$drive/"
+done
+bash $vm/prepare.sh "$work" "$package"
+if $latency; then touch "$drive/latency"; else echo "$seed" >"$drive/seed"; fi
+# Counting instructions keeps a busy host out of the guest's time, in the system test, too.
+bash $vm/boot.sh "$work" "$drive" "$log" instructions
+grep -q ': PASSED' "$log"

@@ -1,0 +1,70 @@
+"""The service manager's watchdog: fed while loop and bus thread go on, starved as soon as one of them hangs."""
+
+import contextlib
+import os
+import pathlib
+import socket
+import subprocess
+import sys
+import time
+
+import bench
+
+HANG_THREAD = pathlib.Path(__file__).parent / "vm/drive/hang_thread.py"
+WATCHDOG_S = 0.4  # the daemon feeds four times in it
+
+
+class Watchdog(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        self.notices = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.addCleanup(self.notices.close)
+        self.notices.bind(str(self.folder / "notify"))
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        environment = {"NOTIFY_SOCKET": str(self.folder / "notify"), "WATCHDOG_USEC": str(int(WATCHDOG_S * 1e6))}
+        os.environ.update(environment)
+        try:
+            self.daemon_ = self.daemon(rig)
+        finally:
+            for name in environment:
+                del os.environ[name]
+        self.daemon_.wait_for_state("idle")
+
+    def notices_for(self, seconds):
+        """What the daemon told the service manager in the next seconds."""
+        texts, end = [], time.monotonic() + seconds
+        while (left := end - time.monotonic()) > 0:
+            self.notices.settimeout(left)
+            with contextlib.suppress(TimeoutError):
+                texts.append(self.notices.recv(4096).decode())
+        return texts
+
+    def thread(self, name):
+        for task in pathlib.Path(f"/proc/{self.daemon_.child.pid}/task").iterdir():
+            if (task / "comm").read_text().strip() == name:
+                return task.name
+        raise AssertionError(f"no thread {name}")
+
+    def starves_when(self, name):
+        self.assertGreater(self.notices_for(2).count("WATCHDOG=1"), 4)
+        hang = subprocess.Popen([sys.executable, HANG_THREAD, self.thread(name)], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(hang.stdout.close)
+        self.addCleanup(hang.wait)
+        self.addCleanup(self.daemon_.kill)
+        if hang.stdout.readline() != "hangs\n":
+            self.skipTest("this user may not trace another process")
+        self.notices_for(2)  # the daemon's patience, and what was on its way
+        notices = self.notices_for(2)
+        self.assertNotIn("WATCHDOG=1", notices)
+        self.assertTrue(self.daemon_.running())  # it is the service manager that ends it
+
+    def test_a_hung_loop_starves_it(self):
+        self.starves_when("softgrip-loop")
+
+    def test_a_hung_bus_thread_starves_it(self):
+        self.starves_when("softgrip-bus")
+
+
+if __name__ == "__main__":
+    bench.main()
