@@ -51,10 +51,9 @@ set(SOFTGRIP_PACKAGE_RELEASE 1 CACHE STRING "Debian revision of the package")
 string(TIMESTAMP SOFTGRIP_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)
 configure_file(${packaging}/deb/changelog.in ${packaged}/changelog.Debian @ONLY)
 execute_process(COMMAND gzip -9nkf ${packaged}/changelog.Debian)
-install(FILES ${packaged}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT package)
-install(FILES ${packaging}/deb/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT package)
-install(FILES ${packaging}/deb/lintian-overrides DESTINATION share/lintian/overrides RENAME softgrip
-        COMPONENT package)
+install(FILES ${packaged}/changelog.Debian.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${packaging}/deb/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${packaging}/deb/lintian-overrides DESTINATION share/lintian/overrides RENAME softgrip)
 
 # Everything in /etc is a file that its owner may have changed.
 file(GLOB_RECURSE conffiles CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/config ${PROJECT_SOURCE_DIR}/config/*)

@@ -10,6 +10,8 @@ function(softgrip_program name)
   cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LINK})
+  # All symbols are bound at the start: a first call in the loop must not look one up.
+  target_link_options(${name} PRIVATE -Wl,-z,relro,-z,now)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
