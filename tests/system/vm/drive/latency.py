@@ -13,7 +13,7 @@ from guest import CONFIGURATION, DRIVE, Emulator, Failed, edit, expect, main_gua
 RATE_HZ = 500
 PRIORITY = 70
 TURN_S = 10
-ROUNDS = 3
+ROUNDS = 2
 LOADS = ["hackbench -g 2 -f 4 -l 1000", "find / -xdev -type f -exec true {} +",
          "dd if=/dev/zero of=/var/tmp/load bs=64k count=64 conv=fsync"]
 RIG = CONFIGURATION / "rig_service.yaml"

@@ -194,7 +194,8 @@ def killed(state):
     lines = (recording / "run.csv").read_text().splitlines()
     last_s = float(lines[-1 if lines[-1].count(",") == lines[0].count(",") else -2].split(",")[0])
     expect(last_s > status_s - 1, f"the recording ends at {last_s}, the kill came at {status_s}")
-    return f"{wait_s:.2f} s into the hold: vented by ExecStopPost= after {took_s:.2f} s, {status_s - last_s:.2f} s lost"
+    return (f"{wait_s:.2f} s into the hold: vented by ExecStopPost= after {took_s:.2f} s, "
+            f"{max(0.0, status_s - last_s):.2f} s of the recording lost")
 
 
 def stopped(state):
