@@ -21,8 +21,9 @@ enum class FaultCode : std::uint16_t {
   reading_jumped = 204,        ///< moved faster than a finger can
   reading_frozen = 205,        ///< did not change while the command moved
   displacement_beyond_limits = 206,
-  readback_mismatch = 301,  ///< the board's output is not what was written
-  write_refused = 302,      ///< the board did not take the write
+  pressure_not_followed = 207,  ///< the measured pressure is not what the command asks for
+  readback_mismatch = 301,      ///< the board's output is not what was written
+  write_refused = 302,          ///< the board did not take the write
   board_watchdog_tripped = 303,
   model_unfit = 401,
   emergency_stop = 501,

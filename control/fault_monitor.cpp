@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace softgrip::control {
 
@@ -31,12 +32,23 @@ bool said_by_board(FaultCode code) noexcept {
   return code == FaultCode::write_refused || code == FaultCode::board_watchdog_tripped;
 }
 
+/// Commands of so many seconds, the one under way and the one that is being compared included.
+std::size_t window_of(double delay_s, double rate_hz) {
+  return static_cast<std::size_t>(std::ceil(delay_s * rate_hz)) + 2;
+}
+
+/// In windows: how long a finger may take to deflate that still had pressure when the daemon or the bus came.
+constexpr std::size_t grace_windows = 4;
+
 }  // namespace
 
 FaultMonitor::FaultMonitor(const RigSettings& settings)
-    : settings_(settings.faults), channels_(settings.channels.size()) {
-  const auto ring =
-      static_cast<std::size_t>(std::ceil(settings.faults.readback_delay_s * settings.rate_hz)) + 2;
+    : settings_(settings.faults),
+      readback_window_(window_of(settings.faults.readback_delay_s, settings.rate_hz)),
+      pressure_window_(window_of(settings.faults.pressure_delay_s, settings.rate_hz)),
+      channels_(settings.channels.size()) {
+  const std::size_t ring =
+      settings.faults.pressure_cycles > 0 ? std::max(readback_window_, pressure_window_) : readback_window_;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     sighted_.push_back(settings.channels[i].displacement_used);
     channels_[i].sent_kpa.assign(ring, settings.channels[i].limits.pressure_min_kpa);
@@ -91,14 +103,20 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   }
   const Fault of_reading = sighted_[index] ? reading(channel, number, step, starting) : Fault{};
   const double readback = input.readings[index].command_readback_kpa;
-  const bool off = bus_good() && std::isfinite(readback) && readback_off(channel, readback);
-  channel.readback_cycles = off ? channel.readback_cycles + 1 : 0;
-  cause_present_ = cause_present_ || channel.invalid_cycles > 0 || channel.beyond_cycles > 0 || off;
+  const bool readback_off = bus_good() && std::isfinite(readback) &&
+                            off(channel, readback, readback_window_, settings_.readback_tolerance_kpa);
+  channel.readback_cycles = readback_off ? channel.readback_cycles + 1 : 0;
+  const bool pressure_off = pressure_due(channel, input.readings[index].pressure_kpa, starting);
+  cause_present_ = cause_present_ || channel.invalid_cycles > 0 || channel.beyond_cycles > 0 ||
+                   readback_off || channel.pressure_cycles > 0;
   if (of_reading.code != FaultCode::none) {
     return of_reading;
   }
-  if (off && channel.readback_cycles >= settings_.readback_cycles) {
+  if (readback_off && channel.readback_cycles >= settings_.readback_cycles) {
     return {FaultCode::readback_mismatch, number, readback};
+  }
+  if (pressure_off) {
+    return {FaultCode::pressure_not_followed, number, input.readings[index].pressure_kpa};
   }
   if (settings_.model_unfit_is_fault && step.health_changed && step.health == HealthState::unfit) {
     return {FaultCode::model_unfit, number, step.health_rms_mm};
@@ -123,15 +141,35 @@ Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelS
   return {};
 }
 
-/// Off is what agrees with no command of the window; the newest one is the usual answer.
-bool FaultMonitor::readback_off(const Channel& channel, double readback_kpa) const noexcept {
-  const std::size_t newest = (ring_at_ == 0 ? channel.sent_kpa.size() : ring_at_) - 1;
-  if (std::abs(readback_kpa - channel.sent_kpa[newest]) <= settings_.readback_tolerance_kpa) {
-    return false;
+/// A pressure that is not measured in this cycle says nothing. While the daemon starts and after every gap of
+/// the bus the finger may still have the pressure of before.
+bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept {
+  if (settings_.pressure_cycles == 0) return false;
+  if (starting || !bus_good()) {
+    channel.pressure_grace = static_cast<std::uint32_t>(grace_windows * pressure_window_);
+  } else if (channel.pressure_grace > 0) {
+    --channel.pressure_grace;
   }
-  const auto [lowest, highest] = std::minmax_element(channel.sent_kpa.begin(), channel.sent_kpa.end());
-  return readback_kpa < *lowest - settings_.readback_tolerance_kpa ||
-         readback_kpa > *highest + settings_.readback_tolerance_kpa;
+  const bool wrong = std::isfinite(pressure_kpa) && channel.pressure_grace == 0 &&
+                     off(channel, pressure_kpa, pressure_window_, settings_.pressure_tolerance_kpa);
+  channel.pressure_cycles = wrong ? channel.pressure_cycles + 1 : 0;
+  return channel.pressure_cycles >= settings_.pressure_cycles;
+}
+
+/// The newest command is the usual answer.
+bool FaultMonitor::off(const Channel& channel, double kpa, std::size_t window,
+                       double tolerance_kpa) const noexcept {
+  const std::vector<double>& sent = channel.sent_kpa;
+  std::size_t at = ring_at_;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (std::size_t i = 0; i < std::min(window, sent.size()); ++i) {
+    at = (at == 0 ? sent.size() : at) - 1;
+    lowest = std::min(lowest, sent[at]);
+    highest = std::max(highest, sent[at]);
+    if (kpa >= lowest - tolerance_kpa && kpa <= highest + tolerance_kpa) return false;
+  }
+  return true;
 }
 
 void FaultMonitor::sent(std::size_t channel, double command_kpa) noexcept {

@@ -44,14 +44,21 @@ class FaultMonitor {
     std::uint32_t invalid_cycles = 0;
     std::uint32_t beyond_cycles = 0;
     std::uint32_t readback_cycles = 0;
-    std::vector<double> sent_kpa;  ///< ring of the commands of readback_delay_s
+    std::uint32_t pressure_cycles = 0;
+    std::uint32_t pressure_grace = 0;  ///< cycles for which the pressure may still be what it was before
+    std::vector<double> sent_kpa;      ///< ring of the past commands, as far back as anything looks
   };
   Fault bus(const BusHealth& bus, bool starting) noexcept;
   Fault channel(std::size_t index, const TickInput& input, const ChannelStep& step, bool starting) noexcept;
   Fault reading(Channel& channel, std::uint8_t index, const ChannelStep& step, bool starting) const noexcept;
-  [[nodiscard]] bool readback_off(const Channel& channel, double readback_kpa) const noexcept;
+  bool pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept;
+  /// Farther than the tolerance from every command of the newest `window`.
+  [[nodiscard]] bool off(const Channel& channel, double kpa, std::size_t window,
+                         double tolerance_kpa) const noexcept;
 
   FaultSettings settings_;
+  std::size_t readback_window_ = 0;  ///< commands, the newest included
+  std::size_t pressure_window_ = 0;
   std::vector<bool> sighted_;
   std::vector<Channel> channels_;
   std::size_t ring_at_ = 0;

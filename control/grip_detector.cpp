@@ -13,12 +13,14 @@ void Contact::observe(const ChannelView& view) noexcept {
 void EvidenceWindow::start(double time_s, double window_s) noexcept {
   window_s_ = window_s;
   since_s_ = time_s;
+  unusable_s_ = -std::numeric_limits<double>::infinity();
   any_ = false;
 }
 
 EvidenceWindow::Verdict EvidenceWindow::observe(double time_s, bool usable, bool evidence) noexcept {
   if (!usable) {
     any_ = false;
+    unusable_s_ = time_s;
     return Verdict::pending;
   }
   if (!any_ || evidence != evidence_) {

@@ -4,6 +4,7 @@
 // have. Hysteresis and creep are in that model, so the evidence holds while the pressure changes and creeps.
 
 #include <cstdint>
+#include <limits>
 
 namespace softgrip::control {
 
@@ -40,10 +41,14 @@ class EvidenceWindow {
   void start(double time_s, double window_s) noexcept;
   /// The evidence held for the whole window: verified; held at no time of a whole window: refuted.
   Verdict observe(double time_s, bool usable, bool evidence) noexcept;
+  /// Some sample of the last window said nothing: a verdict that is still pending then is pending for want of
+  /// sight.
+  [[nodiscard]] bool blinded(double time_s) const noexcept { return time_s - unusable_s_ < window_s_; }
 
  private:
   double window_s_ = 0;
   double since_s_ = 0;  ///< since when the evidence has been what it is
+  double unusable_s_ = -std::numeric_limits<double>::infinity();  ///< when a sample last said nothing
   bool any_ = false;
   bool evidence_ = false;
 };

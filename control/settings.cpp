@@ -76,6 +76,8 @@ void check_faults(const FaultSettings& faults, Texts& problems) {
           problems, "faults: every number of cycles must be at least 1");
   require(positive(faults.readback_tolerance_kpa) && not_negative(faults.readback_delay_s), problems,
           "faults: readback_tolerance_kpa must be above 0, readback_delay_s not negative");
+  require(positive(faults.pressure_tolerance_kpa) && not_negative(faults.pressure_delay_s), problems,
+          "faults: pressure_tolerance_kpa must be above 0, pressure_delay_s not negative");
 }
 
 }  // namespace

@@ -63,8 +63,11 @@ struct FaultSettings {
   std::uint32_t readback_cycles = 5;         ///< cycles in a row in which the read-back is off
   double readback_tolerance_kpa = 1;         ///< off: farther than this from every command of the window
   double readback_delay_s = 0.1;             ///< how far back that window of past commands reaches
-  bool model_unfit_is_fault = false;         ///< false: model health is only reported
-  std::uint32_t slipped_cycles = 0;          ///< so many cycles lost at once are a fault; 0: only counted
+  std::uint32_t pressure_cycles = 0;  ///< cycles in a row in which the measured pressure is off; 0: unwatched
+  double pressure_tolerance_kpa = 5;  ///< off: farther than this from every command of the window
+  double pressure_delay_s = 0.5;      ///< how far back that window of past commands reaches
+  bool model_unfit_is_fault = false;  ///< false: model health is only reported
+  std::uint32_t slipped_cycles = 0;   ///< so many cycles lost at once are a fault; 0: only counted
 };
 
 /// Everything that RigController needs.

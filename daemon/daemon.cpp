@@ -119,6 +119,7 @@ void DaemonParts::conclude(Outcome& outcome) {
   outcome.channel_names = provenance.channel_names;
   outcome.ticks = loop_statistics.ticks.value();
   outcome.slips = loop_statistics.slips_took_long.value() + loop_statistics.slips_woken_late.value();
+  if (!options.record_folder.empty()) outcome.recording_error = recorder.status().error;
   outcome.left_safely = wires.left_safely.load(std::memory_order_acquire);
   if (outcome.ending != Ending::asked || !errand || !errand->over()) return;
   outcome.sequence_end = errand->end();
@@ -152,11 +153,12 @@ void DaemonParts::tell(const char* kind, Severity severity, std::string text) {
 }
 
 int exit_code_of(const Outcome& outcome) noexcept {
+  const int done = !outcome.left_safely ? 1 : outcome.recording_error.empty() ? 0 : 4;
   switch (outcome.ending) {
     case Ending::asked:
-      return outcome.left_safely ? 0 : 1;
+      return done;
     case Ending::sequence_ended:
-      if (outcome.sequence_end == control::SequenceEnd::done) return outcome.left_safely ? 0 : 1;
+      if (outcome.sequence_end == control::SequenceEnd::done) return done;
       return outcome.sequence_end == control::SequenceEnd::failed ? 6 : 1;
     case Ending::gpio_refused:
       return 3;

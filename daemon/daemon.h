@@ -63,7 +63,8 @@ struct Outcome {
   std::optional<control::SequenceEnd> sequence_end;
   Snapshot last;  ///< the last tick
   std::vector<std::string> channel_names;
-  bool left_safely = false;  ///< the board confirmed the safe outputs at the end
+  std::string recording_error;  ///< why record_folder does not hold all of the run; empty: it does
+  bool left_safely = false;     ///< the board confirmed the safe outputs at the end
   std::uint64_t ticks = 0;
   std::uint64_t slips = 0;
   double wall_s = 0;  ///< how long it took

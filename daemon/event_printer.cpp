@@ -86,6 +86,8 @@ void EventPrinter::print_end(const Outcome& outcome) {
   const bool never_began = outcome.ending == Ending::socket_failed ||
                            outcome.ending == Ending::gpio_refused || outcome.ending == Ending::gpio_failed;
   if (never_began) return;
+  if (!outcome.recording_error.empty())
+    logger_->error("the recording is not whole: {}", outcome.recording_error);
   if (outcome.left_safely) {
     logger_->info("the board confirmed the safe outputs");
   } else {

@@ -95,6 +95,25 @@ void read_safety(Context& context, MapReader& top) {
   }
 }
 
+/// All three or none.
+void read_pressure_fault(Context& context, MapReader& reader) {
+  control::FaultSettings& faults = context.rig.settings.faults;
+  const auto wanted = reader.optional_integer("pressure_cycles", 0, 100000);
+  const auto tolerance = reader.optional_number("pressure_tolerance_kpa", {0.001, 1000});
+  const auto delay = reader.optional_number("pressure_delay_s", {0, 10});
+  if (wanted && tolerance && delay) {
+    faults.pressure_cycles = static_cast<std::uint32_t>(*wanted);
+    faults.pressure_tolerance_kpa = *tolerance;
+    faults.pressure_delay_s = *delay;
+  } else if (wanted || tolerance || delay) {
+    reader.report(wanted      ? "pressure_cycles"
+                  : tolerance ? "pressure_tolerance_kpa"
+                              : "pressure_delay_s",
+                  "`pressure_cycles`, `pressure_tolerance_kpa` and `pressure_delay_s` belong together",
+                  "give all three, or none: then the measured pressure is not compared with the command");
+  }
+}
+
 void read_faults(Context& context, MapReader& top) {
   const Node* const node = top.child("faults", true);
   if (node == nullptr) return;
@@ -106,6 +125,7 @@ void read_faults(Context& context, MapReader& top) {
   faults.readback_cycles = cycles(reader, "readback_cycles", 1);
   faults.readback_tolerance_kpa = reader.number("readback_tolerance_kpa", {0.001, 1000});
   faults.readback_delay_s = reader.number("readback_delay_s", {0, 10});
+  read_pressure_fault(context, reader);
   faults.slipped_cycles = cycles(reader, "slipped_cycles", 0);
   faults.model_unfit_is_fault = reader.boolean("model_unfit_is_fault");
 }

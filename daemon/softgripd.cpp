@@ -77,6 +77,11 @@ void declare(CLI::App& program, Arguments& arguments) {
       "change it.");
 }
 
+/// fmt::print throws where nothing can be written, and then nothing could say why.
+void complain(const std::string& sentence) {
+  std::fputs(("softgripd: " + sentence + "\n").c_str(), stderr);
+}
+
 int refuse(const document::Problems& problems) {
   std::fputs(problems.format().c_str(), stderr);
   return input_refused;
@@ -128,7 +133,7 @@ int run(const Arguments& arguments) {
   if (!rig || !problems.empty()) return refuse(problems);
   std::fputs(problems.format().c_str(), stderr);  // warnings
   if (arguments.seed && !daemon::reseed(*rig, *arguments.seed)) {
-    fmt::print(stderr, "softgripd: --seed needs a simulated board\n");
+    complain("--seed needs a simulated board");
     return usage;
   }
 
@@ -149,13 +154,13 @@ int run(const Arguments& arguments) {
 
   auto daemon = daemon::Daemon::create(std::move(*rig), std::move(options));
   if (!daemon) {
-    fmt::print(stderr, "softgripd: {}\n", daemon.error());
+    complain(daemon.error());
     return usage;
   }
   const daemon::Outcome outcome = (*daemon)->run();
   printer.print_end(outcome);
   if (!arguments.histograms.empty() && !write_histograms(arguments.histograms, **daemon)) {
-    fmt::print(stderr, "softgripd: {} cannot be written\n", arguments.histograms);
+    complain(fmt::format("{} cannot be written", arguments.histograms));
     return io_failed;
   }
   return daemon::exit_code_of(outcome);
@@ -176,7 +181,7 @@ int main(int argc, char** argv) {
     if (arguments.safe_outputs) return safe_outputs(arguments);
     return arguments.check ? check(arguments) : run(arguments);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "softgripd: {}\n", error.what());
+    complain(error.what());
     return failed;
   }
 }

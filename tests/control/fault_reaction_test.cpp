@@ -30,6 +30,9 @@ const RigSettings& base() {
   static const RigSettings settings = [] {
     RigSettings rig = two_finger_settings();
     rig.faults.slipped_cycles = 10;
+    rig.faults.pressure_cycles = 10;
+    rig.faults.pressure_tolerance_kpa = 5;
+    rig.faults.pressure_delay_s = 0.3;
     return rig;
   }();
   return settings;
@@ -62,6 +65,9 @@ std::vector<FaultCase> fault_cases() {
       {"readback", FaultCode::readback_mismatch, f.readback_cycles,
        [](SimulatedRig& rig) { rig.fault[0].readback_offset_kpa = 12; },
        [](SimulatedRig& rig) { rig.fault[0].readback_offset_kpa = 0; }},
+      {"pressure_lost", FaultCode::pressure_not_followed, f.pressure_cycles,
+       [](SimulatedRig& rig) { rig.fault[1].pressure_offset_kpa = -70; },
+       [](SimulatedRig& rig) { rig.fault[1].pressure_offset_kpa = 0; }},
       {"emergency_stop", FaultCode::emergency_stop, 1, [](SimulatedRig& rig) { rig.emergency_stop = true; },
        [](SimulatedRig& rig) { rig.emergency_stop = false; }, true},
       {"inputs_lost", FaultCode::inputs_lost, 1, [](SimulatedRig& rig) { rig.inputs_lost = true; },
@@ -90,6 +96,7 @@ class FaultReaction : public testing::TestWithParam<Parameters> {
   void reach(SimulatedRig& rig, const PhaseCase& phase) {
     rig.stone(12);
     ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.run(1.5);  // from then on a pressure has no excuse
     if (phase.step >= 0) {
       rig.request(Request::Kind::start, &pick);
       ASSERT_TRUE(rig.run_until_step(static_cast<std::uint16_t>(phase.step), 30));
@@ -194,6 +201,41 @@ TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
   rig.fault[0].frozen_mm = rig.output().channels[0].displacement_mm;
   ASSERT_TRUE(rig.run_until(State::faulted, 5));
   EXPECT_EQ(rig.output().first_fault, FaultCode::reading_frozen);
+}
+
+TEST_F(SingleFault, ABurstLineIsNoPart) {
+  // The finger stands still as it would before a part. Without the pressure's word this is HOLDING.
+  SimulatedRig rig(settings);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until_step(1, 30));
+  while (rig.output().state == State::running && rig.time_s() < 60) {
+    rig.fault[0].frozen_mm = rig.fault[0].frozen_mm.value_or(rig.plant_mm(0)) + 1e-3 * std::sin(rig.time_s());
+    rig.fault[0].pressure_offset_kpa = -rig.board_kpa(0);
+    rig.tick();
+    ASSERT_NE(rig.result(0), GripResult::holding);
+  }
+  EXPECT_EQ(rig.output().first_fault, FaultCode::pressure_not_followed);
+}
+
+TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
+  SimulatedRig rig(settings);
+  rig.fault[0].pressure_offset_kpa = 40;
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.run(1);
+  EXPECT_EQ(rig.output().state, State::idle);
+  rig.run(1);
+  EXPECT_EQ(rig.output().first_fault, FaultCode::pressure_not_followed) << "but not for ever";
+}
+
+TEST_F(SingleFault, APressureThatIsNotMeasuredIsNoFault) {
+  SimulatedRig rig(settings);
+  rig.fault[0].no_pressure = true;
+  rig.fault[1].no_pressure = true;
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until(State::idle, 60));
+  EXPECT_EQ(rig.output().first_fault, FaultCode::none);
 }
 
 TEST_F(SingleFault, ADisplacementThatDriftsBeyondTheLimits) {

@@ -22,6 +22,7 @@ TEST(Faults, CodesAreStable) {
                                                                   {"F204", "reading_jumped"},
                                                                   {"F205", "reading_frozen"},
                                                                   {"F206", "displacement_beyond_limits"},
+                                                                  {"F207", "pressure_not_followed"},
                                                                   {"F301", "readback_mismatch"},
                                                                   {"F302", "write_refused"},
                                                                   {"F303", "board_watchdog_tripped"},

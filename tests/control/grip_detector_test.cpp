@@ -74,6 +74,19 @@ TEST(EvidenceWindow, SamplesThatSayNothingStartItAnew) {
   EXPECT_EQ(window.observe(0.66, true, true), EvidenceWindow::Verdict::verified);
 }
 
+TEST(EvidenceWindow, KnowsThatItCouldNotLook) {
+  EvidenceWindow window;
+  window.start(0, 0.3);
+  (void)window.observe(0.1, true, false);
+  EXPECT_FALSE(window.blinded(0.1));
+  (void)window.observe(0.2, false, false);
+  (void)window.observe(0.25, true, false);
+  EXPECT_TRUE(window.blinded(0.49));
+  EXPECT_FALSE(window.blinded(0.51));
+  window.start(0.3, 0.3);
+  EXPECT_FALSE(window.blinded(0.3));
+}
+
 TEST(HoldWatch, TellsALossWithinTwoIntervalsWheneverItHappens) {
   for (double gone_at = 1; gone_at < 1.5; gone_at += 0.013) {
     HoldWatch watch;

@@ -62,7 +62,8 @@ void SimulatedRig::read() {
     const OfChannel& broken = fault[i];
     reading.displacement_mm =
         broken.frozen_mm.value_or(plants_[i].true_mm + noise(random_) + broken.offset_mm);
-    reading.pressure_kpa = broken.no_pressure ? std::nan("") : plants_[i].chain.pressure_kpa();
+    reading.pressure_kpa =
+        broken.no_pressure ? std::nan("") : plants_[i].chain.pressure_kpa() + broken.pressure_offset_kpa;
     reading.command_readback_kpa = plants_[i].board_kpa + broken.readback_offset_kpa;
     reading.sampled_at = now_;
     ++reading.sequence;

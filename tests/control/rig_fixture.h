@@ -42,6 +42,7 @@ class SimulatedRig {
     double offset_mm = 0;                     ///< added to the reading
     std::optional<double> frozen_mm;          ///< the reading stays here
     double readback_offset_kpa = 0;
+    double pressure_offset_kpa = 0;
     bool no_pressure = false;  ///< the monitor is gone: NaN
   };
   std::array<OfChannel, 2> fault;

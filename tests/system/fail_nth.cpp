@@ -124,6 +124,10 @@ ssize_t write(int descriptor, const void* data, size_t size) {
 ssize_t writev(int descriptor, const iovec* parts, int count) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
+  if (count > 0 && parts[0].iov_len > 1 && fails("short_write", ENOSPC)) {
+    const iovec half{parts[0].iov_base, parts[0].iov_len / 2};
+    return next(descriptor, &half, 1);
+  }
   return next(descriptor, parts, count);
 }
 

@@ -5,9 +5,11 @@ scripts/fault_matrix.sh runs all of them and publishes docs/reference/fault-matr
 
 import argparse
 import concurrent.futures
+import contextlib
 import csv
 import json
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -56,6 +58,7 @@ class Table:
         data = yaml.safe_load(path.read_text())
         self.rig = data["rig"]
         self.phases = data["phases"]
+        self.sequence = data["sequence"]
         self.faults = {fault["name"]: fault for fault in data["faults"]}
 
     def cells(self):
@@ -69,7 +72,11 @@ class Table:
         """What an expression of `within` may use, in cycles."""
         rig, shipped = self.rig, shipped_rig()
         rate = rig["rate_hz"]
+        slowest_kpa_per_s = self.sequence["slowest_kpa_per_s"]
+        share = self.sequence["smallest_share_lost"]
         return {**{k: v for k, v in rig.items() if k.endswith("_cycles")},
+                "pressure_delay_cycles": math.ceil(shipped["faults"]["pressure_delay_s"] * rate),
+                "travel_cycles": math.ceil(shipped["faults"]["pressure_tolerance_kpa"] / share / slowest_kpa_per_s * rate),
                 "readback_delay_cycles": math.ceil(shipped["faults"]["readback_delay_s"] * rate),
                 "frozen_cycles": math.ceil(shipped["plausibility"]["frozen_after_s"] * rate),
                 "age_cycles": math.ceil(rig["max_age_s"] * rate)}
@@ -150,10 +157,18 @@ class Cell:
     def clear_fault(self):
         if "plant" in self.fault["do"]:
             self.emulator.ask("clear it")
+            if self.fault["do"]["plant"] == "ignored_write":
+                self.began = self.first_other_write()
         else:
             if self.wire_fault.first_touch is not None:
                 self.began = self.wire_fault.first_touch
             self.proxy.clear()
+
+    def first_other_write(self):
+        """When a write first asked for something else than the outputs had when writes began to be ignored."""
+        before = [words for at, words in self.proxy.writes if at <= self.began][-1:]
+        return next((at for at, words in self.proxy.writes
+                     if at > self.began and before and wire_proxy.noticeable(words, before[0])), self.began)
 
     def reach_phase(self):
         self.daemon.wait_for_state("idle")
@@ -253,7 +268,8 @@ class Cell:
         if self.phase == "closing":
             bench.wait_for("an answer", lambda: "-" not in self.daemon.results(), 15)
             self.measured["result"] = self.daemon.results()[0]
-            require(self.daemon.results() == ["HOLDING"] * 2, f"{self.daemon.results()}")
+            left = self.expected.get("result", "HOLDING")
+            require(self.daemon.results() == [left, "HOLDING"], f"{self.daemon.results()}")
         elif self.phase == "holding":
             self.measured["result"] = self.daemon.results()[0]
             require(self.daemon.results() == ["HOLDING"] * 2, f"{self.daemon.results()}")
@@ -344,7 +360,14 @@ class Cell:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
+def hurry():
+    """The wire is this process: where it may, it does not wait behind the machine's other work."""
+    with contextlib.suppress(PermissionError):
+        os.setpriority(os.PRIO_PROCESS, 0, -10)
+
+
 def run_once(name, phase):
+    hurry()
     cell = Cell(Table(), name, phase)
     wrong = log = None
     try:

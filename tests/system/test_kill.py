@@ -1,9 +1,11 @@
 """kill -9 of the daemon in the middle of a grip: the board vents, the recording is whole up to the last second."""
 
 import json
+import random
 import time
 
 import bench
+import kill_nine
 
 WATCHDOG_S = 0.5  # of the board map
 
@@ -49,6 +51,14 @@ class Kill(bench.BenchTest):
             self.assertLess(max(emulator.commands_kpa()), 0.1)
             time.sleep(0.05)
         self.assertEqual(again.status()["state"], "idle")
+
+    def test_at_random_moments(self):
+        """A hundred of them: scripts/kill_nine.sh."""
+        seed = random.SystemRandom().randrange(1 << 31)
+        print(f"seed {seed}")
+        for number in range(4):
+            result = kill_nine.once(number, seed)
+            self.assertIsNone(result["wrong"], f"seed {seed}")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,39 @@
+"""The Nth call fails, for every N until a run gets through: what fits into a minute of it. The rest: scripts/fail_nth.sh."""
+
+import unittest
+
+import fail_nth
+
+
+@unittest.skipUnless(fail_nth.SHIM.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
+class FailNth(unittest.TestCase):
+    def setUp(self):
+        self.scenario = fail_nth.Scenario()
+        self.addCleanup(self.scenario.close)
+
+    def check(self, scenario, *calls, from_then_on=False):
+        for call in calls:
+            with self.subTest(call):
+                failed, through = fail_nth.until_success(scenario, call, from_then_on=from_then_on)
+                self.assertTrue(through, f"after {failed} failed calls there are still more")
+
+    def test_the_daemons_files(self):
+        self.check(self.scenario.virtual, "write", "short_write", "rename", "mkdir")
+
+    def test_a_full_disk(self):
+        self.check(self.scenario.virtual, "write", from_then_on=True)
+        self.check(self.scenario.simulate, "write", from_then_on=True)
+
+    def test_what_softgrip_writes(self):
+        self.check(self.scenario.simulate, "open", "write", "short_write", "rename")
+        self.check(self.scenario.validate, "write", "rename", "mkdir")
+
+    def test_the_daemons_threads(self):
+        self.check(self.scenario.real, "thread")
+
+    def test_the_daemons_start(self):
+        self.check(self.scenario.real, "bind", "listen", "mlockall")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

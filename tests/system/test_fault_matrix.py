@@ -1,0 +1,53 @@
+"""A part of the fault matrix with every test: one cell of every group in every phase it matters in.
+
+The whole: scripts/fault_matrix.sh.
+"""
+
+import unittest
+
+import fault_matrix
+
+
+class FaultMatrix(unittest.TestCase):
+    def check(self, *cells):
+        table = fault_matrix.Table()
+        for cell in cells:
+            name, phase = cell.split("/")
+            self.assertIn((name, phase), table.cells())
+            with self.subTest(cell):
+                result = fault_matrix.run_cell(name, phase)
+                self.assertIsNone(result["wrong"], f"{result['wrong']}\n{result['log']}")
+
+    def test_wire_while_connecting_and_idle(self):
+        self.check("masquerade/connect", "silent/idle", "exception_4/idle", "half_open/idle")
+
+    def test_wire_while_closing(self):
+        self.check("repetition/closing", "loss_of_replies/closing")
+
+    def test_wire_while_holding(self):
+        self.check("blocked_channel/holding")
+
+    def test_outputs_that_are_not_what_was_written(self):
+        self.check("asymmetric_information/closing", "received_by_some_only/venting")
+
+    def test_sensors(self):
+        self.check("sensor_jump/closing", "sensor_out_of_range/holding")
+
+    def test_lines(self):
+        self.check("line_burst/closing", "supply_lost/holding")
+
+    def test_every_cell_says_what_it_expects(self):
+        table = fault_matrix.Table()
+        for name, phase in table.cells():
+            cell = table.cell(name, phase)
+            self.assertIn(cell["ends"], ("waits", "faulted", "ridden", "unseen"), f"{name}/{phase}")
+            if cell["ends"] in ("ridden", "unseen"):
+                self.assertTrue(cell.get("why"), f"{name}/{phase} does not say why")
+            if cell["ends"] == "faulted":
+                self.assertTrue(cell["codes"])
+                if "within" in cell:
+                    self.assertGreater(table.bound(cell["within"]), 0)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
