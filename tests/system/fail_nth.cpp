@@ -124,8 +124,11 @@ ssize_t write(int descriptor, const void* data, size_t size) {
 ssize_t writev(int descriptor, const iovec* parts, int count) {
   if (fails("write", ENOSPC)) return -1;
   static const auto next = real<ssize_t (*)(int, const iovec*, int)>("writev");
-  if (count > 0 && parts[0].iov_len > 1 && fails("short_write", ENOSPC)) {
-    const iovec half{parts[0].iov_base, parts[0].iov_len / 2};
+  // Half of the first part that is not empty: no more than a short write.
+  int first = 0;
+  while (first < count && parts[first].iov_len == 0) ++first;
+  if (first < count && parts[first].iov_len > 1 && fails("short_write", ENOSPC)) {
+    const iovec half{parts[first].iov_base, parts[first].iov_len / 2};
     return next(descriptor, &half, 1);
   }
   return next(descriptor, parts, count);

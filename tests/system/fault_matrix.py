@@ -408,6 +408,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=3, help="cells at a time; they mostly wait")
     parser.add_argument("--attempts", type=int, default=2)
     parser.add_argument("--out", type=pathlib.Path, help="keep the results as JSON")
+    parser.add_argument("--keep", type=pathlib.Path, help="results of an earlier --out, for the cells that are not run now")
     parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(bench.SOURCE)}")
     arguments = parser.parse_args()
     table = Table()
@@ -425,6 +426,10 @@ def main():
         for future in concurrent.futures.as_completed(futures):
             results.append(future.result())
             show(results[-1])
+    if arguments.keep:
+        run_now = {(r["fault"], r["phase"]) for r in results}
+        results += [r for r in json.loads(arguments.keep.read_text()) if (r["fault"], r["phase"]) not in run_now]
+        cells = table.cells()
     results.sort(key=lambda r: cells.index((r["fault"], r["phase"])))
     if arguments.out:
         arguments.out.write_text(json.dumps(results, indent=1))
