@@ -48,13 +48,22 @@ class PlantFaults(bench.BenchTest):
     def test_outputs_that_do_not_follow(self):
         self.check_latches("ignored", ("F301", "F302"), None)
 
+    def test_a_leaking_line_where_the_pressure_is_measured(self):
+        self.check_latches("leak", ("F207",), "left")
+
+    def test_a_blocked_line_where_the_pressure_is_measured(self):
+        self.check_latches("blocked", ("F207",), "left")
+
+    # Without a pressure to compare, the model is what notices.
+    UNWATCHED = ((r"pressure_cycles: \d+", "pressure_cycles: 0"),)
+
     def test_a_leaking_line_makes_the_model_unfit(self):
-        daemon = self.tracking()
+        daemon = self.tracking(self.UNWATCHED)
         self.emulated.ask("fault leak")
         daemon.wait_for_event("model_health_changed", channel="left", code="unfit")
 
     def test_a_blocked_line_makes_the_model_unfit(self):
-        daemon = self.tracking()
+        daemon = self.tracking(self.UNWATCHED)
         self.emulated.ask("fault blocked")
         daemon.wait_for_event("model_health_changed", channel="left", code="unfit")
 
