@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "model/chain.h"
 #include "sysid/trajectory.h"
@@ -15,6 +17,8 @@ constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_landings = 24;
 /// A course that is behind by so much of squared error [in squares of what the resolution makes] is given up.
 constexpr double hopeless = 4000;
+/// Samples without a jump after which courses are compared again.
+constexpr std::size_t look_again = 32;
 /// A jump is resolved well where the command moves by less than this share of the band during its sample.
 constexpr double slow_share = 0.2;
 
@@ -43,11 +47,10 @@ class JumpTracker {
     Track first{model::Chain<double>(point.model, {}, record.sample_time_s), record.drive_kpa.front(), 0,
                 no_jump};
     sysid::start(first.chain, record, start.peak_before_kpa);
-    Record still = record;
     // What the start adds to every prediction, whatever drives the chain.
     const StartState rest{.peak_before_kpa = start.peak_before_kpa, .unsettled_mm = {}};
-    offset_mm_ = predict(point.model, still, start);
-    const std::vector<double> plain = predict(point.model, still, rest);
+    offset_mm_ = predict(point.model, record, start);
+    const std::vector<double> plain = predict(point.model, record, rest);
     for (std::size_t i = 0; i < record.size(); ++i) offset_mm_[i] -= plain[i];
     const double gain = record.largest_kpa > 0 ? record.span_mm / record.largest_kpa : 1;
     give_up_mm2_ = hopeless * resolution_kpa * resolution_kpa * gain * gain;
@@ -67,8 +70,10 @@ class JumpTracker {
     const double to = record_.held ? record_.drive_kpa[i - 1] : record_.drive_kpa[i];
     const double from = record_.held ? to : record_.drive_kpa[i - 1];
     next_.clear();
+    bool any_jump = false;
     for (Track& track : tracks_) {
       const std::vector<double>& landings = landings_of(track.held_kpa, from, to);
+      any_jump |= !landings.empty();
       for (const double held : landings) {
         Track child = track;
         child.last = jumps_.size();
@@ -83,7 +88,11 @@ class JumpTracker {
         next_.push_back(std::move(track));
       }
     }
-    prune();
+    if (any_jump || i % look_again == 0 || i + 1 == record_.size()) {
+      prune();
+    } else {
+      std::swap(tracks_, next_);
+    }
   }
 
   void advance(Track& track, std::size_t i, double held_kpa) {
@@ -116,15 +125,19 @@ class JumpTracker {
 
   /// Keeps the best, of those that stand in the same place one.
   void prune() {
-    std::sort(next_.begin(), next_.end(),
-              [](const Track& a, const Track& b) { return a.cost_mm2 < b.cost_mm2; });
+    order_.resize(next_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::sort(order_.begin(), order_.end(),
+              [&](std::size_t a, std::size_t b) { return next_[a].cost_mm2 < next_[b].cost_mm2; });
+    const double most_mm2 = next_[order_.front()].cost_mm2 + give_up_mm2_;
     tracks_.clear();
-    for (Track& track : next_) {
-      if (tracks_.size() >= most_tracks || track.cost_mm2 > next_.front().cost_mm2 + give_up_mm2_) break;
+    for (const std::size_t at : order_) {
+      Track& track = next_[at];
+      if (tracks_.size() >= most_tracks || track.cost_mm2 > most_mm2) break;
       const bool twin = std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& kept) {
         return std::abs(kept.held_kpa - track.held_kpa) < 0.25 * resolution_kpa_;
       });
-      if (!twin) tracks_.push_back(track);
+      if (!twin) tracks_.push_back(std::move(track));
     }
   }
 
@@ -152,6 +165,7 @@ class JumpTracker {
   std::vector<Track> tracks_, next_;
   std::vector<Jump> jumps_;
   std::vector<double> landings_;
+  std::vector<std::size_t> order_;
 };
 
 }  // namespace

@@ -24,6 +24,24 @@ std::optional<StructureFit> behind_the_valve(const SearchData& data, const Struc
   return without(*fits.front().fit, dead_band);
 }
 
+/// The staircase in front of the base, or of all that was selected: whichever leaves less. A cause that was
+/// selected without one may be a second effect, or stand in for the staircase itself.
+std::optional<Staircase> staircase_before(const SearchData& data, const Selection& plain,
+                                          const Cause& dead_band, double noise_mm) {
+  std::optional<Staircase> best;
+  std::vector<const StructureFit*> selected{&plain.base};
+  if (!plain.chosen.empty()) selected.push_back(&plain.extended);
+  for (const StructureFit* structure : selected) {
+    const auto behind = behind_the_valve(data, *structure, dead_band);
+    if (!behind) continue;
+    auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
+    if (!found || (best && found->fit.mean_square_mm2 > best->fit.mean_square_mm2)) continue;
+    best = std::move(found);
+    if (!structure_of(best->fit.residual_mm, noise_mm).present) break;
+  }
+  return best;
+}
+
 /// The base alone, fitted to records whose drive is where the valve stood.
 StructureFit base_behind(const Staircase& found) {
   StructureFit base = found.fit;
@@ -64,9 +82,7 @@ std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data
                                                           const SelectionOptions& options) {
   const Cause dead_band = *find_cause("valve_deadband");
   if (model::position_of(data.given.model, dead_band.type)) return std::nullopt;
-  const auto behind = behind_the_valve(data, plain.extended, dead_band);
-  if (!behind) return std::nullopt;
-  const auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
+  const auto found = staircase_before(data, plain, dead_band, noise_mm);
   if (!found) return std::nullopt;
 
   SearchData driven = make_search_data(found->records, data.given.model);
