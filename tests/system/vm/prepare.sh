@@ -123,7 +123,7 @@ if [ ! -d "$work/kernel" ]; then
 fi
 [ -d "$work/gpio" ] || { say "gpio-sim"; build_gpio; }
 build_root
-if [ ! -f "$work/disk.ext4" ] || [ -n "$(find "$here" "$work/root.tar" "$work/gpio" -newer "$work/disk.ext4")" ]; then
+if [ ! -f "$work/disk.ext4" ] || [ -n "$(find "$here/root" "$here/init" "$here/prepare.sh" "$work/root.tar" "$work/gpio" -newer "$work/disk.ext4")" ]; then
   build_disk
   build_initrd
 fi

@@ -10,10 +10,10 @@ import time
 
 from guest import CONFIGURATION, DRIVE, Emulator, Failed, edit, expect, main_guard, sh, terminate
 
-RATE_HZ = 500
+RATE_HZ = 1000
 PRIORITY = 70
 TURN_S = 10
-ROUNDS = 2
+ROUNDS = 3
 LOADS = ["hackbench -g 2 -f 4 -l 1000", "find / -xdev -type f -exec true {} +",
          "dd if=/dev/zero of=/var/tmp/load bs=64k count=64 conv=fsync"]
 RIG = CONFIGURATION / "rig_service.yaml"
