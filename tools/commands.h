@@ -6,6 +6,8 @@
 // clang-format off
 #define SOFTGRIP_COMMANDS(X) \
   X(check)                   \
+  X(doctor)                  \
+  X(calibrate)               \
   X(simulate)                \
   X(plot)                    \
   X(identify)                \

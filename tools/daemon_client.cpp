@@ -25,9 +25,9 @@ constexpr const char* how_to_start =
 ClientFailure cannot_connect(const std::string& path, int error) {
   switch (error) {
     case ENOENT:
-      return {ExitCode::io, "no daemon is running: there is no socket " + path + "; " + how_to_start};
+      return {ExitCode::io, "no daemon is running: there is no socket " + path + "; " + how_to_start, true};
     case ECONNREFUSED:
-      return {ExitCode::io, "no daemon is running: nobody listens on " + path + "; " + how_to_start};
+      return {ExitCode::io, "no daemon is running: nobody listens on " + path + "; " + how_to_start, true};
     case EACCES:
       return {ExitCode::io,
               "you may not open " + path + ": who may move the gripper is decided by that file's group"};

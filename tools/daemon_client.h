@@ -23,6 +23,7 @@ namespace softgrip::tools {
 struct ClientFailure {
   ExitCode code = ExitCode::io;
   std::string message;
+  bool nobody_listens = false;  ///< no daemon runs on that socket
 };
 
 class DaemonClient {

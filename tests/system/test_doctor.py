@@ -1,0 +1,164 @@
+"""softgrip doctor and calibrate as a technician runs them, against the emulator over TCP."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+
+import bench
+
+
+class Doctor(bench.BenchTest):
+    def doctor(self, rig, *arguments, expect=0):
+        done = self.softgrip("doctor", "--rig", rig, "--json", *arguments, expect=expect)
+        report = json.loads(done.stdout)
+        return report, {finding["name"]: finding for finding in report["findings"]}
+
+    def test_a_healthy_rig_is_fit_and_left_vented(self):
+        emulator = self.emulator()
+        report, findings = self.doctor(self.rig(emulator.port), "--move")
+        self.assertNotEqual(report["verdict"], "fail")
+        for name in ("board", "sensor left", "valve left", "finger right", "model right", "safe state"):
+            self.assertEqual(findings[name]["verdict"], "ok", findings[name])
+        self.assertEqual(max(emulator.commands_kpa()), 0)
+
+    def test_without_consent_nothing_moves(self):
+        emulator = self.emulator()
+        report, findings = self.doctor(self.rig(emulator.port))
+        self.assertFalse(report["moved"])
+        self.assertNotIn("valve left", findings)
+        self.assertLess(max(emulator.pressures_kpa()), 0.01)
+
+    def test_a_board_that_is_away(self):
+        _, findings = self.doctor(self.rig(1), expect=6)
+        self.assertEqual(findings["board"]["verdict"], "fail")
+        self.assertIn("cable", findings["board"]["advice"])
+
+    def test_no_folder_for_recordings(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port, [(r"directory: \S+/runs", "directory: /proc/runs")])
+        _, findings = self.doctor(rig, expect=6)
+        self.assertEqual(findings["disk"]["verdict"], "fail")
+
+    def test_a_running_daemon_is_asked_and_keeps_its_board(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        report, findings = self.doctor(rig)
+        self.assertTrue(report["daemon_runs"])
+        self.assertEqual(findings["daemon"]["verdict"], "ok")
+        self.assertEqual(findings["sensor left"]["verdict"], "ok")
+        refused = self.softgrip("doctor", "--rig", rig, "--move", expect=5)
+        self.assertIn("softgripd runs", refused.stderr)
+        self.assertEqual(daemon.status()["state"], "idle")
+        self.assertEqual(daemon.end(), 0)
+
+    def test_a_refused_rig_and_one_that_is_not_there(self):
+        self.softgrip("doctor", "--rig", self.write("bad.yaml", "name: x\n"), expect=3)
+        self.softgrip("doctor", "--rig", "nowhere.yaml", expect=4)
+
+
+class Calibrate(bench.BenchTest):
+    """The emulator is wired as the shipped rig says; the calibrated file says something else."""
+
+    # What the sensor and the valve really are: see config/rig_tcp.yaml.
+    def true_mm(self, volts):
+        return -5 + 5 * volts
+
+    def wrong_rig(self, emulator):
+        return self.rig(emulator.port, [(r"is_mm: \[-5, 45\]", "is_mm: [0, 60]"),
+                                        (r"displacement_margin_mm: 2", "displacement_margin_mm: 40"),
+                                        (r"at_v: \[0, 10\], is_kpa: \[0, 100\], range", "at_v: [0, 10], is_kpa: [0, 80], range")])
+
+    def start(self, rig, *arguments):
+        child = subprocess.Popen([str(a) for a in (bench.SOFTGRIP, "calibrate", "--rig", rig, "--channel", "left",
+                                                   "--date", "2026-11-20", *arguments)],
+                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 cwd=self.folder)
+        self.addCleanup(self.clean_up, child)
+        return child
+
+    @staticmethod
+    def clean_up(child):
+        child.kill()
+        child.wait()
+        for stream in (child.stdin, child.stdout, child.stderr):
+            stream.close()
+
+    def answer_with(self, child, reading):
+        """Answers every question until the end; returns everything it said."""
+        said = b""
+        while True:
+            byte = os.read(child.stderr.fileno(), 1)
+            if not byte:
+                break
+            said += byte
+            if re.search(rb"\? [^\n]*: $", said):
+                child.stdin.write(f"{reading():.4f}\n".encode())
+                child.stdin.flush()
+                said += b"\n"
+        out = child.stdout.read().decode()
+        child.wait(bench.PATIENCE_S)
+        return out, said.decode()
+
+    @staticmethod
+    def line_in(text, key):
+        numbers = r"\[([-\d.]+), ([-\d.]+)\]"
+        found = re.search(rf"^{key}: .*at_v: {numbers}, is_\w+: {numbers}", text, re.M)
+        x0, x1, y0, y1 = (float(found.group(i)) for i in range(1, 5))
+        return lambda x: y0 + (x - x0) * (y1 - y0) / (x1 - x0)
+
+    def test_a_wrong_sensor_and_a_wrong_valve_are_found_out(self):
+        emulator = self.emulator()
+        rig = self.wrong_rig(emulator)
+        child = self.start(rig, "--sensor", "--move", "--settle-s", "1.5", "--average-s", "0.6")
+        out, said = self.answer_with(child, lambda: emulator.status()["channels"][0]["displacement_mm"])
+        self.assertEqual(child.returncode, 0, said)
+        error = float(re.search(r"sensor: error ([\d.]+) mm", out).group(1))
+        sensor = self.line_in(out, "sensor")
+        # The gauge is read a moment before the average begins, and the finger creeps meanwhile.
+        for volts in (2, 4):
+            self.assertAlmostEqual(sensor(volts), self.true_mm(volts), delta=error + 0.3, msg=out)
+        self.assertEqual(max(emulator.commands_kpa()), 0)
+
+        child = self.start(rig, "--valve", "--move", "--settle-s", "1", "--average-s", "0.6")
+        out, said = self.answer_with(child, lambda: 0)
+        self.assertEqual(child.returncode, 0, said)
+        valve = self.line_in(out, "valve")
+        for volts in (2, 5):
+            self.assertAlmostEqual(valve(volts), 10 * volts, delta=0.5, msg=out)
+
+    def test_the_answers_may_be_options_and_the_output_repeats_its_date(self):
+        emulator = self.emulator()
+        done = self.softgrip("calibrate", "--rig", self.rig(emulator.port), "--channel", "left", "--sensor", "--move",
+                             "--settle-s", "0.5", "--average-s", "0.3", "--gauge-mm", "4.8", "18.9", "--date",
+                             "2026-01-02", "--out", "left.yaml")
+        text = (self.folder / "left.yaml").read_text()
+        self.assertTrue(text.startswith("# softgrip calibrate, 2026-01-02: rig bench, channel left\n"), text)
+        self.assertIn("left.yaml", done.stdout)
+
+    def test_nonsense_is_refused(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        quick = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.3", "--average-s", "0.3")
+        close = self.softgrip("calibrate", "--rig", rig, *quick, "--gauge-mm", "5", "5.1", expect=6)
+        self.assertIn("too close", close.stderr)
+        self.softgrip("calibrate", "--rig", rig, *quick, "--gauge-mm", "five", "6", expect=3)
+        self.softgrip("calibrate", "--rig", rig, *quick, expect=3)  # nobody answers
+        self.softgrip("calibrate", "--rig", rig, "--channel", "left", "--valve", expect=2)
+        self.softgrip("calibrate", "--rig", rig, expect=2)  # which channel?
+        self.assertEqual(max(emulator.commands_kpa()), 0)
+
+    def test_ctrl_c_vents(self):
+        emulator = self.emulator()
+        child = self.start(self.rig(emulator.port), "--valve", "--move", "--settle-s", "3")
+        bench.wait_for("motion", lambda: emulator.commands_kpa()[0] > 5)
+        child.send_signal(signal.SIGINT)
+        self.assertEqual(child.wait(bench.PATIENCE_S), 1)
+        self.assertEqual(max(emulator.commands_kpa()), 0)
+
+
+if __name__ == "__main__":
+    bench.main()

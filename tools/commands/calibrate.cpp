@@ -1,0 +1,293 @@
+// softgrip calibrate: sensor and valve against gauge and manometer, two points each.
+
+#include <poll.h>
+#include <unistd.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <deque>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/daemon.h"
+#include "drivers/clock.h"
+#include "tools/calibrate/procedure.h"
+#include "tools/calibrate/snippet.h"
+#include "tools/commands.h"
+#include "tools/configuration.h"
+#include "tools/daemon_client.h"
+#include "tools/output.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::string rig;
+  std::string channel;
+  std::string socket;
+  bool sensor = false;
+  bool valve = false;
+  bool dead_zone = false;
+  bool move = false;
+  bool manometer = false;
+  std::vector<double> at_kpa;
+  std::vector<std::string> gauge_mm;
+  std::vector<std::string> manometer_kpa;
+  double settle_s = 2;
+  double average_s = 2;
+  double ramp_s = 10;
+  std::size_t repeats = 1;
+  std::string date;
+  std::string out = "-";
+};
+
+/// Answers from the command line first, then lines of the standard input.
+class Terminal final : public calibrate::Operator {
+ public:
+  Terminal() : interactive_(::isatty(STDIN_FILENO) == 1) {}
+
+  void prepare(const std::vector<std::string>& answers) { prepared_.assign(answers.begin(), answers.end()); }
+  void tell(const std::string& text) override { std::fprintf(stderr, "  %s\n", text.c_str()); }
+  void ask(const std::string& question) override {
+    std::fprintf(stderr, "? %s: ", question.c_str());
+    std::fflush(stderr);
+  }
+  std::optional<std::string> answer() override {
+    if (!prepared_.empty()) {
+      std::string next = prepared_.front();
+      prepared_.pop_front();
+      std::fprintf(stderr, "%s\n", next.c_str());
+      return next;
+    }
+    if (const auto line = take_line()) return line;
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (closed_ || ::poll(&input, 1, 0) <= 0) return std::nullopt;
+    char bytes[256];
+    const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
+    closed_ = count <= 0;
+    if (count > 0) pending_.append(bytes, static_cast<std::size_t>(count));
+    return take_line();
+  }
+  [[nodiscard]] bool gone() const override { return closed_ && pending_.find('\n') == std::string::npos; }
+  [[nodiscard]] bool patient() const override { return interactive_; }
+
+ private:
+  std::optional<std::string> take_line() {
+    const std::size_t end = pending_.find('\n');
+    if (end == std::string::npos) return std::nullopt;
+    std::string line = pending_.substr(0, end);
+    pending_.erase(0, end + 1);
+    if (!interactive_) std::fprintf(stderr, "%s\n", line.c_str());
+    return line;
+  }
+
+  bool interactive_;
+  bool closed_ = false;
+  std::string pending_;
+  std::deque<std::string> prepared_;
+};
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm date{};
+  ::localtime_r(&now, &date);
+  char text[16] = "";
+  std::strftime(text, sizeof text, "%Y-%m-%d", &date);
+  return text;
+}
+
+std::optional<std::size_t> channel_of(const daemon::RigFile& rig, const std::string& name) {
+  const auto& channels = rig.settings.channels;
+  if (name.empty() && channels.size() == 1) return 0;
+  const auto found =
+      std::find_if(channels.begin(), channels.end(),
+                   [&](const control::ChannelSettings& channel) { return channel.name == name; });
+  if (found == channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - channels.begin());
+}
+
+std::string names_of(const daemon::RigFile& rig) {
+  std::string names;
+  for (const auto& channel : rig.settings.channels) names += (names.empty() ? "" : ", ") + channel.name;
+  return names;
+}
+
+/// Pressures of the two places: as given, or a sixth and two thirds of what the limits allow.
+std::optional<ExitCode> set_pressures(const Options& options, const control::LimitSettings& limits,
+                                      calibrate::Settings& settings) {
+  const double span = limits.pressure_max_kpa - limits.pressure_min_kpa;
+  settings.low_kpa = options.at_kpa.empty() ? limits.pressure_min_kpa + span / 6 : options.at_kpa[0];
+  settings.high_kpa = options.at_kpa.empty() ? limits.pressure_min_kpa + 2 * span / 3 : options.at_kpa[1];
+  const bool inside =
+      settings.low_kpa >= limits.pressure_min_kpa && settings.high_kpa <= limits.pressure_max_kpa;
+  if (inside && settings.low_kpa < settings.high_kpa) return std::nullopt;
+  return fail(ExitCode::input_refused,
+              "--at-kpa LOW HIGH must rise and stay within the limits of the rig file");
+}
+
+/// Each answer serves for one visit; two answers serve for all visits.
+std::vector<std::string> spread(const std::vector<std::string>& answers, std::size_t repeats) {
+  std::vector<std::string> all;
+  if (answers.size() != 2) return answers;
+  for (std::size_t i = 0; i < repeats; ++i) all.insert(all.end(), answers.begin(), answers.end());
+  return all;
+}
+
+/// Whether the board is free to be taken.
+std::optional<ExitCode> refuse_beside_daemon(const Options& options, const daemon::RigFile& rig) {
+  const auto client = DaemonClient::connect(options.socket.empty() ? rig.socket.path : options.socket);
+  if (!client && client.error().nobody_listens) return std::nullopt;
+  return fail(ExitCode::state_refused,
+              "softgripd runs and holds the board: stop it first (systemctl stop softgripd)");
+}
+
+calibrate::Expected<calibrate::Results> measure(const daemon::RigFile& rig, const Options& options,
+                                                const calibrate::Settings& settings, HandDrive& drive,
+                                                Terminal& terminal) {
+  calibrate::Results results;
+  results.channel = settings.channel;
+  results.date = options.date.empty() ? today() : options.date;
+  if (options.valve) {
+    terminal.prepare(spread(options.manometer_kpa, settings.repeats));
+    const bool by_monitor = !options.manometer && options.manometer_kpa.empty() &&
+                            rig.settings.channels[settings.channel].pressure_measured;
+    auto valve = calibrate::calibrate_valve(rig, drive, terminal, settings, by_monitor);
+    if (!valve) return tl::unexpected(valve.error());
+    results.valve = std::move(*valve);
+  }
+  if (options.dead_zone) {
+    auto zone = calibrate::search_dead_zone(rig, drive, terminal, settings);
+    if (!zone) return tl::unexpected(zone.error());
+    results.dead_zone = *zone;
+  }
+  if (options.sensor) {
+    terminal.prepare(spread(options.gauge_mm, settings.repeats));
+    auto sensor = calibrate::calibrate_sensor(rig, drive, terminal, settings);
+    if (!sensor) return tl::unexpected(sensor.error());
+    results.sensor = std::move(*sensor);
+  }
+  return results;
+}
+
+ExitCode write_results(const daemon::RigFile& rig, const calibrate::Results& results,
+                       const Options& options) {
+  const std::string text = calibrate::snippet(rig, results);
+  if (const auto written = write_output(options.out, text); !written)
+    return fail(ExitCode::io, written.error());
+  if (options.out != "-") {
+    std::fprintf(report_stream(options.out),
+                 "%s: put its lines into channel `%s` of %s, then softgrip check\n", options.out.c_str(),
+                 rig.settings.channels[results.channel].name.c_str(), rig.path.c_str());
+  }
+  return ExitCode::done;
+}
+
+ExitCode run(Options options) {
+  const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
+  if (const auto code = unreadable(path)) return *code;
+  document::Problems problems;
+  const auto rig = daemon::load_rig(path, problems);
+  if (!rig) return refuse(problems);
+  std::fputs(problems.format().c_str(), stderr);  // warnings
+  const auto channel = channel_of(*rig, options.channel);
+  if (!channel) return fail(ExitCode::usage, "name a channel of the rig with --channel: " + names_of(*rig));
+  if (!options.sensor && !options.valve && !options.dead_zone) {
+    options.sensor = true;
+    options.valve = options.dead_zone = options.move;
+  }
+  if ((options.valve || options.dead_zone) && !options.move) {
+    return fail(ExitCode::usage, "valve and dead zone are found by moving: allow it with --move");
+  }
+  calibrate::Settings settings;
+  settings.channel = *channel;
+  settings.may_move = options.move;
+  settings.settle_s = options.settle_s;
+  settings.average_s = options.average_s;
+  settings.ramp_s = options.ramp_s;
+  settings.repeats = options.repeats;
+  if (const auto code = set_pressures(options, rig->settings.channels[*channel].limits, settings))
+    return *code;
+  if (const auto ready = prepare_parent(options.out); !ready) return fail(ExitCode::io, ready.error());
+  if (const auto code = refuse_beside_daemon(options, *rig)) return *code;
+
+  const drivers::MonotonicClock clock;
+  const auto board = daemon::make_board(*rig, clock);
+  RealPace pace;
+  HandDrive drive(*rig, *board, pace);
+  if (const auto connected = drive.connect(); !connected) return fail(ExitCode::io, connected.error().text);
+  std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),
+               rig->settings.channels[*channel].name.c_str());
+  Terminal terminal;
+  const auto results = measure(*rig, options, settings, drive, terminal);
+  const bool safe = drive.leave();
+  if (!safe)
+    std::fprintf(stderr, "the board did NOT confirm the lowest pressures: look before you reach in\n");
+  if (!results) return fail(results.error().code, results.error().text);
+  const ExitCode code = write_results(*rig, *results, options);
+  return code == ExitCode::done && !safe ? ExitCode::io : code;
+}
+
+void add_measuring_options(CLI::App& command, Options& options) {
+  command
+      .add_option("--at-kpa", options.at_kpa,
+                  "Pressures of the two points [a sixth and two thirds of the limits]")
+      ->expected(2);
+  command.add_option("--settle-s", options.settle_s, "Wait after every motion")
+      ->check(CLI::Range(0.0, 600.0))
+      ->capture_default_str();
+  command.add_option("--average-s", options.average_s, "Average so long")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command.add_option("--ramp-s", options.ramp_s, "Duration of the dead zone's ramp")
+      ->check(CLI::Range(1.0, 600.0))
+      ->capture_default_str();
+  command
+      .add_option("--repeats", options.repeats,
+                  "Visits to each point; from two on the repeat spread is known")
+      ->check(CLI::Range(1, 20))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "calibrate", "Sensor and valve against gauge and manometer: lines for the rig file");
+  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
+  command->add_option("--channel", options->channel, "Which one; needed if the rig has several");
+  command->add_flag("--sensor", options->sensor, "The displacement sensor, against a gauge");
+  command->add_flag("--valve", options->valve,
+                    "The valve's output, against the pressure monitor or a manometer; with --move");
+  command->add_flag("--dead-zone", options->dead_zone, "Where the valve begins to follow; with --move");
+  command->add_flag(
+      "--move", options->move,
+      "I allow it to move the finger, within the limits; without it the target is placed by hand");
+  command->add_flag("--manometer", options->manometer,
+                    "Ask for a manometer although there is a pressure monitor");
+  command
+      ->add_option("--gauge-mm", options->gauge_mm,
+                   "The gauge's readings, instead of asking: two, or two per visit")
+      ->expected(2, 40);
+  command->add_option("--manometer-kpa", options->manometer_kpa, "The manometer's readings, likewise")
+      ->expected(2, 40);
+  add_measuring_options(*command, *options);
+  command->add_option("--date", options->date, "Of the calibration [today]");
+  command->add_option("--socket", options->socket, "Of a daemon that must not run [the rig file's]");
+  command->add_option("--out", options->out, "Where the lines go; - is the standard output")
+      ->capture_default_str();
+  command->footer(
+      "Questions go to the standard error, answers come line by line from the standard input.\nExit codes: 0 "
+      "done, 1 "
+      "stopped, 2 usage, 3 input refused, 4 the board or a file, 5 the daemon runs,\n6 what was measured "
+      "makes no "
+      "calibration.");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,108 @@
+// softgrip doctor: is this rig fit to run today?
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "daemon/daemon.h"
+#include "drivers/clock.h"
+#include "tools/commands.h"
+#include "tools/configuration.h"
+#include "tools/daemon_client.h"
+#include "tools/daemon_command.h"
+#include "tools/doctor/daemon_examination.h"
+#include "tools/doctor/machine.h"
+#include "tools/doctor/rig_examination.h"
+#include "tools/terminal.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::string rig;
+  std::string socket;
+  bool move = false;
+  bool json = false;
+};
+
+/// Asks the daemon; nothing is left to be looked at but the disk and the clock.
+void ask_running(DaemonClient& client, const daemon::RigFile& rig, doctor::Findings& findings) {
+  const auto status = client.ask({{"command", "status"}});
+  const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
+  if (!status || !statistics) {
+    const ClientFailure& failure = !status ? status.error() : statistics.error();
+    findings.fail("daemon", failure.message,
+                  "its socket is there but it does not answer: `systemctl status softgripd`");
+    return;
+  }
+  doctor::examine_daemon(*status, *statistics, rig.name, findings);
+}
+
+void look_myself(const daemon::RigFile& rig, bool move, doctor::Findings& findings) {
+  doctor::examine_machine(rig, findings);
+  doctor::examine_clock(findings);
+  doctor::examine_disk(rig, findings);
+  const drivers::MonotonicClock clock;
+  const auto board = daemon::make_board(rig, clock);
+  doctor::examine_description(rig, *board, findings);
+  doctor::examine_gpio(rig, findings);
+  RealPace pace;
+  doctor::examine_rig(rig, *board, pace, move, {}, findings);
+}
+
+ExitCode run(const Options& options) {
+  const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
+  if (const auto code = unreadable(path)) return *code;
+  document::Problems problems;
+  const auto rig = daemon::load_rig(path, problems);
+  if (!rig) return refuse(problems);
+  std::fputs(problems.format().c_str(), stderr);  // warnings
+
+  doctor::Findings findings;
+  auto client = DaemonClient::connect(options.socket.empty() ? rig->socket.path : options.socket);
+  const bool runs = client.has_value() || !client.error().nobody_listens;
+  if (runs && options.move) {
+    return fail(ExitCode::state_refused, "softgripd runs and holds the board: stop it, or leave out --move");
+  }
+  if (client) {
+    ask_running(*client, *rig, findings);
+    doctor::examine_clock(findings);
+    doctor::examine_disk(*rig, findings);
+  } else if (runs) {
+    findings.fail("daemon", client.error().message, "without an answer the board is not touched");
+  } else {
+    look_myself(*rig, options.move, findings);
+  }
+
+  const doctor::Examination examination{rig->name, path, runs, options.move};
+  if (options.json) {
+    print_json(doctor::json_of(examination, findings));
+  } else {
+    const std::size_t columns = on_terminal() ? terminal_columns() : 100;
+    std::fputs(doctor::text_of(examination, findings, columns, wants_colour()).c_str(), stdout);
+  }
+  return findings.worst() == doctor::Verdict::fail ? ExitCode::not_acceptable : ExitCode::done;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "doctor",
+      "Is this rig fit to run today? Computer, board, sensors, disk: ok, warn or fail, and what to do");
+  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
+  command->add_flag("--move", options->move,
+                    "I allow it to move: each finger a little, within its limits, to see that it follows");
+  command->add_option("--socket", options->socket, "Of a running daemon [the rig file's]");
+  command->add_flag("--json", options->json, "The findings as JSON");
+  command->footer(
+      "Without a daemon it writes the lowest pressures to the board and reads; a running daemon is asked "
+      "instead.\nExit codes: 0 fit, 6 not fit, 3 the rig file is refused, 4 it cannot be read, 5 --move "
+      "while "
+      "the daemon runs.");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,152 @@
+#include "tools/doctor/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "control/running_model.h"
+#include "daemon/csv_row.h"
+#include "daemon/grid.h"
+#include "daemon/rig_file.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+/// A finger has moved when it went at least so many times the noise of a reading ...
+constexpr double noises = 6;
+/// ... and at least this share of what its model moved.
+constexpr double share_of_model = 0.2;
+/// A monitor may differ from the command by this share of the step: linearity of ordinary valves and boards.
+constexpr double share_of_step = 0.1;
+/// The step must be so large that the valve's uncontrollable bottom is left behind.
+constexpr double pressure_floor_kpa = 1;
+
+/// The model beside the finger, from rest.
+class Beside {
+ public:
+  Beside(const control::ChannelSettings& channel, double tick_s, double rest_mm)
+      : model_(channel.model, tick_s, 0, tick_s), rest_mm_(rest_mm) {
+    model_.reset(channel.limits.pressure_min_kpa);
+    origin_mm_ = model_.reading_mm(0);
+  }
+
+  /// After an exchange: the reading was taken before the command was written.
+  void take(const model::Reading& reading, double command_kpa) {
+    moved_mm_ = model_.reading_mm(0) - origin_mm_;
+    if (reading.validity == model::Validity::valid) {
+      const double residual = reading.displacement_mm - rest_mm_ - moved_mm_;
+      squares_ += residual * residual;
+      ++count_;
+    }
+    model_.advance(command_kpa);
+  }
+  [[nodiscard]] double moved_mm() const { return moved_mm_; }
+  [[nodiscard]] double rms_mm() const {
+    return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0;
+  }
+
+ private:
+  control::RunningModel model_;
+  double rest_mm_;
+  double origin_mm_ = 0;
+  double moved_mm_ = 0;
+  double squares_ = 0;
+  std::size_t count_ = 0;
+};
+
+void judge_model(const control::ChannelSettings& channel, const Motion& motion, Findings& findings) {
+  const control::ModelHealthSettings& health = channel.health;
+  const double healthy_mm = 2 * std::hypot(health.model_error_mm, health.noise_mm);
+  const std::string text =
+      fmt::format("{:.2f} mm RMS beside the motion; healthy is below {:.2f}, unfit above {:.2f}",
+                  motion.residual_rms_mm, healthy_mm, health.unfit_mm);
+  const std::string name = "model " + channel.name;
+  if (motion.residual_rms_mm > health.unfit_mm) {
+    findings.fail(name, text,
+                  "another finger, wear, leak or a moved sensor: look, calibrate, then identify again");
+  } else if (motion.residual_rms_mm > healthy_mm) {
+    findings.warn(name, text, "grip detection loses margin: record tp1 and identify again soon");
+  } else {
+    findings.ok(name, text);
+  }
+}
+
+}  // namespace
+
+HandDrive::Expected<Motion> move_and_watch(const daemon::RigFile& rig, HandDrive& drive, std::size_t channel,
+                                           const ChannelSample& rest, const MoveSettings& settings) {
+  const control::ChannelSettings& of = rig.settings.channels[channel];
+  const double lowest = of.limits.pressure_min_kpa;
+  const double step = settings.share * (of.limits.pressure_max_kpa - lowest);
+  const double speed = step / settings.duration_s;
+  Beside beside(of, daemon::seconds(drive.period()), rest.displacement_mm.mean);
+  const HandDrive::Watch watch = [&](const std::vector<double>& commands,
+                                     const std::vector<model::Reading>& readings) {
+    beside.take(readings[channel], commands[channel]);
+  };
+  Motion motion;
+  motion.command_kpa = lowest + step;
+  if (const auto up = drive.ramp(channel, motion.command_kpa, speed, watch); !up)
+    return tl::unexpected(up.error());
+  const auto settling = drive.sample(settings.settle_s / 2, watch);
+  if (!settling) return tl::unexpected(settling.error());
+  const auto there = drive.sample(settings.settle_s / 2, watch);
+  if (!there) return tl::unexpected(there.error());
+  motion.up = (*there)[channel];
+  motion.model_mm = beside.moved_mm();
+  if (const auto down = drive.ramp(channel, lowest, speed, watch); !down) return tl::unexpected(down.error());
+  const auto after = drive.sample(settings.settle_s, watch);
+  if (!after) return tl::unexpected(after.error());
+  motion.residual_rms_mm = beside.rms_mm();
+  return motion;
+}
+
+void judge_motion(const daemon::RigFile& rig, std::size_t channel, const ChannelSample& rest,
+                  const Motion& motion, Findings& findings) {
+  const control::ChannelSettings& of = rig.settings.channels[channel];
+  const double step_kpa = motion.command_kpa - of.limits.pressure_min_kpa;
+  const std::string name = "valve " + of.name;
+  bool valve_follows = true;
+  if (motion.up.pressure_kpa.count > 0) {
+    const double off = motion.up.pressure_kpa.mean - motion.command_kpa;
+    valve_follows = std::abs(off) <= std::max(share_of_step * step_kpa, pressure_floor_kpa);
+    const std::string text = fmt::format("{:.2f} kPa were asked for, the monitor shows {:.2f}",
+                                         motion.command_kpa, motion.up.pressure_kpa.mean);
+    if (valve_follows) {
+      findings.ok(name, text);
+    } else {
+      findings.fail(name, text,
+                    "supply pressure, valve power, a leak or a kinked line; if all is well there, "
+                    "calibrate valve and monitor");
+    }
+  } else {
+    findings.ok(name, "no pressure monitor: judged by the finger alone");
+  }
+  if (!of.displacement_used) return;
+  const double moved_mm = motion.up.displacement_mm.mean - rest.displacement_mm.mean;
+  const double least_mm =
+      std::max(noises * rest.displacement_mm.deviation, share_of_model * std::abs(motion.model_mm));
+  const std::string text = fmt::format("moved {:.2f} mm at {:.1f} kPa, the model {:.2f} mm", moved_mm,
+                                       motion.command_kpa, motion.model_mm);
+  if (motion.up.displacement_mm.invalid > 0) {
+    findings.fail(
+        "finger " + of.name,
+        fmt::format("readings were not valid on the way: {}", daemon::name_of(motion.up.displacement_mm.why)),
+        "the finger leaves the sensor's range, or its beam is cut");
+  } else if (std::abs(moved_mm) < least_mm) {
+    findings.fail(
+        "finger " + of.name, text,
+        motion.up.pressure_kpa.count > 0 && valve_follows
+            ? "the pressure is there: a sensor that is stuck, a burst finger, or a line blocked behind "
+              "the valve"
+            : "no supply, a blocked line, or a sensor that is stuck: move the finger by hand and watch");
+  } else if (moved_mm * motion.model_mm < 0) {
+    findings.fail("finger " + of.name, text, "the sensor's sign is wrong: calibrate it");
+  } else {
+    findings.ok("finger " + of.name, text);
+    judge_model(of, motion, findings);
+  }
+}
+
+}  // namespace softgrip::tools::doctor
