@@ -1,13 +1,13 @@
 #include "sysid/diagnosis/diagnosis.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "model/catalogue.h"
 #include "sysid/combinations.h"
 #include "sysid/diagnosis/coherence.h"
+#include "sysid/diagnosis/leftover.h"
 #include "sysid/diagnosis/noise.h"
 #include "sysid/diagnosis/spectrum_peaks.h"
 #include "sysid/diagnosis/staircase_selection.h"
@@ -21,16 +21,6 @@ namespace {
 
 using Failure = tl::unexpected<std::string>;
 
-/// Share of the recalibrated model's excess (as a mean square) that a set of causes may leave and still be
-/// called the cause: beyond it something else is at work, or the cause has another form.
-constexpr double may_be_left = 0.15;
-/// Less may be left where it stands clearly above the noise: then the data could have shown the cause whole,
-/// and did not. What is smaller than these may have to do with the form of an equation alone.
-struct Leftover {
-  double noises;  ///< above so many times the noise
-  double share;   ///< so much may be left
-};
-constexpr std::array clear_leftovers{Leftover{3, 0.05}, Leftover{5, 0.02}};
 constexpr double clearly_correlated = 0.05;
 constexpr double block_s = 8;
 constexpr std::size_t fewest_samples = 200;
@@ -240,11 +230,7 @@ class Diagnostician {
     if (selection.chosen.empty()) {
       return !left_by_outliers(selection.left) && selection.left.excess_mm > 0.2 * d_.noise_mm;
     }
-    double may_stay = may_be_left;
-    for (const Leftover& clear : clear_leftovers) {
-      if (selection.left.excess_mm > clear.noises * d_.noise_mm) may_stay = clear.share;
-    }
-    return square(selection.left.excess_mm) > may_stay * square(selection.base_structure.excess_mm);
+    return sysid::leaves_too_much(selection.left, selection.base_structure, d_.noise_mm);
   }
 
   /// A valve that sticks leaves what no simulation from the command alone can foretell. True where that is

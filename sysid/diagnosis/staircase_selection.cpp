@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "sysid/diagnosis/leftover.h"
 #include "sysid/diagnosis/spectrum_peaks.h"
 #include "sysid/diagnosis/staircase.h"
 
@@ -89,7 +90,11 @@ std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data
   driven.threads = data.threads;
   StructureFit base = base_behind(*found);
   driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm, 3);
-  Selection beyond = select_causes(driven, std::move(base), noise_mm, division, options);
+  // What a course that is a jump off here and there leaves is no second cause.
+  SelectionOptions behind = options;
+  if (!leaves_too_much(structure_of(base.residual_mm, noise_mm), plain.base_structure, noise_mm))
+    behind.most_causes = 0;
+  Selection beyond = select_causes(driven, std::move(base), noise_mm, division, behind);
 
   StaircaseSelection result;
   result.evidence = {found->band_kpa,
