@@ -141,15 +141,18 @@ Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelS
   return {};
 }
 
-/// A pressure that is not measured in this cycle says nothing. While the daemon starts and after every gap of
-/// the bus the finger may still have the pressure of before.
+/// A cycle without an exchange says nothing, neither for nor against: a wire that stutters must not hide a
+/// burst line. Without a measured pressure there is nothing to be off. While the daemon starts and after a
+/// gap that is a fault itself the finger may still have the pressure of before.
 bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept {
   if (settings_.pressure_cycles == 0) return false;
-  if (starting || !bus_good()) {
+  if (starting || bus_cycles_ >= settings_.bus_down_cycles) {
     channel.pressure_grace = static_cast<std::uint32_t>(grace_windows * pressure_window_);
-  } else if (channel.pressure_grace > 0) {
-    --channel.pressure_grace;
+    channel.pressure_cycles = 0;
+    return false;
   }
+  if (!bus_good()) return false;
+  if (channel.pressure_grace > 0) --channel.pressure_grace;
   const bool wrong = std::isfinite(pressure_kpa) && channel.pressure_grace == 0 &&
                      off(channel, pressure_kpa, pressure_window_, settings_.pressure_tolerance_kpa);
   channel.pressure_cycles = wrong ? channel.pressure_cycles + 1 : 0;

@@ -228,6 +228,24 @@ TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
   EXPECT_EQ(rig.output().first_fault, FaultCode::pressure_not_followed) << "but not for ever";
 }
 
+TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.run(2);
+  rig.fault[0].pressure_offset_kpa = 40;
+  for (int i = 0; i < 3 * static_cast<int>(settings.faults.pressure_cycles); ++i) {
+    rig.wire_cut = i % 3 == 0;
+    rig.tick();
+  }
+  EXPECT_EQ(rig.output().first_fault, FaultCode::pressure_not_followed);
+  rig.wire_cut = false;
+  rig.fault[0].no_pressure = true;
+  rig.run(1);
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::fault_acknowledged)) << "what is not measured any more is no cause";
+}
+
 TEST_F(SingleFault, APressureThatIsNotMeasuredIsNoFault) {
   SimulatedRig rig(settings);
   rig.fault[0].no_pressure = true;
