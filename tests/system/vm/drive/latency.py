@@ -16,6 +16,8 @@ TURN_S = 10
 ROUNDS = 3
 LOADS = ["hackbench -g 2 -f 4 -l 1000", "find / -xdev -type f -exec true {} +",
          "dd if=/dev/zero of=/var/tmp/load bs=64k count=64 conv=fsync"]
+# A quarter of a period, and twice the longest wake-up of cyclictest under load on this kernel (123 us).
+MOST_US = 250
 RIG = CONFIGURATION / "rig_service.yaml"
 
 
@@ -97,6 +99,7 @@ def main():
     print(f"{sh('uname -srv').strip()}; {RATE_HZ} Hz, SCHED_FIFO {PRIORITY}, {ROUNDS} turns of {TURN_S} s each",
           flush=True)
     print("| wake-up [us] | p50 | p99 | p99.9 | max | number |\n|---|---|---|---|---|---|", flush=True)
+    beyond = []
     with tempfile.TemporaryDirectory() as folder:
         for name, result in (("idle", measure(pathlib.Path(folder))),
                              ("loaded", with_load(measure, pathlib.Path(folder)))):
@@ -105,8 +108,10 @@ def main():
                 cells = [quantile(counts, share) for share in (0.5, 0.99, 0.999, 1)] + [sum(counts.values())]
                 print(f"| {program}, {name} | " + " | ".join(str(cell) for cell in cells) + " |", flush=True)
             print(f"softgripd {name}: {slips} slips, {failed} failed exchanges", flush=True)
+            if slips > 0 or quantile(rows["softgripd"], 1) > MOST_US:
+                beyond.append(name)
     terminate(emulator.process)
-    print("LATENCY: PASSED", flush=True)
+    print(f"LATENCY: {'FAILED, ' + ' and '.join(beyond) if beyond else 'PASSED'}", flush=True)
 
 
 if __name__ == "__main__":
