@@ -19,12 +19,12 @@
 
 #include "drivers/board_map_file.h"
 #include "drivers/clock.h"
-#include "drivers/modbus_tcp_board.h"
+#include "drivers/modbus_board.h"
 
 namespace {
 
 using namespace softgrip;
-using drivers::ModbusTcpBoard;
+using drivers::ModbusBoard;
 
 constexpr std::size_t block = 100;
 
@@ -94,6 +94,12 @@ std::vector<drivers::ChannelWiring> wiring() {
   return channels;
 }
 
+drivers::ModbusSettings settings(std::uint16_t port, const drivers::BoardMap& map) {
+  return {.links = {drivers::TcpAddress{"127.0.0.1", port}},
+          .modules = {{.name = "bench", .map = map, .unit = 255}},
+          .wiring = wiring()};
+}
+
 struct Contender {
   std::string name;
   std::function<bool()> exchange;
@@ -133,16 +139,8 @@ modbus_t* libmodbus_client(std::uint16_t port) {
 int main(int argc, char** argv) {
   const std::size_t exchanges = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 20000;
   std::array<Server, 4> servers;
-  ModbusTcpBoard pair({.host = "127.0.0.1",
-                       .port = servers[0].port(),
-                       .unit = 255,
-                       .map = map_with(false),
-                       .wiring = wiring()});
-  ModbusTcpBoard single({.host = "127.0.0.1",
-                         .port = servers[1].port(),
-                         .unit = 255,
-                         .map = map_with(true),
-                         .wiring = wiring()});
+  ModbusBoard pair(settings(servers[0].port(), map_with(false)));
+  ModbusBoard single(settings(servers[1].port(), map_with(true)));
   if (pair.connect(std::chrono::seconds(5)) != drivers::BusStatus::ok ||
       single.connect(std::chrono::seconds(5)) != drivers::BusStatus::ok) {
     std::fprintf(stderr, "cannot connect: %s%s\n", pair.detail(), single.detail());
@@ -155,7 +153,7 @@ int main(int argc, char** argv) {
   std::array<model::Reading, 2> readings;
   const std::array<std::uint16_t, 2> out{1229, 1638};
   std::array<std::uint16_t, 2> in{};
-  const auto exchange = [&](ModbusTcpBoard& board) {
+  const auto exchange = [&](ModbusBoard& board) {
     return board.exchange(commands, readings, std::chrono::seconds(5)) == drivers::BusStatus::ok;
   };
   std::vector<Contender> contenders{

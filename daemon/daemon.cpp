@@ -43,13 +43,9 @@ const char* name_of(InputFile::Role role) {
 }
 
 bool measures_pressure(const RigFile& rig) {
-  if (const auto* simulated = std::get_if<drivers::SimulatedBoardSettings>(&rig.board)) {
-    return std::any_of(simulated->channels.begin(), simulated->channels.end(),
-                       [](const drivers::SimulatedChannel& channel) { return channel.measures_pressure; });
-  }
-  const auto& wiring = std::get<drivers::ModbusTcpSettings>(rig.board).wiring;
-  return std::any_of(wiring.begin(), wiring.end(),
-                     [](const drivers::ChannelWiring& channel) { return channel.pressure.has_value(); });
+  const auto& channels = rig.settings.channels;
+  return std::any_of(channels.begin(), channels.end(),
+                     [](const control::ChannelSettings& channel) { return channel.pressure_measured; });
 }
 
 Provenance provenance_of(const RigFile& rig, const DaemonOptions& options) {
@@ -76,7 +72,10 @@ std::unique_ptr<drivers::Board> make_board(const RigFile& rig, const drivers::Cl
   if (const auto* simulated = std::get_if<drivers::SimulatedBoardSettings>(&rig.board)) {
     return std::make_unique<drivers::SimulatedBoard>(*simulated, clock);
   }
-  return std::make_unique<drivers::ModbusTcpBoard>(std::get<drivers::ModbusTcpSettings>(rig.board));
+  if (const auto* converters = std::get_if<drivers::IioSettings>(&rig.board)) {
+    return std::make_unique<drivers::IioBoard>(*converters);
+  }
+  return std::make_unique<drivers::ModbusBoard>(std::get<drivers::ModbusSettings>(rig.board));
 }
 
 DaemonParts::DaemonParts(RigFile rig_file, DaemonOptions run_options)

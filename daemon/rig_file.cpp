@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -45,22 +46,38 @@ void remember(Context& context, InputFile::Role role, const document::Document& 
   }
 }
 
-/// Reads either kind of board; the simulated one needs the channels and comes after them.
+struct BoardKind {
+  const char* key;
+  void (*read)(Context& context, const document::Node& node);
+  bool after_channels;  ///< the simulated one needs them; of the others they need the terminals
+};
+constexpr std::array<BoardKind, 4> board_kinds{
+    BoardKind{"simulated", read_simulated_board, true}, BoardKind{"modbus_tcp", read_modbus_tcp, false},
+    BoardKind{"modbus_rtu", read_modbus_rtu, false}, BoardKind{"iio", read_iio, false}};
+
 void read_board_and_channels(Context& context, MapReader& top) {
   const document::Node* const board = top.child("board", true);
-  const document::Node* simulated = nullptr;
+  const BoardKind* kind = nullptr;
+  const document::Node* node = nullptr;
   if (board != nullptr) {
     MapReader reader(context.document, *board, context.problems, "board");
-    const document::Node* const modbus = reader.child("modbus_tcp", false);
-    simulated = reader.child("simulated", false);
-    const bool is_map = board->kind == document::Node::Kind::map;
-    if (is_map && (modbus == nullptr) == (simulated == nullptr) && reader.keys().size() != 1) {
-      top.report("board", "board must hold either `simulated` or `modbus_tcp`");
+    std::size_t found = 0;
+    for (const BoardKind& one : board_kinds) {
+      const document::Node* const child = reader.child(one.key, false);
+      if (child == nullptr) continue;
+      ++found;
+      kind = &one;
+      node = child;
     }
-    if (modbus != nullptr) read_modbus_board(context, *modbus);
+    const bool is_map = board->kind == document::Node::Kind::map;
+    if (is_map && found != 1 && reader.keys().size() != 1) {
+      top.report("board", "board must hold one of `simulated`, `modbus_tcp`, `modbus_rtu` and `iio`");
+    }
   }
+  if (kind != nullptr) context.board_key = kind->key;
+  if (kind != nullptr && !kind->after_channels) kind->read(context, *node);
   read_channels(context, top);
-  if (simulated != nullptr) read_simulated_board(context, *simulated);
+  if (kind != nullptr && kind->after_channels) kind->read(context, *node);
 }
 
 }  // namespace
@@ -135,7 +152,7 @@ std::optional<RigFile> read_rig(const document::Document& document, document::Pr
   RigFile rig;
   rig.path = document.file;
   rig.inputs.push_back({InputFile::Role::rig, document.file, document.text});
-  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}};
+  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}};
   MapReader top(document, document.root, problems, "the rig");
   rig.name = read_name(top, "name");
   rig.settings.rate_hz = top.number("rate_hz", {1, 10'000});

@@ -16,7 +16,8 @@
 #include "daemon/recorder_settings.h"
 #include "daemon/socket_settings.h"
 #include "drivers/channel_wiring.h"
-#include "drivers/modbus_tcp_board.h"
+#include "drivers/iio_board.h"
+#include "drivers/modbus_board.h"
 #include "drivers/simulated_board.h"
 #include "model/document/node.h"
 
@@ -48,7 +49,7 @@ struct RigFile {
   control::RigSettings settings;               ///< channels in the order of the file
   std::vector<ValveFacts> valves;              ///< one per channel
   std::vector<drivers::ChannelWiring> wiring;  ///< one per channel, as the file says, on every board
-  std::variant<drivers::SimulatedBoardSettings, drivers::ModbusTcpSettings> board;
+  std::variant<drivers::SimulatedBoardSettings, drivers::ModbusSettings, drivers::IioSettings> board;
   std::optional<std::uint64_t> seed;  ///< of a simulated board, as written
   /// The sentence by which the file accepts a board that does not vent by itself; empty: it has a watchdog.
   std::string accept_no_watchdog;

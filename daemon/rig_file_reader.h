@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "daemon/rig_file.h"
 #include "model/document/reader.h"
@@ -13,16 +14,25 @@ namespace softgrip::daemon::rig_file {
 
 using document::MapReader;
 
+/// A module of the board, as far as it could be read.
+struct KnownModule {
+  std::string name;
+  std::optional<drivers::ModuleTerminals> terminals;
+};
+/// A terminal of a module.
+using UsedTerminals = std::map<std::pair<std::size_t, std::size_t>, document::Location>;
+
 /// What is carried along while a rig file is read.
 struct Context {
   const document::Document& document;
   document::Problems& problems;
   RigFile& rig;
-  std::optional<drivers::BoardMap> map;              ///< of a Modbus board, if it could be read
-  std::vector<drivers::ChannelWiring> wiring;        ///< one per channel
-  std::map<std::string, document::Location> names;   ///< of channels, and where each stands
-  std::map<std::size_t, document::Location> inputs;  ///< terminals in use
-  std::map<std::size_t, document::Location> outputs;
+  std::string board_key;                            ///< which kind of board it is
+  std::vector<KnownModule> modules;                 ///< of a board with terminals
+  std::vector<drivers::ChannelWiring> wiring;       ///< one per channel
+  std::map<std::string, document::Location> names;  ///< of channels, and where each stands
+  UsedTerminals inputs;
+  UsedTerminals outputs;
   std::map<std::string, std::optional<model::Model>> models;  ///< by path: each file is read once
 
   bool rate_known = false;  ///< rate_hz was good: what is compared with a cycle can be
@@ -48,7 +58,11 @@ void report_repeated(MapReader& reader, std::string_view key, const std::string&
                      document::Location first);
 
 /// The maps at the top of the file.
-void read_modbus_board(Context& context, const document::Node& node);
+void read_modbus_tcp(Context& context, const document::Node& node);
+void read_modbus_rtu(Context& context, const document::Node& node);
+void read_iio(Context& context, const document::Node& node);
+/// Of a board that takes its time: how long exchanges may take, how a lost session is made anew.
+void read_timing(Context& context, MapReader& board);
 void read_channels(Context& context, MapReader& top);
 void read_simulated_board(Context& context, const document::Node& node);
 void read_safety(Context& context, MapReader& top);

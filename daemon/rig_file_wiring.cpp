@@ -1,7 +1,7 @@
 // How a channel of a rig file is wired: valve, sensor, pressure monitor.
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "daemon/rig_file_reader.h"
 #include "model/document/number.h"
@@ -23,14 +23,31 @@ struct ElectricalKey {
   ElectricalUnit unit = ElectricalUnit::volt;
 };
 
-ElectricalKey electrical_key(MapReader& reader, const std::string& stem) {
-  const bool ma = reader.has(stem + "_ma");
-  if (ma && reader.has(stem + "_v")) {
-    reader.report(stem + "_ma", "`" + stem + "_v` and `" + stem + "_ma` exclude each other");
+constexpr std::array<std::pair<std::string_view, ElectricalUnit>, 3> electrical_suffixes{
+    {{"_v", ElectricalUnit::volt},
+     {"_ma", ElectricalUnit::milliampere},
+     {"_kpa", ElectricalUnit::kilopascal}}};
+
+std::string_view suffix_of(ElectricalUnit unit) {
+  for (const auto& [suffix, of] : electrical_suffixes) {
+    if (of == unit) return suffix;
   }
-  if (ma && !reader.has(stem + "_v")) return {stem + "_ma", ElectricalUnit::milliampere};
-  if (ma) reader.optional_numbers(stem + "_ma", 2, electrical);
-  return {stem + "_v", ElectricalUnit::volt};
+  return {};
+}
+
+ElectricalKey electrical_key(MapReader& reader, const std::string& stem) {
+  std::optional<ElectricalKey> found;
+  for (const auto& [suffix, unit] : electrical_suffixes) {
+    const std::string name = stem + std::string(suffix);
+    if (!reader.has(name)) continue;
+    if (!found) {
+      found = ElectricalKey{name, unit};
+      continue;
+    }
+    reader.report(name, "`" + found->name + "` and `" + name + "` exclude each other");
+    reader.optional_numbers(name, 2, electrical);
+  }
+  return found.value_or(ElectricalKey{stem + "_v", ElectricalUnit::volt});
 }
 
 /// `at_v: [0, 10], is_kpa: [0, 100]`
@@ -52,29 +69,56 @@ drivers::TwoPoints read_scaling(MapReader& reader, const std::string& at_key, st
   return {at[0], is[0], at[1], is[1]};
 }
 
-/// A terminal of the board, used once, there, and of the right unit.
-std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key,
-                          std::map<std::size_t, document::Location>& used) {
+/// Which module of the board a terminal belongs to: said by `module`, or the only one that has such
+/// terminals.
+std::size_t read_module(const Context& context, MapReader& reader, std::string_view key) {
+  if (context.modules.size() <= 1) return 0;
+  std::vector<std::string> names;
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < context.modules.size(); ++i) {
+    const KnownModule& module = context.modules[i];
+    names.push_back(module.name);
+    if (!module.terminals) continue;
+    const auto& terminals = key == "output" ? module.terminals->outputs : module.terminals->inputs;
+    if (!terminals.empty()) candidates.push_back(i);
+  }
+  if (candidates.size() == 1 && !reader.has("module")) return candidates.front();
+  const std::size_t chosen = reader.choice("module", names);
+  return reader.good("module") ? chosen : context.modules.size();
+}
+
+/// The terminal in the module's words, if the module could be read and has it.
+const drivers::Terminal* terminal_of(const Context& context, std::string_view key, std::size_t module,
+                                     std::size_t index) {
+  if (module >= context.modules.size() || !context.modules[module].terminals) return nullptr;
+  const drivers::ModuleTerminals& known = *context.modules[module].terminals;
+  const auto& terminals = key == "output" ? known.outputs : known.inputs;
+  return index < terminals.size() ? &terminals[index] : nullptr;
+}
+
+/// A terminal of the board, used once, and there.
+std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key, std::size_t module,
+                          UsedTerminals& used) {
   const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
-  if (!reader.good(key)) return terminal;
-  const auto [first, fresh] = used.try_emplace(terminal, reader.where(key));
+  const bool unknown_module = !context.modules.empty() && module >= context.modules.size();
+  if (!reader.good(key) || unknown_module) return terminal;
+  const auto [first, fresh] = used.try_emplace({module, terminal}, reader.where(key));
   if (!fresh) {
     report_repeated(reader, key, "the " + std::string(key) + " " + std::to_string(terminal), first->second);
   }
-  if (context.map) {
-    const drivers::TerminalBlock& block = key == "output" ? context.map->outputs : context.map->inputs;
-    if (terminal >= block.registers.count) {
-      reader.report(key, "the board has no " + std::string(key) + " " + std::to_string(terminal),
-                    "they count from 0 to " + std::to_string(block.registers.count - 1));
-    }
-  }
+  const bool known = module < context.modules.size() && context.modules[module].terminals.has_value();
+  if (!known || terminal_of(context, key, module, terminal) != nullptr) return terminal;
+  const drivers::ModuleTerminals& there = *context.modules[module].terminals;
+  const std::size_t count = key == "output" ? there.outputs.size() : there.inputs.size();
+  const std::string who = context.modules.size() > 1 ? "the module `" + there.name + "`" : "the board";
+  reader.report(key, who + " has no " + std::string(key) + " " + std::to_string(terminal),
+                count == 0 ? "it has none at all" : "they count from 0 to " + std::to_string(count - 1));
   return terminal;
 }
 
-void check_unit(Context& context, MapReader& reader, const ElectricalKey& key,
-                const drivers::TerminalBlock& block) {
-  if (!context.map || !reader.has(key.name) || block.unit == key.unit) return;
-  reader.report(key.name, "the board's terminals are in " + std::string(drivers::name_of(block.unit)) +
+void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Terminal* terminal) {
+  if (terminal == nullptr || !reader.has(key.name) || terminal->unit == key.unit) return;
+  reader.report(key.name, "the board's terminals are in " + std::string(drivers::name_of(terminal->unit)) +
                               " but `" + key.name + "` is in " + std::string(drivers::name_of(key.unit)));
 }
 
@@ -91,7 +135,7 @@ void read_validity(MapReader& reader, const std::string& valid_key, drivers::Inp
 /// `error_codes: [{at_ma: 3.75, tolerance_ma: 0.05}]`
 void read_error_codes(Context& context, MapReader& reader, const std::string& who,
                       drivers::InputWiring& wiring) {
-  const std::string suffix = wiring.unit == ElectricalUnit::volt ? "_v" : "_ma";
+  const std::string suffix(suffix_of(wiring.unit));
   for (const Node* item : reader.sequence("error_codes", false)) {
     MapReader code(context.document, *item, context.problems, "an error code of the " + who);
     const double at = code.number("at" + suffix, electrical);
@@ -103,12 +147,13 @@ void read_error_codes(Context& context, MapReader& reader, const std::string& wh
 drivers::InputWiring read_input(Context& context, MapReader& reader, const std::string& who,
                                 std::string_view is_key, document::Range is_range) {
   drivers::InputWiring wiring;
-  wiring.input = read_terminal(context, reader, "input", context.inputs);
+  wiring.module = read_module(context, reader, "input");
+  wiring.input = read_terminal(context, reader, "input", wiring.module, context.inputs);
   const ElectricalKey at = electrical_key(reader, "at");
   wiring.unit = at.unit;
   wiring.scaling = read_scaling(reader, at.name, is_key, is_range);
-  if (context.map) check_unit(context, reader, at, context.map->inputs);
-  read_validity(reader, at.unit == ElectricalUnit::volt ? "valid_v" : "valid_ma", wiring);
+  check_unit(reader, at, terminal_of(context, "input", wiring.module, wiring.input));
+  read_validity(reader, "valid" + std::string(suffix_of(at.unit)), wiring);
   read_error_codes(context, reader, who, wiring);
   return wiring;
 }
@@ -133,20 +178,18 @@ void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
                     "): resolution and linearity suffer",
                 "a valve with a smaller range resolves the finger better");
   }
-  if (!context.map) return;
-  const drivers::TerminalBlock& block = context.map->outputs;
-  const double a = block.scaling.y_at(block.raw_min);
-  const double b = block.scaling.y_at(block.raw_max);
+  const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
+  if (terminal == nullptr) return;
   // Full scale is often one count beyond the largest raw number.
-  const double slack = std::abs(b - a) * 1e-3;
+  const double slack = (terminal->highest - terminal->lowest) * 1e-3;
   for (const double pressure : {limits.pressure_min_kpa, limits.pressure_max_kpa}) {
     const double needed = wiring.scaling.x_at(pressure);
-    if (needed >= std::min(a, b) - slack && needed <= std::max(a, b) + slack) continue;
-    const std::string unit(drivers::name_of(block.unit));
+    if (needed >= terminal->lowest - slack && needed <= terminal->highest + slack) continue;
+    const std::string unit(drivers::name_of(terminal->unit));
     reader.report(at.name,
                   written(pressure) + " kPa needs " + written(needed) + " " + unit +
-                      ", the board's outputs go from " + written(std::min(a, b)) + " to " +
-                      written(std::max(a, b)) + " " + unit,
+                      ", the board's outputs go from " + written(terminal->lowest) + " to " +
+                      written(terminal->highest) + " " + unit,
                   "check the two points, or narrow the limits");
   }
 }
@@ -156,7 +199,7 @@ void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
   const double a = wiring.scaling.y_at(wiring.valid_min);
   const double b = wiring.scaling.y_at(wiring.valid_max);
   if (limits.displacement_min_mm >= std::min(a, b) && limits.displacement_max_mm <= std::max(a, b)) return;
-  reader.warn(reader.has("valid_v") ? "valid_v" : "valid_ma",
+  reader.warn("valid" + std::string(suffix_of(wiring.unit)),
               "the limits allow " + written(limits.displacement_min_mm) + " to " +
                   written(limits.displacement_max_mm) + " mm, the valid range of the sensor is " +
                   written(std::min(a, b)) + " to " + written(std::max(a, b)) + " mm",
@@ -170,11 +213,12 @@ drivers::OutputWiring read_valve(Context& context, const Node& node, const std::
   const std::size_t before = context.problems.size();
   MapReader reader(context.document, node, context.problems, "the valve of " + who);
   drivers::OutputWiring wiring;
-  wiring.output = read_terminal(context, reader, "output", context.outputs);
+  wiring.module = read_module(context, reader, "output");
+  wiring.output = read_terminal(context, reader, "output", wiring.module, context.outputs);
   const ElectricalKey at = electrical_key(reader, "at");
   wiring.unit = at.unit;
   wiring.scaling = read_scaling(reader, at.name, "is_kpa", {-200, 10'000});
-  if (context.map) check_unit(context, reader, at, context.map->outputs);
+  check_unit(reader, at, terminal_of(context, "output", wiring.module, wiring.output));
   const auto range = reader.numbers("range_kpa", 2, {-200, 10'000});
   facts.range_min_kpa = range[0];
   facts.range_max_kpa = range[1];

@@ -18,8 +18,8 @@ namespace softgrip::drivers {
 enum class RegisterKind : std::uint8_t { uint16, int16, uint32, int32, float32 };
 /// Which word of a number of two registers comes first (the lower address).
 enum class WordOrder : std::uint8_t { high_first, low_first };
-/// What a terminal carries.
-enum class ElectricalUnit : std::uint8_t { volt, milliampere };
+/// What a terminal carries. A pressure generator's "terminal" is its air port: it is told kilopascals.
+enum class ElectricalUnit : std::uint8_t { volt, milliampere, kilopascal };
 
 /// Registers that a number of this kind takes: 1 or 2.
 [[nodiscard]] constexpr std::uint16_t words_of(RegisterKind kind) noexcept {
@@ -27,7 +27,7 @@ enum class ElectricalUnit : std::uint8_t { volt, milliampere };
 }
 /// "uint16" ... "float32", as the board file writes them.
 [[nodiscard]] std::string_view name_of(RegisterKind kind) noexcept;
-/// "V", "mA"
+/// "V", "mA", "kPa"
 [[nodiscard]] std::string_view name_of(ElectricalUnit unit) noexcept;
 
 /// Consecutive numbers of one kind. `address` is what goes over the wire (counted from 0): the loader has
@@ -47,11 +47,12 @@ struct RegisterBlock {
   }
 };
 
-/// Terminals of one direction: their registers and what the raw numbers mean at the terminal.
+/// Terminals of one direction: their registers and what the raw numbers mean at the terminal. A module that
+/// has none of this direction has a count of 0.
 struct TerminalBlock {
   RegisterBlock registers;
   ElectricalUnit unit = ElectricalUnit::volt;
-  TwoPoints scaling;   ///< x: raw, y: V or mA
+  TwoPoints scaling;   ///< x: raw, y: in `unit`
   double raw_min = 0;  ///< what the converter can deliver or accept; outside, a write is refused
   double raw_max = 0;
   int bits = 0;                    ///< of the converter over [raw_min, raw_max]; 0: not quantised (float)
@@ -95,7 +96,8 @@ struct BoardWatchdog {
   struct Tripped {
     std::uint8_t function = 0;  ///< 1 or 2 (a coil, an input) or 3, 4 (a register)
     std::uint16_t address = 0;
-    std::uint16_t mask = 0xffff;  ///< tripped if (number & mask) is not 0
+    std::uint16_t mask = 0xffff;  ///< tripped if (number & mask) is not 0 ...
+    std::uint16_t count = 1;      ///< ... in any of so many (one per output)
   };
 
   Kind kind = Kind::none;
@@ -104,8 +106,8 @@ struct BoardWatchdog {
   Feed feed = Feed::any_request;
   std::vector<std::uint8_t> functions;
   std::optional<FixedWrite> feed_write;
-  std::optional<Tripped> tripped;   ///< where the board says that it tripped
-  std::optional<FixedWrite> clear;  ///< what ends the tripped state; absent: any write does
+  std::optional<Tripped> tripped;  ///< where the board says that it tripped
+  std::vector<FixedWrite> clear;   ///< what ends the tripped state, in this order; empty: any write does
 };
 
 /// A board file.
@@ -123,7 +125,12 @@ struct BoardMap {
   std::optional<StatusBlock> input_status;
   std::optional<ReadBack> read_back;
   BoardWatchdog watchdog;
-  std::vector<FixedWrite> setup;  ///< written, in this order, whenever a session was opened
+  /// Written, in this order, whenever a session was opened; to a board whose watchdog has tripped only after
+  /// that was cleared.
+  std::vector<FixedWrite> setup;
+
+  [[nodiscard]] bool has_inputs() const noexcept { return inputs.registers.count > 0; }
+  [[nodiscard]] bool has_outputs() const noexcept { return outputs.registers.count > 0; }
 };
 
 }  // namespace softgrip::drivers

@@ -20,6 +20,19 @@ constexpr int fc_write_registers = 16;
 constexpr int fc_read_holding = 3;
 constexpr std::int64_t last_address = 0xffff;
 
+/// How keys end that are in this unit.
+std::string_view suffix_of(ElectricalUnit unit) {
+  switch (unit) {
+    case ElectricalUnit::volt:
+      return "_v";
+    case ElectricalUnit::milliampere:
+      return "_ma";
+    case ElectricalUnit::kilopascal:
+      return "_kpa";
+  }
+  return {};
+}
+
 Range raw_range(RegisterKind kind) {
   switch (kind) {
     case RegisterKind::uint16:
@@ -52,14 +65,15 @@ class BoardReader {
                                                                                 : WordOrder::low_first;
     map_.has_fc23 = in.boolean("fc23");
     map_.readable_gap = static_cast<std::uint16_t>(in.optional_integer("readable_gap", 0, 120).value_or(0));
-    if (const Node* node = in.child("inputs", true)) inputs(*node);
-    if (const Node* node = in.child("outputs", true)) outputs(*node);
+    if (const Node* node = in.child("inputs", !in.has("outputs"))) inputs(*node);
+    if (const Node* node = in.child("outputs", !in.has("inputs"))) outputs(*node);
     if (const Node* node = in.child("input_status", false)) input_status(*node);
     if (const Node* node = in.child("read_back", false)) read_back(*node);
     if (const Node* node = in.child("watchdog", true)) watchdog(*node);
     for (const Node* node : in.sequence("setup", false)) {
       map_.setup.push_back(fixed_write(*node, "a write of setup"));
     }
+    check_directions(in);
     check_fc23(in);
     return std::move(map_);
   }
@@ -92,9 +106,10 @@ class BoardReader {
   void scaling(MapReader& in, TerminalBlock& block) {
     const std::size_t before = problems_.size();
     const std::vector<double> raw = in.numbers("at_raw", 2, {});
-    const bool milliampere = in.has("is_ma");
-    block.unit = milliampere ? ElectricalUnit::milliampere : ElectricalUnit::volt;
-    const std::string_view key = milliampere ? "is_ma" : "is_v";
+    block.unit = in.has("is_ma")    ? ElectricalUnit::milliampere
+                 : in.has("is_kpa") ? ElectricalUnit::kilopascal
+                                    : ElectricalUnit::volt;
+    const std::string key = "is" + std::string(suffix_of(block.unit));
     const std::vector<double> electrical = in.numbers(key, 2, {-1000, 1000});
     block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
     // What was refused already is not complained of twice.
@@ -190,16 +205,40 @@ class BoardReader {
     write.function =
         function(in, {fc_write_coil, fc_write_register, fc_write_registers}, "a write has one of");
     write.address = address(in, 1);
-    write.value =
-        static_cast<std::uint16_t>(in.integer("value", 0, write.function == fc_write_coil ? 1 : 0xffff));
+    write.value = value_of(in, write.function == fc_write_coil ? 1 : 0xffff);
     return write;
+  }
+
+  /// A number, or the mask of the functions that feed the watchdog, so that it cannot disagree with them.
+  std::uint16_t value_of(MapReader& in, std::int64_t largest) {
+    const Node* const node = in.child("value", true);
+    if (node == nullptr) return 0;
+    if (largest > 1 && node->scalar == "functions_1_to_16") return functions_mask(1);
+    if (largest > 1 && node->scalar == "functions_17_to_32") return functions_mask(17);
+    return static_cast<std::uint16_t>(in.integer("value", 0, largest));
+  }
+
+  std::uint16_t functions_mask(unsigned first) const {
+    unsigned mask = 0;
+    for (const std::uint8_t code : map_.watchdog.functions) {
+      if (code >= first && code < first + 16) mask |= 1U << (code - first);
+    }
+    return static_cast<std::uint16_t>(mask);
+  }
+
+  std::vector<FixedWrite> fixed_writes(const Node& node, const std::string& what) {
+    if (node.kind != Node::Kind::sequence) return {fixed_write(node, what)};
+    std::vector<FixedWrite> writes;
+    for (const Node& item : node.items) writes.push_back(fixed_write(item, what));
+    return writes;
   }
 
   BoardWatchdog::Tripped tripped(const Node& node) {
     MapReader in(document_, node, problems_, "the watchdog's tripped state");
     BoardWatchdog::Tripped state;
     state.function = function(in, {1, 2, 3, 4}, "a read has one of");
-    state.address = address(in, 1);
+    state.count = static_cast<std::uint16_t>(in.optional_integer("count", 1, max_read_registers).value_or(1));
+    state.address = address(in, state.count);
     state.mask = static_cast<std::uint16_t>(in.optional_integer("mask", 1, 0xffff).value_or(0xffff));
     return state;
   }
@@ -213,9 +252,8 @@ class BoardReader {
     if (problems_.size() != before && in.keys().size() <= 1) return;
     watchdog.kind = BoardWatchdog::Kind::communication_timeout;
     watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
-    const bool volt = map_.outputs.unit == ElectricalUnit::volt;
-    watchdog.safe_electrical =
-        in.numbers(volt ? "safe_v" : "safe_ma", map_.outputs.registers.count, {-1000, 1000});
+    watchdog.safe_electrical = in.numbers("safe" + std::string(suffix_of(map_.outputs.unit)),
+                                          map_.outputs.registers.count, {-1000, 1000});
     watchdog.feed =
         static_cast<BoardWatchdog::Feed>(in.choice("fed_by", {"any_request", "functions", "feed_write"}));
     if (watchdog.feed == BoardWatchdog::Feed::functions) feeding_functions(in);
@@ -226,7 +264,7 @@ class BoardReader {
     }
     if (const Node* state = in.child("tripped", false)) watchdog.tripped = tripped(*state);
     if (const Node* write = in.child("clear", false)) {
-      watchdog.clear = fixed_write(*write, "the write that clears the watchdog");
+      watchdog.clear = fixed_writes(*write, "the write that clears the watchdog");
     }
   }
 
@@ -245,8 +283,24 @@ class BoardReader {
     }
   }
 
+  /// What belongs to outputs or inputs needs them.
+  void check_directions(MapReader& in) {
+    const auto needs = [&](std::string_view key, const std::string& direction) {
+      if (in.has(key) && !in.has(direction)) {
+        in.report(key, "`" + std::string(key) + "` needs `" + direction + "`, which this board has not");
+      }
+    };
+    needs("input_status", "inputs");
+    needs("read_back", "outputs");
+    if (map_.watchdog.kind != BoardWatchdog::Kind::none) needs("watchdog", "outputs");
+    if (map_.has_fc23) {
+      needs("fc23", "inputs");
+      needs("fc23", "outputs");
+    }
+  }
+
   void check_fc23(MapReader& in) {
-    if (!map_.has_fc23) return;
+    if (!map_.has_fc23 || !in.has("inputs") || !in.has("outputs")) return;
     if (map_.inputs.registers.function != fc_read_holding) {
       in.report("fc23", "function 23 reads holding registers, but the inputs are read by function " +
                             std::to_string(map_.inputs.registers.function));

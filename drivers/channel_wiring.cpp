@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 namespace softgrip::drivers {
 namespace {
@@ -13,19 +14,22 @@ std::string of_channel(const ChannelWiring& channel, const std::string& part) {
 
 class Checker {
  public:
-  Checker(const BoardMap& map, std::vector<std::string>& problems) : map_(map), problems_(problems) {}
+  Checker(std::span<const ModuleTerminals> modules, std::vector<std::string>& problems)
+      : modules_(modules), problems_(problems) {}
 
   void valve(const ChannelWiring& channel) {
     const std::string where = of_channel(channel, "valve");
-    terminal(where, "output", channel.valve.output, map_.outputs, outputs_);
-    unit(where, channel.valve.unit, map_.outputs.unit);
-    scaling(where, channel.valve.scaling);
+    const OutputWiring& valve = channel.valve;
+    if (!known(where, valve.module)) return;
+    terminal(where, "output", valve.module, valve.output, modules_[valve.module].outputs, outputs_,
+             valve.unit);
+    scaling(where, valve.scaling);
   }
 
   void sensor(const ChannelWiring& channel, const InputWiring& input, const std::string& part) {
     const std::string where = of_channel(channel, part);
-    terminal(where, "input", input.input, map_.inputs, inputs_);
-    unit(where, input.unit, map_.inputs.unit);
+    if (!known(where, input.module)) return;
+    terminal(where, "input", input.module, input.input, modules_[input.module].inputs, inputs_, input.unit);
     scaling(where, input.scaling);
     if (!(input.valid_min < input.valid_max)) {
       problems_.push_back(where + "the electrical range of valid readings is empty");
@@ -37,21 +41,41 @@ class Checker {
     }
   }
 
- private:
-  void terminal(const std::string& where, const std::string& kind, std::size_t index,
-                const TerminalBlock& block, std::set<std::size_t>& used) {
-    if (index >= block.registers.count) {
-      problems_.push_back(where + map_.name + " has no " + kind + " " + std::to_string(index) + "; it has " +
-                          std::to_string(block.registers.count) + ", counted from 0");
-    } else if (!used.insert(index).second) {
-      problems_.push_back(where + kind + " " + std::to_string(index) + " is wired twice");
+  void modules_without_a_wire() {
+    const auto wired = [this](const Used& used, std::size_t module) {
+      return std::any_of(used.begin(), used.end(), [&](const auto& one) { return one.first == module; });
+    };
+    for (std::size_t i = 0; i < modules_.size(); ++i) {
+      if (!wired(outputs_, i) && !wired(inputs_, i)) {
+        problems_.push_back("nothing is wired to the module '" + modules_[i].name + "'");
+      }
     }
   }
 
-  void unit(const std::string& where, ElectricalUnit wired, ElectricalUnit board) {
-    if (wired == board) return;
-    problems_.push_back(where + "wired in " + std::string(name_of(wired)) + ", but " + map_.name +
-                        " has this terminal in " + std::string(name_of(board)));
+ private:
+  using Used = std::set<std::pair<std::size_t, std::size_t>>;
+
+  bool known(const std::string& where, std::size_t module) {
+    if (module < modules_.size()) return true;
+    problems_.push_back(where + "there is no module " + std::to_string(module));
+    return false;
+  }
+
+  void terminal(const std::string& where, const std::string& kind, std::size_t module, std::size_t index,
+                const std::vector<Terminal>& terminals, Used& used, ElectricalUnit wired) {
+    const std::string& name = modules_[module].name;
+    if (index >= terminals.size()) {
+      problems_.push_back(where + name + " has no " + kind + " " + std::to_string(index) + "; it has " +
+                          std::to_string(terminals.size()) + ", counted from 0");
+      return;
+    }
+    if (!used.emplace(module, index).second) {
+      problems_.push_back(where + kind + " " + std::to_string(index) + " is wired twice");
+    }
+    if (wired != terminals[index].unit) {
+      problems_.push_back(where + "wired in " + std::string(name_of(wired)) + ", but " + name +
+                          " has this terminal in " + std::string(name_of(terminals[index].unit)));
+    }
   }
 
   void scaling(const std::string& where, const TwoPoints& points) {
@@ -62,24 +86,41 @@ class Checker {
     }
   }
 
-  const BoardMap& map_;
+  std::span<const ModuleTerminals> modules_;
   std::vector<std::string>& problems_;
-  std::set<std::size_t> outputs_;
-  std::set<std::size_t> inputs_;
+  Used outputs_;
+  Used inputs_;
 };
+
+std::vector<Terminal> terminals_of(const TerminalBlock& block) {
+  const double a = block.scaling.y_at(block.raw_min);
+  const double b = block.scaling.y_at(block.raw_max);
+  return {block.registers.count, Terminal{block.unit, std::min(a, b), std::max(a, b)}};
+}
 
 }  // namespace
 
-std::vector<std::string> wiring_problems(const BoardMap& map, std::span<const ChannelWiring> wiring) {
+ModuleTerminals terminals_of(const BoardMap& map) {
+  return {map.name, terminals_of(map.inputs), terminals_of(map.outputs)};
+}
+
+std::vector<std::string> wiring_problems(std::span<const ModuleTerminals> modules,
+                                         std::span<const ChannelWiring> wiring) {
   std::vector<std::string> problems;
   if (wiring.empty()) problems.emplace_back("no channel is wired");
-  Checker checker(map, problems);
+  Checker checker(modules, problems);
   for (const ChannelWiring& channel : wiring) {
     checker.valve(channel);
     checker.sensor(channel, channel.displacement, "displacement");
     if (channel.pressure.has_value()) checker.sensor(channel, *channel.pressure, "pressure");
   }
+  if (!wiring.empty()) checker.modules_without_a_wire();
   return problems;
+}
+
+std::vector<std::string> wiring_problems(const BoardMap& map, std::span<const ChannelWiring> wiring) {
+  const ModuleTerminals terminals = terminals_of(map);
+  return wiring_problems({&terminals, 1}, wiring);
 }
 
 }  // namespace softgrip::drivers

@@ -1,6 +1,6 @@
 #pragma once
-// How one finger is wired to a board: which terminals, and what their volts or milliamperes mean. The rig
-// file says it; the board scales by it.
+// How one finger is wired to a board: which terminals of which module, and what their volts or milliamperes
+// mean. The rig file says it; the board scales by it.
 
 #include <cstddef>
 #include <optional>
@@ -28,13 +28,15 @@ struct InputWiring {
   double valid_min = 0;  ///< electrical range in which a reading is valid, both ends included
   double valid_max = 0;
   std::vector<SensorErrorCode> error_codes;
+  std::size_t module = 0;  ///< of a board that has several
 };
 
 /// A valve on an output of the board.
 struct OutputWiring {
   std::size_t output = 0;  ///< terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;
-  TwoPoints scaling;  ///< x: V or mA, y: kPa
+  TwoPoints scaling;       ///< x: V or mA, y: kPa
+  std::size_t module = 0;  ///< of a board that has several
 };
 
 /// One channel: one valve, one displacement sensor, perhaps the valve's pressure monitor.
@@ -45,8 +47,27 @@ struct ChannelWiring {
   std::optional<InputWiring> pressure;
 };
 
-/// What does not fit together, one sentence each; empty: the board can be made. Checks terminals against the
-/// map's counts and units, terminals used twice, two equal scaling points, empty validity ranges.
+/// One terminal that can be wired to.
+struct Terminal {
+  ElectricalUnit unit = ElectricalUnit::volt;
+  double lowest = 0;  ///< what an output can deliver; of an input without meaning
+  double highest = 0;
+};
+
+/// What one module of a board offers.
+struct ModuleTerminals {
+  std::string name;  ///< in messages
+  std::vector<Terminal> inputs;
+  std::vector<Terminal> outputs;
+};
+[[nodiscard]] ModuleTerminals terminals_of(const BoardMap& map);
+
+/// What does not fit together, one sentence each; empty: the board can be made. Checks terminals against what
+/// the modules have and their units, terminals used twice, modules without a wire, two equal scaling points,
+/// empty validity ranges.
+[[nodiscard]] std::vector<std::string> wiring_problems(std::span<const ModuleTerminals> modules,
+                                                       std::span<const ChannelWiring> wiring);
+/// The same for a board of one module.
 [[nodiscard]] std::vector<std::string> wiring_problems(const BoardMap& map,
                                                        std::span<const ChannelWiring> wiring);
 

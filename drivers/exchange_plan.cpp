@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include "drivers/modbus_request.h"
 
@@ -36,7 +35,8 @@ Range covering(const RegisterBlock& block, const std::vector<std::size_t>& indic
 
 /// Registers of [begin, end) that no block of the map declares as readable by `function`.
 std::uint32_t undeclared(const BoardMap& map, std::uint8_t function, std::uint32_t begin, std::uint32_t end) {
-  std::vector<RegisterBlock> blocks{map.inputs.registers};
+  std::vector<RegisterBlock> blocks;
+  if (map.has_inputs()) blocks.push_back(map.inputs.registers);
   if (map.input_status.has_value()) blocks.push_back(map.input_status->registers);
   if (map.read_back.has_value()) blocks.push_back(map.read_back->registers);
   std::uint32_t count = 0;
@@ -77,40 +77,51 @@ std::vector<ReadStep> merged(const BoardMap& map, std::vector<Range> ranges) {
   return steps;
 }
 
-std::vector<std::size_t> wired_inputs(const std::vector<ChannelWiring>& wiring) {
+std::vector<std::size_t> wired_inputs(const std::vector<ChannelWiring>& wiring, std::size_t module) {
   std::vector<std::size_t> inputs;
   for (const ChannelWiring& channel : wiring) {
-    inputs.push_back(channel.displacement.input);
-    if (channel.pressure.has_value()) inputs.push_back(channel.pressure->input);
+    if (channel.displacement.module == module) inputs.push_back(channel.displacement.input);
+    if (channel.pressure.has_value() && channel.pressure->module == module) {
+      inputs.push_back(channel.pressure->input);
+    }
   }
   return inputs;
 }
 
-std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring) {
+std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring, std::size_t module) {
   std::vector<std::size_t> outputs;
-  outputs.reserve(wiring.size());
-  for (const ChannelWiring& channel : wiring) outputs.push_back(channel.valve.output);
+  for (const ChannelWiring& channel : wiring) {
+    if (channel.valve.module == module) outputs.push_back(channel.valve.output);
+  }
   return outputs;
 }
 
-std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<ChannelWiring>& wiring) {
-  const std::vector<std::size_t> inputs = wired_inputs(wiring);
-  std::vector<Range> ranges{covering(map.inputs.registers, inputs)};
-  if (map.input_status.has_value()) ranges.push_back(covering(map.input_status->registers, inputs));
-  if (map.read_back.has_value()) {
-    ranges.push_back(covering(map.read_back->registers, wired_outputs(wiring)));
+/// What the module is asked for: its wired inputs, and of its outputs' state what the map knows.
+std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::size_t>& inputs,
+                                 const std::vector<std::size_t>& outputs) {
+  std::vector<Range> ranges;
+  if (!inputs.empty()) {
+    ranges.push_back(covering(map.inputs.registers, inputs));
+    if (map.input_status.has_value()) ranges.push_back(covering(map.input_status->registers, inputs));
   }
-  if (map.watchdog.tripped.has_value()) {
-    const BoardWatchdog::Tripped& tripped = *map.watchdog.tripped;
-    ranges.push_back({tripped.function, tripped.address, tripped.address + 1U});
+  if (!outputs.empty()) {
+    if (map.read_back.has_value()) ranges.push_back(covering(map.read_back->registers, outputs));
+    if (map.watchdog.tripped.has_value()) {
+      const BoardWatchdog::Tripped& tripped = *map.watchdog.tripped;
+      ranges.push_back(
+          {tripped.function, tripped.address, static_cast<std::uint32_t>(tripped.address) + tripped.count});
+    }
   }
   return merged(map, std::move(ranges));
 }
 
 /// Runs of neighbouring outputs. Encoded outputs stand in the order of their terminals.
-void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, ExchangePlan& plan) {
-  std::vector<std::size_t> order(wiring.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, std::size_t module,
+                 ExchangePlan& plan) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < wiring.size(); ++i) {
+    if (wiring[i].valve.module == module) order.push_back(i);
+  }
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return wiring[a].valve.output < wiring[b].valve.output; });
   const RegisterBlock& block = map.outputs.registers;
@@ -143,34 +154,39 @@ Slot slot_of(const std::vector<ReadStep>& reads, std::uint8_t function, std::uin
 
 }  // namespace
 
-ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring) {
+ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring,
+                           std::size_t module) {
   ExchangePlan plan;
   plan.channels.resize(wiring.size());
   if (wiring.empty()) return plan;
-  plan_writes(map, wiring, plan);
-  plan.reads = plan_reads(map, wiring);
+  const std::vector<std::size_t> inputs = wired_inputs(wiring, module);
+  const std::vector<std::size_t> outputs = wired_outputs(wiring, module);
+  plan_writes(map, wiring, module, plan);
+  plan.reads = plan_reads(map, inputs, outputs);
 
   const auto slot = [&](const RegisterBlock& block, std::size_t index) {
     return slot_of(plan.reads, block.function, block.address_of(index));
   };
+  const auto place_input = [&](const InputWiring& input, std::optional<Slot>& value,
+                               std::optional<Slot>& status) {
+    if (input.module != module) return;
+    value = slot(map.inputs.registers, input.input);
+    if (map.input_status.has_value()) status = slot(map.input_status->registers, input.input);
+  };
   for (std::size_t i = 0; i < wiring.size(); ++i) {
     const ChannelWiring& channel = wiring[i];
     ChannelSlots& slots = plan.channels[i];
-    slots.displacement = slot(map.inputs.registers, channel.displacement.input);
-    if (channel.pressure.has_value()) slots.pressure = slot(map.inputs.registers, channel.pressure->input);
-    if (map.input_status.has_value()) {
-      slots.displacement_status = slot(map.input_status->registers, channel.displacement.input);
-      if (channel.pressure.has_value()) {
-        slots.pressure_status = slot(map.input_status->registers, channel.pressure->input);
-      }
+    place_input(channel.displacement, slots.displacement, slots.displacement_status);
+    if (channel.pressure.has_value()) place_input(*channel.pressure, slots.pressure, slots.pressure_status);
+    if (map.read_back.has_value() && channel.valve.module == module) {
+      slots.read_back = slot(map.read_back->registers, channel.valve.output);
     }
-    if (map.read_back.has_value()) slots.read_back = slot(map.read_back->registers, channel.valve.output);
   }
-  if (map.watchdog.tripped.has_value()) {
+  if (map.watchdog.tripped.has_value() && !outputs.empty()) {
     plan.tripped = slot_of(plan.reads, map.watchdog.tripped->function, map.watchdog.tripped->address);
   }
-  plan.sampling_read = plan.channels.front().displacement.step;
-  if (map.has_fc23) plan.combined_read = plan.sampling_read;
+  if (!inputs.empty()) plan.sampling_read = slot(map.inputs.registers, inputs.front()).step;
+  if (map.has_fc23 && !inputs.empty() && !outputs.empty()) plan.combined_read = plan.sampling_read;
   return plan;
 }
 

@@ -40,9 +40,10 @@ struct Slot {
   bool operator==(const Slot&) const = default;
 };
 
+/// Of one channel, as far as it is wired to the module.
 struct ChannelSlots {
-  std::size_t output_word = 0;  ///< where the channel's output is encoded
-  Slot displacement;
+  std::optional<std::size_t> output_word;  ///< where the channel's output is encoded
+  std::optional<Slot> displacement;
   std::optional<Slot> displacement_status;
   std::optional<Slot> pressure;
   std::optional<Slot> pressure_status;
@@ -54,10 +55,11 @@ struct ExchangePlan {
   std::vector<WriteStep> writes;
   std::vector<ReadStep> reads;
   std::vector<ChannelSlots> channels;
-  std::optional<Slot> tripped;
+  std::optional<Slot> tripped;  ///< the first, if the watchdog has several
   /// The read with which the first write is done in one transaction by function code 23.
   std::optional<std::size_t> combined_read;
-  /// The read that carries the displacements: its moment is the readings' `sampled_at`.
+  /// The read that carries the inputs: its moment is the readings' `sampled_at`. Without wired inputs the
+  /// first read, if there is one.
   std::size_t sampling_read = 0;
 
   /// Round trips of one exchange, the watchdog's feeding write not counted.
@@ -66,10 +68,11 @@ struct ExchangePlan {
   }
 };
 
-/// The plan with the fewest transactions that the map allows. Only wired outputs are ever written: between
-/// two wired ones that are not neighbours a write ends and another begins, since nobody knows what the
-/// terminal in between drives. Needs wiring_problems(map, wiring) to be empty.
-[[nodiscard]] ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring);
+/// The plan with the fewest transactions that the map allows, for what is wired to `module`. Only wired
+/// outputs are ever written: between two wired ones that are not neighbours a write ends and another begins,
+/// since nobody knows what the terminal in between drives. Needs wiring_problems() to be empty.
+[[nodiscard]] ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring,
+                                         std::size_t module = 0);
 
 /// "FC16 writes 2 from 10, FC3 reads 4 from 0": the plan in the addresses of the wire.
 [[nodiscard]] std::string describe(const ExchangePlan& plan);

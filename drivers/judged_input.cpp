@@ -32,22 +32,25 @@ bool is_sensor_error(const InputWiring& wiring, double electrical) noexcept {
 
 }  // namespace
 
+JudgedInput judge(const InputWiring& wiring, double electrical) noexcept {
+  JudgedInput input{electrical, wiring.scaling.y_at(electrical), Validity::valid};
+  if (is_sensor_error(wiring, electrical)) {
+    input.validity = Validity::sensor_error;
+  } else if (electrical < wiring.valid_min || electrical > wiring.valid_max) {
+    input.validity = Validity::out_of_range;
+  }
+  return input;
+}
+
 JudgedInput judge(const BoardMap& map, const InputWiring& wiring, double raw,
                   std::optional<std::uint16_t> status) noexcept {
   if (is_board_error(map.inputs, raw)) return {.validity = Validity::sensor_error};
-  JudgedInput input;
-  input.electrical = map.inputs.scaling.y_at(raw);
-  input.physical = wiring.scaling.y_at(input.electrical);
-  input.validity = Validity::valid;
-  if (map.input_status.has_value() && status.has_value()) {
-    input.validity = status_validity(*map.input_status, *status);
+  JudgedInput input = judge(wiring, map.inputs.scaling.y_at(raw));
+  if (input.validity == Validity::sensor_error || !map.input_status.has_value() || !status.has_value()) {
+    return input;
   }
-  if (input.validity == Validity::sensor_error) return input;
-  if (is_sensor_error(wiring, input.electrical)) {
-    input.validity = Validity::sensor_error;
-  } else if (input.electrical < wiring.valid_min || input.electrical > wiring.valid_max) {
-    input.validity = Validity::out_of_range;
-  }
+  const Validity said = status_validity(*map.input_status, *status);
+  if (said != Validity::valid) input.validity = said;
   return input;
 }
 

@@ -24,4 +24,7 @@ struct JudgedInput {
 [[nodiscard]] JudgedInput judge(const BoardMap& map, const InputWiring& wiring, double raw,
                                 std::optional<std::uint16_t> status) noexcept;
 
+/// Judges a value in V or mA that the board itself holds to be good.
+[[nodiscard]] JudgedInput judge(const InputWiring& wiring, double electrical) noexcept;
+
 }  // namespace softgrip::drivers

@@ -1,6 +1,7 @@
 #pragma once
-// Answers on Modbus TCP: whether the bytes that came in are the answer to the question that was asked.
-// Pure functions over bytes that nobody can trust: a small file of its own, to be fuzzed.
+// Answers in Modbus: whether the bytes from the function code on are the answer to the question that was
+// asked. Pure functions over bytes that nobody can trust; the framing around them is judged in mbap.h and
+// rtu_frame.h.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,8 @@ enum class ReplyDefect : std::uint8_t {
   byte_count,   ///< the count of data bytes contradicts the question
   echo,         ///< a write is confirmed with another address or value
   trailing,     ///< more bytes than the answer has
+  checksum,     ///< the bytes were changed on the way (serial lines)
+  own_echo,     ///< what came back is the question itself (serial lines)
 };
 /// A sentence for the event log.
 [[nodiscard]] const char* text_of(ReplyDefect defect) noexcept;
@@ -35,10 +38,16 @@ struct ModbusReply {
   std::span<const std::uint8_t> data = {};
 };
 
-/// Judges `bytes`, all that was received since the question was sent. `incomplete` means that they are a
-/// proper beginning of the answer. Every byte is judged as soon as it is there: a wrong header is not waited
-/// out.
-[[nodiscard]] ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
-                                      std::uint16_t transaction, std::uint8_t unit) noexcept;
+/// Judges the beginning of a reply, from the function code on. `incomplete` means that it is a proper
+/// beginning of the answer; every byte is judged as soon as it is there. Bytes behind the answer are for the
+/// framing to judge: `complete` and `exception` look at the first pdu_size_of(reply, request) bytes.
+[[nodiscard]] ModbusReply parse_pdu(std::span<const std::uint8_t> pdu, const ModbusRequest& request) noexcept;
+
+/// Bytes of a reply that is complete or an exception.
+[[nodiscard]] std::size_t pdu_size_of(const ModbusReply& reply, const ModbusRequest& request) noexcept;
+
+[[nodiscard]] inline ModbusReply defective(ReplyDefect defect) noexcept {
+  return {.state = ModbusReply::State::defective, .defect = defect};
+}
 
 }  // namespace softgrip::drivers

@@ -2,16 +2,16 @@
 
 #include <modbus/modbus.h>
 
-#include "drivers/big_endian.h"
+#include <array>
 
 namespace softgrip::drivers {
 namespace {
 
-/// Appends to a frame; the caller has checked that everything fits.
+/// Appends to a buffer; the caller has checked that everything fits.
 class Writer {
  public:
-  explicit Writer(Frame& frame) : frame_(frame) {}
-  void byte(std::size_t value) noexcept { frame_[size_++] = static_cast<std::uint8_t>(value); }
+  explicit Writer(std::span<std::uint8_t> bytes) : bytes_(bytes) {}
+  void byte(std::size_t value) noexcept { bytes_[size_++] = static_cast<std::uint8_t>(value); }
   void word(std::size_t value) noexcept {
     byte(value >> 8 & 0xff);
     byte(value & 0xff);
@@ -22,7 +22,7 @@ class Writer {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
  private:
-  Frame& frame_;
+  std::span<std::uint8_t> bytes_;
   std::size_t size_ = 0;
 };
 
@@ -55,14 +55,9 @@ std::size_t reply_pdu_size(const ModbusRequest& request) noexcept {
   }
 }
 
-std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction, std::uint8_t unit,
-                          Frame& frame) noexcept {
+std::size_t build_pdu(const ModbusRequest& request, std::span<std::uint8_t, max_pdu> pdu) noexcept {
   if (reply_pdu_size(request) == 0) return 0;
-  Writer out(frame);
-  out.word(transaction);
-  out.word(0);  // protocol: Modbus
-  out.word(0);  // length, known at the end
-  out.byte(unit);
+  Writer out(pdu);
   out.byte(request.function);
   out.word(request.address);
   switch (request.function) {
@@ -88,8 +83,12 @@ std::size_t build_request(const ModbusRequest& request, std::uint16_t transactio
       out.word(request.count);
       break;
   }
-  put_word(frame, 4, static_cast<std::uint16_t>(out.size() - 6));
   return out.size();
+}
+
+TransactionSize size_of(const ModbusRequest& request) noexcept {
+  std::array<std::uint8_t, max_pdu> pdu{};
+  return {build_pdu(request, pdu), reply_pdu_size(request)};
 }
 
 }  // namespace softgrip::drivers

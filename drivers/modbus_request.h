@@ -1,21 +1,14 @@
 #pragma once
-// Questions on Modbus TCP: building the bytes that go out.
-//
-// Why libmodbus does not frame them: its client sends and receives in one call, so that the unit id and the
-// length of a reply, which 3.1.6 does not check, cannot be looked at before it acts on them; and its raw
-// request always carries transaction id 0, so that a late reply could pass for the answer to a later
-// question. What is left of it here are its constants and its texts of exceptions.
+// Questions in Modbus: the bytes from the function code on, whatever wire they go over.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 namespace softgrip::drivers {
 
-/// Longest frame on Modbus TCP [bytes]: MBAP header, function, 252 bytes of data.
-inline constexpr std::size_t max_frame = 260;
-using Frame = std::array<std::uint8_t, max_frame>;
+/// Longest question or answer without its framing [bytes]: function code and 252 bytes of data.
+inline constexpr std::size_t max_pdu = 253;
 
 /// Most registers or bits in one transaction, by the specification.
 inline constexpr std::uint16_t max_read_registers = 125;
@@ -32,12 +25,21 @@ struct ModbusRequest {
   std::span<const std::uint16_t> values = {};  ///< to be written; for 5 one value, not 0 meaning on
 };
 
-/// Bytes after the unit id of the reply that is due, function code included; 0 for a request that no board
-/// can answer (unknown function, too many registers, a count of nothing).
+/// Bytes of a question and of its answer, function codes included, without framing.
+struct TransactionSize {
+  std::size_t request = 0;
+  std::size_t reply = 0;
+};
+
+/// Bytes of the reply that is due, function code included; 0 for a request that no board can answer (unknown
+/// function, too many registers, a count of nothing).
 [[nodiscard]] std::size_t reply_pdu_size(const ModbusRequest& request) noexcept;
 
-/// Writes the frame; returns its size, or 0 for a request that reply_pdu_size() refuses.
-[[nodiscard]] std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction,
-                                        std::uint8_t unit, Frame& frame) noexcept;
+/// Writes the question; returns its size, or 0 for a request that reply_pdu_size() refuses.
+[[nodiscard]] std::size_t build_pdu(const ModbusRequest& request,
+                                    std::span<std::uint8_t, max_pdu> pdu) noexcept;
+
+/// What both will take on the wire.
+[[nodiscard]] TransactionSize size_of(const ModbusRequest& request) noexcept;
 
 }  // namespace softgrip::drivers

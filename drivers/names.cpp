@@ -42,7 +42,15 @@ std::string_view name_of(RegisterKind kind) noexcept {
 }
 
 std::string_view name_of(ElectricalUnit unit) noexcept {
-  return unit == ElectricalUnit::volt ? "V" : "mA";
+  switch (unit) {
+    case ElectricalUnit::volt:
+      return "V";
+    case ElectricalUnit::milliampere:
+      return "mA";
+    case ElectricalUnit::kilopascal:
+      return "kPa";
+  }
+  return "unknown";
 }
 
 }  // namespace softgrip::drivers

@@ -17,12 +17,6 @@ bool is_loopback(const std::string& host) {
   return host.rfind("127.", 0) == 0 || host == "::1";
 }
 
-std::string milliseconds(double seconds) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g ms", seconds * 1e3);
-  return text.data();
-}
-
 }  // namespace
 
 double RoundTrip::median_s() const noexcept {
@@ -39,21 +33,37 @@ double RoundTrip::slowest_s() const noexcept {
          1e-9;
 }
 
-Board::Budget tcp_budget(std::size_t transactions, const std::string& plan, const std::string& host,
-                         const RoundTrip& measured) {
+std::string milliseconds(double seconds) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g ms", seconds * 1e3);
+  return text.data();
+}
+
+Board::Budget tcp_cost(std::size_t transactions, const std::string& plan, const std::string& host,
+                       const RoundTrip& measured) {
   const bool known = measured.count() > 0;
   const double assumed_s = is_loopback(host) ? assumed_loopback_s : assumed_network_s;
   const double round_trip_s = known ? measured.median_s() : assumed_s;
-  Board::Budget budget;
-  budget.exchange_s = static_cast<double>(transactions) * round_trip_s;
   const std::string source =
       known ? "median of " + std::to_string(measured.count()) + " measured when connecting, slowest " +
                   milliseconds(measured.slowest_s())
             : std::string("assumed for ") + (is_loopback(host) ? "loopback" : "a network") +
                   ", not measured: not connected yet";
-  budget.explanation = "Modbus TCP, " + std::to_string(transactions) +
-                       (transactions == 1 ? " round trip" : " round trips") + " (" + plan + ") of " +
-                       milliseconds(round_trip_s) + " (" + source + "): " + milliseconds(budget.exchange_s);
+  Board::Budget cost;
+  cost.exchange_s = static_cast<double>(transactions) * round_trip_s;
+  cost.explanation = "Modbus TCP, " + std::to_string(transactions) +
+                     (transactions == 1 ? " round trip" : " round trips") + " (" + plan + ") of " +
+                     milliseconds(round_trip_s) + " (" + source + ")";
+  return cost;
+}
+
+Board::Budget sum_of(std::span<const Board::Budget> costs) {
+  Board::Budget budget;
+  for (const Board::Budget& cost : costs) {
+    budget.exchange_s += cost.exchange_s;
+    budget.explanation += (budget.explanation.empty() ? "" : "; then ") + cost.explanation;
+  }
+  budget.explanation += ": " + milliseconds(budget.exchange_s);
   if (budget.exchange_s > 0) {
     budget.explanation +=
         ", at most " + std::to_string(std::lround(std::floor(1 / budget.exchange_s))) + " Hz";

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "drivers/board.h"
@@ -26,10 +27,16 @@ class RoundTrip {
   std::size_t count_ = 0;
 };
 
-/// The budget of an exchange of `transactions` round trips, one after the other, at the median that was
-/// measured (one of few may have met a busy moment of this machine; the slowest is told besides); without a
-/// measurement at an assumed one, and the text says that it is assumed.
-[[nodiscard]] Board::Budget tcp_budget(std::size_t transactions, const std::string& plan,
-                                       const std::string& host, const RoundTrip& measured);
+/// What `transactions` round trips take, one after the other, at the median that was measured (one of few may
+/// have met a busy moment of this machine; the slowest is told besides); without a measurement at an assumed
+/// one, and the text says that it is assumed.
+[[nodiscard]] Board::Budget tcp_cost(std::size_t transactions, const std::string& plan,
+                                     const std::string& host, const RoundTrip& measured);
+
+/// "9.7 ms"
+[[nodiscard]] std::string milliseconds(double seconds);
+
+/// Costs of links that are used one after the other: their sum, their texts, and the rate they allow.
+[[nodiscard]] Board::Budget sum_of(std::span<const Board::Budget> costs);
 
 }  // namespace softgrip::drivers

@@ -21,6 +21,7 @@ rig_file_fuzz|tests/daemon/rig_file_corpus|config|tests/model/document/yaml.dict
 board_map_fuzz|tests/drivers/board_map_corpus|config/boards|tests/model/document/yaml.dict|8192
 faults_file_fuzz|tests/tools/rig/faults_file_corpus||tests/model/document/yaml.dict|4096
 modbus_reply_fuzz|tests/drivers/modbus_reply_corpus|||512
+rtu_reply_fuzz|tests/drivers/rtu_reply_corpus|||512
 emulator_fuzz|tests/tools/rig/emulator_corpus|||1024
 client_request_fuzz|tests/daemon/client_request_corpus||tests/daemon/client_request.dict|1024
 log_fuzz|tests/sysid/log_corpus|||4096

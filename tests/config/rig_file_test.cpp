@@ -52,10 +52,11 @@ TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
   EXPECT_EQ(rig.settings.rest_timeout_s, 10);
   EXPECT_EQ(rig.valves[1].range_max_kpa, 100);
   EXPECT_EQ(rig.valves[1].on_power_loss, PowerLoss::vents);
-  const auto& board = std::get<drivers::ModbusTcpSettings>(rig.board);
-  EXPECT_EQ(board.host, "127.0.0.1");
-  EXPECT_EQ(board.port, 1502);
-  EXPECT_EQ(board.map.name, "ADAM-6024");
+  const auto& board = std::get<drivers::ModbusSettings>(rig.board);
+  ASSERT_EQ(board.links.size(), 1U);
+  EXPECT_EQ(std::get<drivers::TcpAddress>(board.links[0]), (drivers::TcpAddress{"127.0.0.1", 1502}));
+  ASSERT_EQ(board.modules.size(), 1U);
+  EXPECT_EQ(board.modules[0].map.name, "ADAM-6024");
   ASSERT_EQ(board.wiring.size(), 2U);
   EXPECT_EQ(board.wiring[1].valve.output, 1U);
   EXPECT_EQ(board.wiring[1].displacement.scaling, (drivers::TwoPoints{0, -5, 10, 45}));

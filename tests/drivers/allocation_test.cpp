@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "drivers/board_map_file.h"
-#include "drivers/modbus_tcp_board.h"
+#include "drivers/modbus_board.h"
 #include "drivers/simulated_board.h"
 #include "model/model_file.h"
 #include "tests/drivers/allocation_counter.h"
+#include "tests/drivers/on_tcp.h"
 #include "tests/drivers/register_server.h"
 #include "tests/drivers/two_fingers.h"
 
@@ -35,8 +36,7 @@ class ModbusAllocation : public testing::Test {
   ModbusAllocation() {
     document::Problems problems;
     const auto map = load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/adam-6024.yaml", problems);
-    settings_ = {
-        .host = "127.0.0.1", .port = server_.port(), .unit = 1, .map = *map, .wiring = test::two_fingers()};
+    settings_ = test::on_tcp(server_.port(), *map, test::two_fingers());
     server_.on_request([](RegisterServer& server, const RegisterServer::Request&) {
       server.input_[10] = server.holding_[10];
       server.input_[11] = server.holding_[11];
@@ -53,13 +53,13 @@ class ModbusAllocation : public testing::Test {
   }
 
   void connect() {
-    board_ = std::make_unique<ModbusTcpBoard>(settings_);
+    board_ = std::make_unique<ModbusBoard>(settings_);
     ASSERT_EQ(board_->connect(5s), BusStatus::ok) << board_->detail();
   }
 
   RegisterServer server_;
-  ModbusTcpSettings settings_;
-  std::unique_ptr<ModbusTcpBoard> board_;
+  ModbusSettings settings_;
+  std::unique_ptr<ModbusBoard> board_;
   std::array<Reading, 2> readings_;
 };
 
@@ -96,7 +96,7 @@ TEST_F(ModbusAllocation, RepliesOfAHostileServer) {
     if (kind == 3) return peer.reset();
     peer.send(reply);
   });
-  settings_.port = hostile.port();
+  settings_.links = {TcpAddress{"127.0.0.1", hostile.port()}};
   settings_.probes = 0;
   for (kind = 0; kind < 4; ++kind) {
     connect();
@@ -105,8 +105,9 @@ TEST_F(ModbusAllocation, RepliesOfAHostileServer) {
 }
 
 TEST_F(ModbusAllocation, ATrippedWatchdogAndItsClearing) {
-  settings_.map.watchdog.tripped = BoardWatchdog::Tripped{.function = 1, .address = 32, .mask = 1};
-  settings_.map.watchdog.clear = FixedWrite{.function = 5, .address = 32, .value = 0};
+  BoardWatchdog& watchdog = settings_.modules[0].map.watchdog;
+  watchdog.tripped = BoardWatchdog::Tripped{.function = 1, .address = 32, .mask = 1};
+  watchdog.clear = {FixedWrite{.function = 5, .address = 32, .value = 0}};
   server_.set_coil(32, 1);
   connect();
   expect(BusStatus::ok, {10, 10});

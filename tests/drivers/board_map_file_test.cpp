@@ -92,8 +92,8 @@ TEST(BoardMapFile, EverythingLandsWhereItBelongs) {
   EXPECT_EQ(map.watchdog.feed, BoardWatchdog::Feed::functions);
   ASSERT_TRUE(map.watchdog.tripped.has_value());
   EXPECT_EQ(map.watchdog.tripped->address, 32);
-  ASSERT_TRUE(map.watchdog.clear.has_value());
-  EXPECT_EQ(map.watchdog.clear->function, 5);
+  ASSERT_EQ(map.watchdog.clear.size(), 1U);
+  EXPECT_EQ(map.watchdog.clear[0].function, 5);
   ASSERT_EQ(map.setup.size(), 1U);
   EXPECT_EQ(map.setup[0].address, 100);
 }
@@ -186,6 +186,82 @@ TEST(BoardMapFile, Function6CannotWriteTwoRegisters) {
   const Result result = read(text);
   ASSERT_EQ(result.problems.size(), 1U) << result.problems.format();
   EXPECT_NE(result.problems.list()[0].message.find("two each"), std::string::npos);
+}
+
+std::string without(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t begin = text.find(from);
+  return text.erase(begin, text.find(to) - begin);
+}
+
+TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
+  std::string outputs_only = without(without(valid, "inputs:", "outputs:"), "input_status:", "read_back:");
+  const Result outputs = read(outputs_only);
+  ASSERT_TRUE(outputs.map.has_value()) << outputs.problems.format();
+  EXPECT_FALSE(outputs.map->has_inputs());
+  EXPECT_TRUE(outputs.map->has_outputs());
+
+  const std::string inputs_only =
+      without(without(valid, "outputs:", "input_status:"), "read_back:", "setup:") +
+      "watchdog: {kind: none}\n";
+  const Result inputs = read(inputs_only);
+  ASSERT_TRUE(inputs.map.has_value()) << inputs.problems.format();
+  EXPECT_TRUE(inputs.map->has_inputs());
+  EXPECT_FALSE(inputs.map->has_outputs());
+
+  // What belongs to a direction needs it, and a module without any is none.
+  EXPECT_NE(
+      read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
+      std::string::npos);
+  EXPECT_NE(read(without(valid, "outputs:", "input_status:")).problems.format().find("needs `outputs`"),
+            std::string::npos);
+  EXPECT_FALSE(read(without(without(valid, "inputs:", "outputs:"), "outputs:", "setup:")).map.has_value());
+}
+
+TEST(BoardMapFile, SeveralFlagsAndSeveralClearingWrites) {
+  std::string text = valid;
+  text.replace(text.find("{function: 1, address: 33}"), 26, "{function: 2, address: 33, count: 2}");
+  text.replace(text.find("{function: 5, address: 33, value: 1}"), 36,
+               "[{function: 5, address: 41, value: 1}, {function: 5, address: 42, value: 1}]");
+  const Result result = read(text);
+  ASSERT_TRUE(result.map.has_value()) << result.problems.format();
+  EXPECT_EQ(result.map->watchdog.tripped->count, 2);
+  ASSERT_EQ(result.map->watchdog.clear.size(), 2U);
+  EXPECT_EQ(result.map->watchdog.clear[1].address, 41) << "counted from 1";
+}
+
+/// The trap of couplers whose watchdog is fed by the functions of a mask: the mask is made of what the file
+/// promises, and what the file promises is checked against the function that writes.
+TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {
+  std::string text = valid;
+  text.replace(text.find("functions: [16]"), 15, "functions: [3, 16, 23]");
+  text +=
+      "  - {function: 6, address: 200, value: functions_1_to_16}\n"
+      "  - {function: 6, address: 201, value: functions_17_to_32}\n";
+  const Result result = read(text);
+  ASSERT_TRUE(result.map.has_value()) << result.problems.format();
+  ASSERT_EQ(result.map->setup.size(), 3U);
+  EXPECT_EQ(result.map->setup[1].value, 0x8004);
+  EXPECT_EQ(result.map->setup[2].value, 0x0040);
+  EXPECT_FALSE(read(text + "  - {function: 6, address: 202, value: functions_33_to_48}\n").map.has_value());
+}
+
+TEST(BoardMapFile, TheWagoMapArmsItsWatchdogWithTheFunctionThatWrites) {
+  document::Problems problems;
+  const auto map = load_board_map(boards + "wago-750-559.yaml", problems);
+  ASSERT_TRUE(map.has_value()) << problems.format();
+  std::uint16_t mask = 0;
+  for (const FixedWrite& write : map->setup) mask = write.address == 0x1001 ? write.value : mask;
+  EXPECT_NE(mask & 1U << (map->outputs.registers.function - 1), 0U);
+}
+
+TEST(BoardMapFile, ThePressureGeneratorsZeroIsInTheMiddle) {
+  document::Problems problems;
+  const auto map = load_board_map(boards + "festo-pgva.yaml", problems);
+  ASSERT_TRUE(map.has_value()) << problems.format();
+  EXPECT_EQ(map->outputs.unit, ElectricalUnit::kilopascal);
+  EXPECT_DOUBLE_EQ(map->outputs.scaling.x_at(0), 2047.5);
+  EXPECT_DOUBLE_EQ(map->outputs.scaling.x_at(10), 4.095 * 100 + 2047.5) << "10 kPa are 100 mbar";
+  EXPECT_NEAR(map->inputs.scaling.y_at(2460), (0.244 * 2460 - 500) / 10, 1e-3);
 }
 
 TEST(BoardMapFile, AllProblemsAtOnce) {

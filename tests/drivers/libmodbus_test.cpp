@@ -12,7 +12,8 @@
 #include <thread>
 
 #include "drivers/board_map_file.h"
-#include "drivers/modbus_tcp_board.h"
+#include "drivers/modbus_board.h"
+#include "tests/drivers/on_tcp.h"
 #include "tests/drivers/two_fingers.h"
 
 namespace softgrip::drivers {
@@ -77,14 +78,11 @@ BoardMap shipped(const std::string& name) {
 TEST(Libmodbus, AdamWithFunctions16And4) {
   LibmodbusServer server;
   for (int i = 0; i < 6; ++i) server.mapping().tab_input_registers[i] = 49151;  // 5 V
-  ModbusTcpSettings settings{.host = "127.0.0.1",
-                             .port = server.port(),
-                             .unit = 1,
-                             .map = shipped("adam-6024.yaml"),
-                             .wiring = test::two_fingers()};
-  settings.map.read_back.reset();
+  ModbusSettings settings = test::on_tcp(server.port(), shipped("adam-6024.yaml"), test::two_fingers());
+  BoardMap& map = settings.modules[0].map;
+  map.read_back.reset();
   {
-    ModbusTcpBoard board(settings);
+    ModbusBoard board(settings);
     ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
     std::array<Reading, 2> readings;
     for (int i = 0; i < 200; ++i) {
@@ -100,16 +98,14 @@ TEST(Libmodbus, AdamWithFunctions16And4) {
 
 TEST(Libmodbus, Function23AndExceptions) {
   LibmodbusServer server;
-  ModbusTcpSettings settings{.host = "127.0.0.1",
-                             .port = server.port(),
-                             .unit = 1,
-                             .map = shipped("softgrip-sim.yaml"),
-                             .wiring = test::two_fingers(false)};
-  settings.map.read_back.reset();
+  ModbusSettings settings =
+      test::on_tcp(server.port(), shipped("softgrip-sim.yaml"), test::two_fingers(false));
+  BoardMap& map = settings.modules[0].map;
+  map.read_back.reset();
   server.mapping().tab_registers[0] = 0x40a0;  // 5 V
   server.mapping().tab_registers[2] = 0x4000;  // 2 V
   {
-    ModbusTcpBoard board(settings);
+    ModbusBoard board(settings);
     ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
     std::array<Reading, 2> readings;
     ASSERT_EQ(board.exchange(std::array{12.5, 50.0}, readings, 5s), BusStatus::ok) << board.detail();
@@ -118,9 +114,9 @@ TEST(Libmodbus, Function23AndExceptions) {
     EXPECT_DOUBLE_EQ(readings[0].displacement_mm, 20);
     EXPECT_DOUBLE_EQ(readings[1].displacement_mm, 5);
   }
-  settings.map.outputs.registers.address = 511;
+  map.outputs.registers.address = 511;
   {
-    ModbusTcpBoard board(settings);
+    ModbusBoard board(settings);
     ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
     std::array<Reading, 2> readings;
     EXPECT_EQ(board.exchange(std::array{12.5, 50.0}, readings, 5s), BusStatus::exception) << board.detail();

@@ -15,7 +15,7 @@
 
 #include "drivers/big_endian.h"
 #include "drivers/judged_input.h"
-#include "drivers/modbus_reply.h"
+#include "drivers/mbap.h"
 #include "drivers/registers.h"
 
 namespace {

@@ -4,17 +4,22 @@ Speaks with the test over stdin and stdout, one JSON object per line:
   {"set": [table, address, [values]]}     table: holding, input, coil
   {"get": [table, address, count]}        answered {"values": [...]}
   {"writes": true}                        answered {"writes": [[table, address, [values]], ...]} since last time
-First line printed: {"port": N}.
+First line printed: {"port": N}, or with the argument `serial` {"device": PATH}: a pseudo-terminal on whose line the same
+registers answer to the units 1 and 2.
 """
 
 import asyncio
 import json
 import logging
+import os
+import pty
+import select
 import sys
 import threading
+import tty
 
 from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
-from pymodbus.server.async_io import ModbusTcpServer
+from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
 
 TABLES = {"coil": 1, "input": 4, "holding": 3}
 WRITTEN_BY = {5: "coil", 15: "coil", 6: "holding", 16: "holding", 22: "holding", 23: "holding"}
@@ -69,13 +74,36 @@ async def start(board):
     return server.server.sockets[0].getsockname()[1]
 
 
+def wire(one, other):
+    """Carries bytes between the inner ends of two pseudo-terminals: the cable."""
+    while True:
+        for end in select.select([one, other], [], [])[0]:
+            os.write(other if end == one else one, os.read(end, 4096))
+
+
+async def start_serial(board):
+    """A pseudo-terminal whose other side pymodbus serves."""
+    inner, outer = pty.openpty(), pty.openpty()
+    for _, outside in (inner, outer):
+        tty.setraw(outside)
+    threading.Thread(target=wire, args=(inner[0], outer[0]), daemon=True).start()
+    context = ModbusServerContext(slaves={1: board, 2: board}, single=False)
+    server = ModbusSerialServer(context, port=os.ttyname(inner[1]), baudrate=115200, ignore_missing_slaves=True)
+    await server.start()
+    asyncio.ensure_future(server.serve_forever())
+    return os.ttyname(outer[1])
+
+
 def main():
     logging.disable(logging.CRITICAL)  # sessions that end are what these tests are about
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     board = Board()
-    port = loop.run_until_complete(start(board))
-    print(json.dumps({"port": port}), flush=True)
+    if sys.argv[1:] == ["serial"]:
+        told = {"device": loop.run_until_complete(start_serial(board))}
+    else:
+        told = {"port": loop.run_until_complete(start(board))}
+    print(json.dumps(told), flush=True)
     threading.Thread(target=talk, args=(board, loop), daemon=True).start()
     loop.run_forever()
 

@@ -13,7 +13,8 @@
 #include <string>
 
 #include "drivers/board_map_file.h"
-#include "drivers/modbus_tcp_board.h"
+#include "drivers/modbus_board.h"
+#include "tests/drivers/on_tcp.h"
 #include "tests/drivers/two_fingers.h"
 
 namespace softgrip::drivers {
@@ -27,7 +28,8 @@ constexpr auto generous = 10s;
 /// The Python process; speaks JSON lines.
 class PymodbusBoard {
  public:
-  PymodbusBoard() {
+  /// `how`: empty, or "serial".
+  explicit PymodbusBoard(const char* how = nullptr) {
     std::array<int, 2> to{};
     std::array<int, 2> from{};
     if (::pipe(to.data()) != 0 || ::pipe(from.data()) != 0) return;
@@ -37,14 +39,16 @@ class PymodbusBoard {
       ::dup2(from[1], STDOUT_FILENO);
       for (const int end : {to[0], to[1], from[0], from[1]}) ::close(end);
       const char* const script = SOFTGRIP_SOURCE_DIR "/tests/drivers/pymodbus_board.py";
-      ::execl("/usr/bin/python3", "python3", script, nullptr);
+      ::execl("/usr/bin/python3", "python3", script, how, nullptr);
       ::_exit(127);
     }
     ::close(to[0]);
     ::close(from[1]);
     write_ = to[1];
     read_ = from[0];
-    port_ = line().value("port", std::uint16_t{0});
+    const Json told = line();
+    port_ = told.value("port", std::uint16_t{0});
+    device_ = told.value("device", "");
   }
   PymodbusBoard(const PymodbusBoard&) = delete;
   PymodbusBoard& operator=(const PymodbusBoard&) = delete;
@@ -57,6 +61,7 @@ class PymodbusBoard {
   }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] const std::string& device() const { return device_; }
 
   Json ask(const Json& request) {
     const std::string text = request.dump() + "\n";
@@ -98,6 +103,7 @@ class PymodbusBoard {
   int write_ = -1;
   int read_ = -1;
   std::uint16_t port_ = 0;
+  std::string device_;
   std::string buffer_;
 };
 
@@ -113,19 +119,18 @@ class PymodbusTest : public testing::Test {
     document::Problems problems;
     const auto map = load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/adam-6024.yaml", problems);
     ASSERT_TRUE(map.has_value()) << problems.format();
-    settings_ = {
-        .host = "127.0.0.1", .port = server_.port(), .unit = 1, .map = *map, .wiring = test::two_fingers()};
+    settings_ = test::on_tcp(server_.port(), *map, test::two_fingers());
     server_.set("input", 0, std::vector<int>(6, adam_raw(5)));
   }
 
   PymodbusBoard server_;
-  ModbusTcpSettings settings_;
+  ModbusSettings settings_;
   std::array<Reading, 2> readings_;
 };
 
 TEST_F(PymodbusTest, AdamRegistersAreWrittenAndRead) {
-  settings_.map.read_back.reset();  // pymodbus keeps the tables apart; an ADAM mirrors its outputs
-  ModbusTcpBoard board(settings_);
+  settings_.modules[0].map.read_back.reset();  // pymodbus keeps the tables apart; an ADAM mirrors its outputs
+  ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   EXPECT_EQ(server_.writes(), Json::array()) << "connecting writes nothing";
 
@@ -146,8 +151,8 @@ TEST_F(PymodbusTest, AdamRegistersAreWrittenAndRead) {
 }
 
 TEST_F(PymodbusTest, EveryStepOfTheOutputArrivesAsItself) {
-  settings_.map.read_back.reset();
-  ModbusTcpBoard board(settings_);
+  settings_.modules[0].map.read_back.reset();
+  ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   for (int raw = 0; raw <= 4095; raw += 91) {
     const double kpa = raw * 100.0 / 4095;
@@ -158,7 +163,7 @@ TEST_F(PymodbusTest, EveryStepOfTheOutputArrivesAsItself) {
 }
 
 TEST_F(PymodbusTest, ReadBackThatDiffersIsRefused) {
-  ModbusTcpBoard board(settings_);
+  ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   server_.set("input", 10, {1024, 3071});
   EXPECT_EQ(board.exchange(std::array{25.0, 75.0}, readings_, generous), BusStatus::ok) << board.detail();
@@ -171,9 +176,9 @@ TEST_F(PymodbusTest, Function23) {
   document::Problems problems;
   const auto map = load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/softgrip-sim.yaml", problems);
   ASSERT_TRUE(map.has_value()) << problems.format();
-  settings_.map = *map;
-  settings_.map.read_back.reset();
-  ModbusTcpBoard board(settings_);
+  settings_.modules[0].map = *map;
+  settings_.modules[0].map.read_back.reset();
+  ModbusBoard board(settings_);
   server_.set("holding", 0, {0x40a0, 0, 0x40c0, 0, 0, 0, 0, 0, 0x3f80, 0, 0x4000, 0});
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   EXPECT_EQ(server_.writes(), (Json{{"holding", 265, {200}}})) << "the setup writes of the map";
@@ -185,27 +190,90 @@ TEST_F(PymodbusTest, Function23) {
 }
 
 TEST_F(PymodbusTest, AddressesItDoesNotHaveAreExceptions) {
-  settings_.map.inputs.registers.address = 65533;
-  ModbusTcpBoard board(settings_);
+  settings_.modules[0].map.inputs.registers.address = 65533;
+  ModbusBoard board(settings_);
   EXPECT_EQ(board.connect(generous), BusStatus::exception);
   EXPECT_NE(std::string(board.detail()).find("data address"), std::string::npos) << board.detail();
 }
 
 TEST_F(PymodbusTest, AnotherUnitIdGetsNoAnswer) {
-  settings_.unit = 9;
-  ModbusTcpBoard board(settings_);
+  settings_.modules[0].unit = 9;
+  ModbusBoard board(settings_);
   const BusStatus status = board.connect(300ms);
   EXPECT_TRUE(status == BusStatus::exception || status == BusStatus::timed_out) << name_of(status);
 }
 
 TEST_F(PymodbusTest, AServerThatDies) {
-  settings_.map.read_back.reset();
-  ModbusTcpBoard board(settings_);
+  settings_.modules[0].map.read_back.reset();
+  ModbusBoard board(settings_);
   ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
   ASSERT_EQ(board.exchange(std::array{25.0, 75.0}, readings_, generous), BusStatus::ok);
   server_.kill();
   EXPECT_EQ(board.exchange(std::array{25.0, 75.0}, readings_, generous), BusStatus::disconnected);
   EXPECT_EQ(board.connect(1s), BusStatus::disconnected);
+}
+
+/// Two modules on a line that pymodbus serves.
+TEST(PymodbusOnALine, TwoModulesAreWrittenAndRead) {
+  PymodbusBoard server("serial");
+  ASSERT_NE(server.device(), "");
+  ModbusSettings settings;
+  SerialLine line;
+  line.device = server.device();
+  line.baud = 115200;
+  settings.links.emplace_back(line);
+  for (const std::string name : {"waveshare-ao8-b", "waveshare-ai8-b"}) {
+    document::Problems problems;
+    const auto map = load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/" + name + ".yaml", problems);
+    ASSERT_TRUE(map.has_value()) << problems.format();
+    settings.modules.push_back({name, *map, static_cast<std::uint8_t>(1 + settings.modules.size()), 0});
+  }
+  settings.wiring = test::two_fingers();
+  for (ChannelWiring& channel : settings.wiring) {
+    channel.displacement.module = 1;
+    channel.pressure->module = 1;
+  }
+  server.set("input", 0, {3000, 7000, 0, 0, 2500, 9000});
+  ModbusBoard board(settings);
+  ASSERT_EQ(board.connect(generous), BusStatus::ok) << board.detail();
+  EXPECT_EQ(server.writes(), Json::array()) << "connecting writes nothing";
+  std::array<Reading, 2> readings;
+  for (int i = 0; i <= 100; i += 4) {
+    ASSERT_EQ(board.exchange(std::array{1.0 * i, 100.0 - i}, readings, generous), BusStatus::ok)
+        << board.detail();
+    ASSERT_EQ(server.writes(), (Json{{"holding", 0, {100 * i, 10000 - 100 * i}}}));
+  }
+  EXPECT_DOUBLE_EQ(readings[0].displacement_mm, 10);
+  EXPECT_DOUBLE_EQ(readings[1].displacement_mm, 30);
+  EXPECT_DOUBLE_EQ(readings[1].pressure_kpa, 90);
+  EXPECT_DOUBLE_EQ(readings[0].command_readback_kpa, 100);
+
+  settings.modules[1].unit = 3;
+  ModbusBoard stranger(settings);
+  EXPECT_EQ(stranger.connect(500ms), BusStatus::disconnected) << "the line has one master";
+}
+
+TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
+  PymodbusBoard server("serial");
+  SerialLine line;
+  line.device = server.device();
+  line.baud = 115200;
+  document::Problems problems;
+  auto map = load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/softgrip-sim.yaml", problems);
+  ASSERT_TRUE(map.has_value());
+  map->setup.clear();
+  map->read_back.reset();
+  ModbusSettings settings{
+      .links = {line}, .modules = {{.name = "sim", .map = *map, .unit = 9}}, .wiring = test::two_fingers()};
+  ModbusBoard board(settings);
+  EXPECT_EQ(board.connect(500ms), BusStatus::timed_out) << board.detail();
+  settings.modules[0].unit = 1;
+  ModbusBoard there(settings);
+  ASSERT_EQ(board.connect(1ms), BusStatus::timed_out) << "and lets go of the line";
+  ASSERT_EQ(there.connect(generous), BusStatus::ok) << there.detail();
+  std::array<Reading, 2> readings;
+  ASSERT_EQ(there.exchange(std::array{12.5, 50.0}, readings, generous), BusStatus::ok) << there.detail();
+  EXPECT_EQ(server.writes(), (Json{{"holding", 256, {0x3fa0, 0, 0x40a0, 0}}})) << "function 23 on a line";
 }
 
 }  // namespace

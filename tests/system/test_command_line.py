@@ -91,7 +91,9 @@ class Offline(bench.BenchTest):
             return process.errors()
 
         self.assertIn("--allow-network", refused(2, "--bind", "0.0.0.0", "--tcp", "0"))
-        self.assertIn("not available yet", refused(2, "--rtu", "/dev/ttyS0"))
+        self.assertIn("7E1", refused(2, "--rtu", "line", "--format", "7E1"))
+        refused(2, "--rtu", "line", "--tcp", "0")
+        refused(4, "--rtu", "absent/line")
         self.assertIn("stone", refused(2, "--object", "feather", "--tcp", "0"))
         self.assertIn("faults.yaml:2:", refused(3, "--tcp", "0", "--faults", self.write(
             "faults.yaml", "faults:\n  - {name: a, kind: noreply}\n")))

@@ -4,21 +4,32 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "tools/descriptor.h"
 #include "tools/rig/mbap.h"
 #include "tools/rig/reply.h"
+#include "tools/rig/rtu.h"
 
 namespace softgrip::tools::rig {
 
-using Clock = std::chrono::steady_clock;
+/// What bytes take on a serial line that a pseudo-terminal hands over at once.
+struct WireTime {
+  std::chrono::nanoseconds character{0};
+  std::chrono::nanoseconds silence{0};     ///< by which a module knows that the question is over
+  std::chrono::nanoseconds turnaround{0};  ///< what it then needs
+};
 
 class Connection {
  public:
   using Serve = std::function<Reply(const Request&)>;
 
-  explicit Connection(Descriptor socket) : socket_(std::move(socket)) {}
+  /// A client on the network.
+  explicit Connection(Descriptor socket) : descriptor_(std::move(socket)) {}
+  /// The master on a serial line.
+  Connection(Descriptor line, WireTime wire_time)
+      : descriptor_(std::move(line)), stream_(RtuRequestStream{}), wire_time_(wire_time) {}
 
   /// Takes what came in and answers every complete request through `serve`. False: close the connection.
   [[nodiscard]] bool receive(const Serve& serve);
@@ -26,9 +37,9 @@ class Connection {
   [[nodiscard]] bool send_due(Clock::time_point now);
   /// When the next piece is due, or nothing.
   [[nodiscard]] std::optional<Clock::time_point> next_due() const;
-  /// A piece is due and the socket did not take it yet.
+  /// A piece is due and the descriptor did not take it yet.
   [[nodiscard]] bool blocked() const noexcept { return blocked_; }
-  [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
+  [[nodiscard]] int descriptor() const noexcept { return descriptor_.get(); }
 
  private:
   struct Outgoing {
@@ -36,10 +47,14 @@ class Connection {
     Bytes bytes;
   };
 
-  void queue(const Reply& reply, Clock::time_point now);
+  void take(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] std::optional<Request> next_request();
+  [[nodiscard]] bool broken() const;
+  void queue(const Request& request, const Reply& reply, Clock::time_point now);
 
-  Descriptor socket_;
-  RequestStream stream_;
+  Descriptor descriptor_;
+  std::variant<RequestStream, RtuRequestStream> stream_;
+  WireTime wire_time_;
   std::vector<Outgoing> outgoing_;  // by due time; equal ones in the order in which they were queued
   bool closing_ = false;
   bool blocked_ = false;

@@ -32,8 +32,8 @@ std::string status_of(const Emulator& emulator) {
   nlohmann::ordered_json status;
   status["time_s"] = static_cast<double>(emulator.now()) * 1e-9;
   status["requests"] = emulator.requests();
-  status["commanded"] = emulator.board().commanded();
-  status["watchdog_tripped"] = emulator.board().tripped();
+  status["commanded"] = emulator.commanded();
+  status["watchdog_tripped"] = emulator.tripped();
   status["watchdog_trips"] = emulator.watchdog_trips();
   status["faults"] = nlohmann::ordered_json::array();
   const FaultSchedule& faults = emulator.faults();

@@ -52,21 +52,24 @@ void EmulatedBoard::define_registers() {
   if (map_.read_back) define_block(map_.read_back->registers, Registers::Access::read_only);
   for (const FixedWrite& write : map_.setup) define_write(write);
   if (map_.watchdog.feed_write) define_write(*map_.watchdog.feed_write);
-  if (map_.watchdog.clear) define_write(*map_.watchdog.clear);
+  for (const FixedWrite& write : map_.watchdog.clear) define_write(write);
   if (const auto& flag = map_.watchdog.tripped) {
-    switch (flag->function) {
-      case 1:
-        registers_.define_coil(flag->address);
-        break;
-      case 2:
-        registers_.define_discrete_input(flag->address);
-        break;
-      case 4:
-        registers_.define_input(flag->address);
-        break;
-      default:
-        registers_.define_holding(flag->address, Registers::Access::read_only);
-        break;
+    for (std::uint16_t i = 0; i < flag->count; ++i) {
+      const auto address = static_cast<std::uint16_t>(flag->address + i);
+      switch (flag->function) {
+        case 1:
+          registers_.define_coil(address);
+          break;
+        case 2:
+          registers_.define_discrete_input(address);
+          break;
+        case 4:
+          registers_.define_input(address);
+          break;
+        default:
+          registers_.define_holding(address, Registers::Access::read_only);
+          break;
+      }
     }
   }
   // Last: where a read-back or a flag lies on the outputs themselves, they stay writable.
@@ -95,7 +98,9 @@ void EmulatedBoard::define_write(const FixedWrite& write) {
 }
 
 void EmulatedBoard::fill_readable_gaps() {
-  std::vector<RegisterBlock> blocks{map_.inputs.registers, map_.outputs.registers};
+  std::vector<RegisterBlock> blocks;
+  if (map_.has_inputs()) blocks.push_back(map_.inputs.registers);
+  if (map_.has_outputs()) blocks.push_back(map_.outputs.registers);
   if (map_.input_status) blocks.push_back(map_.input_status->registers);
   if (map_.read_back) blocks.push_back(map_.read_back->registers);
   std::sort(blocks.begin(), blocks.end(),
@@ -134,12 +139,8 @@ Registers::Answer EmulatedBoard::answer(model::Nanoseconds now, std::span<const 
   }
   if (!answer.wrote) return answer;
 
-  const auto& clear = map_.watchdog.clear;
   const bool touched = touches_outputs(pdu);
-  if (tripped_ && (clear ? is_write(pdu, *clear) : touched)) {
-    tripped_ = false;
-    show_tripped();
-  }
+  if (tripped_) note_clearing(pdu, touched);
   if (touched) {
     commanded_ = true;
     if (!tripped_ && !writes_ignored_) take_outputs();
@@ -153,7 +154,19 @@ void EmulatedBoard::advance(model::Nanoseconds now) {
   const auto due = watchdog_due();
   if (!due || now < *due) return;
   tripped_ = true;
+  cleared_.assign(map_.watchdog.clear.size(), false);
   go_safe();
+  show_tripped();
+}
+
+/// The trip ends with the last of the writes that clear it; where there are none, with any to the outputs.
+void EmulatedBoard::note_clearing(std::span<const std::uint8_t> pdu, bool wrote_outputs) {
+  for (std::size_t i = 0; i < cleared_.size(); ++i) {
+    if (is_write(pdu, map_.watchdog.clear[i])) cleared_[i] = true;
+  }
+  const bool all = std::all_of(cleared_.begin(), cleared_.end(), [](bool one) { return one; });
+  if (cleared_.empty() ? !wrote_outputs : !all) return;
+  tripped_ = false;
   show_tripped();
 }
 
@@ -271,19 +284,22 @@ void EmulatedBoard::show_tripped() {
   const auto& flag = map_.watchdog.tripped;
   if (!flag) return;
   const std::uint16_t value = tripped_ ? flag->mask : std::uint16_t{0};
-  switch (flag->function) {
-    case 1:
-      registers_.set_coil(flag->address, tripped_);
-      break;
-    case 2:
-      registers_.set_discrete_input(flag->address, tripped_);
-      break;
-    case 4:
-      registers_.set_input(flag->address, value);
-      break;
-    default:
-      registers_.set_holding(flag->address, value);
-      break;
+  for (std::uint16_t i = 0; i < flag->count; ++i) {
+    const auto address = static_cast<std::uint16_t>(flag->address + i);
+    switch (flag->function) {
+      case 1:
+        registers_.set_coil(address, tripped_);
+        break;
+      case 2:
+        registers_.set_discrete_input(address, tripped_);
+        break;
+      case 4:
+        registers_.set_input(address, value);
+        break;
+      default:
+        registers_.set_holding(address, value);
+        break;
+    }
   }
 }
 

@@ -53,6 +53,7 @@ class EmulatedBoard {
   [[nodiscard]] bool feeds(std::span<const std::uint8_t> pdu) const;
   [[nodiscard]] bool is_write(std::span<const std::uint8_t> pdu, const drivers::FixedWrite& write) const;
   [[nodiscard]] bool touches_outputs(std::span<const std::uint8_t> pdu) const;
+  void note_clearing(std::span<const std::uint8_t> pdu, bool wrote_outputs);
   void take_outputs();
   void show_outputs();
   void go_safe();
@@ -66,6 +67,7 @@ class EmulatedBoard {
   bool tripped_ = false;
   bool commanded_ = false;
   bool writes_ignored_ = false;
+  std::vector<bool> cleared_;  // which of the clearing writes came since the watchdog tripped
 };
 
 }  // namespace softgrip::tools::rig

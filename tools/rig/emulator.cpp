@@ -35,7 +35,11 @@ bool is_off(const FaultSpec& fault, model::Nanoseconds since, model::Nanoseconds
 }  // namespace
 
 Emulator::Emulator(EmulatorSettings settings)
-    : board_(settings.map), unit_(settings.unit), faults_(with_object_out(std::move(settings.faults))) {
+    : wire_(settings.wire), faults_(with_object_out(std::move(settings.faults))) {
+  for (const EmulatedModule& module : settings.modules) {
+    boards_.emplace_back(module.map);
+    places_.push_back({module.unit, module.link});
+  }
   fingers_.reserve(settings.wiring.size());
   for (std::size_t i = 0; i < settings.wiring.size(); ++i) {
     fingers_.emplace_back(std::move(settings.wiring[i]), settings.plants[i]);
@@ -46,9 +50,10 @@ Emulator::Emulator(EmulatorSettings settings)
 void Emulator::advance(model::Nanoseconds now) {
   while (now_ < now) {
     move_to(next_stop(now));
-    const bool was_tripped = board_.tripped();
-    board_.advance(now_);
-    if (board_.tripped() && !was_tripped) {
+    for (EmulatedBoard& board : boards_) {
+      const bool was_tripped = board.tripped();
+      board.advance(now_);
+      if (!board.tripped() || was_tripped) continue;
       ++watchdog_trips_;
       take_commands();
     }
@@ -59,24 +64,45 @@ void Emulator::advance(model::Nanoseconds now) {
   }
 }
 
-Reply Emulator::serve(model::Nanoseconds now, const Request& request) {
+EmulatedBoard* Emulator::board_at(std::size_t link, std::uint8_t unit) noexcept {
+  for (std::size_t i = 0; i < boards_.size(); ++i) {
+    if (places_[i].link == link && places_[i].unit == unit) return &boards_[i];
+  }
+  return nullptr;
+}
+
+bool Emulator::commanded() const noexcept {
+  return std::any_of(boards_.begin(), boards_.end(),
+                     [](const EmulatedBoard& board) { return board.commanded(); });
+}
+
+bool Emulator::tripped() const noexcept {
+  return std::any_of(boards_.begin(), boards_.end(),
+                     [](const EmulatedBoard& board) { return board.tripped(); });
+}
+
+Reply Emulator::serve(model::Nanoseconds now, const Request& request, std::size_t link) {
   advance(now);
+  EmulatedBoard* const board = board_at(link, request.unit);
+  // On a serial line everybody hears everything, and answers only what is meant for him.
+  if (board == nullptr && wire_ == Wire::rtu) return {};
   ++requests_;
   const auto index = wire_fault();
   if (index) faults_.count_reply(*index);
   Bytes pdu{request.pdu[0]};
   if (!index || carried_out(faults_.faults()[*index].kind)) {
-    if (request.unit != unit_) {
+    if (board == nullptr) {
       pdu = exception_reply(request.pdu[0], Exception::gateway_target_failed);
     } else {
-      for (const Finger& finger : fingers_) finger.show(board_);
-      board_.ignore_writes(faults_.first_active(FaultKind::ignored_write).has_value());
-      pdu = board_.answer(now, request.pdu).pdu;
-      if (board_.commanded()) faults_.start(now);
+      for (const Finger& finger : fingers_) finger.show(boards_);
+      board->ignore_writes(faults_.first_active(FaultKind::ignored_write).has_value());
+      pdu = board->answer(now, request.pdu).pdu;
+      if (board->commanded()) faults_.start(now);
       take_commands();
     }
   }
-  return index ? spoiled_reply(faults_.faults()[*index], request, pdu) : good_reply(request, pdu);
+  return index ? spoiled_reply(wire_, faults_.faults()[*index], request, pdu)
+               : good_reply(wire_, request, pdu);
 }
 
 bool Emulator::trigger(std::string_view name, model::Nanoseconds now) {
@@ -100,7 +126,9 @@ void Emulator::set_object(const std::optional<drivers::PlantObject>& object) {
 
 model::Nanoseconds Emulator::next_stop(model::Nanoseconds now) const {
   model::Nanoseconds stop = std::min(now, (now_ / grid + 1) * grid);
-  if (const auto due = board_.watchdog_due()) stop = std::min(stop, *due);
+  for (const EmulatedBoard& board : boards_) {
+    if (const auto due = board.watchdog_due()) stop = std::min(stop, *due);
+  }
   if (const auto change = faults_.next_change()) stop = std::min(stop, *change);
   return std::max(stop, now_ + 1);
 }
@@ -119,7 +147,7 @@ std::optional<std::size_t> Emulator::wire_fault() const {
 }
 
 void Emulator::take_commands() {
-  for (Finger& finger : fingers_) finger.take_command(board_);
+  for (Finger& finger : fingers_) finger.take_command(boards_);
 }
 
 void Emulator::apply_faults() {

@@ -13,12 +13,22 @@
 #include "tools/rig/fault_schedule.h"
 #include "tools/rig/finger.h"
 #include "tools/rig/reply.h"
+#include "tools/rig/wire.h"
 
 namespace softgrip::tools::rig {
 
-struct EmulatorSettings {
+/// One module of the board, and where it answers.
+struct EmulatedModule {
   drivers::BoardMap map;
-  std::uint8_t unit = 1;  ///< requests to other units are answered with exception 11
+  std::uint8_t unit = 1;
+  std::size_t link = 0;  ///< which of the wires leads to it
+};
+
+struct EmulatorSettings {
+  /// Requests to a unit that is not on their link are answered with exception 11 on a network, and with
+  /// silence on a serial line.
+  std::vector<EmulatedModule> modules;
+  Wire wire = Wire::tcp;
   std::vector<drivers::ChannelWiring> wiring;
   std::vector<drivers::PlantSettings> plants;  ///< one per channel
   std::vector<FaultSpec> faults;
@@ -36,8 +46,8 @@ class Emulator {
 
   /// Moves on. Not before an earlier `now`.
   void advance(model::Nanoseconds now);
-  /// A request that arrives at `now`, and what becomes of it.
-  [[nodiscard]] Reply serve(model::Nanoseconds now, const Request& request);
+  /// A request that arrives at `now` on a link, and what becomes of it.
+  [[nodiscard]] Reply serve(model::Nanoseconds now, const Request& request, std::size_t link = 0);
   /// Whether new connections are let in.
   [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
 
@@ -52,7 +62,11 @@ class Emulator {
 
   [[nodiscard]] model::Nanoseconds now() const noexcept { return now_; }
   [[nodiscard]] const std::vector<Finger>& fingers() const noexcept { return fingers_; }
-  [[nodiscard]] const EmulatedBoard& board() const noexcept { return board_; }
+  [[nodiscard]] const std::vector<EmulatedBoard>& modules() const noexcept { return boards_; }
+  /// True once a client wrote an output.
+  [[nodiscard]] bool commanded() const noexcept;
+  /// True while the watchdog of a module holds its outputs.
+  [[nodiscard]] bool tripped() const noexcept;
   [[nodiscard]] const FaultSchedule& faults() const noexcept { return faults_; }
   [[nodiscard]] std::uint64_t requests() const noexcept { return requests_; }
   [[nodiscard]] std::uint64_t watchdog_trips() const noexcept { return watchdog_trips_; }
@@ -65,8 +79,15 @@ class Emulator {
   void apply_faults();
   void apply_faults(std::size_t channel);
 
-  EmulatedBoard board_;
-  std::uint8_t unit_;
+  struct Place {
+    std::uint8_t unit;
+    std::size_t link;
+  };
+  [[nodiscard]] EmulatedBoard* board_at(std::size_t link, std::uint8_t unit) noexcept;
+
+  std::vector<EmulatedBoard> boards_;
+  std::vector<Place> places_;  // of the boards
+  Wire wire_;
   std::vector<Finger> fingers_;
   FaultSchedule faults_;
   std::function<void()> observer_;

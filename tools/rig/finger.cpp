@@ -7,12 +7,14 @@ namespace softgrip::tools::rig {
 Finger::Finger(drivers::ChannelWiring wiring, const drivers::PlantSettings& settings)
     : wiring_(std::move(wiring)), plant_(settings), object_(settings.object) {}
 
-void Finger::take_command(const EmulatedBoard& board) {
-  plant_.command(wiring_.valve.scaling.y_at(board.output(wiring_.valve.output)));
+void Finger::take_command(std::span<const EmulatedBoard> modules) {
+  const drivers::OutputWiring& valve = wiring_.valve;
+  plant_.command(valve.scaling.y_at(modules[valve.module].output(valve.output)));
 }
 
-void Finger::show(EmulatedBoard& board) const {
+void Finger::show(std::span<EmulatedBoard> modules) const {
   const drivers::InputWiring& sensor = wiring_.displacement;
+  EmulatedBoard& board = modules[sensor.module];
   if (!plant_.sees_nothing()) {
     board.set_input(sensor.input, sensor.scaling.x_at(plant_.reading_mm()));
   } else if (!sensor.error_codes.empty()) {
@@ -21,7 +23,8 @@ void Finger::show(EmulatedBoard& board) const {
     board.set_input_error(sensor.input);
   }
   if (wiring_.pressure) {
-    board.set_input(wiring_.pressure->input, wiring_.pressure->scaling.x_at(plant_.measured_pressure_kpa()));
+    modules[wiring_.pressure->module].set_input(
+        wiring_.pressure->input, wiring_.pressure->scaling.x_at(plant_.measured_pressure_kpa()));
   }
 }
 

@@ -2,6 +2,7 @@
 // One emulated finger on the board: its plant, and the terminals it is wired to.
 
 #include <optional>
+#include <span>
 
 #include "drivers/channel_wiring.h"
 #include "drivers/plant.h"
@@ -16,12 +17,13 @@ class Finger {
   [[nodiscard]] const std::string& name() const noexcept { return wiring_.name; }
   [[nodiscard]] const drivers::Plant& plant() const noexcept { return plant_; }
 
-  /// Takes the pressure that the board's output asks for.
-  void take_command(const EmulatedBoard& board);
+  /// Takes the pressure that the output asks for. `modules` are those of the board, as the wiring counts
+  /// them.
+  void take_command(std::span<const EmulatedBoard> modules);
   /// Moves on by `duration_s` under the held command.
   void advance(double duration_s) noexcept { plant_.advance(duration_s); }
-  /// Puts what the sensors show on the board's inputs.
-  void show(EmulatedBoard& board) const;
+  /// Puts what the sensors show on the inputs.
+  void show(std::span<EmulatedBoard> modules) const;
 
   /// Faults as they should be from now on; unchanged ones are left alone (a stuck sensor stays where it
   /// stuck).

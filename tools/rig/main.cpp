@@ -1,4 +1,4 @@
-// softgrip-rig: the emulator of a rig on Modbus TCP.
+// softgrip-rig: the emulator of a rig on Modbus TCP or RTU.
 
 #include <sched.h>
 #include <sys/signalfd.h>
@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <optional>
+#include <string>
 
 #include "model/document/version.h"
 #include "tools/command.h"
@@ -33,13 +34,26 @@ void add_options(CLI::App& program, rig::Options& options) {
   program
       .add_option("--model", options.models, "What the fingers are: a model file for all, or one per channel")
       ->required();
-  program.add_option("--board", options.board, "Board map: a file, or a name in config/boards")
+  program
+      .add_option("--board", options.boards,
+                  "Board map: a file, or a name in config/boards; several for several modules")
       ->capture_default_str();
   auto* tcp = program.add_option("--tcp", options.port, "Port; 0 takes a free one [1502, or the rig file's]");
-  program.add_option("--rtu", options.rtu, "Serial device (not available yet)")->excludes(tcp);
+  program
+      .add_option("--rtu", options.rtu,
+                  "Modbus RTU on this serial device; a path that does not exist becomes a pseudo-terminal")
+      ->excludes(tcp);
+  program.add_option("--baud", options.baud, "Of the line [9600, or the rig file's]")
+      ->check(number_between(1200, 1000000));
+  program.add_option("--format", options.format,
+                     "Of the line: 8N1, 8E1, 8O1, 8N2, 8E2 [8N1, or the rig file's]");
+  program
+      .add_option("--turnaround-s", options.turnaround_s,
+                  "What a module on the line needs to answer [0, or the rig file's]")
+      ->check(number_between(0, 10));
   program.add_option("--bind", options.bind, "Numeric address to listen on")->capture_default_str();
   program.add_flag("--allow-network", options.allow_network, "Listen on an address that others can reach");
-  program.add_option("--unit", options.unit, "Unit id that is answered (default 1, or the rig file's)");
+  program.add_option("--unit", options.unit, "Unit id of the first module (default 1, or the rig file's)");
   auto* channels =
       program.add_option("--channels", options.channels, "Number of fingers")->capture_default_str();
   program
@@ -73,7 +87,8 @@ void add_options(CLI::App& program, rig::Options& options) {
   program.footer(
       "Control commands: status, fault NAME, clear NAME, object out|back|stone|screw|POSITION_MM[:YIELDING], "
       "quit.\n"
-      "SIGUSR1 pulls the object out. Ready once 'listening on ADDRESS:PORT' is printed.");
+      "SIGUSR1 pulls the object out. Ready once 'listening on ADDRESS:PORT' or 'listening on DEVICE' is "
+      "printed.");
 }
 
 /// All signals that the server takes, as a descriptor; blocked for the whole process.
@@ -82,6 +97,8 @@ softgrip::tools::Descriptor take_signals() {
   sigemptyset(&set);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
   sigprocmask(SIG_BLOCK, &set, nullptr);
+  // A client that left is found out by the write that fails.
+  std::signal(SIGPIPE, SIG_IGN);
   return softgrip::tools::Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
 }
 
@@ -103,12 +120,30 @@ void ask_for_real_time() {
   (void)::sched_setaffinity(0, sizeof one, &one);
 }
 
-ExitCode serve(const rig::Options& options, std::uint16_t port, rig::Emulator& emulator,
+/// Opens what the modules answer on; `told` says where.
+ExitCode listen(const rig::Setup& setup, rig::ServerSockets& sockets, std::string& told) {
+  if (setup.line) {
+    auto end = rig::SerialEnd::open(*setup.line);
+    if (!end) return fail(ExitCode::io, end.error());
+    sockets.line = setup.line;
+    sockets.end = std::move(*end);
+    told += "listening on " + setup.line->device + "\n";
+    return ExitCode::done;
+  }
+  for (const softgrip::drivers::TcpAddress& address : setup.addresses) {
+    auto listener = rig::listen_tcp(address.host, address.port);
+    if (!listener) return fail(ExitCode::io, listener.error());
+    told += "listening on " + address.host + ":" + std::to_string(listener->port) + "\n";
+    sockets.modbus.push_back(std::move(listener->socket));
+  }
+  return ExitCode::done;
+}
+
+ExitCode serve(const rig::Options& options, const rig::Setup& setup, rig::Emulator& emulator,
                rig::TruthLog* truth) {
-  auto listener = rig::listen_tcp(options.bind, port);
-  if (!listener) return fail(ExitCode::io, listener.error());
   rig::ServerSockets sockets;
-  sockets.modbus = std::move(listener->socket);
+  std::string told;
+  if (const ExitCode code = listen(setup, sockets, told); code != ExitCode::done) return code;
   sockets.signals = take_signals();
   sockets.standard_input = options.control == "-";
   const bool control_socket = !options.control.empty() && !sockets.standard_input;
@@ -119,7 +154,7 @@ ExitCode serve(const rig::Options& options, std::uint16_t port, rig::Emulator& e
   }
   rig::Server server(emulator, std::move(sockets));
   ask_for_real_time();
-  std::printf("listening on %s:%u\n", options.bind.c_str(), unsigned{listener->port});
+  std::fputs(told.c_str(), stdout);
   std::fflush(stdout);
   server.run([&] {
     if (truth != nullptr) truth->flush();
@@ -130,14 +165,13 @@ ExitCode serve(const rig::Options& options, std::uint16_t port, rig::Emulator& e
 }
 
 ExitCode run(const rig::Options& options) {
-  if (!options.rtu.empty()) return fail(ExitCode::usage, "--rtu is not available yet: use --tcp");
   if (!rig::is_loopback(options.bind) && !options.allow_network) {
     return fail(ExitCode::usage, "others could reach " + options.bind +
                                      ", and Modbus knows no password: add --allow-network if that is wanted");
   }
   auto setup = rig::make_setup(options);
   if (!setup) return setup.error();
-  rig::Emulator emulator(std::move(setup->emulator));
+  rig::Emulator emulator(setup->emulator);
   std::optional<rig::TruthLog> truth;
   if (!options.truth.empty()) {
     const double decimation =
@@ -147,16 +181,15 @@ ExitCode run(const rig::Options& options) {
     truth->add(emulator);
     emulator.on_grid([&] { truth->add(emulator); });
   }
-  return serve(options, setup->port, emulator, truth ? &*truth : nullptr);
+  return serve(options, *setup, emulator, truth ? &*truth : nullptr);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    CLI::App program{
-        "A rig in real time behind a Modbus TCP board: valve, fingers, object, watchdog, faults.",
-        "softgrip-rig"};
+    CLI::App program{"A rig in real time behind a Modbus board: valve, fingers, object, watchdog, faults.",
+                     "softgrip-rig"};
     rig::Options options;
     add_options(program, options);
     try {

@@ -2,10 +2,12 @@
 
 #include "daemon/rig_file.h"
 #include "drivers/board_map_file.h"
+#include "drivers/serial_port.h"
 #include "model/model_file.h"
 #include "tools/command.h"
 #include "tools/configuration.h"
 #include "tools/rig/control.h"
+#include "tools/rig/listener.h"
 #include "tools/rig/wiring.h"
 
 namespace softgrip::tools::rig {
@@ -61,37 +63,77 @@ void add_faults(const Options& options, EmulatorSettings& settings, document::Pr
   }
 }
 
-/// Board, unit and wiring as softgripd has them.
+constexpr std::uint16_t usual_port = 1502;
+
+/// Board, units and wiring as softgripd has them.
 tl::expected<Setup, ExitCode> setup_of_rig(const std::string& path) {
   if (const auto code = unreadable(path)) return tl::unexpected{*code};
   document::Problems problems;
   const auto rig = daemon::load_rig(path, problems);
   if (!rig) return tl::unexpected{refuse(problems)};
-  const auto* modbus = std::get_if<drivers::ModbusTcpSettings>(&rig->board);
+  const auto* modbus = std::get_if<drivers::ModbusSettings>(&rig->board);
   if (modbus == nullptr) {
-    return tl::unexpected{fail(ExitCode::input_refused,
-                               path + ": this rig is simulated in process, there is no board to emulate")};
+    return tl::unexpected{
+        fail(ExitCode::input_refused, path + ": this rig has no Modbus board, there is nothing to emulate")};
   }
   Setup setup;
-  setup.emulator.map = modbus->map;
+  for (const drivers::ModbusModuleSettings& module : modbus->modules) {
+    setup.emulator.modules.push_back({module.map, module.unit, module.link});
+  }
   setup.emulator.wiring = modbus->wiring;
-  setup.emulator.unit = modbus->unit;
-  setup.port = modbus->port;
+  for (const drivers::ModbusAddress& link : modbus->links) {
+    if (const auto* tcp = std::get_if<drivers::TcpAddress>(&link)) {
+      setup.addresses.push_back(*tcp);
+    } else {
+      setup.line = std::get<drivers::SerialLine>(link);
+    }
+  }
   return setup;
 }
 
-tl::expected<Setup, ExitCode> setup_of_board(const Options& options) {
-  const std::string path = board_path(options.board);
-  if (const auto code = unreadable(path)) return tl::unexpected{*code};
-  document::Problems problems;
-  const auto map = drivers::load_board_map(path, problems);
-  if (!map) return tl::unexpected{refuse(problems)};
-  auto wiring = default_wiring(*map, options.channels);
-  if (!wiring) return tl::unexpected{fail(ExitCode::input_refused, wiring.error())};
+tl::expected<Setup, ExitCode> setup_of_boards(const Options& options) {
   Setup setup;
-  setup.emulator.map = *map;
+  std::vector<drivers::BoardMap> maps;
+  for (const std::string& board : options.boards) {
+    const std::string path = board_path(board);
+    if (const auto code = unreadable(path)) return tl::unexpected{*code};
+    document::Problems problems;
+    auto map = drivers::load_board_map(path, problems);
+    if (!map) return tl::unexpected{refuse(problems)};
+    setup.emulator.modules.push_back({*map, static_cast<std::uint8_t>(1 + maps.size()), 0});
+    maps.push_back(std::move(*map));
+  }
+  auto wiring = default_wiring(maps, options.channels);
+  if (!wiring) return tl::unexpected{fail(ExitCode::input_refused, wiring.error())};
   setup.emulator.wiring = std::move(*wiring);
+  setup.addresses.push_back({.host = options.bind, .port = usual_port});
   return setup;
+}
+
+/// Where the modules answer: what the options say in the place of what the rig file says.
+std::optional<ExitCode> place(const Options& options, Setup& setup) {
+  if (!options.rtu.empty() || (setup.line && !options.port)) {
+    drivers::SerialLine& line = setup.line ? *setup.line : setup.line.emplace();
+    if (!options.rtu.empty()) line.device = options.rtu;
+    line.baud = options.baud.value_or(line.baud);
+    if (options.format && !drivers::set_format(*options.format, line)) {
+      return fail(ExitCode::usage, "--format takes 8N1, 8E1, 8O1, 8N2 or 8E2, not '" + *options.format + "'");
+    }
+    line.turnaround_s = options.turnaround_s.value_or(line.turnaround_s);
+    // One line, whatever hosts the rig file may have had.
+    for (EmulatedModule& module : setup.emulator.modules) module.link = 0;
+    setup.emulator.wire = Wire::rtu;
+    return std::nullopt;
+  }
+  setup.line.reset();
+  if (setup.addresses.empty()) setup.addresses.push_back({.host = options.bind, .port = usual_port});
+  for (std::size_t i = 0; i < setup.addresses.size(); ++i) {
+    drivers::TcpAddress& address = setup.addresses[i];
+    // Several hosts of a rig are several addresses of this machine, where they can be.
+    if (setup.addresses.size() == 1 || !is_loopback(address.host)) address.host = options.bind;
+    if (options.port) address.port = static_cast<std::uint16_t>(*options.port == 0 ? 0 : *options.port + i);
+  }
+  return std::nullopt;
 }
 
 /// The first input file that cannot be opened.
@@ -113,12 +155,16 @@ tl::expected<Setup, ExitCode> make_setup(const Options& options) {
              "--object takes stone, screw or POSITION_MM[:YIELDING], not '" + options.object + "'")};
   }
   if (const auto code = any_unreadable(options)) return tl::unexpected{*code};
-  auto setup = options.rig.empty() ? setup_of_board(options) : setup_of_rig(options.rig);
+  auto setup = options.rig.empty() ? setup_of_boards(options) : setup_of_rig(options.rig);
   if (!setup) return setup;
+  if (const auto code = place(options, *setup)) return tl::unexpected{*code};
   EmulatorSettings& emulator = setup->emulator;
-  emulator.unit = options.unit.value_or(emulator.unit);
-  setup->port = options.port.value_or(setup->port);
-  if (options.watchdog_s) set_watchdog(emulator.map.watchdog, *options.watchdog_s);
+  for (std::size_t i = 0; i < emulator.modules.size(); ++i) {
+    EmulatedModule& module = emulator.modules[i];
+    if (options.unit) module.unit = static_cast<std::uint8_t>(*options.unit + i);
+    if (options.watchdog_s && module.map.has_outputs())
+      set_watchdog(module.map.watchdog, *options.watchdog_s);
+  }
   document::Problems problems;
   emulator.plants = make_plants(options, emulator.wiring.size(), problems);
   add_faults(options, emulator, problems);

@@ -8,21 +8,25 @@
 
 #include <tl/expected.hpp>
 
+#include "drivers/modbus_address.h"
 #include "tools/exit_code.h"
 #include "tools/rig/emulator.h"
 
 namespace softgrip::tools::rig {
 
 struct Options {
-  std::vector<std::string> models;  ///< one for all channels, or one per channel
-  std::string board = "adam-6024";  ///< a file, or a name in config/boards
-  std::string rig;                  ///< rig file that says what is wired where; empty: default wiring
-  std::size_t channels = 2;         ///< without a rig file
-  std::optional<std::uint8_t> unit;
+  std::vector<std::string> models;               ///< one for all channels, or one per channel
+  std::vector<std::string> boards{"adam-6024"};  ///< files, or names in config/boards: one per module
+  std::string rig;                   ///< rig file that says what is wired where; empty: default wiring
+  std::size_t channels = 2;          ///< without a rig file
+  std::optional<std::uint8_t> unit;  ///< of the first module; the others count on
   std::string bind = "127.0.0.1";
   bool allow_network = false;
   std::optional<std::uint16_t> port;  ///< default: the rig file's, or 1502
-  std::string rtu;
+  std::string rtu;                    ///< serial device in the place of the network
+  std::optional<std::uint32_t> baud;  ///< of the line; these default to the rig file's, or 9600 8N1
+  std::optional<std::string> format;
+  std::optional<double> turnaround_s;
   std::string object;
   std::optional<double> object_out_at_s;
   std::string faults;
@@ -38,7 +42,8 @@ struct Options {
 /// What the program runs.
 struct Setup {
   EmulatorSettings emulator;
-  std::uint16_t port = 1502;
+  std::vector<drivers::TcpAddress> addresses;  ///< to listen on, one per link
+  std::optional<drivers::SerialLine> line;     ///< in the place of the network
 };
 
 /// The error is an exit code: all problems have been printed.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <ctime>
 #include <vector>
 
 #include "tools/rig/control.h"
@@ -36,61 +37,82 @@ Server::Server(Emulator& emulator, ServerSockets sockets)
 void Server::run(const std::function<void()>& idle) {
   std::vector<pollfd> watched;
   while (!quit_) {
+    plug_line();
     watched.clear();
     watched.push_back({sockets_.signals.get(), POLLIN, 0});
-    watched.push_back({sockets_.modbus.get(), POLLIN, 0});
     watched.push_back({sockets_.control.get(), POLLIN, 0});  // poll() skips an empty one: it is -1
+    for (const Descriptor& modbus : sockets_.modbus) watched.push_back({modbus.get(), POLLIN, 0});
     for (const ControlClient& client : control_clients_) watched.push_back({client.input(), POLLIN, 0});
-    for (const Connection& connection : connections_) {
-      const int events = connection.blocked() ? POLLIN | POLLOUT : POLLIN;
-      watched.push_back({connection.descriptor(), static_cast<short>(events), 0});
+    for (const Client& client : clients_) {
+      const int events = client.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
+      watched.push_back({client.connection.descriptor(), static_cast<short>(events), 0});
     }
-    if (::poll(watched.data(), watched.size(), timeout_ms()) < 0 && errno != EINTR) return;
+    const std::chrono::nanoseconds wait = timeout();
+    const timespec limit{.tv_sec = wait.count() / 1'000'000'000, .tv_nsec = wait.count() % 1'000'000'000};
+    if (::ppoll(watched.data(), watched.size(), &limit, nullptr) < 0 && errno != EINTR) return;
 
     emulator_.advance(now());
-    auto watch = watched.begin() + 3;
+    auto watch = watched.begin() + 2 + static_cast<std::ptrdiff_t>(sockets_.modbus.size());
     for (ControlClient& client : control_clients_) {
       if ((watch++)->revents != 0) read_control(client);
     }
     std::erase_if(control_clients_, [](const ControlClient& client) { return !client.open; });
-    std::erase_if(connections_, [&](Connection& connection) {
+    std::erase_if(clients_, [&](Client& client) {
       bool open = true;
-      serve(connection, (watch++)->revents, open);
+      serve(client, (watch++)->revents, open);
       return !open;
     });
     if (watched[0].revents != 0) take_signal();
-    if (watched[1].revents != 0) accept_modbus();
-    if (watched[2].revents != 0) accept_control();
+    if (watched[1].revents != 0) accept_control();
+    for (std::size_t link = 0; link < sockets_.modbus.size(); ++link) {
+      if (watched[2 + link].revents != 0) accept_modbus(link);
+    }
     idle();
   }
+}
+
+/// The line is pulled out while the cable is cut, its name goes with it, and it comes back under the same
+/// name.
+void Server::plug_line() {
+  if (!sockets_.line || !clients_.empty()) return;
+  if (sockets_.end && sockets_.end->taken()) sockets_.end.reset();
+  if (!emulator_.reachable()) return;
+  if (!sockets_.end) {
+    auto end = SerialEnd::open(*sockets_.line);
+    if (!end) return;
+    sockets_.end = std::move(*end);
+  }
+  const WireTime wire_time = sockets_.end->wire_time();
+  clients_.push_back({Connection(sockets_.end->take(), wire_time), 0});
 }
 
 model::Nanoseconds Server::now() const {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start_).count();
 }
 
-int Server::timeout_ms() const {
+std::chrono::nanoseconds Server::timeout() const {
   const Clock::time_point now = Clock::now();
   Clock::time_point wake = now + longest_wait;
-  for (const Connection& connection : connections_) {
-    if (const auto due = connection.next_due(); due && !connection.blocked()) wake = std::min(wake, *due);
+  for (const Client& client : clients_) {
+    const auto due = client.connection.next_due();
+    if (due && !client.connection.blocked()) wake = std::min(wake, *due);
   }
-  return static_cast<int>(
-      std::max<std::int64_t>(0, std::chrono::ceil<std::chrono::milliseconds>(wake - now).count()));
+  return std::max(std::chrono::nanoseconds{0}, std::chrono::nanoseconds(wake - now));
 }
 
-void Server::serve(Connection& connection, short events, bool& open) {
+void Server::serve(Client& client, short events, bool& open) {
   if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
-    open = connection.receive([this](const Request& request) { return emulator_.serve(now(), request); });
+    open = client.connection.receive(
+        [&](const Request& request) { return emulator_.serve(now(), request, client.link); });
   }
-  open = open && connection.send_due(Clock::now()) && emulator_.reachable();
+  open = open && client.connection.send_due(Clock::now()) && emulator_.reachable();
 }
 
-void Server::accept_modbus() {
-  Descriptor client = accept_client(sockets_.modbus);
+void Server::accept_modbus(std::size_t link) {
+  Descriptor client = accept_client(sockets_.modbus[link]);
   // While the cable is cut, and beyond what poll() should watch, a client is let in and shown out.
-  if (client && emulator_.reachable() && connections_.size() < max_modbus_clients) {
-    connections_.emplace_back(std::move(client));
+  if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
+    clients_.push_back({Connection(std::move(client)), link});
   }
 }
 

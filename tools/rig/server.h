@@ -5,16 +5,22 @@
 #include <cstddef>
 #include <functional>
 #include <list>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/descriptor.h"
 #include "tools/rig/connection.h"
 #include "tools/rig/emulator.h"
+#include "tools/rig/serial_end.h"
 
 namespace softgrip::tools::rig {
 
 struct ServerSockets {
-  Descriptor modbus;            ///< listening
+  std::vector<Descriptor> modbus;  ///< listening, one per link of a network
+  /// A serial line in the place of the network: how it is opened, and opened again after `disconnect`.
+  std::optional<drivers::SerialLine> line;
+  std::optional<SerialEnd> end;
   Descriptor control;           ///< listening, or empty
   Descriptor signals;           ///< a signalfd: SIGUSR1 pulls the object out, all others end run()
   bool standard_input = false;  ///< take control commands from there as well
@@ -35,18 +41,23 @@ class Server {
   };
 
   [[nodiscard]] model::Nanoseconds now() const;
-  [[nodiscard]] int timeout_ms() const;
-  void accept_modbus();
+  [[nodiscard]] std::chrono::nanoseconds timeout() const;
+  void accept_modbus(std::size_t link);
+  void plug_line();
   void accept_control();
   void take_signal();
-  void serve(Connection& connection, short events, bool& open);
+  struct Client {
+    Connection connection;
+    std::size_t link = 0;
+  };
+  void serve(Client& client, short events, bool& open);
   void read_control(ControlClient& client);
   void answer_control(const ControlClient& client, std::string_view line);
 
   Emulator& emulator_;
   ServerSockets sockets_;
   Clock::time_point start_ = Clock::now();
-  std::list<Connection> connections_;
+  std::list<Client> clients_;
   std::list<ControlClient> control_clients_;
   bool quit_ = false;
 };

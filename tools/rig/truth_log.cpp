@@ -26,7 +26,7 @@ void TruthLog::add(const Emulator& emulator) {
     row_ += ",";
     if (!plant.sees_nothing()) row_ += sysid::shortest(plant.reading_mm());
     row_ += finger.has_object() ? ",1" : ",0";
-    row_ += emulator.board().tripped() ? ",1\n" : ",0\n";
+    row_ += emulator.tripped() ? ",1\n" : ",0\n";
     file_ << row_;
   }
 }

@@ -24,18 +24,30 @@ Reply dripped(const Bytes& whole, double interval_s) {
   return reply;
 }
 
-Reply longer_than_it_is(const Request& request, const Bytes& pdu) {
-  Bytes whole = frame(request.transaction, request.unit, pdu);
+Reply longer_than_it_is(Wire wire, const Request& request, const Bytes& pdu) {
+  Bytes whole = frame_on(wire, request.transaction, request.unit, pdu);
+  if (wire == Wire::rtu) {
+    whole.push_back(0);
+    return at_once(std::move(whole));
+  }
   const auto length = static_cast<std::uint16_t>(word_at(whole, 4) + 1);
   whole[4] = static_cast<std::uint8_t>(length >> 8U);
   whole[5] = static_cast<std::uint8_t>(length & 0xffU);
   return at_once(std::move(whole));
 }
 
+/// Of another question, as far as the wire can tell: its transaction id, or its checksum.
+Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
+  const auto next_transaction = static_cast<std::uint16_t>(request.transaction + 1);
+  Bytes whole = frame_on(wire, next_transaction, request.unit, pdu);
+  if (wire == Wire::rtu) whole.back() = static_cast<std::uint8_t>(whole.back() + 1);
+  return at_once(std::move(whole));
+}
+
 }  // namespace
 
-Reply good_reply(const Request& request, const Bytes& pdu) {
-  return at_once(frame(request.transaction, request.unit, pdu));
+Reply good_reply(Wire wire, const Request& request, const Bytes& pdu) {
+  return at_once(frame_on(wire, request.transaction, request.unit, pdu));
 }
 
 bool carried_out(FaultKind kind) noexcept {
@@ -43,9 +55,8 @@ bool carried_out(FaultKind kind) noexcept {
          kind != FaultKind::disconnect;
 }
 
-Reply spoiled_reply(const FaultSpec& fault, const Request& request, const Bytes& pdu) {
-  const Bytes whole = frame(request.transaction, request.unit, pdu);
-  const auto next_transaction = static_cast<std::uint16_t>(request.transaction + 1);
+Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request, const Bytes& pdu) {
+  const Bytes whole = frame_on(wire, request.transaction, request.unit, pdu);
   const auto next_unit = static_cast<std::uint8_t>(request.unit + 1);
   switch (fault.kind) {
     case FaultKind::lost_request:
@@ -60,17 +71,17 @@ Reply spoiled_reply(const FaultSpec& fault, const Request& request, const Bytes&
     case FaultKind::repeated_reply:
       return {{{{}, whole}, {{}, whole}}, false};
     case FaultKind::wrong_unit:
-      return at_once(frame(request.transaction, next_unit, pdu));
+      return at_once(frame_on(wire, request.transaction, next_unit, pdu));
     case FaultKind::wrong_transaction:
-      return at_once(frame(next_transaction, request.unit, pdu));
+      return of_another_question(wire, request, pdu);
     case FaultKind::wrong_length:
-      return longer_than_it_is(request, pdu);
+      return longer_than_it_is(wire, request, pdu);
     case FaultKind::exception_reply:
-      return good_reply(request, exception_reply(request.pdu[0], static_cast<Exception>(fault.code)));
+      return good_reply(wire, request, exception_reply(request.pdu[0], static_cast<Exception>(fault.code)));
     case FaultKind::disconnect:
       return {{}, true};
     default:
-      return good_reply(request, pdu);
+      return good_reply(wire, request, pdu);
   }
 }
 

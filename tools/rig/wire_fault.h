@@ -4,16 +4,19 @@
 #include "tools/rig/fault.h"
 #include "tools/rig/mbap.h"
 #include "tools/rig/reply.h"
+#include "tools/rig/wire.h"
 
 namespace softgrip::tools::rig {
 
 /// The reply as it should be: one piece, at once.
-[[nodiscard]] Reply good_reply(const Request& request, const Bytes& pdu);
+[[nodiscard]] Reply good_reply(Wire wire, const Request& request, const Bytes& pdu);
 
 /// Whether the request is carried out while this fault of the wire is there.
 [[nodiscard]] bool carried_out(FaultKind kind) noexcept;
 
-/// What the client gets in place of good_reply(request, pdu).
-[[nodiscard]] Reply spoiled_reply(const FaultSpec& fault, const Request& request, const Bytes& pdu);
+/// What the client gets in place of good_reply(wire, request, pdu). A frame on a serial line has neither
+/// transaction id nor length: there wrong_transaction is a wrong checksum, wrong_length a byte too many.
+[[nodiscard]] Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request,
+                                  const Bytes& pdu);
 
 }  // namespace softgrip::tools::rig

@@ -2,6 +2,8 @@
 // How fingers are wired to an emulated board when no rig file says it.
 
 #include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -12,10 +14,11 @@
 namespace softgrip::tools::rig {
 
 /// Channels left, right, finger_3, ...: valve i on output i, sensor i on input i and, where there are inputs
-/// enough, pressure monitors on the last inputs. The lower end of the terminals' span (0 V or 4 mA) is 0 kPa
-/// and -5 mm, the upper (10 V or 20 mA) 100 kPa and 45 mm: as config/rig_tcp.yaml has it.
+/// enough, pressure monitors on the last inputs; terminals count on from module to module. The lower end of
+/// the terminals' span (0 V or 4 mA) is 0 kPa and -5 mm, the upper (10 V or 20 mA) 100 kPa and 45 mm: as
+/// config/rig_tcp.yaml has it. Terminals in kilopascals are valves and pressure monitors themselves.
 /// The error is one sentence.
 [[nodiscard]] tl::expected<std::vector<drivers::ChannelWiring>, std::string> default_wiring(
-    const drivers::BoardMap& map, std::size_t channels);
+    std::span<const drivers::BoardMap> modules, std::size_t channels);
 
 }  // namespace softgrip::tools::rig

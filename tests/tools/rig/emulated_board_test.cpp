@@ -102,7 +102,7 @@ TEST(EmulatedBoard, OnlyTheMapsFunctionsFeedAWatchdogThatIsPicky) {
 
 TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
   drivers::BoardMap map = adam();
-  map.watchdog.clear = drivers::FixedWrite{5, 0x1020, 1};
+  map.watchdog.clear = {drivers::FixedWrite{5, 0x1020, 1}};
   map.watchdog.tripped = drivers::BoardWatchdog::Tripped{1, 0x1021, 0xffff};
   EmulatedBoard board(map);
   board.answer(0, write_outputs(2000, 2000));

@@ -28,8 +28,9 @@ class EmulatorTest : public testing::Test {
   static EmulatorSettings settings(std::vector<FaultSpec> faults = {}) {
     document::Problems problems;
     EmulatorSettings settings;
-    settings.map = *drivers::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/adam-6024.yaml", problems);
-    settings.wiring = *default_wiring(settings.map, 2);
+    const auto map = *drivers::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/adam-6024.yaml", problems);
+    settings.modules = {{map, 1, 0}};
+    settings.wiring = *default_wiring({&map, 1}, 2);
     settings.plants.resize(2);
     for (auto& plant : settings.plants) {
       plant.model = *model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems);
@@ -108,7 +109,7 @@ TEST_F(EmulatorTest, ALostRequestIsNotCarriedOutAndFeedsNothing) {
   EXPECT_FALSE(command(emulator, second / 5, 10));
   EXPECT_GT(emulator.fingers()[0].plant().held_command_kpa(), 39);
   emulator.advance(second);
-  EXPECT_TRUE(emulator.board().tripped());
+  EXPECT_TRUE(emulator.tripped());
 }
 
 TEST_F(EmulatorTest, AnUnansweredRequestIsCarriedOut) {
@@ -233,10 +234,10 @@ TEST_F(EmulatorTest, ControlLinesDoWhatTheySay) {
 }
 
 TEST_F(EmulatorTest, BoardsWithoutEnoughTerminalsAreRefused) {
-  const drivers::BoardMap map = settings().map;
-  EXPECT_FALSE(default_wiring(map, 3));
-  EXPECT_FALSE(default_wiring(map, 0));
-  EXPECT_TRUE(drivers::wiring_problems(map, *default_wiring(map, 2)).empty());
+  const drivers::BoardMap map = settings().modules[0].map;
+  EXPECT_FALSE(default_wiring({&map, 1}, 3));
+  EXPECT_FALSE(default_wiring({&map, 1}, 0));
+  EXPECT_TRUE(drivers::wiring_problems(map, *default_wiring({&map, 1}, 2)).empty());
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ Reply spoiled(FaultKind kind, double seconds = 0, std::uint8_t code = 0) {
   fault.delay_s = seconds;
   fault.interval_s = seconds;
   fault.code = code;
-  return spoiled_reply(fault, request, pdu);
+  return spoiled_reply(Wire::tcp, fault, request, pdu);
 }
 
 Bytes only_piece(const Reply& reply) {
@@ -25,7 +25,7 @@ Bytes only_piece(const Reply& reply) {
 }
 
 TEST(WireFault, LeavesAGoodReplyAlone) {
-  EXPECT_EQ(only_piece(good_reply(request, pdu)), whole);
+  EXPECT_EQ(only_piece(good_reply(Wire::tcp, request, pdu)), whole);
   EXPECT_EQ(only_piece(spoiled(FaultKind::sensor_stuck)), whole) << "no fault of the wire";
 }
 

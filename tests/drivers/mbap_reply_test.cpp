@@ -1,4 +1,4 @@
-#include "drivers/modbus_reply.h"
+#include "drivers/mbap.h"
 
 #include <gtest/gtest.h>
 

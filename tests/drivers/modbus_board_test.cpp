@@ -1,6 +1,6 @@
 // The board's driver against a server on real sockets: right registers, right numbers, right status.
 
-#include "drivers/modbus_tcp_board.h"
+#include "drivers/modbus_board.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 
 #include "drivers/board_map_file.h"
 #include "drivers/clock.h"
+#include "tests/drivers/on_tcp.h"
 #include "tests/drivers/register_server.h"
 #include "tests/drivers/two_fingers.h"
 
@@ -36,9 +37,9 @@ std::uint16_t adam_raw(double volt) {
   return static_cast<std::uint16_t>(std::lround((volt + 10) / 20 * 65535));
 }
 
-class ModbusTcpBoardTest : public testing::Test {
+class ModbusBoardTest : public testing::Test {
  protected:
-  ModbusTcpBoardTest() {
+  ModbusBoardTest() {
     for (std::uint16_t input = 0; input < 6; ++input) server_.set_input(input, adam_raw(5));
     // The outputs read back as input registers 10 and 11 on an ADAM-6024.
     server_.on_request([](RegisterServer& server, const RegisterServer::Request&) {
@@ -47,14 +48,11 @@ class ModbusTcpBoardTest : public testing::Test {
     });
   }
 
-  ModbusTcpSettings settings(const BoardMap& map) const {
-    return {
-        .host = "127.0.0.1", .port = server_.port(), .unit = 1, .map = map, .wiring = wiring_, .probes = 0};
-  }
+  ModbusSettings settings(const BoardMap& map) const { return test::on_tcp(server_.port(), map, wiring_, 0); }
 
   /// Makes and connects the board; the requests of connecting are forgotten.
   void connect(const BoardMap& map) {
-    board_ = std::make_unique<ModbusTcpBoard>(settings(map));
+    board_ = std::make_unique<ModbusBoard>(settings(map));
     ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
     (void)server_.take_requests();
   }
@@ -66,11 +64,11 @@ class ModbusTcpBoardTest : public testing::Test {
 
   RegisterServer server_;
   std::vector<ChannelWiring> wiring_ = test::two_fingers();
-  std::unique_ptr<ModbusTcpBoard> board_;
+  std::unique_ptr<ModbusBoard> board_;
   std::vector<Reading> readings_{2};
 };
 
-TEST_F(ModbusTcpBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
+TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
   connect(shipped("adam-6024.yaml"));
   server_.set_input(0, adam_raw(3));
   server_.set_input(1, adam_raw(7));
@@ -94,7 +92,7 @@ TEST_F(ModbusTcpBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
   }
 }
 
-TEST_F(ModbusTcpBoardTest, SampledAtIsWhenTheInputsWereAsked) {
+TEST_F(ModbusBoardTest, SampledAtIsWhenTheInputsWereAsked) {
   connect(shipped("adam-6024.yaml"));
   const Nanoseconds before = MonotonicClock().now();
   ASSERT_EQ(exchange(0, 0), BusStatus::ok);
@@ -108,7 +106,7 @@ TEST_F(ModbusTcpBoardTest, SampledAtIsWhenTheInputsWereAsked) {
   EXPECT_EQ(readings_[0].sequence, 2U);
 }
 
-TEST_F(ModbusTcpBoardTest, OneTransactionWithFunction23) {
+TEST_F(ModbusBoardTest, OneTransactionWithFunction23) {
   wiring_ = test::two_fingers(false);
   connect(shipped("softgrip-sim.yaml"));
   const auto put = [this](std::uint16_t address, float volt) {
@@ -137,7 +135,7 @@ TEST_F(ModbusTcpBoardTest, OneTransactionWithFunction23) {
   EXPECT_EQ(server_.take_requests().size(), 1U);
 }
 
-TEST_F(ModbusTcpBoardTest, LowWordFirst) {
+TEST_F(ModbusBoardTest, LowWordFirst) {
   wiring_ = test::two_fingers(false);
   BoardMap map = shipped("softgrip-sim.yaml");
   map.word_order = WordOrder::low_first;
@@ -153,7 +151,7 @@ TEST_F(ModbusTcpBoardTest, LowWordFirst) {
 }
 
 // On a bipolar board raw 0 is -10 V: an output that nobody wired must never be written.
-TEST_F(ModbusTcpBoardTest, OnlyWiredOutputsAreWritten) {
+TEST_F(ModbusBoardTest, OnlyWiredOutputsAreWritten) {
   BoardMap map = shipped("softgrip-sim.yaml");
   map.has_fc23 = false;
   map.read_back.reset();
@@ -173,7 +171,7 @@ TEST_F(ModbusTcpBoardTest, OnlyWiredOutputsAreWritten) {
   }
 }
 
-TEST_F(ModbusTcpBoardTest, ChannelsMayBeWiredInAnyOrder) {
+TEST_F(ModbusBoardTest, ChannelsMayBeWiredInAnyOrder) {
   std::swap(wiring_[0].valve.output, wiring_[1].valve.output);
   std::swap(wiring_[0].displacement.input, wiring_[1].displacement.input);
   connect(shipped("adam-6024.yaml"));
@@ -186,7 +184,7 @@ TEST_F(ModbusTcpBoardTest, ChannelsMayBeWiredInAnyOrder) {
   EXPECT_NEAR(readings_[1].displacement_mm, 10, 0.001);
 }
 
-TEST_F(ModbusTcpBoardTest, ValidityOfReadings) {
+TEST_F(ModbusBoardTest, ValidityOfReadings) {
   connect(shipped("adam-6024.yaml"));
   server_.set_input(0, adam_raw(0.05));  // below the electrical range
   server_.set_input(1, adam_raw(9.95));  // the sensor's error code
@@ -205,7 +203,7 @@ TEST_F(ModbusTcpBoardTest, ValidityOfReadings) {
   EXPECT_FALSE(std::isnan(readings_[1].pressure_kpa));
 }
 
-TEST_F(ModbusTcpBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten) {
+TEST_F(ModbusBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten) {
   connect(shipped("adam-6024.yaml"));
   ASSERT_EQ(exchange(10, 10), BusStatus::ok);
   EXPECT_EQ(exchange(10, 101), BusStatus::write_refused);
@@ -217,7 +215,7 @@ TEST_F(ModbusTcpBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritt
   EXPECT_EQ(exchange(100, 0), BusStatus::ok) << "the ends themselves are allowed: " << board_->detail();
 }
 
-TEST_F(ModbusTcpBoardTest, ACommandThatIsNoNumberWritesNothing) {
+TEST_F(ModbusBoardTest, ACommandThatIsNoNumberWritesNothing) {
   connect(shipped("adam-6024.yaml"));
   ASSERT_EQ(exchange(10, 20), BusStatus::ok);
   (void)server_.take_requests();
@@ -229,7 +227,7 @@ TEST_F(ModbusTcpBoardTest, ACommandThatIsNoNumberWritesNothing) {
   EXPECT_TRUE(server_.take_requests().empty());
 }
 
-TEST_F(ModbusTcpBoardTest, AnOutputThatDoesNotFollowIsRefused) {
+TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 0;
   connect(map);
@@ -243,7 +241,7 @@ TEST_F(ModbusTcpBoardTest, AnOutputThatDoesNotFollowIsRefused) {
 }
 
 // Some boards show in the read-back what they were told one exchange ago, all the more with function 23.
-TEST_F(ModbusTcpBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
+TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   BoardMap map = shipped("adam-6024.yaml");
   map.read_back->lag_exchanges = 1;
   server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
@@ -265,7 +263,7 @@ TEST_F(ModbusTcpBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "but not for ever";
 }
 
-TEST_F(ModbusTcpBoardTest, ExceptionsAreToldAndTheSessionStands) {
+TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
   connect(shipped("adam-6024.yaml"));
   for (const std::uint8_t function : {std::uint8_t{16}, std::uint8_t{4}}) {
     server_.refuse(function, 2);
@@ -279,7 +277,7 @@ TEST_F(ModbusTcpBoardTest, ExceptionsAreToldAndTheSessionStands) {
   EXPECT_EQ(server_.sessions(), 1U);
 }
 
-TEST_F(ModbusTcpBoardTest, TheDeadlineSpansTheWholeExchange) {
+TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
   connect(shipped("adam-6024.yaml"));
   server_.delay(30ms);  // each of four round trips within the deadline, together beyond it
   const Nanoseconds before = MonotonicClock().now();
@@ -294,16 +292,16 @@ TEST_F(ModbusTcpBoardTest, TheDeadlineSpansTheWholeExchange) {
   EXPECT_EQ(exchange(10, 10), BusStatus::ok);
 }
 
-TEST_F(ModbusTcpBoardTest, WithoutASessionNothingIsSent) {
-  board_ = std::make_unique<ModbusTcpBoard>(settings(shipped("adam-6024.yaml")));
+TEST_F(ModbusBoardTest, WithoutASessionNothingIsSent) {
+  board_ = std::make_unique<ModbusBoard>(settings(shipped("adam-6024.yaml")));
   EXPECT_EQ(exchange(10, 10), BusStatus::disconnected);
   EXPECT_EQ(server_.sessions(), 0U);
 }
 
-TEST_F(ModbusTcpBoardTest, SetupIsWrittenInOrderOnEveryConnect) {
+TEST_F(ModbusBoardTest, SetupIsWrittenInOrderOnEveryConnect) {
   BoardMap map = shipped("adam-6024.yaml");
   map.setup = {{6, 500, 7}, {16, 501, 8}, {5, 3, 1}};
-  board_ = std::make_unique<ModbusTcpBoard>(settings(map));
+  board_ = std::make_unique<ModbusBoard>(settings(map));
   const Requests expected{{6, 500, 0, 500, {7}}, {16, 501, 0, 501, {8}}, {5, 3, 0, 3, {0xff00}}};
   for (int i = 0; i < 2; ++i) {
     ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
@@ -314,10 +312,10 @@ TEST_F(ModbusTcpBoardTest, SetupIsWrittenInOrderOnEveryConnect) {
   EXPECT_EQ(exchange(0, 0), BusStatus::disconnected) << "a board that refuses its setup is not used";
 }
 
-TEST_F(ModbusTcpBoardTest, ConnectingWritesNoOutput) {
-  ModbusTcpSettings with_probes = settings(shipped("adam-6024.yaml"));
+TEST_F(ModbusBoardTest, ConnectingWritesNoOutput) {
+  ModbusSettings with_probes = settings(shipped("adam-6024.yaml"));
   with_probes.probes = 3;
-  board_ = std::make_unique<ModbusTcpBoard>(with_probes);
+  board_ = std::make_unique<ModbusBoard>(with_probes);
   EXPECT_NE(board_->budget().explanation.find("assumed"), std::string::npos);
   ASSERT_EQ(board_->connect(generous), BusStatus::ok);
   const Requests expected(3, {4, 0, 6, 0, {}});
@@ -328,10 +326,10 @@ TEST_F(ModbusTcpBoardTest, ConnectingWritesNoOutput) {
   EXPECT_GT(budget.exchange_s, 0);
 }
 
-TEST_F(ModbusTcpBoardTest, LaterSessionsBeginWithTheOutputs) {
-  ModbusTcpSettings with_probes = settings(shipped("adam-6024.yaml"));
+TEST_F(ModbusBoardTest, LaterSessionsBeginWithTheOutputs) {
+  ModbusSettings with_probes = settings(shipped("adam-6024.yaml"));
   with_probes.probes = 3;
-  board_ = std::make_unique<ModbusTcpBoard>(with_probes);
+  board_ = std::make_unique<ModbusBoard>(with_probes);
   ASSERT_EQ(board_->connect(generous), BusStatus::ok);
   (void)server_.take_requests();
   ASSERT_EQ(board_->connect(generous), BusStatus::ok);
@@ -341,14 +339,14 @@ TEST_F(ModbusTcpBoardTest, LaterSessionsBeginWithTheOutputs) {
   EXPECT_EQ(server_.take_requests().front().function, 16);
 }
 
-TEST_F(ModbusTcpBoardTest, Describes) {
-  board_ = std::make_unique<ModbusTcpBoard>(settings(shipped("adam-6024.yaml")));
+TEST_F(ModbusBoardTest, Describes) {
+  board_ = std::make_unique<ModbusBoard>(settings(shipped("adam-6024.yaml")));
   EXPECT_EQ(board_->describe(), "ADAM-6024 at 127.0.0.1:" + std::to_string(server_.port()) + " unit 1");
   EXPECT_TRUE(board_->has_watchdog());
   EXPECT_EQ(board_->channels(), 2U);
 }
 
-TEST_F(ModbusTcpBoardTest, AWrongNumberOfChannelsIsRefused) {
+TEST_F(ModbusBoardTest, AWrongNumberOfChannelsIsRefused) {
   connect(shipped("adam-6024.yaml"));
   const std::vector<double> one{1};
   EXPECT_EQ(board_->exchange(one, readings_, generous), BusStatus::write_refused);
@@ -357,14 +355,14 @@ TEST_F(ModbusTcpBoardTest, AWrongNumberOfChannelsIsRefused) {
 
 /// A board with a latching watchdog: tripped shows in coil 32, writing 1 to coil 33 clears it, and while it
 /// is tripped writes are confirmed but the outputs (holding 256...) stay at 0.
-class WatchdogTest : public ModbusTcpBoardTest {
+class WatchdogTest : public ModbusBoardTest {
  protected:
   WatchdogTest() {
     map_ = shipped("adam-6024.yaml");
     map_.read_back.reset();
     map_.input_status.reset();
     map_.watchdog.tripped = BoardWatchdog::Tripped{.function = 1, .address = 32, .mask = 1};
-    map_.watchdog.clear = FixedWrite{.function = 5, .address = 33, .value = 1};
+    map_.watchdog.clear = {FixedWrite{.function = 5, .address = 33, .value = 1}};
     server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
       if (request.function == 5 && request.write_address == 33) {
         server.coils_[32] = 0;
@@ -427,6 +425,97 @@ TEST_F(WatchdogTest, AFeedingWriteIsSentInEveryExchange) {
     for (const auto& request : server_.take_requests()) fed += request.write_address == 4099 ? 1 : 0;
     EXPECT_EQ(fed, 1);
   }
+}
+
+/// The board refuses writes with an exception while its watchdog holds the outputs, as some couplers do.
+TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
+  map_.setup = {{6, 500, 7}};
+  connect(map_);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  server_.set_coil(32, 1);
+  server_.refuse(16, 4);
+  EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped) << board_->detail();
+  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
+    if (request.function != 5 || request.write_address != 33) return;
+    server.coils_[32] = 0;
+    server.refuse(std::nullopt);
+  });
+  (void)server_.take_requests();
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+  for (const auto& request : server_.take_requests()) {
+    EXPECT_NE(request.function, 6) << "to set it up again could end the trip before the outputs are written";
+  }
+  ASSERT_EQ(exchange(5, 5), BusStatus::ok) << board_->detail();
+  int set_up = 0;
+  for (const auto& request : server_.take_requests()) set_up += request.function == 6 ? 1 : 0;
+  EXPECT_EQ(set_up, 1);
+  EXPECT_EQ(server_.coil(32), 0);
+}
+
+/// Outputs and inputs are two devices at two addresses.
+class TwoModules : public ModbusBoardTest {
+ protected:
+  TwoModules() {
+    for (std::uint16_t input = 0; input < 8; ++input) inputs_->set_input(input, 5000);
+    wiring_ = test::two_fingers();
+    for (ChannelWiring& channel : wiring_) {
+      channel.displacement.module = 1;
+      channel.pressure->module = 1;
+    }
+    settings_ = {.links = {TcpAddress{"127.0.0.1", server_.port()}, TcpAddress{"127.0.0.1", inputs_->port()}},
+                 .modules = {{.name = "out", .map = shipped("waveshare-ao8-b.yaml"), .unit = 1, .link = 0},
+                             {.name = "in", .map = shipped("waveshare-ai8-b.yaml"), .unit = 1, .link = 1}},
+                 .wiring = wiring_,
+                 .probes = 2};
+    board_ = std::make_unique<ModbusBoard>(settings_);
+  }
+  std::unique_ptr<RegisterServer> inputs_ = std::make_unique<RegisterServer>();
+  ModbusSettings settings_;
+};
+
+TEST_F(TwoModules, AreOneBoard) {
+  EXPECT_TRUE(problems_of(settings_).empty());
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+  (void)server_.take_requests();
+  (void)inputs_->take_requests();
+  inputs_->set_input(1, 8000);
+  ASSERT_EQ(exchange(40, 60), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(server_.take_requests(), (Requests{{16, 0, 0, 0, {4000, 6000}}, {3, 0, 2, 0, {}}}));
+  EXPECT_EQ(inputs_->take_requests(), (Requests{{4, 0, 6, 0, {}}}));
+  EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 20);
+  EXPECT_DOUBLE_EQ(readings_[1].displacement_mm, 35);
+  EXPECT_DOUBLE_EQ(readings_[0].pressure_kpa, 50);
+  EXPECT_DOUBLE_EQ(readings_[1].command_readback_kpa, 60);
+  EXPECT_FALSE(board_->has_watchdog());
+  EXPECT_NE(board_->describe().find("; Waveshare AI 8CH (B) at"), std::string::npos) << board_->describe();
+  EXPECT_NE(board_->budget().explanation.find("; then Modbus TCP, 1 round trip (in: FC4 reads 6 from 0)"),
+            std::string::npos)
+      << board_->budget().explanation;
+}
+
+TEST_F(TwoModules, OutputsAreReachedThoughTheInputsAreGone) {
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+  ASSERT_EQ(exchange(40, 60), BusStatus::ok) << board_->detail();
+  inputs_.reset();
+  EXPECT_EQ(exchange(40, 60), BusStatus::disconnected);
+  EXPECT_NE(std::string(board_->detail()).find("'in'"), std::string::npos) << board_->detail();
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << "as far as outputs go";
+  EXPECT_EQ(exchange(0, 0), BusStatus::disconnected);
+  EXPECT_EQ(server_.holding(0), 0) << "this board has no watchdog: the valves are told all the same";
+  EXPECT_EQ(server_.holding(1), 0);
+}
+
+TEST_F(TwoModules, WithoutTheOutputsThereIsNoSession) {
+  settings_.links[0] = TcpAddress{"127.0.0.1", 1};
+  ModbusBoard board(settings_);
+  EXPECT_EQ(board.connect(500ms), BusStatus::disconnected);
+}
+
+TEST_F(TwoModules, AModuleWithoutAWireIsAProblem) {
+  for (ChannelWiring& channel : settings_.wiring) channel.displacement.module = 0;
+  const std::vector<std::string> problems = problems_of(settings_);
+  ASSERT_EQ(problems.size(), 2U);
+  EXPECT_NE(problems[0].find("out has no input 0"), std::string::npos) << problems[0];
 }
 
 }  // namespace

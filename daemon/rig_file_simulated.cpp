@@ -1,45 +1,15 @@
-// The board of a rig file: one on Modbus TCP, or fingers simulated in process.
-
-#include <arpa/inet.h>
+// The board of a rig file that is simulated in process.
 
 #include <algorithm>
 #include <array>
 
 #include "daemon/rig_file_reader.h"
-#include "drivers/board_map_file.h"
-#include "model/document/number.h"
 
 namespace softgrip::daemon::rig_file {
 
 namespace {
 
 using document::Node;
-
-std::chrono::nanoseconds read_duration(MapReader& reader, std::string_view key, document::Range range) {
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(reader.number(key, range) * 1e9));
-}
-
-/// A numeric address: names would have to be resolved, which takes as long as it takes.
-std::string read_host(MapReader& reader) {
-  std::string host = reader.text("host");
-  std::array<unsigned char, sizeof(in6_addr)> address{};
-  if (host.empty() || ::inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
-      ::inet_pton(AF_INET6, host.c_str(), address.data()) == 1) {
-    return host;
-  }
-  reader.report("host", "`host` must be a numeric address, found `" + document::shown(host) + "`",
-                host == "localhost" ? "write 127.0.0.1" : "names are not resolved");
-  return host;
-}
-
-std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
-  const std::size_t before = context.problems.size();
-  const auto document = named_document(context, reader, "map", InputFile::Role::board);
-  if (!document) return std::nullopt;
-  auto map = drivers::read_board_map(*document, context.problems);
-  if (context.problems.size() != before) map.reset();
-  return map;
-}
 
 /// An object between the fingers: a map, or `none` where it is pulled out.
 std::optional<drivers::PlantObject> read_object(Context& context, const Node& node) {
@@ -141,34 +111,6 @@ Event read_event(Context& context, const Node& node) {
 }
 
 }  // namespace
-
-void read_modbus_board(Context& context, const Node& node) {
-  MapReader reader(context.document, node, context.problems, "modbus_tcp");
-  drivers::ModbusTcpSettings settings;
-  context.map = read_map(context, reader);
-  if (context.map) settings.map = *context.map;
-  settings.host = read_host(reader);
-  settings.port = static_cast<std::uint16_t>(reader.integer("port", 1, 65535));
-  settings.unit = static_cast<std::uint8_t>(reader.integer("unit", 0, 255));
-  RigFile& rig = context.rig;
-  rig.loop.exchange_deadline_s = reader.number("exchange_deadline_s", {1e-4, 1});
-  rig.reconnect.connect_deadline = read_duration(reader, "connect_deadline_s", {1e-3, 30});
-  rig.reconnect.first_pause = read_duration(reader, "first_pause_s", {1e-3, 60});
-  rig.reconnect.longest_pause = read_duration(reader, "longest_pause_s", {1e-3, 600});
-  if (reader.good("longest_pause_s") && reader.good("first_pause_s") &&
-      rig.reconnect.longest_pause < rig.reconnect.first_pause) {
-    reader.report("longest_pause_s", "`longest_pause_s` must not be shorter than `first_pause_s`");
-  }
-  const double patience_s = rig.settings.faults.bus_down_cycles * context.period_s();
-  if (context.rate_known && reader.good("exchange_deadline_s") &&
-      rig.loop.exchange_deadline_s >= patience_s) {
-    reader.warn("exchange_deadline_s",
-                "a single exchange that misses its deadline is already the fault bus_down",
-                "`bus_down_cycles` are over after " + document::written(patience_s) + " s");
-  }
-  rig.accept_over_budget = reader.optional_boolean("accept_over_budget").value_or(false);
-  rig.board = std::move(settings);
-}
 
 void read_simulated_board(Context& context, const Node& node) {
   MapReader reader(context.document, node, context.problems, "simulated");

@@ -1,6 +1,6 @@
 // Frames against the byte sequences of the examples in the Modbus application protocol, V1.1b3, section 6.
 
-#include "drivers/modbus_request.h"
+#include "drivers/mbap.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
-#include "drivers/modbus_session.h"
+#include "drivers/modbus_tcp_link.h"
 
 #include <arpa/inet.h>
-#include <modbus/modbus.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -11,9 +10,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 
 #include "drivers/clock.h"
+#include "drivers/descriptor_wait.h"
+#include "drivers/error_text.h"
 
 namespace softgrip::drivers {
 namespace {
@@ -30,19 +30,6 @@ constexpr unsigned user_timeout_ms = 3000;
 void set_option(int socket, int level, int name, int value) noexcept {
   // Best effort: a session without these options is slower or later noticed dead, not wrong.
   (void)::setsockopt(socket, level, name, &value, sizeof value);
-}
-
-/// Text of an errno, from a table in the C library.
-const char* text_of_errno(int error) noexcept {
-  const char* text = ::strerrordesc_np(error);
-  return text != nullptr ? text : "unknown error";
-}
-
-/// Text of a Modbus exception. For a code it does not know libmodbus asks strerror, which allocates.
-const char* text_of_exception(unsigned code) noexcept {
-  const bool known = code >= MODBUS_EXCEPTION_ILLEGAL_FUNCTION && code < MODBUS_EXCEPTION_MAX &&
-                     code != MODBUS_EXCEPTION_NOT_DEFINED;
-  return known ? ::modbus_strerror(MODBUS_ENOBASE + static_cast<int>(code)) : "no exception of the standard";
 }
 
 std::uint32_t parse_address(const std::string& host, std::uint16_t port, std::uint8_t* storage) {
@@ -77,31 +64,31 @@ bool talks_to_itself(int socket) noexcept {
 
 }  // namespace
 
-ModbusSession::ModbusSession(const std::string& host, std::uint16_t port, std::uint8_t unit)
-    : address_size_(parse_address(host, port, address_.data())), unit_(unit) {}
+ModbusTcpLink::ModbusTcpLink(const TcpAddress& address)
+    : settings_(address), address_size_(parse_address(address.host, address.port, address_.data())) {}
 
-ModbusSession::~ModbusSession() {
-  close();
+ModbusTcpLink::~ModbusTcpLink() {
+  if (socket_ >= 0) ::close(socket_);
 }
 
-void ModbusSession::close() noexcept {
+void ModbusTcpLink::close() noexcept {
   if (socket_ >= 0) ::close(socket_);
   socket_ = -1;
 }
 
-BusStatus ModbusSession::fail(BusStatus status, const char* what, const char* why) noexcept {
+BusStatus ModbusTcpLink::fail(BusStatus status, const char* what, const char* why) noexcept {
   std::snprintf(detail_.data(), detail_.size(), "%s: %s", what, why);
   close();
   return status;
 }
 
-BusStatus ModbusSession::open(Nanoseconds deadline) noexcept {
+BusStatus ModbusTcpLink::open(Nanoseconds deadline) noexcept {
   close();
   if (const BusStatus status = start_connecting(); status != BusStatus::ok) return status;
   return finish_connecting(deadline);
 }
 
-BusStatus ModbusSession::start_connecting() noexcept {
+BusStatus ModbusTcpLink::start_connecting() noexcept {
   if (address_size_ == 0) return fail(BusStatus::disconnected, "connecting", "not a numeric address");
   sockaddr family{};
   std::memcpy(&family, address_.data(), sizeof family);
@@ -118,8 +105,8 @@ BusStatus ModbusSession::start_connecting() noexcept {
   return fail(BusStatus::disconnected, "connecting", text_of_errno(errno));
 }
 
-BusStatus ModbusSession::finish_connecting(Nanoseconds deadline) noexcept {
-  if (const BusStatus status = wait_for(POLLOUT, deadline, "connecting"); status != BusStatus::ok) {
+BusStatus ModbusTcpLink::finish_connecting(Nanoseconds deadline) noexcept {
+  if (const BusStatus status = wait_until_ready(POLLOUT, deadline, "connecting"); status != BusStatus::ok) {
     return status;
   }
   int error = 0;
@@ -132,28 +119,25 @@ BusStatus ModbusSession::finish_connecting(Nanoseconds deadline) noexcept {
   return BusStatus::ok;
 }
 
-BusStatus ModbusSession::wait_for(short events, Nanoseconds deadline, const char* what) noexcept {
-  const MonotonicClock clock;
-  while (true) {
-    const Nanoseconds remaining = deadline - clock.now();
-    if (remaining <= 0) return fail(BusStatus::timed_out, what, "the deadline passed");
-    const timespec timeout{.tv_sec = remaining / 1'000'000'000, .tv_nsec = remaining % 1'000'000'000};
-    pollfd waiting{.fd = socket_, .events = events, .revents = 0};
-    // poll, not select: descriptors of 1024 and above are as good as any other.
-    const int ready = ::ppoll(&waiting, 1, &timeout, nullptr);
-    // Errors and hang-ups count as ready: the call that follows says which.
-    if (ready > 0) return BusStatus::ok;
-    if (ready < 0 && errno != EINTR) return fail(BusStatus::disconnected, what, text_of_errno(errno));
+BusStatus ModbusTcpLink::wait_until_ready(short events, Nanoseconds deadline, const char* what) noexcept {
+  switch (wait_for(socket_, events, deadline)) {
+    case Waited::ready:
+      return BusStatus::ok;
+    case Waited::timed_out:
+      return fail(BusStatus::timed_out, what, "the deadline passed");
+    case Waited::failed:
+      break;
   }
+  return fail(BusStatus::disconnected, what, text_of_errno(errno));
 }
 
-BusStatus ModbusSession::send_all(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
+BusStatus ModbusTcpLink::send_all(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
   while (!frame.empty()) {
     const ssize_t sent = ::send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent >= 0) {
       frame = frame.subspan(static_cast<std::size_t>(sent));
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-      if (const BusStatus status = wait_for(POLLOUT, deadline, "sending"); status != BusStatus::ok) {
+      if (const BusStatus status = wait_until_ready(POLLOUT, deadline, "sending"); status != BusStatus::ok) {
         return status;
       }
     } else if (errno != EINTR) {
@@ -163,10 +147,11 @@ BusStatus ModbusSession::send_all(std::span<const std::uint8_t> frame, Nanosecon
   return BusStatus::ok;
 }
 
-BusStatus ModbusSession::receive(const ModbusRequest& request, Nanoseconds deadline) noexcept {
+BusStatus ModbusTcpLink::receive(std::uint8_t unit, const ModbusRequest& request,
+                                 Nanoseconds deadline) noexcept {
   std::size_t have = 0;
   while (true) {
-    if (const BusStatus status = wait_for(
+    if (const BusStatus status = wait_until_ready(
             POLLIN, deadline, have == 0 ? "waiting for the reply" : "waiting for the rest of the reply");
         status != BusStatus::ok) {
       return status;
@@ -180,7 +165,7 @@ BusStatus ModbusSession::receive(const ModbusRequest& request, Nanoseconds deadl
     }
     have += static_cast<std::size_t>(got);
     const ModbusReply reply =
-        parse_reply(std::span<const std::uint8_t>(incoming_).first(have), request, transaction_, unit_);
+        parse_reply(std::span<const std::uint8_t>(incoming_).first(have), request, transaction_, unit);
     switch (reply.state) {
       case ModbusReply::State::incomplete:
         break;
@@ -199,15 +184,28 @@ BusStatus ModbusSession::receive(const ModbusRequest& request, Nanoseconds deadl
   }
 }
 
-BusStatus ModbusSession::ask(const ModbusRequest& request, Nanoseconds deadline) noexcept {
+BusStatus ModbusTcpLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanoseconds deadline) noexcept {
   data_ = {};
   if (!is_open()) return BusStatus::disconnected;
   ++transaction_;
-  const std::size_t size = build_request(request, transaction_, unit_, outgoing_);
+  const std::size_t size = build_request(request, transaction_, unit, outgoing_);
   if (size == 0) return fail(BusStatus::bad_reply, "asking", "no such Modbus request");
   const auto frame = std::span<const std::uint8_t>(outgoing_).first(size);
+  const MonotonicClock clock;
+  const Nanoseconds asked_at = clock.now();
   if (const BusStatus status = send_all(frame, deadline); status != BusStatus::ok) return status;
-  return receive(request, deadline);
+  const BusStatus status = receive(unit, request, deadline);
+  last_round_trip_ = clock.now() - asked_at;
+  return status;
+}
+
+Board::Budget ModbusTcpLink::cost(std::span<const TransactionSize> transactions,
+                                  const std::string& plan) const {
+  return tcp_cost(transactions.size(), plan, settings_.host, round_trips_);
+}
+
+std::string ModbusTcpLink::describe() const {
+  return settings_.host + ":" + std::to_string(settings_.port);
 }
 
 }  // namespace softgrip::drivers

@@ -1,7 +1,7 @@
 // The session against a peer that does everything a board must not do. Every case says what it must be called
 // and how long it may take.
 
-#include "drivers/modbus_session.h"
+#include "drivers/modbus_tcp_link.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -49,7 +49,7 @@ void answer_well(Peer& peer, const Bytes& request) {
 }
 
 /// True if the session's data are the registers that `request` asked for.
-testing::AssertionResult is_answer(const ModbusSession& session, const ModbusRequest& request) {
+testing::AssertionResult is_answer(const ModbusTcpLink& session, const ModbusRequest& request) {
   if (session.data().size() != 2U * request.count) {
     return testing::AssertionFailure() << session.data().size() << " bytes for " << request.count;
   }
@@ -82,20 +82,20 @@ Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
       answer_well(peer, asked);
     }
   });
-  ModbusSession session("127.0.0.1", server.port(), 1);
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
   const Nanoseconds before = now();
   Outcome outcome{};
-  outcome.status = session.ask(request, before + within);
+  outcome.status = session.ask(1, request, before + within);
   outcome.took = now() - before;
   outcome.open_after = session.is_open();
   outcome.detail = session.detail();
   if (!session.is_open()) {
-    EXPECT_EQ(session.ask(read_four, now() + generous), BusStatus::disconnected)
+    EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::disconnected)
         << "a poisoned session answered";
     EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
   }
-  EXPECT_EQ(session.ask(read_four, now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
   EXPECT_TRUE(is_answer(session, read_four));
   return outcome;
 }
@@ -116,13 +116,13 @@ void expect_poisoned(const Outcome& outcome, BusStatus status, Nanoseconds at_mo
   EXPECT_FALSE(outcome.detail.empty());
 }
 
-TEST(ModbusSession, ReadsRegisters) {
+TEST(ModbusTcpLink, ReadsRegisters) {
   const Outcome outcome = ask_once(answer_well, read_four, generous);
   EXPECT_EQ(outcome.status, BusStatus::ok) << outcome.detail;
   EXPECT_TRUE(outcome.open_after);
 }
 
-TEST(ModbusSession, LateReplyTimesOutAndIsNeverTakenForALaterAnswer) {
+TEST(ModbusTcpLink, LateReplyTimesOutAndIsNeverTakenForALaterAnswer) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     peer.wait(750ms);
     answer_well(peer, request);
@@ -131,7 +131,7 @@ TEST(ModbusSession, LateReplyTimesOutAndIsNeverTakenForALaterAnswer) {
   EXPECT_GE(outcome.took, deadline);
 }
 
-TEST(ModbusSession, DripFedReplyDoesNotExtendTheDeadline) {
+TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
   const ModbusRequest large{.function = 3, .address = 0, .count = 125};
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
@@ -141,7 +141,7 @@ TEST(ModbusSession, DripFedReplyDoesNotExtendTheDeadline) {
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
 }
 
-TEST(ModbusSession, ReplyInPiecesWithinTheDeadlineIsFine) {
+TEST(ModbusTcpLink, ReplyInPiecesWithinTheDeadlineIsFine) {
   const Outcome outcome =
       ask_once([](Peer& peer,
                   const Bytes& request) { peer.drip(test::registers_reply(request, register_value), 1ms); },
@@ -149,55 +149,55 @@ TEST(ModbusSession, ReplyInPiecesWithinTheDeadlineIsFine) {
   EXPECT_EQ(outcome.status, BusStatus::ok) << outcome.detail;
 }
 
-TEST(ModbusSession, WrongUnitId) {
+TEST(ModbusTcpLink, WrongUnitId) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[6] = 2; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, WrongTransactionId) {
+TEST(ModbusTcpLink, WrongTransactionId) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[1] ^= 1; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, WrongProtocolId) {
+TEST(ModbusTcpLink, WrongProtocolId) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[3] = 1; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, LengthTooLarge) {
+TEST(ModbusTcpLink, LengthTooLarge) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { ++reply[5]; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, LengthTooSmall) {
+TEST(ModbusTcpLink, LengthTooSmall) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { --reply[5]; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, LengthOfAnExceptionOnAnOrdinaryReply) {
+TEST(ModbusTcpLink, LengthOfAnExceptionOnAnOrdinaryReply) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[5] = 3; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, FewerRegistersThanAsked) {
+TEST(ModbusTcpLink, FewerRegistersThanAsked) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     peer.send(test::frame_for(request, {3, 2, 0, 1}));
   });
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, ByteCountContradictsTheLength) {
+TEST(ModbusTcpLink, ByteCountContradictsTheLength) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[8] = 6; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, AnotherFunctionAnswered) {
+TEST(ModbusTcpLink, AnotherFunctionAnswered) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply[7] = 4; }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, ShortReplyTimesOut) {
+TEST(ModbusTcpLink, ShortReplyTimesOut) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply.pop_back(); }), BusStatus::timed_out,
                   deadline + slack);
 }
 
-TEST(ModbusSession, BytesBehindTheReply) {
+TEST(ModbusTcpLink, BytesBehindTheReply) {
   expect_poisoned(ask_spoiled([](Bytes& reply) { reply.push_back(0); }), BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, FloodOfBytes) {
+TEST(ModbusTcpLink, FloodOfBytes) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) {
     peer.send(Bytes(1'000'000, 0x5a));
     peer.hang_up();
@@ -205,7 +205,7 @@ TEST(ModbusSession, FloodOfBytes) {
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, FloodBehindAGoodReply) {
+TEST(ModbusTcpLink, FloodBehindAGoodReply) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     Bytes reply = test::registers_reply(request, register_value);
     reply.resize(500'000, 0);
@@ -215,18 +215,18 @@ TEST(ModbusSession, FloodBehindAGoodReply) {
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, NoReplyAtAll) {
+TEST(ModbusTcpLink, NoReplyAtAll) {
   const Outcome outcome = ask_once([](Peer&, const Bytes&) {});
   expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
   EXPECT_GE(outcome.took, deadline);
 }
 
-TEST(ModbusSession, HungUpBeforeTheReply) {
+TEST(ModbusTcpLink, HungUpBeforeTheReply) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.hang_up(); });
   expect_poisoned(outcome, BusStatus::disconnected, slack);
 }
 
-TEST(ModbusSession, HungUpInTheMiddleOfTheReply) {
+TEST(ModbusTcpLink, HungUpInTheMiddleOfTheReply) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     Bytes reply = test::registers_reply(request, register_value);
     reply.resize(reply.size() / 2);
@@ -236,12 +236,12 @@ TEST(ModbusSession, HungUpInTheMiddleOfTheReply) {
   expect_poisoned(outcome, BusStatus::disconnected, slack);
 }
 
-TEST(ModbusSession, ResetByThePeer) {
+TEST(ModbusTcpLink, ResetByThePeer) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.reset(); });
   expect_poisoned(outcome, BusStatus::disconnected, slack);
 }
 
-TEST(ModbusSession, ExceptionsKeepTheSession) {
+TEST(ModbusTcpLink, ExceptionsKeepTheSession) {
   for (const int code : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0x55, 255}) {
     const Outcome outcome = ask_once(
         [code](Peer& peer, const Bytes& request) {
@@ -255,14 +255,14 @@ TEST(ModbusSession, ExceptionsKeepTheSession) {
   }
 }
 
-TEST(ModbusSession, ExceptionOfAnotherFunction) {
+TEST(ModbusTcpLink, ExceptionOfAnotherFunction) {
   const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
     peer.send(test::frame_for(request, {0x90, 2}));
   });
   expect_poisoned(outcome, BusStatus::bad_reply, slack);
 }
 
-TEST(ModbusSession, WriteConfirmedForAnotherAddress) {
+TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
   const std::uint16_t value = 77;
   const Outcome outcome = ask_once(
       [](Peer& peer, const Bytes& request) {
@@ -274,7 +274,7 @@ TEST(ModbusSession, WriteConfirmedForAnotherAddress) {
 
 // One duplicated reply leaves a careless client off by one for ever. Here replies are duplicated, at once or
 // later, at random; every question asks for other registers; no answer may be that of another question.
-TEST(ModbusSession, DuplicatedRepliesNeverMoveTheAnswers) {
+TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
   const unsigned seed = 20250411;
   std::mt19937 random(seed);
   ScriptedServer server([&random](Peer& peer, const Bytes& request, std::size_t) {
@@ -287,7 +287,7 @@ TEST(ModbusSession, DuplicatedRepliesNeverMoveTheAnswers) {
       peer.send(reply);
     }
   });
-  ModbusSession session("127.0.0.1", server.port(), 1);
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   std::size_t good = 0;
   std::size_t bad = 0;
   for (std::uint16_t i = 0; i < 300; ++i) {
@@ -295,7 +295,7 @@ TEST(ModbusSession, DuplicatedRepliesNeverMoveTheAnswers) {
       ASSERT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
     }
     const ModbusRequest request{.function = 4, .address = static_cast<std::uint16_t>(i * 3), .count = 2};
-    const BusStatus status = session.ask(request, now() + generous);
+    const BusStatus status = session.ask(1, request, now() + generous);
     if (status == BusStatus::ok) {
       ++good;
       ASSERT_TRUE(is_answer(session, request)) << "question " << i << ", seed " << seed;
@@ -308,26 +308,26 @@ TEST(ModbusSession, DuplicatedRepliesNeverMoveTheAnswers) {
   EXPECT_GT(bad, 50U) << "the duplicates did not reach the client: the test tests nothing";
 }
 
-TEST(ModbusSession, RefusedConnection) {
+TEST(ModbusTcpLink, RefusedConnection) {
   std::uint16_t port = 0;
   {
     port = ScriptedServer([](Peer&, const Bytes&, std::size_t) {}).port();
   }
-  ModbusSession session("127.0.0.1", port, 1);
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", port});
   const Nanoseconds before = now();
   EXPECT_EQ(session.open(before + generous), BusStatus::disconnected);
   EXPECT_LT(now() - before, slack);
   EXPECT_NE(std::string(session.detail()).find("refused"), std::string::npos) << session.detail();
 }
 
-TEST(ModbusSession, NamesAreNotResolved) {
-  ModbusSession session("localhost", 502, 1);
+TEST(ModbusTcpLink, NamesAreNotResolved) {
+  ModbusTcpLink session(TcpAddress{"localhost", 502});
   EXPECT_EQ(session.open(now() + generous), BusStatus::disconnected);
   EXPECT_NE(std::string(session.detail()).find("numeric"), std::string::npos) << session.detail();
 }
 
 // A listener whose queue is full drops the first packet of every further connection: nothing ever answers.
-TEST(ModbusSession, ConnectingIsBoundedWhenNobodyAnswers) {
+TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
   const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -336,11 +336,11 @@ TEST(ModbusSession, ConnectingIsBoundedWhenNobodyAnswers) {
   ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
   ASSERT_EQ(::listen(listener, 0), 0);
   ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  std::vector<std::unique_ptr<ModbusSession>> queue;
+  std::vector<std::unique_ptr<ModbusTcpLink>> queue;
   BusStatus status = BusStatus::ok;
   Nanoseconds took = 0;
   for (int i = 0; i < 8 && status == BusStatus::ok; ++i) {
-    queue.push_back(std::make_unique<ModbusSession>("127.0.0.1", ntohs(address.sin_port), 1));
+    queue.push_back(std::make_unique<ModbusTcpLink>(TcpAddress{"127.0.0.1", ntohs(address.sin_port)}));
     const Nanoseconds before = now();
     status = queue.back()->open(before + deadline);
     took = now() - before;
@@ -351,28 +351,28 @@ TEST(ModbusSession, ConnectingIsBoundedWhenNobodyAnswers) {
   ::close(listener);
 }
 
-TEST(ModbusSession, AHalfOpenSessionTimesOut) {
+TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
   ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
     if (index == 0) answer_well(peer, request);  // then it is there and says nothing any more
   });
-  ModbusSession session("127.0.0.1", server.port(), 1);
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
-  ASSERT_EQ(session.ask(read_four, now() + generous), BusStatus::ok);
+  ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok);
   const Nanoseconds before = now();
-  EXPECT_EQ(session.ask(read_four, before + deadline), BusStatus::timed_out);
+  EXPECT_EQ(session.ask(1, read_four, before + deadline), BusStatus::timed_out);
   EXPECT_LT(now() - before, deadline + slack);
-  EXPECT_EQ(session.ask(read_four, now() + deadline), BusStatus::disconnected);
+  EXPECT_EQ(session.ask(1, read_four, now() + deadline), BusStatus::disconnected);
 }
 
-TEST(ModbusSession, ADeadlineInThePastFailsAtOnce) {
+TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {
   ScriptedServer server([](Peer&, const Bytes&, std::size_t) {});
-  ModbusSession session("127.0.0.1", server.port(), 1);
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
   ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
-  EXPECT_EQ(session.ask(read_four, now() - 1), BusStatus::timed_out);
+  EXPECT_EQ(session.ask(1, read_four, now() - 1), BusStatus::timed_out);
 }
 
 // Descriptors of 1024 and above do not fit an fd_set; code that uses select writes past it.
-TEST(ModbusSession, DescriptorsAboveTheFdSet) {
+TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
   rlimit limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
   const rlimit before = limit;
@@ -386,9 +386,9 @@ TEST(ModbusSession, DescriptorsAboveTheFdSet) {
       taken.push_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
       ASSERT_GE(taken.back(), 0);
     }
-    ModbusSession session("127.0.0.1", server.port(), 1);
+    ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
     EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
-    EXPECT_EQ(session.ask(read_four, now() + generous), BusStatus::ok) << session.detail();
+    EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
     EXPECT_TRUE(is_answer(session, read_four));
     for (const int descriptor : taken) ::close(descriptor);
   }
@@ -396,7 +396,7 @@ TEST(ModbusSession, DescriptorsAboveTheFdSet) {
 }
 
 // A timer that interrupts every wait must neither end it early nor start it anew.
-TEST(ModbusSession, SignalsDoNotMoveTheDeadline) {
+TEST(ModbusTcpLink, SignalsDoNotMoveTheDeadline) {
   struct sigaction handler {};
   struct sigaction old {};
   handler.sa_handler = [](int) {};
@@ -405,11 +405,11 @@ TEST(ModbusSession, SignalsDoNotMoveTheDeadline) {
   const itimerval never{};
   {
     ScriptedServer server([](Peer&, const Bytes&, std::size_t) {});
-    ModbusSession session("127.0.0.1", server.port(), 1);
+    ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
     ASSERT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
     ::setitimer(ITIMER_REAL, &every, nullptr);
     const Nanoseconds before = now();
-    EXPECT_EQ(session.ask(read_four, before + deadline), BusStatus::timed_out) << session.detail();
+    EXPECT_EQ(session.ask(1, read_four, before + deadline), BusStatus::timed_out) << session.detail();
     const Nanoseconds took = now() - before;
     ::setitimer(ITIMER_REAL, &never, nullptr);
     EXPECT_GE(took, deadline);

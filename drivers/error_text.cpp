@@ -1,0 +1,21 @@
+#include "drivers/error_text.h"
+
+#include <modbus/modbus.h>
+
+#include <cstring>
+
+namespace softgrip::drivers {
+
+const char* text_of_errno(int error) noexcept {
+  const char* text = ::strerrordesc_np(error);
+  return text != nullptr ? text : "unknown error";
+}
+
+const char* text_of_exception(unsigned code) noexcept {
+  // For a code it does not know libmodbus asks strerror, which allocates.
+  const bool known = code >= MODBUS_EXCEPTION_ILLEGAL_FUNCTION && code < MODBUS_EXCEPTION_MAX &&
+                     code != MODBUS_EXCEPTION_NOT_DEFINED;
+  return known ? ::modbus_strerror(MODBUS_ENOBASE + static_cast<int>(code)) : "no exception of the standard";
+}
+
+}  // namespace softgrip::drivers

@@ -1,0 +1,51 @@
+#pragma once
+// A module on a pseudo-terminal that does with each request whatever a test wants. Nothing of drivers/ in it,
+// so that an error there cannot cancel itself out here.
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace softgrip::drivers::test {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Appends the checksum of a serial frame.
+[[nodiscard]] Bytes checked(Bytes bytes);
+
+class ScriptedLine {
+ public:
+  /// `index` counts the requests from 0; `request` is all that came until the line was quiet for 3 ms.
+  using Handler = std::function<void(ScriptedLine& line, const Bytes& request, std::size_t index)>;
+
+  /// `name` becomes a link to the new pseudo-terminal; empty: there is none, see device().
+  explicit ScriptedLine(Handler handler, std::string name = "");
+  ScriptedLine(const ScriptedLine&) = delete;
+  ScriptedLine& operator=(const ScriptedLine&) = delete;
+  ScriptedLine(ScriptedLine&&) = delete;
+  ScriptedLine& operator=(ScriptedLine&&) = delete;
+  /// Hangs up: as an adapter that is pulled out.
+  ~ScriptedLine();
+
+  [[nodiscard]] const std::string& device() const { return device_; }
+  void send(const Bytes& bytes);
+  void drip(const Bytes& bytes, std::chrono::milliseconds pause);
+  static void wait(std::chrono::milliseconds duration) { std::this_thread::sleep_for(duration); }
+
+ private:
+  void serve();
+
+  Handler handler_;
+  int master_ = -1;
+  int kept_ = -1;
+  std::string device_;
+  std::string name_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace softgrip::drivers::test

@@ -1,0 +1,143 @@
+"""A serial line end to end: real processes on a pseudo-terminal that takes the time of its bytes."""
+
+import re
+import shutil
+import subprocess
+import time
+import unittest
+
+import bench
+
+
+class Line(bench.BenchTest):
+    """The shipped rig on a serial line, on a pseudo-terminal of the emulator."""
+
+    def setUp(self):
+        super().setUp()
+        self.device = self.folder / "line"
+
+    def line_rig(self, *changes):
+        text = (self.folder / "config" / "rig_rtu.yaml").read_text()
+        for pattern, replacement in (
+                (r"device: .*", f"device: {self.device}"),
+                (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.3"),
+                (r"bus_down_cycles: \d+", "bus_down_cycles: 30"),
+                (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"),
+                (r"readback_cycles: \d+", "readback_cycles: 30"),
+                (r"max_missed_commands: \d+", "max_missed_commands: 30"),
+                (r"max_age_s: [\d.]+", "max_age_s: 0.8"),
+                (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
+                (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
+                (r"directory: /tmp/softgrip-runs", f"directory: {self.folder}/runs"),
+                (r"path: /tmp/softgrip.sock", f"path: {self.folder}/softgripd.sock"),
+                *changes):
+            text, count = re.subn(pattern, replacement, text)
+            self.assertGreater(count, 0, pattern)
+        path = self.folder / "config" / "test_rig.yaml"
+        path.write_text(text)
+        return path
+
+    def line_emulator(self, rig, *arguments):
+        process = bench.Process("softgrip-rig", [bench.SOFTGRIP_RIG, "--model",
+                                                 self.folder / "config/models/bench_twin.yaml", "--rig", rig,
+                                                 "--control", self.folder / "rig.sock", *arguments], self.folder)
+        self.processes.append(process)
+        bench.wait_for("the line", lambda: f"listening on {self.device}" in process.output(), pause_s=0.05)
+        control = bench.Lines(self.folder / "rig.sock")
+        self.addCleanup(control.close)
+        return control
+
+    def report(self, rig):
+        done = subprocess.run([str(bench.SOFTGRIPD), "--config", str(rig), "--check"], capture_output=True, text=True,
+                              timeout=bench.PATIENCE_S)
+        return done
+
+    def test_a_stone_is_held(self):
+        rig = self.line_rig()
+        self.line_emulator(rig, "--object", "stone")
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        for channel in ("left", "right"):
+            daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
+        self.assertEqual(daemon.end(), 0)
+
+    def test_a_rate_that_cannot_fit_is_refused_with_the_sum(self):
+        done = self.report(self.line_rig((r"rate_hz: \d+", "rate_hz: 100")))
+        self.assertEqual(done.returncode, 3)
+        for part in ("not fast enough for 100 exchanges a second", "115200 8N1", "63 bytes 5.47 ms",
+                     "6 silences of 1.75 ms 10.5 ms", "at most 45 Hz", "accept_over_budget"):
+            self.assertIn(part, done.stderr)
+        done = self.report(self.line_rig((r"rate_hz: \d+", "rate_hz: 100"),
+                                         (r"first_pause_s:", "accept_over_budget: true\n    first_pause_s:")))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("configured 100 Hz: DOES NOT FIT", done.stdout)
+        done = self.report(self.line_rig())
+        self.assertIn("configured 40 Hz: fits", done.stdout)
+        self.assertIn("watchdog: NONE on the board", done.stdout)
+
+    def test_an_adapter_that_is_pulled_out_comes_back(self):
+        faults = self.write("faults.yaml", "faults:\n  - {name: unplugged, kind: disconnect}\n")
+        rig = self.line_rig()
+        control = self.line_emulator(rig, "--faults", faults)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        self.assertEqual(control.ask("fault unplugged"), "ok")
+        bench.wait_for("the name to go", lambda: not self.device.is_symlink())
+        daemon.wait_for_state("faulted")
+        self.assertEqual(control.ask("clear unplugged"), "ok")
+        daemon.wait_for_event("bus_recovered")
+        self.assertEqual(daemon.status()["state"], "faulted", "nothing moves until somebody acknowledges")
+        bench.wait_for("the bus", lambda: daemon.status()["bus"]["connected"])
+        daemon.result("acknowledge")
+        daemon.wait_for_state("idle")
+
+    def test_the_daemon_keeps_its_rate(self):
+        rig = self.line_rig()
+        self.line_emulator(rig)
+        histograms = self.folder / "histograms.txt"
+        done = subprocess.run([str(bench.SOFTGRIPD), "--config", str(rig), "--duration-s", "5", "--no-socket",
+                               "--histograms", str(histograms)], capture_output=True, text=True,
+                              timeout=bench.PATIENCE_S)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        exchanges = int(re.search(r"# Exchanges: (\d+)", histograms.read_text()).group(1))
+        # 40 Hz; a busy machine may lose some.
+        self.assertGreater(exchanges, 0.8 * 5 * 40)
+
+
+@unittest.skipUnless(shutil.which("mbpoll"), "mbpoll is not installed")
+class MbpollOnTheLine(bench.BenchTest):
+    """mbpoll, which shares no code with us, is the master."""
+
+    def poll(self, *arguments):
+        done = subprocess.run(["mbpoll", "-m", "rtu", "-b", "19200", "-P", "even", "-0", "-1", "-q",
+                               *map(str, arguments)], capture_output=True, text=True, timeout=bench.PATIENCE_S)
+        return done
+
+    def test_reads_and_writes(self):
+        device = self.folder / "line"
+        process = bench.Process("softgrip-rig", [
+            bench.SOFTGRIP_RIG, "--model", self.folder / "config/models/bench_twin.yaml", "--rtu", device, "--baud", 19200,
+            "--format", "8E1", "--noise-mm", 0, "--board", self.folder / "config/boards/waveshare-ao8-b.yaml",
+            "--board", self.folder / "config/boards/waveshare-ai8-b.yaml"], self.folder)
+        self.processes.append(process)
+        bench.wait_for("the line", lambda: "listening on" in process.output())
+        done = self.poll("-a", 1, "-t", 4, "-r", 0, device, 4000, 2000)
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        time.sleep(2)
+        done = self.poll("-a", 1, "-t", 4, "-r", 0, "-c", 2, device)
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        self.assertEqual([int(v) for v in re.findall(r"\]:\s+(\d+)", done.stdout)], [4000, 2000])
+        done = self.poll("-a", 2, "-t", 3, "-r", 0, "-c", 2, device)
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        left, right = (int(v) for v in re.findall(r"\]:\s+(\d+)", done.stdout))
+        self.assertGreater(left, right + 500, "millivolts: 40 kPa moves farther than 20 kPa")
+        done = self.poll("-a", 2, "-t", 3, "-r", 8, "-c", 1, device)
+        self.assertNotEqual(done.returncode, 0, "an input that is not there")
+        self.assertIn("Illegal data address", done.stdout + done.stderr)
+        done = self.poll("-a", 3, "-t", 4, "-r", 0, "-c", 1, device)
+        self.assertIn("timed out", done.stdout + done.stderr, "nobody has this unit")
+
+
+if __name__ == "__main__":
+    bench.main()
