@@ -18,6 +18,8 @@ using Kind = DriveFailure::Kind;
 
 /// How long the board may take to confirm that everything is down, beyond the way there.
 constexpr double confirmation_s = 1;
+/// How long the board may be silent on the way; nothing moves meanwhile.
+constexpr double silence_s = 1;
 constexpr std::size_t times_kept = 100'000;
 
 bool loses_session(BusStatus status) {
@@ -115,6 +117,7 @@ HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
   const Nanoseconds now = pace_.now();
   due_ = due_ == 0 || now > due_ + period_ ? now : due_ + period_;
   pace_.sleep_until(due_);
+  const Nanoseconds began = pace_.now();
   const BusStatus status = exchange();
   if (status == BusStatus::ok) {
     failures_ = 0;
@@ -122,7 +125,10 @@ HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
     return {};
   }
   const bool said_by_board = status == BusStatus::write_refused || status == BusStatus::watchdog_tripped;
-  if (!said_by_board && ++failures_ < rig_.settings.faults.bus_down_cycles) return {};
+  const double patience =
+      std::max<double>(rig_.settings.faults.bus_down_cycles, silence_s / seconds(period_));
+  failures_ += 1 + static_cast<std::uint32_t>((pace_.now() - began) / period_);
+  if (!said_by_board && failures_ < patience) return {};
   const std::string detail = board_.detail();
   return tl::unexpected(DriveFailure{Kind::bus, detail.empty() ? drivers::name_of(status) : detail});
 }
@@ -171,8 +177,11 @@ HandDrive::Expected<void> HandDrive::ramp(std::size_t channel, double to_kpa, do
   targets_[channel] = std::clamp(to_kpa, limits.pressure_min_kpa, limits.pressure_max_kpa);
   moved_ = true;
   while (commands_[channel] != targets_[channel]) {
+    const std::vector<double> before = commands_;
     follow_targets(speed_kpa_per_s);
     if (const auto done = step(watch); !done) return done;
+    // What was not written has not moved anything: no jump when the board is back.
+    if (failures_ > 0) commands_ = before;
     if (const auto failure = beyond()) return tl::unexpected(*failure);
   }
   return {};
@@ -192,6 +201,7 @@ bool HandDrive::leave() noexcept {
     fastest = std::max(fastest, rig_.settings.channels[i].limits.slew_down_kpa_per_s);
   }
   Nanoseconds give_up = 0;
+  // Down in any case: a board that comes back late gets the end of the way, which is what is wanted of it.
   while (true) {
     follow_targets(fastest);
     const bool down = commands_ == targets_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "daemon/rig_file.h"
@@ -11,6 +13,7 @@
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/temporary_folder.h"
 #include "tests/tools/virtual_pace.h"
+#include "tools/doctor/daemon_examination.h"
 #include "tools/doctor/machine.h"
 #include "tools/doctor/motion.h"
 #include "tools/doctor/rig_examination.h"
@@ -242,6 +245,70 @@ TEST_F(DoctorTest, AFolderThatCannotBeWrittenAndOneThatCan) {
   rig_.recorder.directory = "/dev/null";
   examine_disk(rig_, findings_);
   expect("disk", Verdict::fail, "no folder");
+}
+
+/// What a healthy daemon answers.
+nlohmann::ordered_json healthy_status() {
+  return nlohmann::ordered_json::parse(R"({"version": "1", "rig": "bench", "rate_hz": 200, "state": "idle",
+    "fault": null, "sequence": null, "bus": {"board": "ADAM", "connected": true},
+    "channels": [{"name": "left", "validity": "valid", "displacement_mm": 0.1, "command_kpa": 0, "health": "healthy",
+                  "health_rms_mm": 0.1}],
+    "recording": {"dropped_rows": 0, "error": null}, "gpio": null,
+    "real_time": {"degraded": false, "steps": [{"name": "kernel", "outcome": "not asked for", "detail": "6.1, PREEMPT_RT"}]}})");
+}
+nlohmann::ordered_json healthy_statistics() {
+  return nlohmann::ordered_json::parse(
+      R"({"loop": {"ticks": 10000, "slips_woken_late": 0, "slips_took_long": 0,
+    "wake_up": {"p99_us": 40, "max_us": 90}}, "bus": {"exchanges": 10000, "failures": 0, "exchange": {"p99_us": 900}}})");
+}
+Verdict worst_after(const std::function<void(nlohmann::ordered_json&, nlohmann::ordered_json&)>& spoil) {
+  auto status = healthy_status();
+  auto statistics = healthy_statistics();
+  spoil(status, statistics);
+  Findings findings;
+  examine_daemon(status, statistics, "bench", findings);
+  return findings.worst();
+}
+
+TEST(ExamineDaemon, FindsWhatTheDaemonSaysOfItself) {
+  using Json = nlohmann::ordered_json;
+  EXPECT_EQ(worst_after([](Json&, Json&) {}), Verdict::ok);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["rig"] = "another"; }), Verdict::warn);
+  EXPECT_EQ(worst_after([](Json& status, Json&) {
+              status["fault"] = {{"code", "F101"}, {"name", "bus_down"}};
+            }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["bus"]["connected"] = false; }), Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["channels"][0]["validity"] = "frozen"; }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["recording"]["error"] = "disk full"; }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json&, Json& statistics) { statistics["loop"]["slips_took_long"] = 3; }),
+            Verdict::warn);
+  EXPECT_EQ(worst_after([](Json&, Json& statistics) { statistics["loop"]["slips_took_long"] = 300; }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["gpio"] = {{"lost", true}}; }), Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) {
+              status["gpio"] = {{"emergency_stop", true}};
+            }),
+            Verdict::warn);
+}
+
+TEST(ExamineDaemon, AnUnfitModelCountsOnceSomethingHasRun) {
+  using Json = nlohmann::ordered_json;
+  const auto unfit = [](Json& status, Json&) { status["channels"][0]["health"] = "unfit"; };
+  EXPECT_EQ(worst_after(unfit), Verdict::warn) << "at the start the finger may have been on its way to rest";
+  EXPECT_EQ(worst_after([&](Json& status, Json& statistics) {
+              unfit(status, statistics);
+              status["sequence"] = {{"name", "pick"}};
+            }),
+            Verdict::fail);
+}
+
+TEST(ExamineDaemon, SurvivesAnAnswerThatSaysNothing) {
+  Findings findings;
+  examine_daemon({}, {}, "bench", findings);
+  EXPECT_EQ(findings.worst(), Verdict::fail);
 }
 
 TEST(Findings, TheTextNamesWhatToDoUnderWhatIsWrong) {

@@ -71,6 +71,7 @@ Expected<double> ask_number(HandDrive& drive, Operator& person, const std::strin
 
 Expected<void> move_to(const daemon::RigFile& rig, HandDrive& drive, Operator& person,
                        const Settings& settings, double kpa) {
+  if (drive.command_kpa(settings.channel) == kpa) return {};  // and it rests there
   const control::LimitSettings& limits = rig.settings.channels[settings.channel].limits;
   const double speed = share_per_s * (limits.pressure_max_kpa - limits.pressure_min_kpa);
   person.tell(fmt::format("moving `{}` to {:.4g} kPa", rig.settings.channels[settings.channel].name, kpa));

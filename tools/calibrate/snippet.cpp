@@ -45,11 +45,18 @@ std::string error_codes(const drivers::InputWiring& wiring) {
   return text + "]";
 }
 
-std::string input(const std::string& key, const drivers::InputWiring& wiring,
+/// Which module of a board that has several.
+std::string module_of(const daemon::RigFile& rig, std::size_t module) {
+  const auto* const board = std::get_if<drivers::ModbusSettings>(&rig.board);
+  if (board == nullptr || board->modules.size() < 2 || module >= board->modules.size()) return {};
+  return "module: " + board->modules[module].name + ", ";
+}
+
+std::string input(const daemon::RigFile& rig, const std::string& key, const drivers::InputWiring& wiring,
                   const drivers::TwoPoints& points, const std::string& unit) {
   const std::string electrical = suffix(wiring.unit);
-  return fmt::format("{}: {{input: {}, {}, valid_{}: {}{}}}\n", key, wiring.input,
-                     scaling(points, electrical, unit), electrical,
+  return fmt::format("{}: {{{}input: {}, {}, valid_{}: {}{}}}\n", key, module_of(rig, wiring.module),
+                     wiring.input, scaling(points, electrical, unit), electrical,
                      pair(wiring.valid_min, wiring.valid_max, 5), error_codes(wiring));
 }
 
@@ -58,7 +65,7 @@ std::string findings(const std::string& what, const Line& line, const std::strin
   for (const double residual : line.residuals)
     residuals += (residuals.empty() ? "" : ", ") + rounded(residual, 4);
   return fmt::format(
-      "# {}: error {} {} between the points besides the gauge's own, noise of a reading {} {},\n"
+      "# {}: error {} {} between the points besides the reference's own, noise of a reading {} {},\n"
       "#   residuals [{}] {}, repeat spread {}\n",
       what, rounded(line.error, 4), unit, rounded(line.noise, 4), unit, residuals, unit,
       line.repeat_spread ? rounded(*line.repeat_spread, 4) + " " + unit
@@ -68,7 +75,8 @@ std::string findings(const std::string& what, const Line& line, const std::strin
 std::string valve_line(const daemon::RigFile& rig, std::size_t channel, const drivers::TwoPoints& points) {
   const drivers::OutputWiring& wiring = rig.wiring[channel].valve;
   const daemon::ValveFacts& facts = rig.valves[channel];
-  return fmt::format("valve: {{output: {}, {}, range_kpa: {}, on_power_loss: {}}}\n", wiring.output,
+  return fmt::format("valve: {{{}output: {}, {}, range_kpa: {}, on_power_loss: {}}}\n",
+                     module_of(rig, wiring.module), wiring.output,
                      scaling(points, suffix(wiring.unit), "kpa"),
                      pair(facts.range_min_kpa, facts.range_max_kpa, 4),
                      facts.on_power_loss == daemon::PowerLoss::vents ? "vents" : "holds");
@@ -98,7 +106,7 @@ std::string snippet(const daemon::RigFile& rig, const Results& results) {
     text += findings("sensor", *results.sensor, "mm");
     text +=
         fmt::format("#   the signal {} with displacement\n", results.sensor->slope > 0 ? "rises" : "falls");
-    text += input("sensor", wiring.displacement, results.sensor->points, "mm");
+    text += input(rig, "sensor", wiring.displacement, results.sensor->points, "mm");
   }
   if (results.valve) {
     text += findings(
@@ -107,7 +115,7 @@ std::string snippet(const daemon::RigFile& rig, const Results& results) {
     text += valve_line(rig, channel, results.valve->valve.points);
     if (results.valve->monitor) {
       text += findings("pressure monitor, against a manometer", *results.valve->monitor, "kPa");
-      text += input("pressure_monitor", *wiring.pressure, results.valve->monitor->points, "kpa");
+      text += input(rig, "pressure_monitor", *wiring.pressure, results.valve->monitor->points, "kpa");
     }
   }
   if (results.dead_zone) text += dead_zone_lines(*results.dead_zone, settings.limits.pressure_min_kpa);

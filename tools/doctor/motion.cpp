@@ -26,31 +26,55 @@ constexpr double pressure_floor_kpa = 1;
 class Beside {
  public:
   Beside(const control::ChannelSettings& channel, double tick_s, double rest_mm)
-      : model_(channel.model, tick_s, 0, tick_s), rest_mm_(rest_mm) {
-    model_.reset(channel.limits.pressure_min_kpa);
+      : model_(channel.model, tick_s, 0, tick_s),
+        tick_s_(tick_s),
+        rest_mm_(rest_mm),
+        held_kpa_(channel.limits.pressure_min_kpa) {
+    model_.reset(held_kpa_);
     origin_mm_ = model_.reading_mm(0);
   }
 
   /// After an exchange: the reading was taken before the command was written.
   void take(const model::Reading& reading, double command_kpa) {
-    moved_mm_ = model_.reading_mm(0) - origin_mm_;
+    pass_time(reading.sampled_at);
+    const double moved_mm = model_.reading_mm(0) - origin_mm_;
+    sum_mm_ += moved_mm;
+    ++taken_;
     if (reading.validity == model::Validity::valid) {
-      const double residual = reading.displacement_mm - rest_mm_ - moved_mm_;
+      const double residual = reading.displacement_mm - rest_mm_ - moved_mm;
       squares_ += residual * residual;
       ++count_;
     }
-    model_.advance(command_kpa);
+    held_kpa_ = command_kpa;
   }
-  [[nodiscard]] double moved_mm() const { return moved_mm_; }
+  /// From here on mean_mm() averages.
+  void begin_mean() {
+    sum_mm_ = 0;
+    taken_ = 0;
+  }
+  /// How far the model stood from its rest, as an average.
+  [[nodiscard]] double mean_mm() const { return taken_ > 0 ? sum_mm_ / static_cast<double>(taken_) : 0; }
   [[nodiscard]] double rms_mm() const {
     return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0;
   }
 
  private:
+  /// The command was held for as long as it really was: a busy computer stretches a step.
+  void pass_time(model::Nanoseconds now) {
+    if (first_ == 0) first_ = now;
+    const auto due = std::llround(daemon::seconds(now - first_) / tick_s_);
+    for (; ticks_ < due; ++ticks_) model_.advance(held_kpa_);
+  }
+
   control::RunningModel model_;
+  double tick_s_;
   double rest_mm_;
+  double held_kpa_;
+  model::Nanoseconds first_ = 0;
+  long long ticks_ = 0;
   double origin_mm_ = 0;
-  double moved_mm_ = 0;
+  double sum_mm_ = 0;
+  std::size_t taken_ = 0;
   double squares_ = 0;
   std::size_t count_ = 0;
 };
@@ -91,10 +115,11 @@ HandDrive::Expected<Motion> move_and_watch(const daemon::RigFile& rig, HandDrive
     return tl::unexpected(up.error());
   const auto settling = drive.sample(settings.settle_s / 2, watch);
   if (!settling) return tl::unexpected(settling.error());
+  beside.begin_mean();
   const auto there = drive.sample(settings.settle_s / 2, watch);
   if (!there) return tl::unexpected(there.error());
   motion.up = (*there)[channel];
-  motion.model_mm = beside.moved_mm();
+  motion.model_mm = beside.mean_mm();
   if (const auto down = drive.ramp(channel, lowest, speed, watch); !down) return tl::unexpected(down.error());
   const auto after = drive.sample(settings.settle_s, watch);
   if (!after) return tl::unexpected(after.error());

@@ -14,6 +14,12 @@ namespace {
 
 constexpr double ms_per_s = 1e3;
 
+/// To so many decimals, and never as "-0.00".
+std::string fixed(double value, int decimals) {
+  const double scale = std::pow(10, decimals);
+  return fmt::format("{:.{}f}", std::round(value * scale) / scale + 0.0, decimals);
+}
+
 std::string advice_for_silence(const daemon::RigFile& rig) {
   const bool simulated = std::holds_alternative<drivers::SimulatedBoardSettings>(rig.board);
   return simulated
@@ -77,7 +83,7 @@ void judge_displacement(const control::ChannelSettings& channel, const Sample& s
         sensor_advice(sample.why));
   }
   const std::string text =
-      fmt::format("{:.3f} mm, noise {:.3f} mm, {} readings", sample.mean, sample.deviation, all);
+      fmt::format("{} mm, noise {:.3f} mm, {} readings", fixed(sample.mean, 3), sample.deviation, all);
   if (control::displacement_beyond(channel.limits, sample.mean)) {
     findings.fail(name,
                   text + fmt::format("; the limits are {:g} to {:g} mm", channel.limits.displacement_min_mm,
@@ -104,7 +110,7 @@ void judge_rest(const control::ChannelSettings& channel, const control::FaultSet
         "another master writes too, a latched trip or manual mode of the board, or a wrong scaling");
   }
   if (sample.pressure_kpa.count == 0) return;
-  const std::string text = fmt::format("{:.2f} kPa at rest, noise {:.2f} kPa", sample.pressure_kpa.mean,
+  const std::string text = fmt::format("{} kPa at rest, noise {:.2f} kPa", fixed(sample.pressure_kpa.mean, 2),
                                        sample.pressure_kpa.deviation);
   if (std::abs(sample.pressure_kpa.mean - command_kpa) > 0.05 * span) {
     findings.warn("pressure " + channel.name, text + fmt::format("; {:.2f} were written", command_kpa),
