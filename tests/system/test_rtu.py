@@ -11,6 +11,9 @@ import unittest
 import bench
 
 
+RATE_HZ = 20
+
+
 def board_priority():
     """A module has a processor of its own and answers in its time however busy this one is."""
     return ["chrt", "-f", "40"] if resource.getrlimit(resource.RLIMIT_RTPRIO)[0] >= 40 or os.geteuid() == 0 else []
@@ -27,6 +30,8 @@ class Line(bench.BenchTest):
         text = (self.folder / "config" / "rig_rtu.yaml").read_text()
         for pattern, replacement in (
                 (r"device: .*", f"device: {self.device}"),
+                # Half of what fits: bytes cross a pseudo-terminal in a kernel thread that waits its turn on a busy machine.
+                (r"rate_hz: \d+", f"rate_hz: {RATE_HZ}"),
                 (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.3"),
                 (r"bus_down_cycles: \d+", "bus_down_cycles: 30"),
                 (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"),
@@ -80,7 +85,7 @@ class Line(bench.BenchTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("configured 100 Hz: DOES NOT FIT", done.stdout)
         done = self.report(self.line_rig())
-        self.assertIn("configured 40 Hz: fits", done.stdout)
+        self.assertIn(f"configured {RATE_HZ} Hz: fits", done.stdout)
         self.assertIn("watchdog: NONE on the board", done.stdout)
 
     def test_an_adapter_that_is_pulled_out_comes_back(self):
@@ -108,8 +113,7 @@ class Line(bench.BenchTest):
                               timeout=bench.PATIENCE_S)
         self.assertEqual(done.returncode, 0, done.stderr)
         exchanges = int(re.search(r"# Exchanges: (\d+)", histograms.read_text()).group(1))
-        # 40 Hz; a busy machine may lose some.
-        self.assertGreater(exchanges, 0.8 * 5 * 40)
+        self.assertGreater(exchanges, 0.8 * 5 * RATE_HZ)  # a busy machine may lose some
 
 
 @unittest.skipUnless(shutil.which("mbpoll"), "mbpoll is not installed")
