@@ -53,9 +53,9 @@ if ! $quick; then
   say "package"
   bash scripts/package.sh | tail -n 1
 
-  sanitized asan-ubsan model_document_test drivers_test modbus_session_test modbus_tcp_board_test
+  sanitized asan-ubsan model_document_test drivers_test modbus_tcp_link_test modbus_rtu_link_test modbus_board_test
   sanitized tsan daemon_cells_test daemon_bus_test daemon_recorder_test daemon_loop_test daemon_socket_test \
-    daemon_process_test modbus_session_test modbus_tcp_board_test
+    daemon_process_test daemon_panel_test modbus_tcp_link_test modbus_rtu_link_test modbus_board_test
 
   mapfile -t changed < <(git diff --name-only --diff-filter=d origin/main...HEAD -- \
     {model,control,drivers,daemon,sysid,tools}/'*.cpp' 2>/dev/null || true)
