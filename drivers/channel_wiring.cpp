@@ -42,7 +42,7 @@ class Checker {
   }
 
   void modules_without_a_wire() {
-    const auto wired = [this](const Used& used, std::size_t module) {
+    const auto wired = [](const Used& used, std::size_t module) {
       return std::any_of(used.begin(), used.end(), [&](const auto& one) { return one.first == module; });
     };
     for (std::size_t i = 0; i < modules_.size(); ++i) {
