@@ -1,6 +1,7 @@
 #pragma once
 // CSV as text: lines and cells with their places. What they mean is the reader's business.
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,10 +16,15 @@ struct Cell {
   int column;
 };
 
-/// Splits at commas outside double quotes. The cells keep their quotes.
-void split(std::string_view line, std::vector<Cell>& cells);
+/// Splits at commas outside double quotes. The cells keep their quotes. False where a quote is not closed.
+bool split(std::string_view line, std::vector<Cell>& cells);
 
 /// Without the blanks around it, and without the double quotes around that.
 [[nodiscard]] std::string_view unquoted(std::string_view text);
+
+/// What a cell says: unquoted, and inside quotes two of them stand for one (RFC 4180).
+[[nodiscard]] std::string cell_text(std::string_view cell);
+/// The cell that says it: in quotes where it must be.
+[[nodiscard]] std::string as_cell(std::string_view text);
 
 }  // namespace softgrip::sysid

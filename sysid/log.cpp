@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sysid/csv_text.h"
 #include "sysid/files.h"
 #include "sysid/log_columns.h"
 #include "sysid/numbers.h"
@@ -60,7 +61,7 @@ std::string format_log(const Log& log) {
   }
   for (const KnownColumn* known : present) text += (text.empty() ? "" : ",") + std::string(known->name);
   if (!log.channel.empty()) text += ',' + std::string(channel_column);
-  for (const OtherColumn& other : log.others) text += ',' + other.name;
+  for (const OtherColumn& other : log.others) text += ',' + as_cell(other.name);
   text += '\n';
   text.reserve(log.size() * present.size() * 20);
   for (std::size_t i = 0; i < log.size(); ++i) {
@@ -71,11 +72,8 @@ std::string format_log(const Log& log) {
       if (std::isfinite(value)) text += shortest(value);
       first = false;
     }
-    if (!log.channel.empty()) text += ',' + log.channel;
-    for (const OtherColumn& other : log.others) {
-      const bool quotes = other.cells[i].find(',') != std::string::npos;
-      text += quotes ? ",\"" + other.cells[i] + "\"" : "," + other.cells[i];
-    }
+    if (!log.channel.empty()) text += ',' + as_cell(log.channel);
+    for (const OtherColumn& other : log.others) text += ',' + as_cell(other.cells[i]);
     text += '\n';
   }
   return text;

@@ -56,10 +56,13 @@ LogHeader read_header(std::string_view line, const LogOptions& options, LogRepor
   header.index.fill(-1);
   header.column.fill(1);
   std::vector<Cell> cells;
-  split(line, cells);
+  if (!split(line, cells)) {
+    report.add("header", {1, 1}, line, "a quotation mark is not closed", {});
+    return header;
+  }
   if (!header_is_plausible(line, cells, report)) return header;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string name(unquoted(cells[i].text));
+    const std::string name = cell_text(cells[i].text);
     const auto known = std::find_if(known_columns.begin(), known_columns.end(),
                                     [&](const KnownColumn& k) { return k.name == name; });
     const bool repeated =

@@ -59,7 +59,7 @@ class RowReader {
   }
 
   void read(std::string_view line, int line_number, bool is_last) {
-    split(line, cells_);
+    const bool closed = split(line, cells_);
     if (cells_.size() != header_.names.size()) {
       if (is_last && cells_.size() < header_.names.size()) {
         log_.notes.push_back({line_number, "the last row is incomplete and was left out"});
@@ -71,6 +71,14 @@ class RowReader {
                   cells_.size() == 2 * header_.names.size() ? "numbers with a decimal comma?" : "");
       return;
     }
+    if (!closed) {
+      if (is_last) {
+        log_.notes.push_back({line_number, "the last row is incomplete and was left out"});
+        return;
+      }
+      report_.add("row", {line_number, 1}, line, "a quotation mark is not closed");
+      return;
+    }
     if (!belongs()) return;
     for (std::size_t k = 0; k < known_columns.size(); ++k) {
       if (header_.index[k] < 0) continue;
@@ -79,7 +87,7 @@ class RowReader {
           .push_back(read_cell(known_columns[k], cell, line_number, line, report_));
     }
     for (std::size_t i = 0; i < other_index_.size(); ++i) {
-      log_.others[i].cells.emplace_back(unquoted(cells_[other_index_[i]].text));
+      log_.others[i].cells.push_back(cell_text(cells_[other_index_[i]].text));
     }
     source_.line.push_back(line_number);
     source_.line_text.push_back(line);
@@ -90,9 +98,9 @@ class RowReader {
  private:
   bool belongs() {
     if (header_.channel < 0) return true;
-    const std::string_view channel = unquoted(cells_[static_cast<std::size_t>(header_.channel)].text);
+    const std::string channel = cell_text(cells_[static_cast<std::size_t>(header_.channel)].text);
     if (std::find(channels_.begin(), channels_.end(), channel) == channels_.end()) {
-      channels_.emplace_back(channel);
+      channels_.push_back(channel);
     }
     return options_.channel.empty() ? channel == channels_.front() : channel == options_.channel;
   }
@@ -201,9 +209,8 @@ std::vector<std::string> channels_of(std::string_view text) {
       if (found == cells.end()) break;
       place = static_cast<std::size_t>(found - cells.begin());
     } else if (*place < cells.size()) {
-      const std::string_view channel = unquoted(cells[*place].text);
-      if (std::find(channels.begin(), channels.end(), channel) == channels.end())
-        channels.emplace_back(channel);
+      const std::string channel = cell_text(cells[*place].text);
+      if (std::find(channels.begin(), channels.end(), channel) == channels.end()) channels.push_back(channel);
     }
   }
   return channels;

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -192,6 +194,45 @@ TEST(Log, AcceptsWhatSpreadsheetsWrite) {
     text.insert(at, "\r");
   Problems problems;
   EXPECT_TRUE(parse_log("good.csv", text, problems)) << problems.format();
+}
+
+/// A good log with a further column, the same cell in every row but those that `other` names by line.
+std::string with_column(const std::string& name, const std::string& cell,
+                        const std::map<int, std::string>& other = {}) {
+  std::istringstream in(good_text());
+  std::string text, row;
+  for (int line = 1; std::getline(in, row); ++line) {
+    const auto found = other.find(line);
+    text += row + ',' + (line == 1 ? name : found == other.end() ? cell : found->second) + '\n';
+  }
+  return text;
+}
+
+TEST(Log, QuotesInsideACellComeBackAsTheyWere) {
+  const std::string text =
+      with_column(R"("note, by ""hand""")", R"("said ""stop"", left")", {{3, R"(a "b" c)"}, {4, R"(" x")"}});
+  Problems problems;
+  const auto log = parse_log("a.csv", text, problems);
+  ASSERT_TRUE(log) << problems.format();
+  ASSERT_EQ(log->others.size(), 1U);
+  EXPECT_EQ(log->others[0].name, R"(note, by "hand")");
+  EXPECT_EQ(log->others[0].cells[0], R"(said "stop", left)");
+  EXPECT_EQ(log->others[0].cells[1], R"(a "b" c)");
+  EXPECT_EQ(log->others[0].cells[2], " x");
+  const auto copy = parse_log("b.csv", format_log(*log), problems);
+  ASSERT_TRUE(copy) << problems.format();
+  EXPECT_EQ(copy->others, log->others);
+}
+
+TEST(Log, AQuoteThatIsNotClosedIsNamedAndAtTheEndLeftOut) {
+  Problems problems;
+  EXPECT_FALSE(parse_log("a.csv", with_column("note", "b", {{3, "\"b"}}), problems));
+  EXPECT_NE(problems.format().find("a.csv:3:1"), std::string::npos) << problems.format();
+  EXPECT_NE(problems.format().find("quotation mark is not closed"), std::string::npos);
+  Problems none;
+  const auto cut = parse_log("a.csv", with_column("note", "b", {{101, "\"b"}}), none);
+  ASSERT_TRUE(cut) << none.format();
+  EXPECT_EQ(cut->size(), 99U);
 }
 
 TEST(Log, ARowCutOffByAKillIsLeftOutAndNoted) {
