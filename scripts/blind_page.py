@@ -114,7 +114,7 @@ def confusion(results):
             for one in [cause, *rivals]:
                 row[one] += 1 / len(r["named"]) / (1 + len(rivals))
     size, left, top = 21, 190, 175
-    svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + size * len(named) + 20} '
+    svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + size * len(named) + 45} '
            f'{top + size * len(hidden) + 20}" font-family="sans-serif" font-size="11">'
            '<rect width="100%" height="100%" fill="white"/>'
            f'<text x="10" y="{top - 10}">hidden</text><text x="{left - 50}" y="20">named</text>']

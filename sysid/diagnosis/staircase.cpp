@@ -39,8 +39,11 @@ Courses track_all(const std::vector<Record>& records, const FitPoint& point, dou
 /// The bands whose jumps the readings can show.
 std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   std::vector<double> bands;
-  const double first = std::max(narrowest * scales.largest_kpa, 4 * resolution_kpa);
-  for (double band = first; band < widest * scales.largest_kpa; band *= next_band) bands.push_back(band);
+  double band = std::max(narrowest * scales.largest_kpa, 4 * resolution_kpa);
+  while (band < widest * scales.largest_kpa) {
+    bands.push_back(band);
+    band *= next_band;
+  }
   return bands;
 }
 

@@ -12,7 +12,7 @@ class Ledger:
         self.known = {self.key(row) for row in self.rows}
 
     def key(self, world):
-        return tuple(json.dumps(world[key]) for key in self.keys)
+        return tuple(tuple(world[key]) if isinstance(world[key], list) else world[key] for key in self.keys)
 
     def __contains__(self, world):
         return self.key(world) in self.known
