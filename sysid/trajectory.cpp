@@ -8,18 +8,23 @@
 
 namespace softgrip::sysid {
 
-std::vector<double> predict(const model::Model& model, const Record& record, const StartState& start) {
-  std::vector<double> prediction(record.size());
-  walk<double>(model, {}, record, start.peak_before_kpa,
-               [&](std::size_t i, double y) { prediction[i] = y + start.offset_mm; });
+void add_start(const model::Model& model, const Record& record, const StartState& start,
+               std::vector<double>& series_mm) {
+  for (double& y : series_mm) y += start.offset_mm;
   const std::vector<double> time_constants = branch_time_constants_s(model);
   for (std::size_t b = 0; b < std::min(time_constants.size(), start.unsettled_mm.size()); ++b) {
     if (start.unsettled_mm[b] == 0) continue;
     for (std::size_t i = 0; i < record.size(); ++i) {
-      prediction[i] +=
+      series_mm[i] +=
           start.unsettled_mm[b] * std::exp(-(record.time_s[i] - record.time_s[0]) / time_constants[b]);
     }
   }
+}
+
+std::vector<double> predict(const model::Model& model, const Record& record, const StartState& start) {
+  std::vector<double> prediction(record.size());
+  walk<double>(model, {}, record, start.peak_before_kpa, [&](std::size_t i, double y) { prediction[i] = y; });
+  add_start(model, record, start, prediction);
   return prediction;
 }
 

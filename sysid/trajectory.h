@@ -14,6 +14,12 @@ namespace softgrip::sysid {
 [[nodiscard]] std::vector<double> predict(const model::Model& model, const Record& record,
                                           const StartState& start);
 
+/// Adds what the start leaves in the readings besides the chain's state: the offset and the creep that had
+/// not settled.
+/// @param series_mm  as long as the record.
+void add_start(const model::Model& model, const Record& record, const StartState& start,
+               std::vector<double>& series_mm);
+
 /// Reading minus prediction where there is a reading, NaN elsewhere [mm].
 [[nodiscard]] std::vector<double> residual(const Record& record, const std::vector<double>& prediction);
 

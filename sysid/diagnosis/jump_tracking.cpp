@@ -47,11 +47,8 @@ class JumpTracker {
     Track first{model::Chain<double>(point.model, {}, record.sample_time_s), record.drive_kpa.front(), 0,
                 no_jump};
     sysid::start(first.chain, record, start.peak_before_kpa);
-    // What the start adds to every prediction, whatever drives the chain.
-    const StartState rest{.peak_before_kpa = start.peak_before_kpa, .unsettled_mm = {}};
-    offset_mm_ = predict(point.model, record, start);
-    const std::vector<double> plain = predict(point.model, record, rest);
-    for (std::size_t i = 0; i < record.size(); ++i) offset_mm_[i] -= plain[i];
+    start_mm_.resize(record.size());
+    add_start(point.model, record, start, start_mm_);
     const double gain = record.largest_kpa > 0 ? record.span_mm / record.largest_kpa : 1;
     give_up_mm2_ = hopeless * resolution_kpa * resolution_kpa * gain * gain;
     tracks_.push_back(std::move(first));
@@ -64,10 +61,8 @@ class JumpTracker {
 
  private:
   void step(std::size_t i) {
-    around_.time_s = record_.campaign_time_s + record_.time_s[i];
-    if (!record_.temperature_c.empty()) around_.temperature_c = record_.temperature_c[i];
-    if (!record_.supply_kpa.empty()) around_.supply_kpa = record_.supply_kpa[i];
-    const double to = record_.held ? record_.drive_kpa[i - 1] : record_.drive_kpa[i];
+    around_ = surroundings_at(record_, i);
+    const double to = drive_at_end(record_, i);
     const double from = record_.held ? to : record_.drive_kpa[i - 1];
     next_.clear();
     bool any_jump = false;
@@ -97,7 +92,7 @@ class JumpTracker {
 
   void advance(Track& track, std::size_t i, double held_kpa) {
     track.held_kpa = held_kpa;
-    const double y = track.chain.step(record_.duration_s[i], held_kpa, around_) + offset_mm_[i];
+    const double y = track.chain.step(record_.duration_s[i], held_kpa, around_) + start_mm_[i];
     const double error = record_.reading_mm[i] - y;
     if (!std::isnan(error)) track.cost_mm2 += error * error;
   }
@@ -160,7 +155,7 @@ class JumpTracker {
   const Record& record_;
   double band_kpa_, resolution_kpa_;
   double give_up_mm2_ = 0;
-  std::vector<double> offset_mm_;
+  std::vector<double> start_mm_;
   model::Surroundings around_;
   std::vector<Track> tracks_, next_;
   std::vector<Jump> jumps_;
