@@ -8,6 +8,7 @@
 #include "sysid/diagnosis/search.h"
 #include "sysid/diagnosis/separation.h"
 #include "sysid/diagnosis/spectrum_peaks.h"
+#include "sysid/diagnosis/twins.h"
 #include "sysid/parallel.h"
 #include "sysid/trajectory.h"
 
@@ -34,6 +35,7 @@ struct Pair {
   std::size_t contest = 0;
   std::size_t one = 0;
   std::size_t other = 0;
+  bool twins = false;
 };
 
 std::vector<Cause> next_best(const NamedCause& named) {
@@ -78,9 +80,15 @@ class Designer {
     for (std::size_t c = 0; c < contests_.size(); ++c) {
       const std::size_t count = contests_[c].ids.size();
       for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t j = i + 1; j < count; ++j) pairs_.push_back({c, i, j});
+        for (std::size_t j = i + 1; j < count; ++j) pairs_.push_back({c, i, j, are_twins(c, i, j)});
       }
     }
+  }
+
+  [[nodiscard]] bool are_twins(std::size_t contest, std::size_t i, std::size_t j) const {
+    const auto one = find_cause(contests_[contest].ids[i]);
+    const auto other = find_cause(contests_[contest].ids[j]);
+    return one && other && sysid::are_twins(*one, *other, d_.extended.point.model);
   }
 
   void add_contest(const NamedCause& named) {
@@ -151,6 +159,7 @@ class Designer {
 
   [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
     const Contest& contest = contests_[pair.contest];
+    if (pair.twins) return 0;  // what parts them is the form that each happens to have in the catalogue
     const auto from = [&](std::size_t truth, std::size_t rival) {
       const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
       const bool finite =

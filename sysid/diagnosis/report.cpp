@@ -8,6 +8,7 @@
 #include "model/model_file.h"
 #include "sysid/diagnosis/report_figures.h"
 #include "sysid/diagnosis/report_tables.h"
+#include "sysid/diagnosis/twins.h"
 #include "sysid/log_figures.h"
 #include "sysid/numbers.h"
 #include "sysid/page.h"
@@ -129,7 +130,29 @@ void add_wrong(Page& page, const Diagnosis& d) {
   page.list(items);
 }
 
-void add_cause(Page& page, const NamedCause& named, double extended_rmse_mm) {
+/// Why the rivals of a cause stand beside it.
+std::string rivalry(const NamedCause& named, const model::Model& extended) {
+  std::string alike, twin;
+  for (const Cause& rival : named.rivals) {
+    if (are_twins(named.cause, rival, extended)) {
+      twin = rival.id;
+    } else {
+      alike += (alike.empty() ? "" : ", ") + std::string(rival.id);
+    }
+  }
+  std::string text;
+  if (!alike.empty())
+    text = "These logs cannot tell it from " + alike +
+           ": each explains as much in its place, within one standard error. ";
+  if (!twin.empty())
+    text +=
+        "No command can tell it from " + twin +
+        ": both bend the readings over the displacement, the one before the load and the other behind it, "
+        "and how well the form of each meets these logs says nothing about where the bend is.";
+  return text;
+}
+
+void add_cause(Page& page, const NamedCause& named, const Diagnosis& d) {
   const model::BlockInfo& info = model::catalogue()[named.cause.type].info;
   page.subsection(std::string(info.title));
   std::string meaning(info.meaning);
@@ -137,14 +160,9 @@ void add_cause(Page& page, const NamedCause& named, double extended_rmse_mm) {
   page.paragraph(meaning + " Station: " + std::string(model::name_of(info.station)) +
                  "; id: " + std::string(info.id) +
                  ". Held-out gain over the model without it: " + range(named.heldout_gain_percent, 1) + ".");
-  if (!named.rivals.empty()) {
-    std::string text = "These logs cannot tell it from ";
-    for (std::size_t i = 0; i < named.rivals.size(); ++i)
-      text += (i == 0 ? "" : ", ") + std::string(named.rivals[i].id);
-    page.paragraph(text + ": each explains as much in its place, within one standard error.");
-  }
+  if (!named.rivals.empty()) page.paragraph(rivalry(named, d.extended.point.model));
   if (!named.candidates.empty())
-    page.table(candidate_table(named.candidates, &named, extended_rmse_mm, "What was tried in its place"));
+    page.table(candidate_table(named.candidates, &named, d.extended_rmse_mm, "What was tried in its place"));
 }
 
 /// How often the search finds something where nothing is.
@@ -161,8 +179,8 @@ void add_causes(Page& page, const Diagnosis& d) {
   if (d.null_calibration) add_null_calibration(page, *d.null_calibration);
   if (!d.partial.empty())
     page.paragraph("These explain part of the structure, but too little to be named the cause.");
-  for (const NamedCause& named : d.causes) add_cause(page, named, d.extended_rmse_mm);
-  for (const NamedCause& named : d.partial) add_cause(page, named, d.extended_rmse_mm);
+  for (const NamedCause& named : d.causes) add_cause(page, named, d);
+  for (const NamedCause& named : d.partial) add_cause(page, named, d);
   if (!d.rejected.empty()) {
     page.table(candidate_table(d.rejected, nullptr, d.extended_rmse_mm,
                                d.causes.empty() && d.partial.empty() ? "No cause gained anything"

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "model/catalogue.h"
+#include "sysid/diagnosis/twins.h"
 #include "sysid/parallel.h"
 
 namespace softgrip::sysid {
@@ -145,8 +146,11 @@ class Selector {
     chosen.gain_percent = gain_percent(rest_losses, result_.extended_losses, options_.seed);
     const double gained = rmse_mm(rest_losses) * rmse_mm(rest_losses) -
                           rmse_mm(result_.extended_losses) * rmse_mm(result_.extended_losses);
+    const auto twin = twin_of(chosen.cause, result_.extended.point.model);
+    if (twin) chosen.rivals.push_back(*twin);
     for (const Scored& s : scored) {
       if (s.losses.empty() || s.candidate.cause.type == chosen.cause.type) continue;
+      if (twin && s.candidate.cause.type == twin->type) continue;
       const Spread behind = mean_difference(s.losses, result_.extended_losses, options_.seed);
       if (behind.value <= std::max(behind.standard_error, 0.002 * noise_ * noise_) &&
           behind.value <= std::max(rival_share * gained, 0.002 * noise_ * noise_)) {

@@ -24,7 +24,7 @@ struct CandidateScore {
 /// One cause of the selected set.
 struct ChosenCause {
   Cause cause;
-  std::vector<Cause> rivals;               ///< each explains as much in its place
+  std::vector<Cause> rivals;               ///< each explains as much in its place, or is its twin
   Spread gain_percent;                     ///< held out, of the whole set over the set without it
   std::vector<CandidateScore> candidates;  ///< those tried in its place, best first
 };

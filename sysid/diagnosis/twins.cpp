@@ -1,0 +1,29 @@
+#include "sysid/diagnosis/twins.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::array<std::string_view, 3> with_memory{"inertia", "backlash", "sensor_lag"};
+
+}  // namespace
+
+std::optional<Cause> twin_of(const Cause& cause, const model::Model& model) {
+  const bool between = std::any_of(with_memory.begin(), with_memory.end(), [&](std::string_view id) {
+    return model::position_of(model, id).has_value();
+  });
+  if (between) return std::nullopt;
+  if (cause.id == "stiffening") return find_cause("sensor_nonlinearity");
+  if (cause.id == "sensor_nonlinearity") return find_cause("stiffening");
+  return std::nullopt;
+}
+
+bool are_twins(const Cause& one, const Cause& other, const model::Model& model) {
+  const auto twin = twin_of(one, model);
+  return twin && twin->type == other.type;
+}
+
+}  // namespace softgrip::sysid

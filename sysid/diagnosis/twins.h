@@ -1,0 +1,21 @@
+#pragma once
+// Causes that give the same readings whatever the command.
+
+#include <optional>
+
+#include "model/model.h"
+#include "sysid/diagnosis/cause.h"
+
+namespace softgrip::sysid {
+
+/// The cause that bends the readings as `cause` does, at the other end of the load: stiffening and sensor
+/// nonlinearity are both some function of displacement, and which function each is, nobody knows beforehand.
+/// How well the one form of each that the catalogue has meets the data says nothing about where the bend is.
+/// Empty where a block with memory stands between the two in `model` (inertia, backlash, a sensor's lag): a
+/// bend before it and a bend behind it differ.
+[[nodiscard]] std::optional<Cause> twin_of(const Cause& cause, const model::Model& model);
+
+/// Whether no command can tell the two apart, as far as `model` is right about the rest.
+[[nodiscard]] bool are_twins(const Cause& one, const Cause& other, const model::Model& model);
+
+}  // namespace softgrip::sysid
