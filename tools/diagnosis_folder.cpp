@@ -60,11 +60,16 @@ tl::expected<void, std::string> write_diagnosis_folder(const std::string& folder
   std::vector<std::pair<const char*, std::string>> files{
       {"diagnosis.json", complete_json(diagnosis, consequences)},
       {"model.yaml", model::to_yaml(diagnosis.extended_model)}};
+  std::error_code ignored;
   if (consequences.experiment.best) {
     files.emplace_back(experiment_file, sysid::sequence_yaml(consequences.experiment, channel));
   } else {
-    std::error_code ignored;
     std::filesystem::remove(out / experiment_file, ignored);
+  }
+  // One that stands there may have been filled in by now: never overwritten, never removed.
+  if (const auto& check = consequences.experiment.gauge_check;
+      check && !std::filesystem::exists(out / sysid::gauge_positions_file, ignored)) {
+    files.emplace_back(sysid::gauge_positions_file, sysid::positions_csv(check->positions_mm));
   }
   for (const auto& [name, text] : files) {
     if (auto written = sysid::write_file((out / name).string(), text); !written) return written;

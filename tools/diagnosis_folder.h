@@ -1,5 +1,5 @@
 #pragma once
-// What a diagnosis leaves behind: diagnosis.json, model.yaml, next_experiment.yaml.
+// What a diagnosis leaves behind: diagnosis.json, model.yaml, next_experiment.yaml, gauge_positions.csv.
 
 #include <optional>
 #include <string>

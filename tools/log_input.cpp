@@ -49,4 +49,12 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
   return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);
 }
 
+tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path) {
+  if (const auto code = unreadable(path)) return tl::unexpected(*code);
+  document::Problems problems;
+  auto gauge = sysid::read_gauge(path, problems);
+  if (!gauge) return tl::unexpected(refuse(problems));
+  return std::move(*gauge);
+}
+
 }  // namespace softgrip::tools

@@ -6,6 +6,7 @@
 
 #include <tl/expected.hpp>
 
+#include "sysid/diagnosis/gauge_file.h"
 #include "sysid/log.h"
 #include "sysid/record.h"
 #include "tools/exit_code.h"
@@ -32,5 +33,8 @@ void add_log_options(CLI::App& command, LogInput& input);
 /// Reads all logs; where one is refused, prints all problems and returns the exit code.
 [[nodiscard]] tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std::string>& paths,
                                                                         const LogInput& input);
+
+/// Reads a gauge file; where it is refused, prints all problems and returns the exit code.
+[[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path);
 
 }  // namespace softgrip::tools

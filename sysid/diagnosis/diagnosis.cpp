@@ -170,6 +170,11 @@ class Diagnostician {
     Selection selection = select_causes(data_, std::move(*base), d_.noise_mm, division, selection_options);
     clock.ended("search");
     if (leaves_too_much(selection) && look_for_staircase(selection, division)) clock.ended("staircase");
+    if (options_.gauge) {
+      const GaugeQuestion question{*options_.gauge, d_.noise_mm, options_.seed, !d_.staircase};
+      d_.gauge = weigh_gauge(question, data_, division, selection, d_.warnings);
+      clock.ended("gauge");
+    }
     measure(selection, division);
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     if (d_.null_calibration) clock.ended("nulls");
@@ -327,7 +332,10 @@ class Diagnostician {
   }
 
   void conclude(const Selection& selection) {
-    const bool too_much_left = leaves_too_much(selection);
+    // Where the gauge has told which of two twins it is, how well the form of that one fits is beside the
+    // point.
+    const bool placed_by_gauge = d_.gauge && d_.gauge->replaced;
+    const bool too_much_left = !placed_by_gauge && leaves_too_much(selection);
     const bool by_chance = d_.null_calibration && d_.null_calibration->reach_the_gain();
     if (!selection.chosen.empty() && (too_much_left || by_chance)) {
       d_.verdict = Verdict::unexplained;

@@ -13,6 +13,7 @@
 
 #include "model/model.h"
 #include "sysid/diagnosis/evidence.h"
+#include "sysid/diagnosis/gauge_verdict.h"
 #include "sysid/diagnosis/null_calibration.h"
 #include "sysid/diagnosis/outliers.h"
 #include "sysid/diagnosis/reference.h"
@@ -50,6 +51,8 @@ struct DiagnosisOptions {
   unsigned threads = 0;
   /// Null campaigns on which the whole search is calibrated when it names something; 0: none.
   std::size_t null_campaigns = 0;
+  /// What the sensor reads at known positions, where somebody has looked.
+  std::optional<GaugeFile> gauge;
   std::function<void(const std::string&)> progress;
 };
 
@@ -70,6 +73,7 @@ struct Diagnosis {
   std::optional<NullCalibration> null_calibration;  ///< where it was asked for and something was to be named
   OutlierEvidence outliers;
   std::optional<StaircaseEvidence> staircase;  ///< where the named dead band is one
+  std::optional<GaugeEvidence> gauge;          ///< where gauge readings were given
   Structure structure_recalibrated;
   Structure structure_left;
   StructureFit as_given;

@@ -116,6 +116,44 @@ Json reference_json(const Reference& r) {
   return json;
 }
 
+Json gauge_json(const GaugeEvidence& gauge) {
+  const GaugeCheck& check = gauge.check;
+  Json json{{"file", gauge.file.path},
+            {"sha256", gauge.file.sha256},
+            {"outcome", name_of(check.outcome)},
+            {"sentence", gauge.sentence},
+            {"ruled_out", gauge.ruled_out},
+            {"noise_mm", check.noise_mm},
+            {"repeat_noise_mm", check.repeat_noise_mm},
+            {"tolerance_mm", check.tolerance_mm},
+            {"log_likelihood_ratio", check.log_likelihood_ratio}};
+  json["hypotheses"] = Json::array();
+  for (const GaugeFit& fit : check.fits) {
+    json["hypotheses"].push_back({{"id", fit.shape.id()},
+                                  {"rms_mm", fit.rms_mm},
+                                  {"chi_square", fit.chi_square},
+                                  {"explains", fit.passes},
+                                  {"behind", fit.behind},
+                                  {"ruled_out", fit.ruled_out},
+                                  {"zero_mm", fit.zero_mm},
+                                  {"scale", fit.scale}});
+  }
+  // Without the logs: how the sensor is bent by the gauge alone.
+  const GaugeCheck::Departure departure = check.departure();
+  json["sensor_alone"] = {{"straight_rms_mm", check.straight.rms_mm},
+                          {"bent_rms_mm", check.free_bend.rms_mm},
+                          {"ending_rms_mm", check.free_end.rms_mm},
+                          {"departure_rms_mm", departure.rms_mm},
+                          {"clear", departure.clear}};
+  json["positions_mm"] = distinct_positions(gauge.file.readings);
+  json["readings"] = Json::array();
+  for (const GaugeReading& r : gauge.file.readings) {
+    json["readings"].push_back(
+        {{"gauge_mm", r.position_mm}, {"displacement_mm", r.reading_mm}, {"samples", r.samples}});
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string to_json(const Diagnosis& d) {
@@ -156,6 +194,7 @@ std::string to_json(const Diagnosis& d) {
                          {"heldout_rmse_mm", staircase->heldout_rmse_mm},
                          {"gain_percent", spread(staircase->gain_percent)}};
   }
+  json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named));
   json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sysid/diagnosis/experiment_advice.h"
+#include "sysid/diagnosis/gauge_verdict.h"
 #include "sysid/diagnosis/search.h"
 #include "sysid/diagnosis/separation.h"
 #include "sysid/diagnosis/spectrum_peaks.h"
@@ -231,20 +232,52 @@ class Designer {
     result_.predicted_separation_sigma = least;
   }
 
+  /// Whether a gauge would tell what no waveform does.
+  [[nodiscard]] bool asks_for_gauge(const Pair& pair, const AdviceFacts& facts) const {
+    const auto one = find_cause(contests_[pair.contest].ids[pair.one]);
+    const auto other = find_cause(contests_[pair.contest].ids[pair.other]);
+    return !facts.separable && one && other && gauge_tells_apart(*one, *other);
+  }
+
+  void propose_gauge_check(std::vector<std::string> separates) {
+    double largest_mm = 0, smallest_mm = 0;
+    for (const Record& record : d_.records) {
+      for (const double y : record.reading_mm) {
+        if (y > largest_mm) largest_mm = y;
+        if (y < smallest_mm) smallest_mm = y;
+      }
+    }
+    ProposedGaugeCheck check;
+    check.positions_mm = planned_positions(largest_mm > -smallest_mm ? largest_mm : smallest_mm);
+    if (check.positions_mm.empty()) return;
+    check.separates = std::move(separates);
+    check.minutes = minutes_for(check.positions_mm.size());
+    result_.advice.push_back(gauge_advice(check.positions_mm, check.separates));
+    result_.gauge_check = std::move(check);
+  }
+
   void advise() {
+    std::vector<std::string> by_gauge;
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
       double furthest = 0;
       for (const JudgedWaveform& judged : result_.menu)
         furthest = std::max(furthest, judged.separations[p].sigma);
       const Contest& contest = contests_[pairs_[p].contest];
       const AdviceFacts facts{options_.pressure_recorded, data_.scales.has_temperature,
-                              furthest >= separation_needed_sigma};
+                              furthest >= separation_needed_sigma, d_.gauge.has_value()};
+      if (asks_for_gauge(pairs_[p], facts) && !facts.gauge_made) {
+        for (const std::string& id : {contest.ids[pairs_[p].one], contest.ids[pairs_[p].other]}) {
+          if (std::find(by_gauge.begin(), by_gauge.end(), id) == by_gauge.end()) by_gauge.push_back(id);
+        }
+        continue;
+      }
       for (std::string& sentence :
            advice_for(contest.ids[pairs_[p].one], contest.ids[pairs_[p].other], facts)) {
         if (std::find(result_.advice.begin(), result_.advice.end(), sentence) == result_.advice.end())
           result_.advice.push_back(std::move(sentence));
       }
     }
+    if (!by_gauge.empty()) propose_gauge_check(std::move(by_gauge));
   }
 
   const Diagnosis& d_;

@@ -42,15 +42,26 @@ struct JudgedWaveform {
   double merit = 0;  ///< what is learnt per minute
 };
 
+/// The sensor against known positions: for rivals that no waveform tells apart and that make other sensors.
+struct ProposedGaugeCheck {
+  std::vector<double> positions_mm;    ///< in the order in which they are read
+  std::vector<std::string> separates;  ///< ids of causes
+  double minutes = 0;
+};
+
 /// What to do next.
 struct NextExperiment {
   std::optional<JudgedWaveform> best;
-  std::vector<std::string> separates;     ///< ids that `best` tells apart
-  double predicted_separation_sigma = 0;  ///< the smallest among the pairs that it tells apart
-  std::vector<JudgedWaveform> menu;       ///< all that was judged
+  std::vector<std::string> separates;             ///< ids that `best` tells apart
+  double predicted_separation_sigma = 0;          ///< the smallest among the pairs that it tells apart
+  std::vector<JudgedWaveform> menu;               ///< all that was judged
+  std::optional<ProposedGaugeCheck> gauge_check;  ///< empty where it helps nobody or was made already
   /// What no waveform can do: a column to be recorded, a load to be changed. Sentences.
   std::vector<std::string> advice;
 };
+
+/// Beside diagnosis.json, where a gauge check is proposed: a gauge file that waits for its readings.
+inline constexpr const char* gauge_positions_file = "gauge_positions.csv";
 
 /// Pairs nearer than this are not told apart.
 inline constexpr double separation_needed_sigma = 5;
@@ -61,7 +72,7 @@ inline constexpr double separation_needed_sigma = 5;
 /// A sequence file of one pressure step, as softgripd reads it. @param channel  "" for all of the rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
 
-/// diagnosis.json with next_experiment (null without one) and experiment_advice filled in.
+/// diagnosis.json with next_experiment and gauge_check (null without one) and experiment_advice filled in.
 [[nodiscard]] std::string with_experiment(const std::string& diagnosis_json, const NextExperiment& experiment,
                                           const std::string& file);
 

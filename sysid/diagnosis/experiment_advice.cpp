@@ -4,6 +4,8 @@
 #include <array>
 
 #include "sysid/diagnosis/cause.h"
+#include "sysid/diagnosis/experiment.h"
+#include "sysid/numbers.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -45,14 +47,12 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
         "wear nor drift");
   }
   if (facts.separable) return advice;
-  if (both(one, other, {"stiffening", "sensor_nonlinearity"})) {
-    advice.emplace_back(
-        "without a change of load stiffening and sensor_nonlinearity give equal readings, whatever the "
-        "pressure: check the sensor against a gauge, or change the load (the bend moves with the finger's "
-        "force, a bent scale stays where it is)");
-  } else if (both(one, other, {"contact", "stiffening", "sensor_nonlinearity", "sensor_saturation"})) {
-    advice.push_back("change the load or move the object: what breaks at the same reading again is the " +
-                     std::string("sensor or a stop, not the actuator"));
+  if (both(one, other, {"stiffening", "contact", "sensor_nonlinearity", "sensor_saturation"})) {
+    advice.push_back(
+        std::string(facts.gauge_made ? "the gauge left it open: read it again, finer and further, or change "
+                                       "the load or move the object"
+                                     : "change the load or move the object") +
+        ": what breaks at the same reading again is the sensor, what moves with the load is not");
   } else if (both(one, other, {"sensor_drift", "slow_creep", "ageing"})) {
     advice.push_back("leave the finger vented for an hour and read its zero: no waveform in the menu tells " +
                      names(one, other) + " apart");
@@ -61,6 +61,21 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
                      " apart within the rig's limits: less noise or a larger pressure would be needed");
   }
   return advice;
+}
+
+std::string gauge_advice(const std::vector<double>& positions_mm, const std::vector<std::string>& separates) {
+  const auto [least, most] = std::minmax_element(positions_mm.begin(), positions_mm.end());
+  std::vector<double> distinct = positions_mm;
+  std::sort(distinct.begin(), distinct.end());
+  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  std::string ids;
+  for (std::size_t i = 0; i < separates.size(); ++i)
+    ids += (i == 0 ? "" : i + 1 == separates.size() ? " and " : ", ") + separates[i];
+  return "check the sensor against a gauge: " + ids +
+         " give equal readings whatever the pressure. Put the target at " + std::to_string(distinct.size()) +
+         " known positions from " + significant(*least, 3) + " to " + significant(*most, 3) +
+         " mm, up, down and up again, write what the sensor reads beside each of them in " +
+         gauge_positions_file + ", and diagnose again with --gauge " + gauge_positions_file;
 }
 
 }  // namespace softgrip::sysid

@@ -52,6 +52,13 @@ std::string with_experiment(const std::string& diagnosis_json, const NextExperim
                                {"waveform", best.waveform.name},
                                {"separations", std::move(separations)}};
   }
+  json["gauge_check"] = nullptr;
+  if (const auto& check = experiment.gauge_check) {
+    json["gauge_check"] = {{"file", gauge_positions_file},
+                           {"separates", check->separates},
+                           {"readings", check->positions_mm.size()},
+                           {"minutes", check->minutes}};
+  }
   Json menu = Json::array();
   for (const JudgedWaveform& judged : experiment.menu) {
     double least = judged.separations.empty() ? 0 : judged.separations.front().sigma;

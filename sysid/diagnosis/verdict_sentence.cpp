@@ -54,9 +54,7 @@ std::string unexplained_sentence(const Diagnosis& d, const std::string& before, 
          significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
 }
 
-}  // namespace
-
-std::string verdict_sentence(const Diagnosis& d) {
+std::string sentence_of_logs(const Diagnosis& d) {
   const std::string before = significant(d.recalibrated_rmse_mm, 2) + " mm";
   const std::string after = significant(d.extended_rmse_mm, 2) + " mm";
   switch (d.verdict) {
@@ -78,6 +76,12 @@ std::string verdict_sentence(const Diagnosis& d) {
       return unexplained_sentence(d, before, after);
   }
   return {};
+}
+
+}  // namespace
+
+std::string verdict_sentence(const Diagnosis& d) {
+  return sentence_of_logs(d) + (d.gauge ? " " + d.gauge->sentence : std::string());
 }
 
 }  // namespace softgrip::sysid

@@ -1,10 +1,12 @@
 // blind-world: writes the logs of one world, and its truth elsewhere.
 //
 //   blind-world --seed N --out DIR --truth FILE [--cause ID[,ID]] [--strength X] [--poor] [--pressure]
-//               [--command CSV ... --log FILE]
+//               [--command CSV ... --log FILE] [--gauge CSV --log FILE]
 //
 // DIR gets log_1.csv ... in the project's log format and nothing else. With --command the same world answers
 // further commands after its campaign, in the order given, and writes the last answer as one log.
+// With --gauge somebody then holds the sensor's target at the positions of that file (first column, mm), and
+// what the sensor shows is written beside them.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +26,7 @@ namespace {
 
 struct Arguments {
   std::uint64_t seed = 1;
-  std::string out, truth, cause, log;
+  std::string out, truth, cause, log, gauge;
   std::vector<std::string> commands;
   double strength = 8;
   bool poor = false, pressure = false, list = false;
@@ -62,6 +64,8 @@ Arguments arguments(int argc, char** argv) {
       a.commands.push_back(value);
     else if (key == "--log")
       a.log = value;
+    else if (key == "--gauge")
+      a.gauge = value;
     else
       throw std::invalid_argument("unknown option " + key);
   }
@@ -116,6 +120,43 @@ std::vector<double> read_command(const std::string& path, double& rate_hz) {
   return command;
 }
 
+std::vector<double> read_positions(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::vector<double> positions;
+  std::getline(file, line);
+  if (line.rfind("gauge_mm", 0) != 0) throw std::runtime_error("no column gauge_mm in " + path);
+  while (std::getline(file, line)) {
+    double position = 0;
+    if (std::sscanf(line.c_str(), "%lf", &position) != 1) throw std::runtime_error("bad row in " + path);
+    positions.push_back(position);
+  }
+  if (positions.empty()) throw std::runtime_error("no positions in " + path);
+  return positions;
+}
+
+void write_gauge(const std::string& path, const std::vector<double>& positions,
+                 const std::vector<std::vector<double>>& clean, const blind::Sensor& sensor,
+                 std::uint64_t seed) {
+  std::ofstream file(path);
+  file << "gauge_mm,displacement_mm,samples\n";
+  char row[128];
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const auto samples = blind::measured(clean[k], sensor.noise_mm, sensor.step_mm, seed + k);
+    double mean = 0;
+    for (const double y : samples) mean += y / static_cast<double>(samples.size());
+    std::snprintf(row, sizeof row, "%.6g,%.4f,%zu\n", positions[k], mean, samples.size());
+    file << row;
+  }
+  if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+double duration_s(const std::vector<blind::LogInput>& logs) {
+  double sum = 0;
+  for (const auto& log : logs) sum += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
+  return sum;
+}
+
 void write_truth(const std::string& path, const Arguments& a, const blind::Effects& effects,
                  const std::map<std::string, blind::Scaled>& scaled, const blind::Sensor& sensor) {
   std::ofstream file(path);
@@ -143,7 +184,7 @@ int run(const Arguments& a) {
     for (const auto& id : blind::outside_ids()) std::cout << id << "\n";
     return 0;
   }
-  if (a.commands.empty() && (a.out.empty() || a.truth.empty()))
+  if (a.commands.empty() && a.gauge.empty() && (a.out.empty() || a.truth.empty()))
     throw std::invalid_argument("--out and --truth are needed");
   const blind::Base base = scattered(a.seed);
   const blind::Sensor sensor;
@@ -156,13 +197,18 @@ int run(const Arguments& a) {
     scaled[id] = blind::scale_to(id, a.strength * sensor.noise_mm, base, rich, a.seed);
     effects[id] = scaled[id].effect;
   }
+  for (const std::string& path : a.commands) {
+    double rate_hz = 0;
+    auto command = read_command(path, rate_hz);
+    logs.push_back(blind::surrounded(std::move(command), rate_hz, duration_s(logs), a.seed));
+  }
+  if (!a.gauge.empty()) {
+    const auto positions = read_positions(a.gauge);
+    const auto clean = blind::held_at(effects, positions, duration_s(logs), a.seed, {});
+    write_gauge(a.log, positions, clean, sensor, a.seed * 31 + 500000);
+    return 0;
+  }
   if (!a.commands.empty()) {
-    for (const std::string& path : a.commands) {
-      double rate_hz = 0, start_s = 0;
-      for (const auto& log : logs) start_s += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
-      auto command = read_command(path, rate_hz);
-      logs.push_back(blind::surrounded(std::move(command), rate_hz, start_s, a.seed));
-    }
     const auto out = blind::simulate(base, effects, logs, a.seed);
     write_log(a.log, logs.back(), out.back(), sensor, a.pressure, a.seed * 31 + 1000 + 2 * a.commands.size());
     return 0;

@@ -108,6 +108,10 @@ class Rig {
 
   double pressure() const { return pressure_; }
 
+  // The target is taken from the finger and held there; whatever the sensor remembers has settled.
+  void hold_target(double position_mm) { seen_mm_ = position_mm; }
+  void wait(double duration_s) { memory_.campaign_s += duration_s; }
+
   double reading() {
     double y = seen_mm_;
     const double t = memory_.campaign_s;
@@ -258,6 +262,28 @@ std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const 
     outputs.push_back(std::move(out));
   }
   return outputs;
+}
+
+std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
+                                         double start_s, std::uint64_t seed, const GaugeWork& work) {
+  const Numbers numbers(effects);
+  const Base base;
+  Memory memory;
+  memory.campaign_s = start_s;
+  Rig rig(base, numbers, memory, seed + 7919);
+  std::mt19937_64 random(seed * 31 + 5);
+  std::normal_distribution<double> placing(0, work.placing_mm);
+  std::vector<std::vector<double>> series;
+  for (const double position : positions_mm) {
+    rig.hold_target(position + placing(random));
+    rig.wait(work.every_s - static_cast<double>(work.samples) / work.rate_hz);
+    std::vector<double>& samples = series.emplace_back();
+    for (std::size_t i = 0; i < work.samples; ++i) {
+      rig.wait(1 / work.rate_hz);
+      samples.push_back(rig.reading());
+    }
+  }
+  return series;
 }
 
 std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed) {

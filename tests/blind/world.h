@@ -48,6 +48,19 @@ struct LogOutput {
 std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                                 std::uint64_t seed, double step_s = 0.0005);
 
+/// Somebody holds the sensor's target at known positions, one after the other, and reads.
+struct GaugeWork {
+  double placing_mm = 0.01;  // standard deviation of where the target really is
+  double every_s = 20;       // from one position to the next
+  double rate_hz = 100;
+  std::size_t samples = 200;  // that are averaged at each position
+};
+
+/// The samples of each position, before noise and quantisation. `start_s` is the campaign's time by then:
+/// drift, disturbances and wrong samples go on.
+std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
+                                         double start_s, std::uint64_t seed, const GaugeWork& work);
+
 /// Noise, then quantisation; deterministic in the seed.
 std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed);
 

@@ -27,6 +27,7 @@ struct Options {
   std::string model;
   std::vector<std::string> data;
   std::string out;
+  std::string gauge;
   LogInput logs;
   sysid::DiagnosisOptions diagnosis;
   ConsequenceOptions consequences;
@@ -118,6 +119,11 @@ ExitCode run(Options options) {
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   options.diagnosis.record = options.logs.record_options();
+  if (!options.gauge.empty()) {
+    auto gauge = read_gauge(options.gauge);
+    if (!gauge) return gauge.error();
+    options.diagnosis.gauge = std::move(*gauge);
+  }
   auto result = diagnosed(*logs, *model, options.diagnosis);
   if (!result) return fail(ExitCode::input_refused, result.error());
 
@@ -154,6 +160,9 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       ->add_option("--out", options->out,
                    "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html")
       ->required();
+  command->add_option(
+      "--gauge", options->gauge,
+      "What the sensor reads at positions that a gauge knows (CSV: gauge_mm,displacement_mm)");
   command
       ->add_option("--nulls", options->diagnosis.null_campaigns,
                    "Calibrate the search on so many campaigns without a cause (19 show p = 0.05)")

@@ -1,0 +1,386 @@
+#include "sysid/diagnosis/gauge_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include <Eigen/Dense>
+
+#include "model/blocks/sensor_nonlinearity.h"
+#include "model/blocks/sensor_saturation.h"
+#include "model/catalogue.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Beyond the logs' readings, as a share of their span and in standard deviations: enough to see that a
+/// sensor goes on where another one ends.
+constexpr double beyond_share = 0.05;
+constexpr double beyond_noise = 10;
+/// Of what the hypotheses differ by.
+constexpr double tolerated_share = 0.2;
+/// Normal deviate of 1 in 1000, one-sided.
+constexpr double deviate = 3.09;
+
+using Line = std::pair<double, double>;  // value at 0, slope
+
+double square(double x) {
+  return x * x;
+}
+
+/// Of chi-square, by Wilson and Hilferty 1931.
+double chi_square_limit(double freedom) {
+  if (freedom < 1) return std::numeric_limits<double>::infinity();
+  const double v = 2 / (9 * freedom);
+  return freedom * std::pow(1 - v + deviate * std::sqrt(v), 3);
+}
+
+Line line_through(const std::vector<GaugeReading>& readings, const std::vector<double>& values,
+                  const std::function<bool(std::size_t)>& use) {
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (!use(i)) continue;
+    const double x = readings[i].position_mm;
+    n += 1;
+    sx += x;
+    sy += values[i];
+    sxx += x * x;
+    sxy += x * values[i];
+  }
+  const double spread = n * sxx - sx * sx;
+  if (n < 2 || spread <= 1e-12 * n * sxx) return {n > 0 ? sy / n : 0, 0};
+  const double slope = (n * sxy - sx * sy) / spread;
+  return {(sy - slope * sx) / n, slope};
+}
+
+/// Least squares of a few parameters with differences for derivatives (Levenberg 1944, Marquardt 1963).
+class SmallFit {
+ public:
+  using Model = std::function<std::vector<double>(const Eigen::VectorXd&)>;
+
+  SmallFit(const std::vector<double>& wanted, Model model) : wanted_(wanted), model_(std::move(model)) {}
+
+  Eigen::VectorXd from(Eigen::VectorXd p) const {
+    double damping = 1e-3;
+    Eigen::VectorXd r = residual(p);
+    for (int i = 0; i < most_iterations; ++i) {
+      const Eigen::MatrixXd jacobian = derivative(p, r);
+      Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+      const Eigen::VectorXd gradient = jacobian.transpose() * r;
+      bool better = false;
+      while (!better && damping < 1e12) {
+        Eigen::MatrixXd damped = normal;
+        damped.diagonal() += damping * (normal.diagonal().array() + 1e-12).matrix();
+        const Eigen::VectorXd next = p - damped.ldlt().solve(gradient);
+        const Eigen::VectorXd left = residual(next);
+        better = left.squaredNorm() < r.squaredNorm();
+        if (!better) {
+          damping *= 4;
+          continue;
+        }
+        const double gained = r.squaredNorm() - left.squaredNorm();
+        p = next;
+        const bool converged = gained < 1e-12 * r.squaredNorm();
+        r = left;
+        damping = std::max(damping / 4, 1e-12);
+        if (converged) return p;
+      }
+      if (!better) return p;
+    }
+    return p;
+  }
+
+  [[nodiscard]] double left(const Eigen::VectorXd& p) const { return residual(p).squaredNorm(); }
+
+ private:
+  static constexpr int most_iterations = 100;
+
+  [[nodiscard]] Eigen::VectorXd residual(const Eigen::VectorXd& p) const {
+    const std::vector<double> predicted = model_(p);
+    Eigen::VectorXd r(static_cast<Eigen::Index>(wanted_.size()));
+    for (std::size_t i = 0; i < wanted_.size(); ++i)
+      r[static_cast<Eigen::Index>(i)] = predicted[i] - wanted_[i];
+    return r;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd derivative(const Eigen::VectorXd& p, const Eigen::VectorXd& at) const {
+    Eigen::MatrixXd jacobian(at.size(), p.size());
+    for (Eigen::Index j = 0; j < p.size(); ++j) {
+      const double step = 1e-6 * std::max(1.0, std::abs(p[j]));
+      Eigen::VectorXd moved = p;
+      moved[j] += step;
+      jacobian.col(j) = (residual(moved) - at) / step;
+    }
+    return jacobian;
+  }
+
+  const std::vector<double>& wanted_;
+  Model model_;
+};
+
+class Checker {
+ public:
+  Checker(const std::vector<GaugeReading>& readings, const GaugeScales& scales)
+      : readings_(readings), scales_(scales) {
+    find_noise();
+    const double margin =
+        std::max(beyond_share * (scales.highest_mm - scales.lowest_mm), beyond_noise * result_.noise_mm);
+    result_.lower_mm = scales.lowest_mm - margin;
+    result_.upper_mm = scales.highest_mm + margin;
+    for (const GaugeReading& r : readings) result_.cut_mm.push_back(cut(r.reading_mm));
+  }
+
+  GaugeCheck run(const std::vector<SensorShape>& hypotheses) {
+    for (const SensorShape& shape : hypotheses) result_.fits.push_back(fitted(shape, {}));
+    const double offset_mm = hypotheses.front().offset_mm;
+    result_.straight = fitted({{}, offset_mm}, {});
+    result_.free_bend = freely_bent(offset_mm);
+    result_.free_end = freely_ending(offset_mm);
+    allow();
+    for (GaugeFit& fit : result_.fits) judge(fit);
+    for (GaugeFit* fit : {&result_.straight, &result_.free_bend, &result_.free_end}) judge(*fit);
+    compare();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] double cut(double reading_mm) const {
+    return std::clamp(reading_mm, result_.lower_mm, result_.upper_mm);
+  }
+
+  void find_noise() {
+    std::map<double, std::vector<double>> at;
+    const std::vector<double> positions = distinct_positions(readings_);
+    double fewest_samples = std::numeric_limits<double>::infinity();
+    for (const GaugeReading& r : readings_) {
+      const auto nearest = std::min_element(positions.begin(), positions.end(), [&](double a, double b) {
+        return std::abs(a - r.position_mm) < std::abs(b - r.position_mm);
+      });
+      at[*nearest].push_back(r.reading_mm);
+      fewest_samples = std::min(fewest_samples, r.samples);
+    }
+    double sum = 0, freedom = 0;
+    for (const auto& [position, values] : at) {
+      double mean = 0;
+      for (const double v : values) mean += v / static_cast<double>(values.size());
+      for (const double v : values) sum += square(v - mean);
+      freedom += static_cast<double>(values.size() - 1);
+    }
+    if (freedom > 0) result_.repeat_noise_mm = std::sqrt(sum / freedom);
+    result_.noise_mm =
+        std::max({result_.repeat_noise_mm, scales_.noise_mm / std::sqrt(fewest_samples), 1e-9});
+  }
+
+  [[nodiscard]] std::vector<double> predicted(const SensorShape& shape, double zero, double scale) const {
+    std::vector<double> values;
+    values.reserve(readings_.size());
+    for (const GaugeReading& r : readings_) values.push_back(cut(shape.at(zero + scale * r.position_mm)));
+    return values;
+  }
+
+  /// Where zero and scale may begin: the line through all readings, and through their lower half, which an
+  /// end of the sensor does not reach.
+  [[nodiscard]] std::vector<Line> starts(double offset_mm) const {
+    const double middle = (scales_.lowest_mm + scales_.highest_mm) / 2;
+    const auto all = [](std::size_t) { return true; };
+    const auto inside = [&](std::size_t i) {
+      return result_.cut_mm[i] > result_.lower_mm && result_.cut_mm[i] < result_.upper_mm;
+    };
+    const auto lower = [&](std::size_t i) { return inside(i) && result_.cut_mm[i] < middle; };
+    std::vector<Line> lines{line_through(readings_, result_.cut_mm, all),
+                            line_through(readings_, result_.cut_mm, inside),
+                            line_through(readings_, result_.cut_mm, lower),
+                            {offset_mm, 1}};
+    for (Line& line : lines) line.first -= offset_mm;
+    return lines;
+  }
+
+  /// Fits zero and scale, and `own` further numbers that `shape_of` makes a shape of.
+  [[nodiscard]] GaugeFit fitted_with(const std::function<SensorShape(const Eigen::VectorXd&)>& shape_of,
+                                     const std::vector<std::vector<double>>& own, double offset_mm) const {
+    const SmallFit fit(result_.cut_mm,
+                       [&](const Eigen::VectorXd& p) { return predicted(shape_of(p), p[0], p[1]); });
+    Eigen::VectorXd best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Line& line : starts(offset_mm)) {
+      for (const std::vector<double>& more : own) {
+        Eigen::VectorXd p(static_cast<Eigen::Index>(2 + more.size()));
+        p[0] = line.first;
+        p[1] = line.second;
+        for (std::size_t i = 0; i < more.size(); ++i) p[static_cast<Eigen::Index>(2 + i)] = more[i];
+        p = fit.from(p);
+        const double left = fit.left(p);
+        if (left >= least) continue;
+        least = left;
+        best = p;
+      }
+    }
+    GaugeFit result;
+    result.shape = shape_of(best);
+    result.zero_mm = best[0];
+    result.scale = best[1];
+    result.free = static_cast<std::size_t>(best.size());
+    result.predicted_mm = predicted(result.shape, best[0], best[1]);
+    result.rms_mm = std::sqrt(least / static_cast<double>(readings_.size()));
+    return result;
+  }
+
+  [[nodiscard]] GaugeFit fitted(const SensorShape& shape, const std::vector<double>& own) const {
+    return fitted_with([&](const Eigen::VectorXd&) { return shape; }, {own}, shape.offset_mm);
+  }
+
+  [[nodiscard]] GaugeFit freely_bent(double offset_mm) const {
+    const auto type = *model::find_block("sensor_nonlinearity");
+    const double range_mm = std::max(1e-3, scales_.highest_mm - std::min(0.0, scales_.lowest_mm));
+    return fitted_with(
+        [=](const Eigen::VectorXd& p) {
+          return SensorShape{{{type, {p[2], p[3], range_mm}}}, offset_mm};
+        },
+        {{0, 0}, {0.05 * range_mm, 0}, {-0.05 * range_mm, 0}}, offset_mm);
+  }
+
+  [[nodiscard]] GaugeFit freely_ending(double offset_mm) const {
+    const auto type = *model::find_block("sensor_saturation");
+    std::vector<std::vector<double>> ends;
+    const double highest = *std::max_element(result_.cut_mm.begin(), result_.cut_mm.end()) - offset_mm;
+    const double span = scales_.highest_mm - scales_.lowest_mm;
+    for (const double share : {0.0, 0.05, 0.15, 0.3, 0.5}) ends.push_back({highest - share * span});
+    return fitted_with(
+        [=](const Eigen::VectorXd& p) {
+          return SensorShape{{{type, {-1e4, std::max(p[2], -9e3)}}}, offset_mm};
+        },
+        ends, offset_mm);
+  }
+
+  /// A share of what the hypotheses differ by.
+  void allow() {
+    double largest = 0;
+    for (std::size_t a = 0; a < result_.fits.size(); ++a) {
+      for (std::size_t b = a + 1; b < result_.fits.size(); ++b) {
+        double sum = 0;
+        for (std::size_t i = 0; i < readings_.size(); ++i)
+          sum += square(result_.fits[a].predicted_mm[i] - result_.fits[b].predicted_mm[i]);
+        largest = std::max(largest, std::sqrt(sum / static_cast<double>(readings_.size())));
+      }
+    }
+    result_.tolerance_mm = tolerated_share * largest;
+  }
+
+  void judge(GaugeFit& fit) const {
+    const auto n = static_cast<double>(readings_.size());
+    fit.chi_square = n * square(fit.rms_mm) / (square(result_.noise_mm) + square(result_.tolerance_mm));
+    fit.passes = fit.chi_square <= chi_square_limit(n - static_cast<double>(fit.free));
+  }
+
+  void compare() {
+    std::vector<GaugeFit>& fits = result_.fits;
+    const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.chi_square < b.chi_square; };
+    result_.best =
+        static_cast<std::size_t>(std::min_element(fits.begin(), fits.end(), likelier) - fits.begin());
+    const GaugeFit& best = fits[result_.best];
+    double next = std::numeric_limits<double>::infinity();
+    bool any = false;
+    for (std::size_t i = 0; i < fits.size(); ++i) {
+      fits[i].behind = (fits[i].chi_square - best.chi_square) / 2;
+      if (i != result_.best) next = std::min(next, fits[i].behind);
+      fits[i].ruled_out = best.passes && fits[i].behind >= gauge_log_likelihood_needed;
+      any |= fits[i].ruled_out;
+    }
+    result_.log_likelihood_ratio = fits.size() > 1 ? next : 0;
+    result_.outcome = !best.passes              ? GaugeOutcome::unexplained
+                      : any || fits.size() == 1 ? GaugeOutcome::decided
+                                                : GaugeOutcome::undecided;
+  }
+
+  const std::vector<GaugeReading>& readings_;
+  const GaugeScales& scales_;
+  GaugeCheck result_;
+};
+
+template <class Block>
+double through(const model::BlockSpec& block, double y) {
+  Block one(block.values, {});
+  return one.sample(y, 0.0, {});
+}
+
+}  // namespace
+
+bool is_static_sensor(std::size_t type) {
+  const std::string_view id = model::catalogue()[type].info.id;
+  return id == "sensor_nonlinearity" || id == "sensor_saturation";
+}
+
+std::vector<model::BlockSpec> static_sensor_blocks(const model::Model& model) {
+  std::vector<model::BlockSpec> blocks;
+  for (const model::BlockSpec& block : model.blocks) {
+    if (is_static_sensor(block.type)) blocks.push_back(block);
+  }
+  return blocks;
+}
+
+double SensorShape::at(double displacement_mm) const {
+  double y = displacement_mm;
+  for (const model::BlockSpec& block : blocks) {
+    const bool bends = model::catalogue()[block.type].info.id == "sensor_nonlinearity";
+    y = bends ? through<model::SensorNonlinearity<double>>(block, y)
+              : through<model::SensorSaturation<double>>(block, y);
+  }
+  return y + offset_mm;
+}
+
+std::string SensorShape::id() const {
+  std::string text;
+  for (const model::BlockSpec& block : blocks)
+    text += (text.empty() ? "" : "+") + std::string(model::catalogue()[block.type].info.id);
+  return text.empty() ? "straight" : text;
+}
+
+const char* name_of(GaugeOutcome outcome) {
+  switch (outcome) {
+    case GaugeOutcome::decided:
+      return "decided";
+    case GaugeOutcome::undecided:
+      return "undecided";
+    case GaugeOutcome::unexplained:
+      return "unexplained";
+  }
+  return "unexplained";
+}
+
+GaugeCheck::Departure GaugeCheck::departure() const {
+  const bool clips = free_end.rms_mm < free_bend.rms_mm;
+  const GaugeFit& fit = clips ? free_end : free_bend;
+  const auto n = static_cast<double>(cut_mm.size());
+  Departure result;
+  result.clips = clips;
+  double sum = 0;
+  for (std::size_t i = 0; i < cut_mm.size(); ++i) {
+    const double apart = fit.predicted_mm[i] - straight.predicted_mm[i];
+    sum += square(apart);
+    result.largest_mm = std::max(result.largest_mm, std::abs(apart));
+  }
+  result.rms_mm = std::sqrt(sum / n);
+  // Against the noise alone: nothing is expected that a tolerance could be a share of.
+  const double gained = n * (square(straight.rms_mm) - square(fit.rms_mm)) / (2 * square(noise_mm));
+  const auto more = static_cast<double>(fit.free - straight.free);
+  result.clear = n > static_cast<double>(fit.free) && gained - more >= gauge_log_likelihood_needed;
+  return result;
+}
+
+GaugeCheck check_gauge(const std::vector<GaugeReading>& readings, const std::vector<SensorShape>& hypotheses,
+                       const GaugeScales& scales) {
+  return Checker(readings, scales).run(hypotheses);
+}
+
+std::vector<double> beside_straight_line(const std::vector<GaugeReading>& readings,
+                                         const std::vector<double>& values_mm) {
+  const Line line = line_through(readings, values_mm, [](std::size_t) { return true; });
+  std::vector<double> beside;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    beside.push_back(values_mm[i] - line.first - line.second * readings[i].position_mm);
+  return beside;
+}
+
+}  // namespace softgrip::sysid
