@@ -6,65 +6,23 @@
 
 The worlds are the ambiguous ones of a campaign (scripts/blind_campaign.py --work DIR) and fresh ones that first write
 one log of triangles alone, where much is ambiguous. Where the diagnosis of the logs lists the truth among rivals, the
-investigation plays the experiments that it proposes on the same world. Resumable as the campaign is.
+investigation plays the experiments that it proposes on the same world and, where no waveform tells, checks the world's
+sensor against a gauge. Resumable as the campaign is.
 """
 import argparse
 import collections
 import json
 import pathlib
-import shlex
-import subprocess
 import sys
-import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/blind"))
+sys.path.insert(0, str(ROOT / "scripts"))
 
 import judging  # noqa: E402
+from blind_page import interval  # noqa: E402
+from investigating import investigate_world, is_indistinguishable  # noqa: E402
 from ledger import Ledger  # noqa: E402
-
-# Equal for every command as long as nothing else changes: an object, a second sensor, a gauge.
-INDISTINGUISHABLE = [{"stiffening", "sensor_nonlinearity"}, {"contact", "sensor_saturation"},
-                     {"contact", "sensor_nonlinearity"}, {"valve_lag", "sensor_lag"}]
-
-
-def investigate(args, world):
-    build = args.build
-    with tempfile.TemporaryDirectory(dir=args.work) as name:
-        work = pathlib.Path(name)
-        options = ["--seed", str(world["seed"]), "--strength", str(world["strength"]), "--cause",
-                   ",".join(world["causes"]), *(["--poor"] if world["poor"] else [])]
-        program = build / "tests/blind/blind-world"
-        subprocess.run([program, *options, "--out", work / "logs", "--truth", work / "truth.json"], check=True)
-        logs = sorted((work / "logs").glob("*.csv"))
-        first = subprocess.run([build / "tools/softgrip", "diagnose", "--model", judging.GIVEN, "--data", *logs, "--out",
-                                work / "first", "--no-closed-loop", "--json"], capture_output=True, text=True)
-        if first.returncode != 0:
-            return {**world, "outcome": "failed", "message": first.stderr[-300:]}
-        diagnosis = json.loads(first.stdout)
-        before = judging.judge(world["causes"], diagnosis)
-        result = {**world, "before": before, "rivals": [[c["id"], *r] for c, r in zip(diagnosis["causes"],
-                                                                                    diagnosis["alternatives"])]}
-        if before != "ambiguous_right":
-            return {**result, "outcome": "not_ambiguous"}
-        rig = shlex.join([sys.executable, str(ROOT / "tests/blind/rig.py"), str(program), str(work / "played"), *options])
-        done = subprocess.run([build / "tools/softgrip", "investigate", "--model", judging.GIVEN, "--data", *logs, "--out",
-                               work / "out", "--rig-command", rig, "--pressure-max-kpa", "60", "--yes",
-                               "--no-closed-loop", "--json"], capture_output=True, text=True)
-        if done.returncode not in (0, 6):
-            return {**result, "outcome": "failed", "message": done.stderr[-300:]}
-        report = json.loads(done.stdout)
-        last = report["steps"][-1]
-        after = judging.judge(world["causes"], {"verdict": last["verdict"], "causes": [{"id": c} for c in last["causes"]],
-                                                "alternatives": last["alternatives"]})
-        return {**result, "outcome": after, "end": report["end"], "experiments": len(report["steps"]) - 1,
-                "minutes": report["spent_minutes"], "after": [[c, *r] for c, r in zip(last["causes"],
-                                                                                    last["alternatives"])]}
-
-
-def is_twin(result):
-    """Whether the sets that were left cannot be told apart by any command."""
-    return all(any(set(one) <= twins for twins in INDISTINGUISHABLE) for one in result.get("after", [[]]) if len(one) > 1)
 
 
 def worlds(args, ids):
@@ -79,26 +37,47 @@ def worlds(args, ids):
                 yield {"causes": [cause], "strength": strength, "seed": args.first_seed + k, "poor": True}
 
 
+def share(part, whole):
+    return f"{len(part)} of {len(whole)}, {interval(len(part), len(whole))}"
+
+
 def page(results, command):
     asked = [r for r in results if r["outcome"] != "not_ambiguous"]
     resolved = [r for r in asked if r["outcome"] == "right"]
-    twins = [r for r in asked if r["outcome"] == "ambiguous_right" and is_twin(r)]
-    others = len(asked) - len(twins)
+    by_gauge = [r for r in resolved if r["resolved_by"] == "gauge_check"]
+    wrong = [r for r in asked if r["outcome"] == "wrong"]
+    open_still = [r for r in asked if r["outcome"] == "ambiguous_right"]
+    twins = [r for r in open_still if is_indistinguishable(r)]
+    others = [r for r in asked if r not in resolved and r not in wrong and r not in open_still]
     lines = ["# Blind investigations", "",
              f"Written by `{command}`: {sum(not r['poor'] for r in results)} ambiguous worlds of the campaign and "
-             f"{sum(r['poor'] for r in results)} worlds that wrote one log of triangles alone. {len(asked)} diagnoses were "
-             f"ambiguous with the truth listed. After `softgrip investigate` {len(resolved)} of them name the truth alone. "
-             f"In {len(twins)} the rivals that are left give equal readings whatever the command (a bent actuator and a "
-             f"bent scale, a stop and a sensor that clips, lags of valve and sensor): the diagnosis says so, and what to "
-             f"change instead. Of the other {others}, {len(resolved)} are resolved.", "",
-             "| hidden | strength | seed | logs | ambiguous among | after | experiments | minutes of rig time | outcome |",
-             "|---|---|---|---|---|---|---|---|---|"]
+             f"{sum(r['poor'] for r in results)} worlds that wrote one log of triangles alone. {len(asked)} first "
+             "diagnoses were ambiguous with the truth among what they listed; these were investigated, with the world as "
+             "the rig and its sensor on a gauge. The gauge's target stands within 0.01 mm (standard deviation) of where it "
+             "should, a reading is the mean of 2 s, and the world's noise, quantisation, drift, disturbances and wrong "
+             "samples are in it.", "",
+             "| of the ambiguous verdicts | worlds, with the 95 % interval of the share |",
+             "|---|---|",
+             f"| resolved to the truth | {share(resolved, asked)} |",
+             f"| of these by a waveform | {len(resolved) - len(by_gauge)} |",
+             f"| of these by the gauge check | {len(by_gauge)} |",
+             f"| resolved to something else (wrong) | {share(wrong, asked)} |",
+             f"| still open, the truth among what is listed | {len(open_still)} |",
+             f"| of these equal for every command and every gauge (lags of valve and sensor) | {len(twins)} |",
+             f"| anything else (unexplained, partly, failed) | {len(others)} |", ""]
+    for title, chosen in (("the campaign's", [r for r in asked if not r["poor"]]),
+                          ("one log of triangles", [r for r in asked if r["poor"]])):
+        if chosen:
+            lines += [f"Of {title} ambiguous verdicts, "
+                      f"{share([r for r in chosen if r['outcome'] == 'right'], chosen)}, are resolved to the truth.", ""]
+    lines += ["| hidden | strength | seed | logs | ambiguous among | after | experiments | minutes of rig time | outcome |",
+              "|---|---|---|---|---|---|---|---|---|"]
     for r in sorted(asked, key=lambda r: (r["poor"], r["causes"], -r["strength"], r["seed"])):
-        before = "; ".join(" or ".join(one) for one in r["rivals"])
+        before = "; ".join(" or ".join(one) for one in r.get("rivals", []))
         after = "; ".join(" or ".join(one) for one in r.get("after", []))
-        lines.append(f"| {'+'.join(r['causes'])} | {r['strength']:g} | {r['seed']} | {'triangles' if r['poor'] else 'three'} | "
-                     f"{before} | {after} | {r.get('experiments', '-')} | {r.get('minutes', 0):.1f} | "
-                     f"{r['outcome']}{' (twins)' if r in twins else ''} |")
+        lines.append(f"| {'+'.join(r['causes'])} | {r['strength']:g} | {r['seed']} | "
+                     f"{'triangles' if r['poor'] else 'three'} | {before} | {after} | "
+                     f"{', '.join(r.get('played', [])) or '-'} | {r.get('minutes', 0):.1f} | {r['outcome']} |")
     counts = collections.Counter(r["before"] for r in results if "before" in r)
     lines += ["", "First diagnoses: " + ", ".join(f"{k} {v}" for k, v in counts.most_common()) + "."]
     return "\n".join(lines) + "\n"
@@ -113,6 +92,7 @@ def main():
     parser.add_argument("--strengths", type=float, nargs="+", default=[8, 2])
     parser.add_argument("--causes", nargs="+")
     parser.add_argument("--first-seed", type=int, default=3000)
+    parser.add_argument("--no-gauge", action="store_true", help="waveforms alone")
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     args.build = args.build.resolve()
@@ -121,10 +101,11 @@ def main():
     for world in worlds(args, ids):
         if world in ledger:
             continue
-        result = investigate(args, world)
+        result = investigate_world(args.build, args.work, world, not args.no_gauge)
         ledger.add(result)
         print(f"{'+'.join(world['causes'])} {world['strength']:g} seed {world['seed']}: {result.get('before')} "
-              f"{result.get('rivals')} -> {result['outcome']} {result.get('after', '')} {result.get('end', '')} "
+              f"{result.get('rivals')} -> {result['outcome']} {result.get('after', '')} {result.get('played', '')} "
+              f"{result.get('end', '')} "
               f"{result.get('message', '')}", flush=True)
     if args.page:
         campaign = " --campaign DIR" if args.campaign else ""

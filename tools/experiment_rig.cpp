@@ -55,6 +55,25 @@ std::string quoted(const std::string& text) {
   return word + "'";
 }
 
+/// Calls `command IN OUT` and waits for it.
+tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
+                                   const std::string& out) {
+  std::fflush(nullptr);
+  const int status = std::system((command + " " + quoted(in) + " " + quoted(out)).c_str());
+  const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
+  if (by_signal) return stopped("the rig's command was stopped by a signal");
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    return failed("the rig's command failed with exit code " + std::to_string(WEXITSTATUS(status)));
+  return {};
+}
+
+tl::expected<sysid::GaugeFile, NotPlayed> gauge_at(const std::string& path) {
+  document::Problems problems;
+  auto gauge = sysid::read_gauge(path, problems);
+  if (!gauge) return failed("the gauge file was refused:\n" + problems.format());
+  return std::move(*gauge);
+}
+
 std::string command_csv(const sysid::Waveform& waveform, double interval_s) {
   std::string csv = "time_s,pressure_command_kpa\n";
   const std::vector<double> samples = sysid::sampled_kpa(waveform, interval_s);
@@ -144,13 +163,32 @@ Player command_player(std::string command, double interval_s, Consent consent) {
     if (const auto written = sysid::write_file(in, command_csv(experiment.best->waveform, interval_s));
         !written)
       return failed(written.error());
-    std::fflush(nullptr);
-    const int status = std::system((command + " " + quoted(in) + " " + quoted(out)).c_str());
-    const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
-    if (by_signal) return stopped("the rig's command was stopped by a signal");
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-      return failed("the rig's command failed with exit code " + std::to_string(WEXITSTATUS(status)));
+    if (const auto called = call(command, in, out); !called) return tl::unexpected(called.error());
     return log_of(out, "");
+  };
+}
+
+tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(const std::vector<sysid::GaugeReading>& readings,
+                                                        const std::string& folder) {
+  const std::string path = (fs::path(folder) / "gauge.csv").string();
+  if (const auto written = sysid::write_file(path, sysid::format_gauge(readings)); !written)
+    return failed(written.error());
+  return gauge_at(path);
+}
+
+GaugeTaker command_gauge(std::string command, Consent consent) {
+  return [command = std::move(command), consent = std::move(consent)](
+             const std::vector<double>& positions_mm,
+             const std::string& folder) -> tl::expected<sysid::GaugeFile, NotPlayed> {
+    if (!consent("'" + command + "' will put the sensor's target at " + std::to_string(positions_mm.size()) +
+                 " positions"))
+      return stopped("not allowed to check the sensor");
+    const std::string in = (fs::path(folder) / "gauge_asked.csv").string();
+    const std::string out = (fs::path(folder) / "gauge.csv").string();
+    if (const auto written = sysid::write_file(in, sysid::positions_csv(positions_mm)); !written)
+      return failed(written.error());
+    if (const auto called = call(command, in, out); !called) return tl::unexpected(called.error());
+    return gauge_at(out);
   };
 }
 

@@ -44,4 +44,15 @@ using Consent = std::function<bool(const std::string& what)>;
 /// out.
 [[nodiscard]] Player command_player(std::string command, double interval_s, Consent consent);
 
+/// Checks the sensor of a simulated rig by itself: known lengths go through the sensor of the truth, with the
+/// rig's noise and quantisation. Lengths that it cannot measure are left out.
+[[nodiscard]] GaugeTaker simulated_gauge(ExperimentRig rig);
+
+/// Checks a sensor by calling `COMMAND POSITIONS_CSV GAUGE_OUT`.
+[[nodiscard]] GaugeTaker command_gauge(std::string command, Consent consent);
+
+/// Writes what was read to `folder`/gauge.csv and reads it back as any other gauge file.
+[[nodiscard]] tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(
+    const std::vector<sysid::GaugeReading>& readings, const std::string& folder);
+
 }  // namespace softgrip::tools

@@ -33,6 +33,7 @@ class Investigator {
   explicit Investigator(const InvestigationOptions& options) : options_(options), plan_(options.experiment) {
     result_.logs = options.logs;
     result_.budget_minutes = options.budget_minutes;
+    result_.gauge = options.diagnosis.gauge;
   }
 
   tl::expected<Investigation, std::string> run() {
@@ -49,7 +50,9 @@ class Investigator {
   /// One diagnosis and, where it asks for one, one experiment. False: it is over.
   tl::expected<bool, std::string> step() {
     const std::string name = "step_" + std::to_string(result_.steps.size() + 1);
-    auto diagnosis = sysid::diagnose(result_.logs, options_.given, options_.diagnosis);
+    sysid::DiagnosisOptions how = options_.diagnosis;
+    how.gauge = result_.gauge;
+    auto diagnosis = sysid::diagnose(result_.logs, options_.given, how);
     if (!diagnosis) return tl::unexpected(diagnosis.error());
     result_.last = std::move(*diagnosis);
     result_.steps.push_back(step_of(result_.last, name));
@@ -64,6 +67,9 @@ class Investigator {
     if (result_.last.verdict == Verdict::unexplained)
       return end(InvestigationEnd::unexplained, "structure is left that no cause of the library explains");
     if (result_.last.verdict != Verdict::ambiguous) return end(InvestigationEnd::settled, "");
+    const auto& gauge_check = consequences.experiment.gauge_check;
+    if (!consequences.experiment.best && gauge_check && options_.take_gauge)
+      return check_sensor(*gauge_check, folder);
     if (!consequences.experiment.best) return end_without_experiment(consequences.experiment);
     return play(consequences.experiment, folder);
   }
@@ -103,6 +109,29 @@ class Investigator {
     result_.spent_minutes += best.minutes;
     plan_.done.push_back(best.waveform.name);
     result_.logs.push_back(std::move(*log));
+    return true;
+  }
+
+  /// No waveform tells the rivals apart, and they make different sensors.
+  bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
+    if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
+      return end(InvestigationEnd::budget_spent,
+                 "the sensor would have to be checked against a gauge, which takes longer than the minutes "
+                 "left");
+    }
+    tell("the sensor against a gauge: " + std::to_string(check.positions_mm.size()) + " readings, " +
+         sysid::significant(check.minutes, 2) + " minutes");
+    auto gauge = options_.take_gauge(check.positions_mm, folder);
+    if (!gauge) {
+      return end(gauge.error().stopped ? InvestigationEnd::stopped : InvestigationEnd::failed,
+                 gauge.error().why);
+    }
+    InvestigationStep& step = result_.steps.back();
+    step.experiment = gauge_check_name;
+    step.minutes = check.minutes;
+    step.log = gauge->path;
+    result_.spent_minutes += check.minutes;
+    result_.gauge = std::move(*gauge);
     return true;
   }
 
@@ -161,12 +190,16 @@ std::string to_json(const Investigation& investigation, const std::string& rig) 
                            {"predicted_separation_sigma", step.predicted_separation_sigma},
                            {"minutes", step.minutes},
                            {"log", step.log}};
+      if (step.experiment == gauge_check_name) one["experiment"]["predicted_separation_sigma"] = nullptr;
     }
     json["steps"].push_back(std::move(one));
   }
   json["logs"] = Json::array();
   for (const sysid::Log& log : investigation.logs)
     json["logs"].push_back({{"path", log.path}, {"sha256", log.sha256}});
+  json["gauge"] = nullptr;
+  if (const auto& gauge = investigation.gauge)
+    json["gauge"] = {{"path", gauge->path}, {"sha256", gauge->sha256}};
   return json.dump(2) + "\n";
 }
 

@@ -3,6 +3,7 @@
 // stands, the budget is spent or nothing is left to gain.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct NotPlayed {
 using Player = std::function<tl::expected<sysid::Log, NotPlayed>(const sysid::NextExperiment& experiment,
                                                                  const std::string& folder)>;
 
+/// Puts the sensor's target at known positions and reads. `folder` exists; the gauge file belongs into it.
+using GaugeTaker = std::function<tl::expected<sysid::GaugeFile, NotPlayed>(
+    const std::vector<double>& positions_mm, const std::string& folder)>;
+
 struct InvestigationOptions {
   model::Model given;
   std::vector<sysid::Log> logs;
@@ -34,6 +39,7 @@ struct InvestigationOptions {
   std::string out;                      ///< step_1/, step_2/ ... are made in it
   std::string channel;                  ///< "": all of the rig
   Player play;
+  GaugeTaker take_gauge;                         ///< empty: nobody can put the target anywhere
   std::function<void(const std::string&)> tell;  ///< one line about what goes on
 };
 
@@ -47,13 +53,16 @@ enum class InvestigationEnd {
 };
 [[nodiscard]] const char* name_of(InvestigationEnd end);
 
+/// What a step is called that checks the sensor against a gauge instead of playing a waveform.
+inline constexpr const char* gauge_check_name = "gauge_check";
+
 /// One diagnosis and what was done about it.
 struct InvestigationStep {
   std::string folder;  ///< within `out`
   sysid::Verdict verdict = sysid::Verdict::unexplained;
   std::vector<std::string> causes;
   std::vector<std::vector<std::string>> alternatives;
-  std::string experiment;  ///< the waveform that was played; empty: none
+  std::string experiment;  ///< the waveform that was played, or gauge_check; empty: none
   double predicted_separation_sigma = 0;
   double minutes = 0;
   std::string log;  ///< where its log is
@@ -65,7 +74,8 @@ struct Investigation {
   std::vector<InvestigationStep> steps;
   double budget_minutes = 0;
   double spent_minutes = 0;
-  std::vector<sysid::Log> logs;  ///< the given ones and those that were added
+  std::vector<sysid::Log> logs;           ///< the given ones and those that were added
+  std::optional<sysid::GaugeFile> gauge;  ///< given or made
   sysid::Diagnosis last;
 };
 

@@ -7,6 +7,7 @@
 #include "model/catalogue.h"
 #include "model/model_file.h"
 #include "sysid/diagnosis/report_figures.h"
+#include "sysid/diagnosis/report_gauge.h"
 #include "sysid/diagnosis/report_tables.h"
 #include "sysid/diagnosis/twins.h"
 #include "sysid/log_figures.h"
@@ -276,6 +277,10 @@ void add_limits(Page& page, const DiagnosisReport& report) {
 }
 
 void add_next(Page& page, const DiagnosisReport& report) {
+  if (!report.advice.empty()) {
+    page.section("What would tell more");
+    page.list(report.advice);
+  }
   if (!report.next_experiment) return;
   const ProposedExperiment& next = *report.next_experiment;
   page.section("The next experiment");
@@ -301,6 +306,7 @@ std::string diagnosis_html(const DiagnosisReport& report) {
   page.provenance(std::move(provenance));
   add_wrong(page, d);
   add_causes(page, d);
+  if (d.gauge) add_gauge_section(page, *d.gauge);
   add_extension(page, d, report.given);
   add_gain(page, d);
   add_left(page, d);

@@ -28,6 +28,7 @@ struct DiagnosisReport {
   const model::Model& given;
   std::uint64_t seed = 1;
   std::optional<ProposedExperiment> next_experiment;
+  std::vector<std::string> advice;  ///< what would tell more besides; sentences
 };
 
 /// A self-contained page below 1.5 MB.

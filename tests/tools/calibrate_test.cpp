@@ -272,6 +272,49 @@ TEST_F(CalibrateTest, ByHandNothingMoves) {
   EXPECT_NE(person.asked.front().find("put the target"), std::string::npos);
 }
 
+TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
+  make();
+  int answered = 0;
+  KnowingOperator person([&]() -> std::string {
+    const std::vector<std::string> answers{"", "12,5", "-", ""};
+    return answers[static_cast<std::size_t>(answered++)];
+  });
+  const auto visits = read_positions(*drive_, person, settings_, {0, 10, 20, 30});
+  ASSERT_TRUE(visits) << visits.error().text;
+  ASSERT_EQ(visits->size(), 3U) << "one was left out";
+  EXPECT_EQ((*visits)[0].position_mm, 0) << "Enter: it is where it was asked for";
+  EXPECT_EQ((*visits)[1].position_mm, 12.5);
+  EXPECT_EQ((*visits)[2].position_mm, 30);
+  for (const GaugeVisit& visit : *visits) {
+    EXPECT_NEAR(visit.reading_mm, board_->plant(0).displacement_mm(), 0.02);
+    EXPECT_GT(visit.count, 100U);
+  }
+  EXPECT_NE(person.asked[1].find("2 of 4: target at 10 mm"), std::string::npos) << person.asked[1];
+  EXPECT_EQ(board_->plant(0).pressure_kpa(), 0);
+}
+
+TEST_F(CalibrateTest, AGaugePositionThatTheSensorDoesNotSeeIsLeftOut) {
+  drivers::SimulatedEvent blind;
+  blind.kind = drivers::SimulatedEvent::Kind::sensor_fault;
+  blind.sensor.kind = drivers::SensorFault::Kind::out_of_range;
+  simulated().events.push_back(blind);
+  make();
+  KnowingOperator person([] { return ""; });
+  const auto visits = read_positions(*drive_, person, settings_, {0, 10});
+  ASSERT_TRUE(visits) << visits.error().text;
+  EXPECT_TRUE(visits->empty());
+  EXPECT_NE(person.told.front().find("left out"), std::string::npos);
+}
+
+TEST_F(CalibrateTest, AGaugeCheckStopsWhenAsked) {
+  pace_.stop_at = 4'000'000'000;
+  make();
+  KnowingOperator person([] { return ""; });
+  const auto visits = read_positions(*drive_, person, settings_, {0, 10, 20, 30});
+  ASSERT_FALSE(visits);
+  EXPECT_EQ(visits.error().text, "stopped by the user");
+}
+
 TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
   make();
   KnowingOperator person([this] { return truth_mm(); });

@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "drivers/simulated_board.h"
 #include "model/model_file.h"
 #include "sysid/diagnosis/waveform.h"
 #include "tools/experiment_rig.h"
@@ -166,6 +168,160 @@ TEST(CommandPlayer, CallsTheCommandWithACommandFileAndReadsItsLog) {
     return false;
   })(small_experiment(), folder.string());
   EXPECT_TRUE(called);
+  ASSERT_FALSE(refused);
+  EXPECT_TRUE(refused.error().stopped);
+  fs::remove_all(folder);
+}
+
+/// A finger that stiffens: no command tells it from a bent scale.
+class GaugeStepTest : public InvestigationTest {
+ protected:
+  void SetUp() override {
+    InvestigationTest::SetUp();
+    const model::Model finger =
+        model::with_block(loaded("bench_twin"), {sysid::find_cause("stiffening")->type, {0.01}});
+    options_.logs.clear();
+    for (const double top_kpa : {30.0, 55.0}) {
+      const sysid::Waveform load{"load", "", {{0, 0}, {1, 0}, {5, top_kpa}, {8, top_kpa}, {12, 0}, {20, 0}}};
+      sysid::Log& log = options_.logs.emplace_back();
+      log.name = log.path = "load";
+      log.pressure_command_kpa = sysid::sampled_kpa(load, interval_s);
+      for (std::size_t i = 0; i < log.pressure_command_kpa.size(); ++i)
+        log.time_s.push_back(static_cast<double>(i) * interval_s);
+      simulate(finger, {0.03, options_.logs.size()}, log);
+    }
+    options_.play = [this](const sysid::NextExperiment&,
+                           const std::string&) -> tl::expected<sysid::Log, NotPlayed> {
+      ++plays_;
+      return tl::unexpected(NotPlayed{false, "no waveform helps here"});
+    };
+    options_.take_gauge = [this](const std::vector<double>& positions_mm, const std::string& folder) {
+      ++checks_;
+      EXPECT_TRUE(fs::exists(fs::path(folder) / "gauge_positions.csv"));
+      std::vector<sysid::GaugeReading> readings;
+      for (const double p : positions_mm)
+        readings.push_back({p, p + 0.01 * std::sin(7.0 * static_cast<double>(readings.size())), 200});
+      return gauge_file_of(readings, folder);
+    };
+  }
+
+  int checks_ = 0;
+};
+
+TEST_F(GaugeStepTest, AStraightSensorSettlesOnTheFinger) {
+  const auto result = investigate(options_);
+  ASSERT_TRUE(result) << result.error();
+  EXPECT_EQ(result->end, InvestigationEnd::settled) << result->why;
+  ASSERT_EQ(result->last.causes.size(), 1U);
+  EXPECT_EQ(result->last.causes[0].cause.id, "stiffening");
+  EXPECT_EQ(plays_, 0);
+  EXPECT_EQ(checks_, 1);
+  ASSERT_EQ(result->steps.size(), 2U);
+  EXPECT_EQ(result->steps[0].verdict, sysid::Verdict::ambiguous);
+  EXPECT_EQ(result->steps[0].experiment, "gauge_check");
+  EXPECT_GT(result->steps[0].minutes, 9 - 1e-9);
+  EXPECT_EQ(result->spent_minutes, result->steps[0].minutes);
+  EXPECT_TRUE(fs::exists(folder_ / "step_1" / "gauge.csv"));
+  const auto json = nlohmann::json::parse(to_json(*result, "a test"));
+  EXPECT_EQ(json["steps"][0]["experiment"]["waveform"], "gauge_check");
+  EXPECT_TRUE(json["steps"][0]["experiment"]["predicted_separation_sigma"].is_null());
+  EXPECT_EQ(json["steps"][0]["experiment"]["log"], (folder_ / "step_1" / "gauge.csv").string());
+  EXPECT_EQ(json["gauge"]["sha256"].get<std::string>().size(), 64U);
+}
+
+TEST_F(GaugeStepTest, OneThatIsThereAlreadyIsNotMadeAgain) {
+  const auto made = investigate(options_);
+  ASSERT_TRUE(made && made->gauge);
+  options_.diagnosis.gauge = made->gauge;
+  const auto result = investigate(options_);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->end, InvestigationEnd::settled);
+  EXPECT_EQ(result->spent_minutes, 0);
+  EXPECT_EQ(checks_, 1);
+}
+
+TEST_F(GaugeStepTest, WithNobodyToPutTheTargetItEndsWithTheAdvice) {
+  options_.take_gauge = nullptr;
+  const auto result = investigate(options_);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->end, InvestigationEnd::nothing_left);
+  EXPECT_NE(result->why.find("--gauge gauge_positions.csv"), std::string::npos) << result->why;
+  EXPECT_TRUE(fs::exists(folder_ / "step_1" / "gauge_positions.csv"));
+}
+
+TEST_F(GaugeStepTest, ItCountsAgainstTheBudget) {
+  options_.budget_minutes = 5;
+  const auto result = investigate(options_);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->end, InvestigationEnd::budget_spent);
+  EXPECT_EQ(checks_, 0);
+}
+
+TEST_F(GaugeStepTest, ARefusalStopsAndAFailureFails) {
+  for (const bool stops : {true, false}) {
+    options_.take_gauge = [&](const std::vector<double>&,
+                              const std::string&) -> tl::expected<sysid::GaugeFile, NotPlayed> {
+      return tl::unexpected(NotPlayed{stops, "because"});
+    };
+    const auto result = investigate(options_);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->end, stops ? InvestigationEnd::stopped : InvestigationEnd::failed);
+    EXPECT_EQ(result->why, "because");
+    EXPECT_EQ(result->spent_minutes, 0);
+  }
+}
+
+TEST_F(GaugeStepTest, AGaugeThatDecidesNothingIsNotAskedTwice) {
+  options_.take_gauge = [this](const std::vector<double>& positions_mm, const std::string& folder) {
+    ++checks_;
+    std::vector<sysid::GaugeReading> readings;
+    for (const double p : positions_mm)
+      readings.push_back({p, p + 3 * std::sin(7.0 * static_cast<double>(readings.size())), 1});
+    return gauge_file_of(readings, folder);
+  };
+  const auto result = investigate(options_);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->end, InvestigationEnd::nothing_left);
+  EXPECT_EQ(checks_, 1);
+  EXPECT_NE(result->why.find("the gauge left it open"), std::string::npos) << result->why;
+}
+
+TEST(SimulatedGauge, ReadsTheSensorOfTheTruthAndNotItsFinger) {
+  ExperimentRig rig = simulated_rig();
+  auto& channel = std::get<drivers::SimulatedBoardSettings>(rig.rig.board).channels[rig.channel];
+  channel.plant.model = model::with_block(
+      model::with_block(channel.plant.model, {sysid::find_cause("stiffening")->type, {0.02}}),
+      {sysid::find_cause("sensor_nonlinearity")->type, {1.5, 0, 20}});
+  const fs::path folder = fs::temp_directory_path() / ("softgrip_gauge_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const auto gauge = simulated_gauge(rig)({0, 10, 20, 10, 100}, folder.string());
+  ASSERT_TRUE(gauge) << gauge.error().why;
+  ASSERT_EQ(gauge->readings.size(), 4U) << "100 mm are beyond its range";
+  const double expected_mm[]{0, 11.5, 20, 11.5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(gauge->readings[i].reading_mm, expected_mm[i], 0.015);
+    EXPECT_EQ(gauge->readings[i].samples, 200);
+  }
+  EXPECT_NE(gauge->readings[1].reading_mm, gauge->readings[3].reading_mm) << "its noise is in it";
+  fs::remove_all(folder);
+}
+
+TEST(CommandGauge, CallsTheCommandWithPositionsAndReadsItsFile) {
+  const fs::path folder = fs::temp_directory_path() / ("softgrip gauge's " + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const auto allow = [](const std::string&) { return true; };
+  const std::string awk = R"(f() { awk -F, 'NR==1{print} NR>1{print $1 "," 1.1*$1}' "$1" > "$2"; }; f)";
+  const auto gauge = command_gauge(awk, allow)({0, 10, 20}, folder.string());
+  ASSERT_TRUE(gauge) << gauge.error().why;
+  EXPECT_EQ(gauge->readings[2], (sysid::GaugeReading{20, 22, 1}));
+  EXPECT_EQ(gauge->path, (folder / "gauge.csv").string());
+  const auto unfilled = command_gauge("cp", allow)({0, 10, 20}, folder.string());
+  ASSERT_FALSE(unfilled);
+  EXPECT_NE(unfilled.error().why.find("refused"), std::string::npos);
+  EXPECT_FALSE(command_gauge("false", allow)({0, 10, 20}, folder.string()));
+  const auto refused =
+      command_gauge("touch called;", [](const std::string&) { return false; })({0, 1, 2}, folder.string());
   ASSERT_FALSE(refused);
   EXPECT_TRUE(refused.error().stopped);
   fs::remove_all(folder);

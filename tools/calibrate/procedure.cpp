@@ -52,14 +52,21 @@ std::optional<double> number_in(std::string text) {
   return value;
 }
 
-/// Asks until a number comes; meanwhile the board is talked to, or its watchdog would trip.
+/// Asks; meanwhile the board is talked to, or its watchdog would trip.
+Expected<std::string> ask(HandDrive& drive, Operator& person, const std::string& question) {
+  person.ask(question);
+  std::optional<std::string> answer;
+  const auto waited = drive.wait([&] { return (answer = person.answer()).has_value() || person.gone(); });
+  if (!waited) return tl::unexpected(refusal_of(waited.error()));
+  if (!answer) return tl::unexpected(Refusal{ExitCode::input_refused, "no answer to: " + question});
+  return *answer;
+}
+
+/// Asks until a number comes.
 Expected<double> ask_number(HandDrive& drive, Operator& person, const std::string& question) {
   for (int i = 0; i < questions_at_most; ++i) {
-    person.ask(question);
-    std::optional<std::string> answer;
-    const auto waited = drive.wait([&] { return (answer = person.answer()).has_value() || person.gone(); });
-    if (!waited) return tl::unexpected(refusal_of(waited.error()));
-    if (!answer) return tl::unexpected(Refusal{ExitCode::input_refused, "no answer to: " + question});
+    const auto answer = ask(drive, person, question);
+    if (!answer) return tl::unexpected(answer.error());
     if (const auto value = number_in(*answer)) return *value;
     if (!person.patient()) {
       return tl::unexpected(Refusal{ExitCode::input_refused, "`" + *answer + "` is no number: " + question});
@@ -67,6 +74,25 @@ Expected<double> ask_number(HandDrive& drive, Operator& person, const std::strin
     person.tell("A number, please, like 12.34");
   }
   return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given"});
+}
+
+/// Enter says that the target is where it was asked for, a number where it is instead, `-` leaves it out.
+Expected<std::optional<double>> ask_position(HandDrive& drive, Operator& person, const std::string& question,
+                                             double asked_mm) {
+  for (int i = 0; i < questions_at_most; ++i) {
+    const auto answer = ask(drive, person, question);
+    if (!answer) return tl::unexpected(answer.error());
+    const auto first = answer->find_first_not_of(" \t\r");
+    if (first == std::string::npos) return std::optional<double>(asked_mm);
+    if (answer->substr(first) == "-") return std::optional<double>();
+    if (const auto value = number_in(*answer)) return std::optional<double>(*value);
+    if (!person.patient()) {
+      return tl::unexpected(
+          Refusal{ExitCode::input_refused, "`" + *answer + "` is no position: " + question});
+    }
+    person.tell("Enter if it is there, a number if it is elsewhere (mm), - to leave it out");
+  }
+  return tl::unexpected(Refusal{ExitCode::input_refused, "no position was given"});
 }
 
 Expected<void> move_to(const daemon::RigFile& rig, HandDrive& drive, Operator& person,
@@ -228,6 +254,35 @@ Expected<Line> calibrate_sensor(const daemon::RigFile& rig, HandDrive& drive, Op
                        std::string(drivers::name_of(wiring.unit)));
   if (!line) return tl::unexpected(nonsense("sensor: " + line.error()));
   return *line;
+}
+
+Expected<std::vector<GaugeVisit>> read_positions(HandDrive& drive, Operator& person, const Settings& settings,
+                                                 const std::vector<double>& positions_mm) {
+  std::vector<GaugeVisit> visits;
+  for (std::size_t i = 0; i < positions_mm.size(); ++i) {
+    const auto where = ask_position(
+        drive, person,
+        fmt::format("{} of {}: target at {:g} mm, then Enter", i + 1, positions_mm.size(), positions_mm[i]),
+        positions_mm[i]);
+    if (!where) return tl::unexpected(where.error());
+    if (!*where) continue;
+    const auto halves = average(drive, settings);
+    if (!halves) return tl::unexpected(halves.error());
+    const Sample& first = halves->first.displacement_mm;
+    const Sample& second = halves->second.displacement_mm;
+    const auto why = invalid(first.invalid > 0 ? first : second);
+    if (why || first.count + second.count == 0) {
+      person.tell("left out: " + why.value_or("nothing was read"));
+      continue;
+    }
+    const auto count = static_cast<double>(first.count + second.count);
+    const double mean =
+        (first.mean * static_cast<double>(first.count) + second.mean * static_cast<double>(second.count)) /
+        count;
+    visits.push_back({**where, mean, first.count + second.count});
+    person.tell(fmt::format("{:.5g} mm read at {:.5g} mm", mean, **where));
+  }
+  return visits;
 }
 
 Expected<ValveResult> calibrate_valve(const daemon::RigFile& rig, HandDrive& drive, Operator& person,

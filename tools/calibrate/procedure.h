@@ -60,6 +60,18 @@ using Expected = tl::expected<T, Refusal>;
 [[nodiscard]] Expected<Line> calibrate_sensor(const daemon::RigFile& rig, HandDrive& drive, Operator& person,
                                               const Settings& settings);
 
+/// What the sensor read while its target was held at a position.
+struct GaugeVisit {
+  double position_mm = 0;  ///< by the gauge
+  double reading_mm = 0;   ///< mean
+  std::size_t count = 0;   ///< readings in the mean
+};
+/// Somebody holds the target at each of these positions in turn, or says where else it is, or leaves one out;
+/// nothing moves by itself. Positions where the sensor cannot measure are left out.
+[[nodiscard]] Expected<std::vector<GaugeVisit>> read_positions(HandDrive& drive, Operator& person,
+                                                               const Settings& settings,
+                                                               const std::vector<double>& positions_mm);
+
 struct ValveResult {
   Line valve;
   std::optional<Line> monitor;  ///< if there is one and a manometer told the truth

@@ -1,13 +1,10 @@
 // softgrip calibrate: sensor and valve against gauge and manometer, two points each.
 
-#include <poll.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <deque>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +15,7 @@
 #include "drivers/clock.h"
 #include "tools/calibrate/procedure.h"
 #include "tools/calibrate/snippet.h"
+#include "tools/calibrate/terminal_operator.h"
 #include "tools/commands.h"
 #include "tools/configuration.h"
 #include "tools/daemon_client.h"
@@ -44,52 +42,6 @@ struct Options {
   std::size_t repeats = 1;
   std::string date;
   std::string out = "-";
-};
-
-/// Answers from the command line first, then lines of the standard input.
-class Terminal final : public calibrate::Operator {
- public:
-  Terminal() : interactive_(::isatty(STDIN_FILENO) == 1) {}
-
-  void prepare(const std::vector<std::string>& answers) { prepared_.assign(answers.begin(), answers.end()); }
-  void tell(const std::string& text) override { std::fprintf(stderr, "  %s\n", text.c_str()); }
-  void ask(const std::string& question) override {
-    std::fprintf(stderr, "? %s: ", question.c_str());
-    std::fflush(stderr);
-  }
-  std::optional<std::string> answer() override {
-    if (!prepared_.empty()) {
-      std::string next = prepared_.front();
-      prepared_.pop_front();
-      std::fprintf(stderr, "%s\n", next.c_str());
-      return next;
-    }
-    if (const auto line = take_line()) return line;
-    pollfd input{STDIN_FILENO, POLLIN, 0};
-    if (closed_ || ::poll(&input, 1, 0) <= 0) return std::nullopt;
-    char bytes[256];
-    const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
-    closed_ = count <= 0;
-    if (count > 0) pending_.append(bytes, static_cast<std::size_t>(count));
-    return take_line();
-  }
-  [[nodiscard]] bool gone() const override { return closed_ && pending_.find('\n') == std::string::npos; }
-  [[nodiscard]] bool patient() const override { return interactive_; }
-
- private:
-  std::optional<std::string> take_line() {
-    const std::size_t end = pending_.find('\n');
-    if (end == std::string::npos) return std::nullopt;
-    std::string line = pending_.substr(0, end);
-    pending_.erase(0, end + 1);
-    if (!interactive_) std::fprintf(stderr, "%s\n", line.c_str());
-    return line;
-  }
-
-  bool interactive_;
-  bool closed_ = false;
-  std::string pending_;
-  std::deque<std::string> prepared_;
 };
 
 std::string today() {
@@ -148,7 +100,7 @@ std::optional<ExitCode> refuse_beside_daemon(const Options& options, const daemo
 
 calibrate::Expected<calibrate::Results> measure(const daemon::RigFile& rig, const Options& options,
                                                 const calibrate::Settings& settings, HandDrive& drive,
-                                                Terminal& terminal) {
+                                                calibrate::TerminalOperator& terminal) {
   calibrate::Results results;
   results.channel = settings.channel;
   results.date = options.date.empty() ? today() : options.date;
@@ -222,7 +174,7 @@ ExitCode run(Options options) {
   if (const auto connected = drive.connect(); !connected) return fail(ExitCode::io, connected.error().text);
   std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),
                rig->settings.channels[*channel].name.c_str());
-  Terminal terminal;
+  calibrate::TerminalOperator terminal;
   const auto results = measure(*rig, options, settings, drive, terminal);
   const bool safe = drive.leave();
   if (!safe)

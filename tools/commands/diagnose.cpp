@@ -133,8 +133,12 @@ ExitCode run(Options options) {
       !written) {
     return fail(ExitCode::io, written.error());
   }
-  const sysid::DiagnosisReport report{*result, *logs, *model, options.diagnosis.seed,
-                                      proposed_experiment(consequences)};
+  const sysid::DiagnosisReport report{*result,
+                                      *logs,
+                                      *model,
+                                      options.diagnosis.seed,
+                                      proposed_experiment(consequences),
+                                      consequences.experiment.advice};
   const std::string page = (std::filesystem::path(options.out) / "report.html").string();
   if (const auto written = sysid::write_file(page, sysid::diagnosis_html(report)); !written)
     return fail(ExitCode::io, written.error());

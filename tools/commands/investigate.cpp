@@ -18,6 +18,7 @@
 #include "sysid/files.h"
 #include "sysid/numbers.h"
 #include "tools/commands.h"
+#include "tools/commands/gauge_by_hand.h"
 #include "tools/experiment_rig.h"
 #include "tools/investigation.h"
 #include "tools/log_input.h"
@@ -32,6 +33,8 @@ struct Options {
   std::vector<std::string> data;
   std::string rig;
   std::string rig_command;
+  std::string gauge_command;
+  std::string gauge;
   std::string out;
   LogInput logs;
   sysid::DiagnosisOptions diagnosis;
@@ -77,6 +80,7 @@ Consent consent_of(const Options& options) {
 /// Where experiments are played, and within which limits.
 struct Playground {
   Player play;
+  GaugeTaker take_gauge;  ///< empty: nobody can put the sensor's target anywhere
   sysid::RigLimits limits;
   std::string name;
   std::string channel;
@@ -89,6 +93,8 @@ tl::expected<Playground, ExitCode> playground_of(const Options& options, const C
     const double largest_kpa = options.pressure_max_kpa > 0 ? options.pressure_max_kpa : scales.largest_kpa;
     ground.limits = {largest_kpa, options.slew_kpa_per_s};
     ground.play = command_player(options.rig_command, scales.interval_s, consent_of(options));
+    if (!options.gauge_command.empty())
+      ground.take_gauge = command_gauge(options.gauge_command, consent_of(options));
     ground.name = options.rig_command;
     return ground;
   }
@@ -106,6 +112,11 @@ tl::expected<Playground, ExitCode> playground_of(const Options& options, const C
   ground.channel = rig->channel_name();
   ground.name = options.rig;
   ground.rig = *rig;
+  if (rig->simulated) {
+    ground.take_gauge = simulated_gauge(*rig);
+  } else if (::isatty(STDIN_FILENO) == 1) {
+    ground.take_gauge = gauge_by_hand(*rig, consent_of(options));
+  }
   ground.play = rig_player(std::move(*rig), consent_of(options));
   return ground;
 }
@@ -189,6 +200,8 @@ ExitCode conclude(const Options& options, const Playground& ground, const Invest
 ExitCode run(const Options& options) {
   if (options.rig.empty() == options.rig_command.empty())
     return fail(ExitCode::usage, "an investigation needs --rig or --rig-command, and not both");
+  if (!options.gauge_command.empty() && options.rig_command.empty())
+    return fail(ExitCode::usage, "--gauge-command goes with --rig-command");
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
@@ -209,6 +222,12 @@ ExitCode run(const Options& options) {
   investigation.out = options.out;
   investigation.channel = ground->channel;
   investigation.play = ground->play;
+  investigation.take_gauge = ground->take_gauge;
+  if (!options.gauge.empty()) {
+    auto gauge = read_gauge(options.gauge);
+    if (!gauge) return gauge.error();
+    investigation.diagnosis.gauge = std::move(*gauge);
+  }
   if (!options.json) {
     investigation.tell = [](const std::string& line) {
       std::printf("%s\n", line.c_str());
@@ -231,6 +250,11 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
   command->add_option("--rig-command", options->rig_command,
                       "Command that plays on another rig: COMMAND COMMAND_CSV LOG_OUT");
+  command->add_option(
+      "--gauge-command", options->gauge_command,
+      "With --rig-command: checks its sensor against a gauge: COMMAND POSITIONS_CSV GAUGE_OUT");
+  command->add_option("--gauge", options->gauge,
+                      "A gauge file that is there already (CSV: gauge_mm,displacement_mm)");
   command->add_option("--out", options->out, "Folder for everything that is found")->required();
   command->add_option("--budget-minutes", options->budget_minutes, "Of the rig's time")
       ->check(CLI::NonNegativeNumber)

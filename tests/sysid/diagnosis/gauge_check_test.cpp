@@ -130,11 +130,17 @@ TEST(GaugeCheck, ABendOfAnotherSizeIsNotThisOne) {
   }
 }
 
-TEST(GaugeCheck, ABendOfNearlyTheSizeIsThisOne) {
-  const GaugeCheck check =
-      check_gauge(read(bent(0.34), 0.01), {{}, bend_of_logs(0.4)}, GaugeScales{0.01, -0.1, span_mm});
-  EXPECT_EQ(check.outcome, GaugeOutcome::decided);
-  EXPECT_TRUE(of(check, "straight").ruled_out);
+TEST(GaugeCheck, BetweenThreeAndSevenTenthsOfTheBendItIsNeither) {
+  const auto check_of = [](double share) {
+    return check_gauge(read(bent(0.4 * share), 0.002), {{}, bend_of_logs(0.4)},
+                       GaugeScales{0.002, -0.1, span_mm});
+  };
+  for (const double share : {-0.2, 0.0, 0.1, 0.2})
+    EXPECT_TRUE(of(check_of(share), "sensor_nonlinearity").ruled_out) << share;
+  for (const double share : {0.8, 0.9, 1.0, 1.1, 1.2})
+    EXPECT_TRUE(of(check_of(share), "straight").ruled_out) << share;
+  for (const double share : {-0.4, 0.35, 0.5, 0.65, 1.4})
+    EXPECT_EQ(check_of(share).outcome, GaugeOutcome::unexplained) << share;
 }
 
 TEST(GaugeCheck, TellsABendFromAnEnd) {

@@ -132,6 +132,15 @@ TEST(GaugeVerdict, AnEndOfTheSensorIsToldFromAStop) {
   EXPECT_NEAR(value_of(d.causes[0], "upper_mm"), 17, 0.05);
 }
 
+TEST(GaugeVerdict, AStopIsToldFromAnEndOfTheSensor) {
+  const model::Model stop = hiding("contact", {17, 1e5});
+  const Diagnosis before = diagnosed(stop, std::nullopt);
+  ASSERT_EQ(before.verdict, Verdict::ambiguous) << verdict_sentence(before);
+  const Diagnosis d = diagnosed(stop, gauge_of(stop));
+  expect_found(d, "contact");
+  EXPECT_NEAR(value_of(d.causes[0], "position_mm"), 17, 0.05);
+}
+
 TEST(GaugeVerdict, ABendOfAnotherSizeLeavesTheVerdictOpenAndSaysSo) {
   const model::Model other = hiding("sensor_nonlinearity", {2.4, 0, 25});
   const Diagnosis d = diagnosed(bent_scale, gauge_of(other));

@@ -1,0 +1,62 @@
+"""Lets `softgrip investigate` resolve a blind world by experiments and by a gauge on that world."""
+import json
+import pathlib
+import shlex
+import subprocess
+import sys
+import tempfile
+
+import judging
+
+HERE = pathlib.Path(__file__).resolve().parent
+# What is still equal for every command and for every gauge: lags of valve and sensor, unless the pressure is recorded.
+INDISTINGUISHABLE = [{"valve_lag", "sensor_lag"}]
+
+
+def sets_of(step):
+    return [[cause, *rivals] for cause, rivals in zip(step["causes"], step["alternatives"])]
+
+
+def outcome_of(hidden, step):
+    return judging.judge(hidden, {"verdict": step["verdict"], "causes": [{"id": c} for c in step["causes"]],
+                                  "alternatives": step["alternatives"]})
+
+
+def investigate_world(build, folder, world, gauge=True):
+    """`before` and `outcome`: what the first and the last verdict are worth (judging.judge); `resolved_by`: the
+    experiment after which the verdict named the truth alone."""
+    build = pathlib.Path(build).resolve()
+    with tempfile.TemporaryDirectory(dir=folder) as name:
+        work = pathlib.Path(name)
+        options = ["--seed", str(world["seed"]), "--strength", str(world["strength"]), "--cause",
+                   ",".join(world["causes"]), *(["--poor"] if world["poor"] else [])]
+        program = build / "tests/blind/blind-world"
+        subprocess.run([program, *options, "--out", work / "logs", "--truth", work / "truth.json"], check=True)
+
+        def command(script):
+            return shlex.join([sys.executable, str(HERE / script), str(program), str(work / "played"), *options])
+
+        done = subprocess.run([build / "tools/softgrip", "investigate", "--model", judging.GIVEN, "--data",
+                               *sorted((work / "logs").glob("*.csv")), "--out", work / "out", "--rig-command",
+                               command("rig.py"), *(["--gauge-command", command("gauge.py")] if gauge else []),
+                               "--pressure-max-kpa", "60", "--yes", "--no-closed-loop", "--json"],
+                              capture_output=True, text=True)
+        if done.returncode not in (0, 6):
+            return {**world, "outcome": "failed", "message": done.stderr[-300:]}
+        report = json.loads(done.stdout)
+        steps = report["steps"]
+        before = outcome_of(world["causes"], steps[0])
+        result = {**world, "before": before, "rivals": sets_of(steps[0])}
+        if before != "ambiguous_right":
+            return {**result, "outcome": "not_ambiguous"}
+        played = [step["experiment"]["waveform"] for step in steps if step["experiment"]]
+        outcome = outcome_of(world["causes"], steps[-1])
+        return {**result, "outcome": outcome, "end": report["end"], "verdict": report["verdict"], "played": played,
+                "resolved_by": played[-1] if outcome == "right" else None, "minutes": report["spent_minutes"],
+                "after": sets_of(steps[-1])}
+
+
+def is_indistinguishable(result):
+    """Whether every set that was left open cannot be told apart by any command nor by a gauge."""
+    left = [set(one) for one in result.get("after", []) if len(one) > 1]
+    return bool(left) and all(any(one <= twins for twins in INDISTINGUISHABLE) for one in left)

@@ -1,0 +1,61 @@
+#include "tools/commands/gauge_by_hand.h"
+
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "daemon/daemon.h"
+#include "drivers/clock.h"
+#include "sysid/numbers.h"
+#include "tools/calibrate/procedure.h"
+#include "tools/calibrate/terminal_operator.h"
+#include "tools/daemon_client.h"
+#include "tools/hand_drive.h"
+
+namespace softgrip::tools {
+namespace {
+
+tl::unexpected<NotPlayed> failed(std::string why) {
+  return tl::unexpected(NotPlayed{false, std::move(why)});
+}
+
+std::string what_is_done(const ExperimentRig& rig, std::size_t readings) {
+  return "The sensor of channel '" + rig.channel_name() + "' of " + rig.rig.name +
+         " is checked against a gauge: you hold its target at " + std::to_string(readings) + " positions, " +
+         sysid::significant(sysid::minutes_for(readings), 2) +
+         " minutes. The finger is vented and stays so; nothing moves by itself";
+}
+
+}  // namespace
+
+GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
+  return [rig = std::move(rig), consent = std::move(consent)](
+             const std::vector<double>& positions_mm,
+             const std::string& folder) -> tl::expected<sysid::GaugeFile, NotPlayed> {
+    if (!consent(what_is_done(rig, positions_mm.size())))
+      return tl::unexpected(NotPlayed{true, "not allowed to check the sensor"});
+    const auto client = DaemonClient::connect(rig.rig.socket.path);
+    if (client || !client.error().nobody_listens)
+      return failed("softgripd runs and holds the board: stop it first (systemctl stop softgripd)");
+    const drivers::MonotonicClock clock;
+    const auto board = daemon::make_board(rig.rig, clock);
+    RealPace pace;
+    HandDrive drive(rig.rig, *board, pace);
+    if (const auto connected = drive.connect(); !connected) return failed(connected.error().text);
+    calibrate::TerminalOperator terminal;
+    terminal.tell("Enter: the target is there; a number: it is there instead [mm]; -: leave it out");
+    calibrate::Settings settings;
+    settings.channel = rig.channel;
+    const auto visits = calibrate::read_positions(drive, terminal, settings, positions_mm);
+    const bool safe = drive.leave();
+    if (!visits)
+      return tl::unexpected(NotPlayed{visits.error().code == ExitCode::failed, visits.error().text});
+    if (!safe) return failed("the board did not confirm the lowest pressures: look before you reach in");
+    std::vector<sysid::GaugeReading> readings;
+    for (const calibrate::GaugeVisit& visit : *visits)
+      readings.push_back({visit.position_mm, visit.reading_mm, static_cast<double>(visit.count)});
+    return gauge_file_of(readings, folder);
+  };
+}
+
+}  // namespace softgrip::tools
