@@ -25,6 +25,7 @@ rtu_reply_fuzz|tests/drivers/rtu_reply_corpus|||512
 emulator_fuzz|tests/tools/rig/emulator_corpus|||1024
 client_request_fuzz|tests/daemon/client_request_corpus||tests/daemon/client_request.dict|1024
 log_fuzz|tests/sysid/log_corpus|||4096
+gauge_fuzz|tests/sysid/diagnosis/gauge_corpus|||4096
 recording_fuzz|tests/tools/recording_corpus||tests/daemon/client_request.dict|4096
 TABLE
 }

@@ -123,6 +123,7 @@ Json gauge_json(const GaugeEvidence& gauge) {
             {"outcome", name_of(check.outcome)},
             {"sentence", gauge.sentence},
             {"ruled_out", gauge.ruled_out},
+            {"covered_percent", 100 * check.covered_share},
             {"noise_mm", check.noise_mm},
             {"repeat_noise_mm", check.repeat_noise_mm},
             {"tolerance_mm", check.tolerance_mm},

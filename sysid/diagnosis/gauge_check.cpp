@@ -21,6 +21,8 @@ constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
 /// Of what the hypotheses differ by.
 constexpr double tolerated_share = 0.2;
+/// Of the logs' readings that the gauge's must cover.
+constexpr double least_covered_share = 0.5;
 /// Normal deviate of 1 in 1000, one-sided.
 constexpr double deviate = 3.09;
 
@@ -289,6 +291,15 @@ class Checker {
       any |= fits[i].ruled_out;
     }
     result_.log_likelihood_ratio = fits.size() > 1 ? next : 0;
+    // By the line, not by the readings: noise of a sensor that does not follow covers nothing.
+    const auto [least, most] =
+        std::minmax_element(result_.straight.predicted_mm.begin(), result_.straight.predicted_mm.end());
+    result_.covered_share = (*most - *least) / std::max(1e-9, scales_.highest_mm - scales_.lowest_mm);
+    if (result_.covered_share < least_covered_share) {
+      for (GaugeFit& fit : fits) fit.ruled_out = false;
+      result_.outcome = GaugeOutcome::uncovered;
+      return;
+    }
     result_.outcome = !best.passes              ? GaugeOutcome::unexplained
                       : any || fits.size() == 1 ? GaugeOutcome::decided
                                                 : GaugeOutcome::undecided;
@@ -345,6 +356,8 @@ const char* name_of(GaugeOutcome outcome) {
       return "undecided";
     case GaugeOutcome::unexplained:
       return "unexplained";
+    case GaugeOutcome::uncovered:
+      return "uncovered";
   }
   return "unexplained";
 }

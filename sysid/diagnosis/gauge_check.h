@@ -62,6 +62,7 @@ enum class GaugeOutcome {
   decided,      ///< at least one hypothesis is ruled out
   undecided,    ///< the readings fit more than one: too noisy, or not where the hypotheses differ
   unexplained,  ///< they fit none
+  uncovered,    ///< they cover less than half of what the logs have read: nothing is judged
 };
 [[nodiscard]] const char* name_of(GaugeOutcome outcome);
 
@@ -70,6 +71,7 @@ struct GaugeCheck {
   double lower_mm = 0;  ///< where readings are cut
   double upper_mm = 0;
   std::vector<double> cut_mm;  ///< the readings, cut
+  double covered_share = 0;    ///< of the logs' readings
   double repeat_noise_mm = 0;  ///< 0: no position came twice
   double noise_mm = 0;         ///< that was used
   double tolerance_mm = 0;     ///< allowed beside it

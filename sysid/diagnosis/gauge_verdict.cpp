@@ -309,6 +309,13 @@ class Weighing {
 
   void speak() {
     const GaugeCheck& check = evidence_.check;
+    if (check.outcome == GaugeOutcome::uncovered) {
+      evidence_.sentence = "The gauge says nothing: its readings cover only " +
+                           significant(100 * check.covered_share, 2) +
+                           " % of what these logs have read. Does the sensor follow its target?";
+      warnings_.push_back(evidence_.sentence);
+      return;
+    }
     const GaugeCheck::Departure departure = check.departure();
     const bool bent = departure.clear && departure.rms_mm > worth_telling * question_.noise_mm;
     const bool decided = check.outcome == GaugeOutcome::decided && check.fits.size() > 1;

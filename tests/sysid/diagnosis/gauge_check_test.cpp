@@ -103,6 +103,15 @@ TEST(GaugeCheck, WhatTheSensorDoesBeyondTheLogsIsNobodysBusiness) {
   EXPECT_TRUE(of(check, "sensor_nonlinearity").ruled_out);
 }
 
+TEST(GaugeCheck, ASensorThatDoesNotFollowSaysNothing) {
+  const std::vector<double> low{0, 2, 4, 6, 8, 10, 8, 6, 4, 2, 0};
+  for (const auto& readings : {read([](double) { return 7; }, noise_mm), read(straight, 0.001, low)}) {
+    const GaugeCheck check = check_gauge(readings, {{}, bend_of_logs(2)}, scales);
+    EXPECT_EQ(check.outcome, GaugeOutcome::uncovered);
+    for (const GaugeFit& fit : check.fits) EXPECT_FALSE(fit.ruled_out);
+  }
+}
+
 TEST(GaugeCheck, TooMuchNoiseDecidesNothing) {
   for (const Sensor& sensor : {Sensor(straight), bent(0.1)}) {
     const GaugeCheck check = check_gauge(read(sensor, 0.4), {{}, bend_of_logs(0.1)}, scales);

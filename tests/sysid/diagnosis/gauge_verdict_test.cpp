@@ -115,6 +115,11 @@ TEST(GaugeVerdict, TheNamedCauseGivesItsPlaceToTheOneThatIsLeft) {
   const Diagnosis after = diagnose(logs, loaded("bench_twin"), options).value();
   expect_found(after, "stiffening");
   EXPECT_TRUE(after.gauge->replaced);
+  for (const CandidateScore& tried : before.causes[0].candidates) {
+    if (tried.cause.id != "stiffening") continue;
+    EXPECT_NEAR(after.extended_rmse_mm, tried.heldout_rmse_mm, 0.01 * tried.heldout_rmse_mm);
+    EXPECT_GT(after.extended_rmse_mm, 1.05 * before.extended_rmse_mm);
+  }
   EXPECT_TRUE(warned_of(after, "form of it leaves")) << after.structure_left.excess_mm;
 }
 
