@@ -189,7 +189,7 @@ class Weighing {
         left.push_back(i);
         brought_in[place] = true;
       }
-      if (left.empty()) return;  // two places that contradict each other
+      if (left.empty()) return;
       now[place] = left.front();
       keep(place, left, brought_in[place]);
     }

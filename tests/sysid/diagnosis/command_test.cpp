@@ -86,6 +86,48 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
   EXPECT_EQ(run("check result/model.yaml"), 0) << read("out.txt") << read("err.txt");
 }
 
+/// The way of a technician: diagnose, fill in the positions, diagnose again.
+TEST_F(DiagnoseCommand, FilledInPositionsTellTheFingerFromTheSensor) {
+  const std::string twin = SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml";
+  write("finger.yaml", read_file(twin, 100'000).value() + "  - stiffening:\n      stiffening_per_mm: 0.01\n");
+  std::string logs;
+  for (const std::string signal : {"tp1", "sp2"}) {
+    logs += " " + signal + ".csv";
+    ASSERT_EQ(run("simulate --model finger.yaml --rate-hz 50 --noise-mm 0.04 --input " + signal + " --out " +
+                  signal + ".csv"),
+              0)
+        << read("err.txt");
+  }
+  const std::string command = "diagnose --model '" + twin + "' --no-closed-loop --out result --data" + logs;
+  ASSERT_EQ(run(command), 0);
+  EXPECT_EQ(diagnosis()["verdict"], "ambiguous");
+  EXPECT_EQ(diagnosis()["gauge_check"]["file"], "gauge_positions.csv");
+  EXPECT_NE(read("out.txt").find("--gauge gauge_positions.csv"), std::string::npos) << read("out.txt");
+  EXPECT_EQ(run(command + " --gauge result/gauge_positions.csv"), 3) << "nobody has filled it in";
+  EXPECT_EQ(run(command + " --gauge nowhere.csv"), 4);
+
+  std::string filled = "gauge_mm,displacement_mm\n";
+  const std::string asked = read("result/gauge_positions.csv");
+  double wander_mm = 0.03;
+  for (std::size_t at = asked.find('\n') + 1; at < asked.size(); at = asked.find('\n', at) + 1) {
+    const double position_mm = std::stod(asked.substr(at));
+    filled +=
+        asked.substr(at, asked.find(',', at) - at) + "," + std::to_string(position_mm + wander_mm) + "\n";
+    wander_mm = -wander_mm;
+  }
+  write("result/gauge_positions.csv", filled);
+  ASSERT_EQ(run(command + " --gauge result/gauge_positions.csv"), 0) << read("err.txt");
+  const Json json = diagnosis();
+  EXPECT_EQ(json["verdict"], "cause_found");
+  EXPECT_EQ(json["causes"][0]["id"], "stiffening");
+  EXPECT_EQ(json["gauge"]["outcome"], "decided");
+  EXPECT_EQ(json["gauge"]["ruled_out"], Json({"sensor_nonlinearity"}));
+  EXPECT_TRUE(json["gauge_check"].is_null());
+  EXPECT_EQ(read("result/gauge_positions.csv"), filled) << "what was filled in stays";
+  EXPECT_NE(read("out.txt").find("The gauge shows a straight sensor"), std::string::npos);
+  EXPECT_NE(read("result/report.html").find("The sensor on the gauge"), std::string::npos);
+}
+
 TEST_F(DiagnoseCommand, AConstantInputIsRefused) {
   write_log(
       "constant.csv", 60, [](double) { return 20; }, [](double) { return 12; });
