@@ -37,7 +37,7 @@
 // which does the same but keeps that memory.
 //
 // A block with repeated parts declares `repeated` (the parameters of one part, in order) and `max_parts`
-// besides. A block whose parameters must fit each other declares
+// besides, and `min_parts` if that is not one. A block whose parameters must fit each other declares
 // `static std::string_view objection(std::span<const double> values)`, empty when they do.
 //
 // A block that is a part of the chain's Bouc-Wen hysteresis declares `void shape(BoucWen<T>&) const` besides,

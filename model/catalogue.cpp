@@ -10,9 +10,11 @@ namespace {
 
 template <class Block>
 Descriptor describe() {
-  Descriptor result{Block::info, Block::parameters, {}, 0, nullptr};
+  Descriptor result{Block::info, Block::parameters, {}, 0, 0, nullptr};
   if constexpr (requires { Block::repeated; }) {
     result.repeated = Block::repeated;
+    result.min_parts = 1;
+    if constexpr (requires { Block::min_parts; }) result.min_parts = Block::min_parts;
     result.max_parts = Block::max_parts;
   }
   if constexpr (requires { Block::objection(std::span<const double>{}); })
@@ -31,9 +33,10 @@ std::array<Descriptor, sizeof...(I)> describe_all(std::index_sequence<I...>) {
 
 bool Descriptor::accepts(std::size_t value_count) const {
   if (repeated.empty()) return value_count == parameters.size();
-  if (value_count < parameters.size() + repeated.size()) return false;
+  if (value_count < parameters.size()) return false;
   const std::size_t rest = value_count - parameters.size();
-  return rest % repeated.size() == 0 && rest / repeated.size() <= max_parts;
+  const std::size_t parts = rest / repeated.size();
+  return rest % repeated.size() == 0 && parts >= min_parts && parts <= max_parts;
 }
 
 const ParameterSpec& Descriptor::spec(std::size_t index) const {

@@ -16,7 +16,8 @@ struct Descriptor {
   BlockInfo info;
   std::span<const ParameterSpec> parameters;  ///< the single ones
   std::span<const ParameterSpec> repeated;    ///< of one part; empty for most blocks
-  std::size_t max_parts = 0;                  ///< most parts; at least one is required where there are any
+  std::size_t min_parts = 0;                  ///< least parts; one, where a block does not say otherwise
+  std::size_t max_parts = 0;                  ///< most parts
   /// Why these values do not fit each other, or empty. nullptr when any do.
   std::string_view (*objection)(std::span<const double> values) = nullptr;
 

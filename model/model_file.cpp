@@ -1,5 +1,6 @@
 #include "model/model_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -48,7 +49,7 @@ std::size_t count_parts(const MapReader& map, const Descriptor& descriptor) {
       if (map.has(name)) parts = part;
     }
   }
-  return parts == 0 ? 1 : parts;
+  return std::max(parts, descriptor.min_parts);
 }
 
 class ModelReader {

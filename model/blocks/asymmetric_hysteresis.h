@@ -9,8 +9,9 @@ namespace softgrip::model {
 
 /// Two shapes of it, each with its own neutral value.
 ///
-/// delta skews the chain's own Bouc-Wen element, which levels off faster one way than the other: the standard
-/// form (bouc_wen.h says whose). It has no output of its own and does nothing in a chain without bouc_wen.
+/// delta, epsilon and the share of beta skew the chain's own Bouc-Wen element, which levels off faster or
+/// follows the pressure closer one way than the other (bouc_wen.h says whose form it is). They have no output
+/// of their own and do nothing in a chain without bouc_wen.
 ///
 /// gain adds an element that unloading winds up and loading unwinds, each over its own pressure: while the
 /// pressure falls, z approaches the unloading length; while it rises, z fades over the loading length. Rate
@@ -26,7 +27,8 @@ class AsymmetricHysteresis {
                                   .title = "Asymmetric hysteresis",
                                   .meaning = "Loading and unloading loops differ in shape.",
                                   .equation =
-                                      "bouc_wen: h' -= delta |h| |p'|; y += gain z; falling: "
+                                      "bouc_wen: h' += beta_share beta |p'| - delta |h| |p'| - epsilon h p'; "
+                                      "y += gain z; falling: "
                                       "z' = |p'| (1 - z/unloading); rising: z' = -|p'| z/loading"};
   static constexpr std::array parameters{
       ParameterSpec{.name = "gain_mm_per_kpa",
@@ -61,16 +63,35 @@ class AsymmetricHysteresis {
                         "added to how fast the state of bouc_wen levels off on loading, taken from it on "
                         "unloading; at most its eta",
                     .neutral = 0.0,
-                    .if_left_out = 0.0}};
+                    .if_left_out = 0.0},
+      ParameterSpec{.name = "epsilon_per_kpa",
+                    .unit = "1/kPa",
+                    .default_value = 0.01,
+                    .lower = -10.0,
+                    .upper = 10.0,
+                    .scale = 0.02,
+                    .meaning = "added to eta of bouc_wen on loading, taken from it on unloading",
+                    .neutral = 0.0,
+                    .if_left_out = 0.0},
+      ParameterSpec{
+          .name = "beta_share",
+          .unit = "",
+          .default_value = 0.1,
+          .lower = -0.9,
+          .upper = 0.9,
+          .scale = 0.1,
+          .meaning = "share of beta of bouc_wen that is added on loading, taken from it on unloading",
+          .neutral = 0.0,
+          .if_left_out = 0.0}};
 
   AsymmetricHysteresis(std::span<const T> values, const Preparation&)
       : gain_(values[0]),
         unloading_per_kpa_(1.0 / values[1]),
         loading_per_kpa_(1.0 / values[2]),
-        delta_per_kpa_(values[3]) {}
+        skew_{values[3], values[4], values[5]} {}
 
   /// Called once by the chain, which has made all its blocks by then.
-  void shape(BoucWen<T>& hysteresis) const { hysteresis.skew(delta_per_kpa_); }
+  void shape(BoucWen<T>& hysteresis) const { hysteresis.skew(skew_); }
 
   void reset(const T& input) {
     falling_ = value_of(input) < 0.0;
@@ -120,7 +141,7 @@ class AsymmetricHysteresis {
   T gain_;
   T unloading_per_kpa_;  // 1/unloading
   T loading_per_kpa_;
-  T delta_per_kpa_;
+  BoucWenSkew<T> skew_;
   bool falling_ = false;
   T wound_kpa_{0.0};  // z
   T pressure_{0.0};

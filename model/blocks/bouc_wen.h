@@ -4,13 +4,14 @@
 //   B(t) = alpha p - h,   h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h
 // The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h), whatever the time.
 // An AsymmetricHysteresis beside it adds a term that differs between loading and unloading,
-//   dh/dp = beta - (gamma + eta s + delta sgn(p')) |h|^n
+//   dh/dp = beta (1 + b sgn(p')) - (gamma + eta s + delta sgn(p') + epsilon sgn(p') s) |h|^n
 // (the term in the sign of the velocity alone of the generalised Bouc-Wen models: Wang and Wen, Journal of
-// Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132, 2006).
+// Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132, 2006; with
+// b and epsilon loading and unloading have numbers of their own altogether).
 // A RateDependentHysteresis beside it makes the loop wider where the pressure moves fast,
 //   B = alpha p - h (1 + growth r/(r + rate)), settling r' = |p'| - r
 // (heights of the loop that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on
-// Mechatronics 12, 2007; here they level off).
+// Mechatronics 12, 2007; here they level off), or levels off sooner there, eta (1 + levelling r/(r + rate)).
 
 #include <array>
 #include <cmath>
@@ -20,6 +21,23 @@
 #include "model/exponential.h"
 
 namespace softgrip::model {
+
+/// What loading has more and unloading less than the mean of the two. All zero: nothing.
+template <class T>
+struct BoucWenSkew {
+  T delta_per_kpa{0.0};    ///< of gamma
+  T epsilon_per_kpa{0.0};  ///< of eta
+  T beta_share{0.0};       ///< of beta, as a share of it
+};
+
+/// What the loop has more where the pressure moves fast.
+template <class T>
+struct BoucWenRate {
+  T growth{0.0};          ///< of its width, as a share
+  T levelling{0.0};       ///< of eta, as a share
+  T half_kpa_per_s{1.0};  ///< rate at which it is half of that
+  T settling_s{1.0};      ///< over which the rate is averaged
+};
 
 /// For exponent 1, dh/dp is linear between sign changes of h: stepped in closed form, exact for any step
 /// size, at most one sign change per monotone step. For the others, classical Runge-Kutta in sub-steps of the
@@ -88,7 +106,7 @@ class BoucWen {
 
   BoucWen(std::span<const T> values, const Preparation&)
       : alpha_(values[0]),
-        beta_(values[1]),
+        beta_{values[1], values[1]},
         growing_{T(values[2] + values[3]), T(values[2] + values[3])},
         shrinking_{T(values[2] - values[3]), T(values[2] - values[3])},
         exponent_(static_cast<int>(std::lround(value_of(values[4])))) {}
@@ -100,30 +118,43 @@ class BoucWen {
                : std::string_view{};
   }
 
-  /// Makes loading and unloading differ: h levels off faster by `delta_per_kpa` while the pressure rises and
-  /// slower by as much while it falls. At most +-eta, and +-(gamma + eta): beyond, the state would grow
-  /// while the pressure returns, and without bound; it counts as that much. Once per block.
-  void skew(const T& delta_per_kpa) {
+  /// Makes loading and unloading differ, `skew` being what loading has more and unloading less than the mean.
+  /// `delta_per_kpa` is limited to +-eta and +-(gamma + eta), the levelling off to what keeps the state
+  /// bounded: beyond, h would grow while the pressure returns. Once per block.
+  void skew(const BoucWenSkew<T>& skew) {
     const T eta = (growing_[0] - shrinking_[0]) * 0.5;
     const T most = value_of(eta) < value_of(growing_[0]) ? eta : growing_[0];
-    T delta = delta_per_kpa;
+    T delta = skew.delta_per_kpa;
     if (value_of(delta) > value_of(most)) delta = most;
     if (value_of(delta) < -value_of(most)) delta = -most;
     growing_ = {growing_[0] - delta, growing_[1] + delta};
     shrinking_ = {shrinking_[0] - delta, shrinking_[1] + delta};
+    if (is_zero(skew.epsilon_per_kpa) && is_zero(skew.beta_share)) return;
+    beta_ = {beta_[0] * (1.0 - skew.beta_share), beta_[1] * (1.0 + skew.beta_share)};
+    growing_ = {not_below(growing_[0] - skew.epsilon_per_kpa, 0.0),
+                not_below(growing_[1] + skew.epsilon_per_kpa, 0.0)};
+    shrinking_ = {shrinking_[0] + skew.epsilon_per_kpa, shrinking_[1] - skew.epsilon_per_kpa};
+    // Where h has levelled off one way it must shrink on the way back.
+    for (const std::size_t way : {0U, 1U}) {
+      const T bound = growing_[1 - way] * beta_[way] / beta_[1 - way];
+      if (value_of(shrinking_[way]) > value_of(bound)) shrinking_[way] = bound;
+    }
   }
 
-  /// Makes the loop wider by up to `growth` of itself where the pressure moves much faster than
-  /// `rate_kpa_per_s`, as averaged over `settling_s`. Exact at the end of a straight segment.
-  void widen(const T& growth, const T& rate_kpa_per_s, const T& settling_s) {
+  /// Makes the loop wider by up to `growth` of itself, and eta larger by up to `levelling` of itself, where
+  /// the pressure moves much faster than `rate_kpa_per_s`, as averaged over `settling_s`. The growth is exact
+  /// at the end of a straight segment; eta is that of its beginning.
+  void widen(const BoucWenRate<T>& rate) {
     widens_ = true;
-    growth_ = growth;
-    half_kpa_per_s_ = rate_kpa_per_s;
-    settling_per_s_ = 1.0 / settling_s;
+    rate_ = rate;
+    settling_per_s_ = 1.0 / rate.settling_s;
+    eta_ = (growing_[0] + growing_[1] - shrinking_[0] - shrinking_[1]) * 0.25;
+    more_eta_ = T(0.0);
   }
 
   void reset(const T& input) {
     speed_kpa_per_s_ = T(0.0);
+    more_eta_ = T(0.0);
     hysteresis_ = T(0.0);
     direction_ = value_of(input) < 0.0 ? -1.0 : 1.0;
     hysteresis_ = moved(input, direction_);
@@ -137,7 +168,8 @@ class BoucWen {
   /// dh/dp where the block stands, for a pressure that rises or falls from here [mm/kPa].
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
-  [[nodiscard]] const T& beta_mm_per_kpa() const { return beta_; }
+  /// While the pressure rises.
+  [[nodiscard]] const T& beta_mm_per_kpa() const { return beta_[1]; }
 
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T change = in.end - in.begin;
@@ -161,6 +193,7 @@ class BoucWen {
     const T wide_before = width(speed_kpa_per_s_);
     speed_kpa_per_s_ = speed(change, in.duration_s);
     const T wide = width(speed_kpa_per_s_);
+    more_eta_ = eta_ * rate_.levelling * fastness(speed_kpa_per_s_);
     output_ = alpha_ * pressure_ - hysteresis_ * wide;
     const T together = (hysteresis_ - before) * (wide - wide_before) * (1.0 / 12.0);
     return {in.duration_s, begin, output_,
@@ -195,14 +228,26 @@ class BoucWen {
   // How many times its width without motion the loop has.
   template <class U>
   [[nodiscard]] U width(const U& speed_kpa_per_s) const {
-    return 1.0 + growth_ * (speed_kpa_per_s / (speed_kpa_per_s + half_kpa_per_s_));
+    return 1.0 + rate_.growth * fastness(speed_kpa_per_s);
   }
 
-  // gamma + eta s + delta sgn(p') for the state h and the direction of the pressure. At h = 0 the state
-  // follows the pressure.
-  [[nodiscard]] const T& rate(double h, double direction) const {
+  // 0 at rest, 1 where the pressure moves much faster than the rate that counts.
+  template <class U>
+  [[nodiscard]] U fastness(const U& speed_kpa_per_s) const {
+    return speed_kpa_per_s / (speed_kpa_per_s + rate_.half_kpa_per_s);
+  }
+
+  [[nodiscard]] const T& beta(double direction) const { return beta_[direction > 0.0 ? 1 : 0]; }
+
+  static T not_below(const T& value, double bound) { return value_of(value) < bound ? T(bound) : value; }
+
+  // gamma + eta s + (delta + epsilon s) sgn(p') for the state h and the direction of the pressure. At h = 0
+  // the state follows the pressure.
+  [[nodiscard]] T rate(double h, double direction) const {
     const std::size_t way = direction > 0.0 ? 1 : 0;
-    return h * direction >= 0.0 ? growing_[way] : shrinking_[way];
+    const bool grows = h * direction >= 0.0;
+    if (!widens_) return grows ? growing_[way] : shrinking_[way];
+    return grows ? T(growing_[way] + more_eta_) : T(shrinking_[way] - more_eta_);
   }
 
   // |h|^n
@@ -222,7 +267,7 @@ class BoucWen {
   }
 
   [[nodiscard]] T slope_at(const T& h, double direction) const {
-    return beta_ - rate(value_of(h), direction) * power(h);
+    return beta(direction) - rate(value_of(h), direction) * power(h);
   }
 
   // The state after a monotone change of the pressure from here.
@@ -235,15 +280,16 @@ class BoucWen {
   template <class U>
   [[nodiscard]] U moved_linear(const U& change, double direction) const {
     const double h0 = value_of(hysteresis_);
+    const T& gain = beta(direction);
     const T k = rate(h0, direction) * (h0 * direction >= 0.0 ? direction : -direction);
-    const U end = hysteresis_ + change * (beta_ - k * hysteresis_) * phi1(U(-k * change));
+    const U end = hysteresis_ + change * (gain - k * hysteresis_) * phi1(U(-k * change));
     if (h0 * value_of(end) >= 0.0) return end;
     // h passes zero after -h0/beta * log(1 + x)/x of pressure, x = -k h0 / beta; from there it starts anew.
     using std::log1p;
-    const T x = -k * hysteresis_ / beta_;
+    const T x = -k * hysteresis_ / gain;
     const T stretch = std::abs(value_of(x)) < 1e-5 ? T(1.0 - x * 0.5 + x * x * (1.0 / 3.0)) : T(log1p(x) / x);
-    const U rest = change + hysteresis_ / beta_ * stretch;
-    return rest * beta_ * phi1(U(-(rate(0.0, direction) * direction) * rest));
+    const U rest = change + hysteresis_ / gain * stretch;
+    return rest * gain * phi1(U(-(rate(0.0, direction) * direction) * rest));
   }
 
   template <class U>
@@ -251,11 +297,12 @@ class BoucWen {
     const int steps = steps_for(std::abs(value_of(change)), direction);
     const U piece = change * (1.0 / steps);
     U h = U(hysteresis_);
+    const T& gain = beta(direction);
     for (int i = 0; i < steps; ++i) {
-      const T& k = rate(value_of(h), direction);
-      U next = runge_kutta(h, piece, k);
+      const T k = rate(value_of(h), direction);
+      U next = runge_kutta(h, piece, gain, k);
       if (value_of(h) * value_of(next) < 0.0) {
-        next = runge_kutta(U(0.0), U(piece - to_zero(h, k) * direction), rate(0.0, direction));
+        next = runge_kutta(U(0.0), U(piece - to_zero(h, gain, k) * direction), gain, rate(0.0, direction));
       }
       h = next;
     }
@@ -266,7 +313,7 @@ class BoucWen {
   // by at most 1/40 of where it levels off.
   [[nodiscard]] int steps_for(double change_kpa, double direction) const {
     constexpr int most = 100000;
-    const double beta = value_of(beta_);
+    const double beta = value_of(this->beta(direction));
     const double growing = value_of(rate(direction, direction));
     const double shrinking = value_of(rate(-direction, direction));
     double largest = std::abs(value_of(hysteresis_)) + beta * change_kpa;
@@ -283,18 +330,18 @@ class BoucWen {
   }
 
   template <class U>
-  [[nodiscard]] U runge_kutta(const U& h, const U& change, const T& k) const {
-    const U s1 = beta_ - k * power(h);
-    const U s2 = beta_ - k * power(U(h + change * s1 * 0.5));
-    const U s3 = beta_ - k * power(U(h + change * s2 * 0.5));
-    const U s4 = beta_ - k * power(U(h + change * s3));
+  [[nodiscard]] U runge_kutta(const U& h, const U& change, const T& gain, const T& k) const {
+    const U s1 = gain - k * power(h);
+    const U s2 = gain - k * power(U(h + change * s1 * 0.5));
+    const U s3 = gain - k * power(U(h + change * s2 * 0.5));
+    const U s4 = gain - k * power(U(h + change * s3));
     return h + change * (s1 + 2.0 * s2 + 2.0 * s3 + s4) * (1.0 / 6.0);
   }
 
   // How much pressure takes a shrinking h to zero: the integral of dv / (beta - k v^n) over v from 0 to |h|,
   // by Gauss-Legendre with five points.
   template <class U>
-  [[nodiscard]] U to_zero(const U& h, const T& k) const {
+  [[nodiscard]] U to_zero(const U& h, const T& gain, const T& k) const {
     constexpr std::array<double, 5> nodes{0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415,
                                           0.9530899229693320};
     constexpr std::array<double, 5> weights{0.1184634425280945, 0.2393143352496832, 0.2844444444444444,
@@ -302,19 +349,21 @@ class BoucWen {
     const U magnitude = value_of(h) < 0.0 ? U(-h) : h;
     U sum = U(0.0);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      sum = sum + weights[i] / (beta_ - k * power(U(magnitude * nodes[i])));
+      sum = sum + weights[i] / (gain - k * power(U(magnitude * nodes[i])));
     }
     return magnitude * sum;
   }
 
-  T alpha_, beta_;
+  T alpha_;
+  std::array<T, 2> beta_;       // while the pressure falls and while it rises
   std::array<T, 2> growing_;    // gamma + eta, while the pressure falls and while it rises
   std::array<T, 2> shrinking_;  // gamma - eta, likewise
   int exponent_;
   double direction_ = 1.0;
   bool widens_ = false;
-  T growth_{0.0};
-  T half_kpa_per_s_{1.0};  // rate at which it has grown by half of that
+  BoucWenRate<T> rate_;
+  T eta_{0.0};
+  T more_eta_{0.0};
   T settling_per_s_{0.0};
   T speed_kpa_per_s_{0.0};  // r
   T hysteresis_{0.0};

@@ -7,10 +7,11 @@
 
 namespace softgrip::model {
 
-/// Two shapes of it, each with its own neutral value.
+/// Three shapes of it, each with its own neutral value.
 ///
-/// growth widens the loop of the chain's own Bouc-Wen element with the rate (bouc_wen.h says how, and whose
-/// form it is). It has no output of its own and does nothing in a chain without bouc_wen.
+/// growth widens the loop of the chain's own Bouc-Wen element with the rate, levelling makes it level off
+/// sooner (bouc_wen.h says how, and whose form it is). They have no output of their own and do nothing in a
+/// chain without bouc_wen.
 ///
 /// gain adds a friction that relaxes: z' = p' - z (|p'|/width + 1/tau), y -= gain z. Far faster than the
 /// width per tau it is a hysteresis of that width, far slower a viscous branch whose loop shrinks with the
@@ -26,7 +27,8 @@ class RateDependentHysteresis {
                                   .meaning = "Loop width grows with rate beyond the viscous part.",
                                   .equation =
                                       "y -= gain z, z' = p' - z (|p'|/width + 1/tau); bouc_wen: "
-                                      "h counts h (1 + growth r/(r + rate)), settling r' = |p'| - r"};
+                                      "h counts h (1 + growth r/(r + rate)), eta counts eta (1 + levelling "
+                                      "r/(r + rate)), settling r' = |p'| - r"};
   static constexpr std::array parameters{
       ParameterSpec{.name = "gain_mm_per_kpa",
                     .unit = "mm/kPa",
@@ -75,19 +77,26 @@ class RateDependentHysteresis {
                     .upper = 100.0,
                     .scale = 0.05,
                     .meaning = "time over which the rate is averaged",
-                    .if_left_out = 0.05}};
+                    .if_left_out = 0.05},
+      ParameterSpec{.name = "levelling",
+                    .unit = "",
+                    .default_value = 0.2,
+                    .lower = -0.9,
+                    .upper = 100.0,
+                    .scale = 0.1,
+                    .meaning = "share by which eta of bouc_wen is larger at high rates",
+                    .neutral = 0.0,
+                    .if_left_out = 0.0}};
 
   RateDependentHysteresis(std::span<const T> values, const Preparation&)
       : gain_(values[0]),
         per_kpa_(1.0 / values[1]),
         per_s_(1.0 / values[2]),
-        growth_(values[3]),
-        rate_kpa_per_s_(values[4]),
-        settling_s_(values[5]) {}
+        rate_{values[3], values[6], values[4], values[5]} {}
 
   /// Called once by the chain, which has made all its blocks by then.
   void shape(BoucWen<T>& hysteresis) const {
-    if (!is_zero(growth_)) hysteresis.widen(growth_, rate_kpa_per_s_, settling_s_);
+    if (!is_zero(rate_.growth) || !is_zero(rate_.levelling)) hysteresis.widen(rate_);
   }
 
   void reset(const T& input) {
@@ -130,9 +139,7 @@ class RateDependentHysteresis {
   T gain_;
   T per_kpa_;  // 1/width
   T per_s_;    // 1/tau
-  T growth_;
-  T rate_kpa_per_s_;
-  T settling_s_;
+  BoucWenRate<T> rate_;
   T held_kpa_{0.0};  // z
   T pressure_{0.0};
   T output_{0.0};

@@ -6,19 +6,20 @@
 
 namespace softgrip::model {
 
-/// q = p (1 + s m) with m the largest pressure so far: the first loading curve is steeper than a line, and
-/// every later one up to m is straight, above it. Runs through a campaign: rest() keeps m, only reset()
-/// forgets it.
+/// q = p (1 + s m/(1 + b m)) with m the largest pressure so far: the first loading curve is steeper than a
+/// line, and every later one up to m is straight, above it. b levels the softening off. Runs through a
+/// campaign: rest() keeps m, only reset() forgets it.
 template <class T>
 class StressSoftening {
  public:
-  static constexpr BlockInfo info{.id = "stress_softening",
-                                  .station = Station::actuator,
-                                  .kind = Kind::pressure,
-                                  .inverse = Inverse::implicit,
-                                  .title = "Stress softening",
-                                  .meaning = "Softer after the largest load so far (Mullins).",
-                                  .equation = "q = p (1 + softening m), m = largest pressure so far"};
+  static constexpr BlockInfo info{
+      .id = "stress_softening",
+      .station = Station::actuator,
+      .kind = Kind::pressure,
+      .inverse = Inverse::implicit,
+      .title = "Stress softening",
+      .meaning = "Softer after the largest load so far (Mullins).",
+      .equation = "q = p (1 + softening m/(1 + levelling m)), m = largest pressure so far"};
   static constexpr std::array parameters{
       ParameterSpec{.name = "softening_per_kpa",
                     .unit = "1/kPa",
@@ -27,9 +28,19 @@ class StressSoftening {
                     .upper = 1.0,
                     .scale = 0.001,
                     .meaning = "relative gain won per pressure of the largest load",
-                    .neutral = 0.0}};
+                    .neutral = 0.0},
+      ParameterSpec{.name = "levelling_per_kpa",
+                    .unit = "1/kPa",
+                    .default_value = 0.02,
+                    .lower = 0.0,
+                    .upper = 10.0,
+                    .scale = 0.01,
+                    .meaning = "how soon larger loads soften it no further",
+                    .neutral = 0.0,
+                    .if_left_out = 0.0}};
 
-  StressSoftening(std::span<const T> values, const Preparation&) : softening_per_kpa_(values[0]) {}
+  StressSoftening(std::span<const T> values, const Preparation&)
+      : softening_per_kpa_(values[0]), levelling_per_kpa_(values[1]) {}
 
   void reset(const T& input) {
     largest_kpa_ = greater(input, T(0.0));
@@ -64,7 +75,7 @@ class StressSoftening {
  private:
   template <class U>
   [[nodiscard]] U map(const U& p, const U& largest) const {
-    return p * (1.0 + softening_per_kpa_ * largest);
+    return p * (1.0 + softening_per_kpa_ * largest / (1.0 + levelling_per_kpa_ * largest));
   }
 
   // Below the largest load: a straight line.
@@ -75,17 +86,22 @@ class StressSoftening {
     next(Segment<T>{in.duration_s, begin, output_, map(in.mean, largest_kpa_)});
   }
 
-  // Beyond it the load is the largest so far at every moment. The mean of p^2 is that of a straight p.
+  // Beyond it the load is the largest so far at every moment. The mean of what softening adds is Simpson's
+  // of a straight p: exact while nothing levels off.
   template <class Next>
   void anew(const Segment<T>& in, Next&& next) {
     const T begin = output_;
     largest_kpa_ = in.end;
     output_ = map(in.end, in.end);
-    const T mean_square = (in.begin * in.begin + in.begin * in.end + in.end * in.end) * (1.0 / 3.0);
-    next(Segment<T>{in.duration_s, begin, output_, in.mean + softening_per_kpa_ * mean_square});
+    const T middle = (in.begin + in.end) * 0.5;
+    const T mean = (added(in.begin) + added(middle) * 4.0 + added(in.end)) * (1.0 / 6.0);
+    next(Segment<T>{in.duration_s, begin, output_, in.mean + mean});
   }
 
+  [[nodiscard]] T added(const T& p) const { return map(p, p) - p; }
+
   T softening_per_kpa_;
+  T levelling_per_kpa_;
   T largest_kpa_{0.0};
   T output_{0.0};
 };

@@ -68,10 +68,14 @@ Values starts_of_actuator(std::string_view id, const Scales& s) {
     Values values = grid({{-0.05 * gain, 0.05 * gain},
                           {0.3 * s.largest_kpa},
                           {0.08 * s.largest_kpa, 0.3 * s.largest_kpa, s.largest_kpa},
+                          {0.0},
+                          {0.0},
                           {0.0}});
     // The state of the hysteresis levels off over some tenths of the pressures.
     for (const double delta : {-2.0, -0.8, -0.3, 0.3, 0.8, 2.0}) {
-      values.push_back({0.0, 0.3 * s.largest_kpa, 0.3 * s.largest_kpa, delta / s.largest_kpa});
+      values.push_back({0.0, 0.3 * s.largest_kpa, 0.3 * s.largest_kpa, delta / s.largest_kpa, 0.0, 0.0});
+      values.push_back({0.0, 0.3 * s.largest_kpa, 0.3 * s.largest_kpa, 0.0, delta / s.largest_kpa, 0.0});
+      values.push_back({0.0, 0.3 * s.largest_kpa, 0.3 * s.largest_kpa, 0.0, 0.0, 0.2 * delta});
     }
     return values;
   }
@@ -81,22 +85,39 @@ Values starts_of_actuator(std::string_view id, const Scales& s) {
                           {0.3, 3.0},
                           {0.0},
                           {s.largest_kpa},
-                          {0.05}});
+                          {0.05},
+                          {0.0}});
     for (const double rate : {0.2, 1.0, 5.0}) {  // the largest pressure in five seconds, in one, in a fifth
       for (const double settling_s : {0.03, 0.2}) {
         for (const double growth : {0.06, 0.2, 0.6}) {
-          values.push_back({0.0, 0.3 * s.largest_kpa, 1.0, growth, rate * s.largest_kpa, settling_s});
+          values.push_back({0.0, 0.3 * s.largest_kpa, 1.0, growth, rate * s.largest_kpa, settling_s, 0.0});
+        }
+        for (const double levelling : {-0.3, 0.5, 3.0}) {
+          values.push_back({0.0, 0.3 * s.largest_kpa, 1.0, 0.0, rate * s.largest_kpa, settling_s, levelling});
         }
       }
     }
     return values;
   }
-  if (id == "stress_softening") return grid({{0.05 / s.largest_kpa, 0.3 / s.largest_kpa}});
+  if (id == "stress_softening") {
+    Values values = grid({{0.05 / s.largest_kpa, 0.3 / s.largest_kpa}, {0.0}});
+    for (const double levelling : {1.0, 5.0})
+      values.push_back({0.5 / s.largest_kpa, levelling / s.largest_kpa});
+    return values;
+  }
   if (id == "slow_creep") {
     return grid({{0.05 * gain, 0.2 * gain}, {0.15 * s.campaign_s, 0.5 * s.campaign_s, 2 * s.campaign_s}});
   }
   if (id == "thermal_gain") return grid({{-0.01, 0.01}});
-  return grid({{-360 / s.campaign_s, 360 / s.campaign_s}});  // ageing: a tenth over the campaign
+  // Ageing: a tenth over the campaign.
+  const double way_m = 0.1 * s.campaign_s * s.span_mm * 1e-3;
+  Values values = grid({{-360 / s.campaign_s, 360 / s.campaign_s}, {0.0}, {0.2 * s.campaign_s}, {0.0}});
+  for (const double size : {-0.1, 0.1}) {
+    for (const double campaigns : {0.07, 0.2, 0.5})
+      values.push_back({0.0, size, campaigns * s.campaign_s, 0.0});
+    values.push_back({0.0, 0.0, 0.2 * s.campaign_s, size / way_m});
+  }
+  return values;
 }
 
 /// Sine and cosine parts of waves of every phase, small and not so small [mm].
@@ -111,6 +132,12 @@ std::vector<std::pair<double, double>> waves(const Scales& s) {
   return list;
 }
 
+/// Knots of a zero that wanders as it likes: closer together, they would follow the loops.
+std::size_t knots_of(const Scales& s) {
+  constexpr double closest_s = 12;
+  return static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
+}
+
 Values starts_of_load_and_sensor(std::string_view id, const Scales& s) {
   if (id == "contact") {
     return grid({{0.35 * s.span_mm, 0.55 * s.span_mm, 0.7 * s.span_mm, 0.85 * s.span_mm, 0.95 * s.span_mm},
@@ -121,12 +148,15 @@ Values starts_of_load_and_sensor(std::string_view id, const Scales& s) {
   if (id == "sensor_lag") return grid({{0.02, 0.1, 0.3, 0.6}});
   if (id == "sensor_drift") {
     const double rate = 3600 * 0.05 * s.span_mm / s.campaign_s;
-    Values values = grid({{-rate, rate}, {0.0}, {0.3 * s.campaign_s}, {0.0}, {0.0}, {s.campaign_s}});
+    Values values = grid({{-rate, rate}, {0.0}, {0.3 * s.campaign_s}, {0.0}, {0.0}, {s.campaign_s}, {30.0}});
     for (const double campaigns : {0.15, 0.25, 0.4, 0.65, 1.0, 1.7}) {
       for (const auto& [sine, cosine] : waves(s)) {
-        values.push_back({0.0, 0.0, 0.3 * s.campaign_s, sine, cosine, campaigns * s.campaign_s});
+        values.push_back({0.0, 0.0, 0.3 * s.campaign_s, sine, cosine, campaigns * s.campaign_s, 30.0});
       }
     }
+    values.push_back({0.0, 0.0, 0.3 * s.campaign_s, 0.0, 0.0, s.campaign_s,
+                      s.campaign_s / static_cast<double>(knots_of(s))});
+    values.back().resize(values.back().size() + knots_of(s), 0.0);
     return values;
   }
   if (id == "sensor_nonlinearity") return grid({{-0.02 * s.span_mm, 0.02 * s.span_mm}, {0.0}, {s.span_mm}});
@@ -200,14 +230,29 @@ std::vector<CauseStart> cause_starts(const Cause& cause, const Scales& scales) {
   return starts;
 }
 
+bool has_free_form(const Cause& cause, const model::BlockSpec& block) {
+  return block.values.size() > model::catalogue()[cause.type].parameters.size();
+}
+
 bool is_fitted(const Cause& cause, const model::BlockSpec& block, std::size_t index) {
   const std::vector<double>& v = block.values;
   if (cause.id == "supply_sag") return index == 0;
   if (cause.id == "sensor_nonlinearity") return index < 2;
   if (cause.id == "sensor_saturation") return index == 1;
-  if (cause.id == "asymmetric_hysteresis") return index == 3 ? v[3] != 0 : v[0] != 0;
-  if (cause.id == "rate_dependent_hysteresis") return index < 3 ? v[0] != 0 : v[3] != 0;
-  if (cause.id == "sensor_drift") return index < 3 ? v[0] != 0 || v[1] != 0 : v[3] != 0 || v[4] != 0;
+  if (cause.id == "asymmetric_hysteresis") {
+    return (index < 3) == (v[0] != 0);
+  }
+  if (cause.id == "rate_dependent_hysteresis") {
+    if (index == 4 || index == 5) return v[3] != 0 || v[6] != 0;
+    return index < 3 ? v[0] != 0 : v[index] != 0;
+  }
+  if (cause.id == "stress_softening") return index == 0 || v[1] != 0;
+  if (cause.id == "ageing") return index == 2 ? v[1] != 0 : v[index] != 0;
+  if (cause.id == "sensor_drift") {
+    const std::size_t singles = model::catalogue()[cause.type].parameters.size();
+    if (has_free_form(cause, block)) return index >= singles;
+    return index < 3 ? v[0] != 0 || v[1] != 0 : index < 6 && (v[3] != 0 || v[4] != 0);
+  }
   return true;
 }
 
@@ -262,6 +307,8 @@ Range fit_range(const Cause& cause, std::size_t index, const model::Model& model
     for (const double tau_s : branch_time_constants_s(model)) slowest_s = std::max(slowest_s, tau_s);
     return {std::min(1.5 * slowest_s, 0.15 * s.campaign_s), 20 * s.campaign_s};
   }
+  // Run in sooner than this it is a load or two that differ; later than the campaign only the trend shows.
+  if (is("ageing", 2)) return {0.02 * s.campaign_s, s.campaign_s};
   // Warming up faster than this is creep of the actuator, slower a steady drift.
   if (is("sensor_drift", 2)) return {0.02 * s.campaign_s, s.campaign_s};
   // A wander turns a dozen times in a campaign at most; of a slower one than three campaigns only the trend

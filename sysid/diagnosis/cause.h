@@ -51,6 +51,10 @@ struct CauseStart {
 /// found by fitting a trajectory (outliers).
 [[nodiscard]] std::vector<CauseStart> cause_starts(const Cause& cause, const Scales& scales);
 
+/// Whether the block has parts (a zero that goes from knot to knot): as many numbers as it takes to follow
+/// anything slow. A fit finds each of them from zero, so that no look at a start tells what it is worth.
+[[nodiscard]] bool has_free_form(const Cause& cause, const model::BlockSpec& block);
+
 /// Whether a fit may move value `index` of the cause's block. A calibration range or a ceiling that the data
 /// do not reach stays where the start put it; of a block with several forms only those move that the start
 /// has (the others stand at their neutral values).

@@ -24,6 +24,9 @@ using Failure = tl::unexpected<std::string>;
 constexpr double clearly_correlated = 0.05;
 constexpr double block_s = 8;
 constexpr std::size_t fewest_samples = 200;
+/// What a staircase may leave of the mean square that stood without it: courses of tiny steps nibble at
+/// anything.
+constexpr double left_by_staircase = 0.25;
 
 double square(double x) {
   return x * x;
@@ -249,6 +252,8 @@ class Diagnostician {
     one_more.progress = options_.progress;
     auto found = select_behind_staircase(data_, selection, d_.noise_mm, division, one_more);
     if (!found || leaves_too_much(found->selection)) return false;
+    if (square(found->selection.left.excess_mm) > left_by_staircase * square(selection.left.excess_mm))
+      return false;
     selection = std::move(found->selection);
     d_.staircase = found->evidence;
     return true;

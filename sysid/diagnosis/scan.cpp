@@ -68,25 +68,26 @@ double Scan::mean_square_with(const model::BlockSpec& block) const {
 std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause, const Scales& scales,
                                   std::size_t count) {
   const std::vector<CauseStart> starts = cause_starts(cause, scales);
-  struct Scored {
-    double mean_square_mm2;
-    const Scan* scan;
-    const model::BlockSpec* block;
-  };
-  std::vector<Scored> scored;
-  for (const Scan& scan : scans) {
-    for (const CauseStart& start : starts) {
-      const double square = scan.mean_square_with(start.block);
-      if (std::isfinite(square)) scored.push_back({square, &scan, &start.block});
-    }
-  }
-  std::stable_sort(scored.begin(), scored.end(),
-                   [](const Scored& a, const Scored& b) { return a.mean_square_mm2 < b.mean_square_mm2; });
-  if (scored.size() > count) scored.resize(count);
   std::vector<FitPoint> points;
-  for (const Scored& s : scored) {
-    points.push_back(s.scan->place());
-    points.back().model = model::with_block(points.back().model, *s.block);
+  const auto add = [&](const Scan& scan, const model::BlockSpec& block) {
+    points.push_back(scan.place());
+    points.back().model = model::with_block(points.back().model, block);
+  };
+  const std::size_t of_each = std::max<std::size_t>(1, count / std::max<std::size_t>(1, scans.size()));
+  for (const Scan& scan : scans) {
+    std::vector<std::pair<double, const model::BlockSpec*>> scored;
+    for (const CauseStart& start : starts) {
+      if (has_free_form(cause, start.block)) continue;
+      const double square = scan.mean_square_with(start.block);
+      if (std::isfinite(square)) scored.emplace_back(square, &start.block);
+    }
+    std::stable_sort(scored.begin(), scored.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 0; i < std::min(of_each, scored.size()); ++i) add(scan, *scored[i].second);
+  }
+  for (const CauseStart& start : starts) {
+    if (has_free_form(cause, start.block) && !scans.empty() && scans.front().usable())
+      add(scans.front(), start.block);
   }
   return points;
 }

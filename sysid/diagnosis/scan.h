@@ -44,7 +44,8 @@ class Scan {
   Eigen::VectorXd left_;      ///< of it
 };
 
-/// The most promising starts of a cause over several places, best first.
+/// The `count` most promising starts of a cause, as many from every place, and its free form: a base that was
+/// recalibrated to swallow the effect and one that was not lead to different valleys.
 [[nodiscard]] std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause,
                                                 const Scales& scales, std::size_t count);
 

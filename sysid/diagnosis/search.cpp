@@ -20,6 +20,8 @@ constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
 /// Starts that are looked at, and looks that are followed to the end.
 constexpr std::size_t looked_at = 2;
 constexpr std::size_t followed = 2;
+/// By what share of the mean square a form with more numbers must be better.
+constexpr double more_numbers_gain = 0.02;
 /// So many candidates are followed to the end, first on thinned records, then of these so many on all
 /// samples, whatever the others do; more when they are as near.
 constexpr std::size_t always_followed = 5;
@@ -58,12 +60,20 @@ std::vector<StructureFit> look_at(const SearchData& data, const StructureFit& cu
   return fits;
 }
 
+/// Of two forms of a cause the one with more numbers must be better by more than they could be by chance.
+bool is_better(const StructureFit& fit, const StructureFit& best) {
+  double needed = 1;
+  if (fit.free_parameters > best.free_parameters) needed = 1 - more_numbers_gain;
+  if (fit.free_parameters < best.free_parameters) needed = 1 / (1 - more_numbers_gain);
+  return fit.mean_square_mm2 < needed * best.mean_square_mm2;
+}
+
 StructureFit follow(const SearchData& data, const std::vector<StructureFit>& looks) {
   StructureFit best = fit_structure(data.thinned, looks[0].causes, looks[0].point, full);
   for (std::size_t i = 1; i < looks.size(); ++i) {
     if (looks[i].mean_square_mm2 > 1.3 * looks[0].mean_square_mm2) break;
     StructureFit fit = fit_structure(data.thinned, looks[i].causes, looks[i].point, full);
-    if (fit.mean_square_mm2 < best.mean_square_mm2) best = std::move(fit);
+    if (is_better(fit, best)) best = std::move(fit);
   }
   return best;
 }

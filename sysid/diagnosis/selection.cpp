@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "model/catalogue.h"
 #include "sysid/diagnosis/twins.h"
@@ -14,9 +15,14 @@ namespace {
 
 /// Candidates that are refitted without held-out blocks.
 constexpr std::size_t finalists = 4;
-/// What one more cause must take of the recalibrated model's excess, as a mean square: less may make up for
-/// the form of an equation that the first cause does not quite have.
-constexpr double one_more_share = 0.01;
+/// What one more cause must take of the recalibrated model's excess, as a mean square. Less makes up for the
+/// form of an equation that the first cause does not quite have: a finger that softens, ages or bends by
+/// another law than the catalogue's leaves up to some percent, and any second block takes part of that.
+constexpr double one_more_share = 0.05;
+/// A smaller effect must take at least so much, and leave no more than so much of what was left before it:
+/// what makes up for a form does not meet it whole.
+constexpr double small_share = 0.01;
+constexpr double left_by_a_small_one = 0.1;
 /// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
 /// is no rival whatever the blocks say.
 constexpr double rival_share = 0.05;
@@ -39,6 +45,8 @@ class Selector {
       if (!add_one()) break;
       if (result_.extended.causes.size() > 1) swap_others();
     }
+    while (result_.extended.causes.size() > 1 && drop_idle_one()) {
+    }
     for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) explain(i);
     return std::move(result_);
   }
@@ -48,6 +56,13 @@ class Selector {
     Candidate candidate;
     BlockLosses losses;  ///< empty: not refitted
   };
+
+  /// A form that can follow anything slow is named only where no law explains nearly as much, and is no rival
+  /// of one that does.
+  static bool is_free_form(const Scored& s) {
+    const model::Model& model = s.candidate.fit->point.model;
+    return has_free_form(s.candidate.cause, model.blocks[*model::position_of(model, s.candidate.cause.type)]);
+  }
 
   /// All candidates for one more cause on top of `current`, fitted, the best ones scored held out; best
   /// first.
@@ -68,30 +83,41 @@ class Selector {
       if (!scored[i].candidate.fit) return;
       scored[i].losses = held_out_losses(data_.records, division_, *scored[i].candidate.fit);
     });
-    const auto held_out = [](const Scored& s) {
-      return s.losses.empty() ? std::numeric_limits<double>::infinity() : rmse_mm(s.losses);
+    const double handicap = one_more_share * mean_square_excess(current);
+    const auto held_out = [&](const Scored& s) {
+      if (s.losses.empty()) return std::numeric_limits<double>::infinity();
+      return rmse_mm(s.losses) * rmse_mm(s.losses) + (is_free_form(s) ? handicap : 0);
     };
     std::stable_sort(scored.begin(), scored.begin() + static_cast<long>(count),
                      [&](const Scored& a, const Scored& b) { return held_out(a) < held_out(b); });
     return scored;
   }
 
-  /// A gain whose interval excludes nothing and whose size is worth having.
-  [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after) const {
+  /// A gain whose interval excludes nothing and whose size is worth having. `without` and `with` are the
+  /// structures that it lies between.
+  [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, const StructureFit& without,
+                             const StructureFit& with) const {
     const Spread difference = mean_difference(before, after, options_.seed);
     double worth = 0.01 * noise_ * noise_;
-    if (!result_.extended.causes.empty()) {
-      const double excess_mm = result_.base_structure.excess_mm;
-      worth = std::max(worth, one_more_share * excess_mm * excess_mm);
+    if (!without.causes.empty()) {
+      const double was = mean_square_excess(without), left = mean_square_excess(with);
+      const double share = left > left_by_a_small_one * was ? one_more_share : small_share;
+      worth = std::max(worth, share * mean_square_excess(result_.base));
     }
     return difference.lower > 0 && difference.value > worth &&
            difference.value > 0.02 * rmse_mm(before) * rmse_mm(before) * 0.5;
   }
 
+  [[nodiscard]] double mean_square_excess(const StructureFit& fit) const {
+    const double excess_mm = structure_of(fit.residual_mm, noise_).excess_mm;
+    return excess_mm * excess_mm;
+  }
+
   bool add_one() {
     std::vector<Scored> scored = score(result_.extended);
     if (scored.empty() || scored.front().losses.empty() ||
-        !is_gain(result_.extended_losses, scored.front().losses)) {
+        !is_gain(result_.extended_losses, scored.front().losses, result_.extended,
+                 *scored.front().candidate.fit)) {
       result_.last_candidates = describe(scored, result_.extended_losses);
       return false;
     }
@@ -131,6 +157,25 @@ class Selector {
     }
   }
 
+  /// What was added beside a cause that was then replaced may have nothing left to do.
+  bool drop_idle_one() {
+    std::optional<StructureFit> least;
+    BlockLosses losses;
+    for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) {
+      StructureFit rest = without(i);
+      BlockLosses rest_losses = held_out_losses(data_.records, division_, rest);
+      if (least && rmse_mm(rest_losses) >= rmse_mm(losses)) continue;
+      least = std::move(rest);
+      losses = std::move(rest_losses);
+    }
+    if (is_gain(losses, result_.extended_losses, *least, result_.extended)) return false;
+    result_.extended = std::move(*least);
+    result_.extended_losses = std::move(losses);
+    result_.left = structure_of(result_.extended.residual_mm, noise_);
+    fresh_.clear();
+    return true;
+  }
+
   void explain(std::size_t index) {
     ChosenCause chosen;
     chosen.cause = result_.extended.causes[index];
@@ -151,6 +196,7 @@ class Selector {
     for (const Scored& s : scored) {
       if (s.losses.empty() || s.candidate.cause.type == chosen.cause.type) continue;
       if (twin && s.candidate.cause.type == twin->type) continue;
+      if (is_free_form(s)) continue;
       const Spread behind = mean_difference(s.losses, result_.extended_losses, options_.seed);
       if (behind.value <= std::max(behind.standard_error, 0.002 * noise_ * noise_) &&
           behind.value <= std::max(rival_share * gained, 0.002 * noise_ * noise_)) {

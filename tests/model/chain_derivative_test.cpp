@@ -16,7 +16,7 @@
 namespace softgrip::model::testing {
 namespace {
 
-constexpr int most_parameters = 18;
+constexpr int most_parameters = 20;
 using Jet = ceres::Jet<double, most_parameters>;
 constexpr double dt = 5e-3;
 

@@ -85,8 +85,8 @@ TEST(ModelFile, LaterParametersMayBeLeftOut) {
       "sensor:\n  - sensor_drift: {rate_mm_per_h: 1, warm_up_mm: 0.1, warm_up_time_s: 50}\n");
   ASSERT_TRUE(outcome.model) << outcome.problems.format();
   EXPECT_EQ(outcome.model->blocks[0].values, (std::vector<double>{2, 0}));
-  EXPECT_EQ(outcome.model->blocks[2].values, (std::vector<double>{0.05, 15, 5, 0}));
-  EXPECT_EQ(outcome.model->blocks[3].values, (std::vector<double>{1, 0.1, 50, 0, 0, 300}));
+  EXPECT_EQ(outcome.model->blocks[2].values, (std::vector<double>{0.05, 15, 5, 0, 0, 0}));
+  EXPECT_EQ(outcome.model->blocks[3].values, (std::vector<double>{1, 0.1, 50, 0, 0, 300, 30}));
 }
 
 TEST(ModelFile, HashStandsForTheNumbers) {

@@ -52,6 +52,7 @@ TEST(Catalogue, NamesEndWithTheirUnits) {
                                                                            {"1/degC", "_per_c"},
                                                                            {"1/h", "_per_h"},
                                                                            {"1/mm", "_per_mm"},
+                                                                           {"1/m", "_per_m"},
                                                                            {"mm/h", "_mm_per_h"},
                                                                            {"1/mm^2", "_per_mm2"},
                                                                            {"kPa/s", "_kpa_per_s"}};

@@ -17,13 +17,13 @@ namespace {
 using Block = AsymmetricHysteresis<double>;
 
 TEST(AsymmetricHysteresis, FirstLoadingIsFreeOfIt) {
-  Block block = make<Block>({0.05, 15.0, 5.0, 0.0});
+  Block block = make<Block>({0.05, 15.0, 5.0, 0.0, 0.0, 0.0});
   double from = 0;
   EXPECT_EQ(move(block, from, 40, 1), 0);
 }
 
 TEST(AsymmetricHysteresis, UnloadingWindsItUpAndLoadingLetsItFade) {
-  Block block = make<Block>({0.05, 15.0, 5.0, 0.0});
+  Block block = make<Block>({0.05, 15.0, 5.0, 0.0, 0.0, 0.0});
   double from = 0;
   move(block, from, 40, 1);
   const double wound = -15 * 0.05 * std::expm1(-30 / 15.0);
@@ -32,7 +32,8 @@ TEST(AsymmetricHysteresis, UnloadingWindsItUpAndLoadingLetsItFade) {
 }
 
 TEST(AsymmetricHysteresis, NeitherTimeNorStepSizeMatters) {
-  Block once = make<Block>({0.05, 15.0, 5.0, 0.0}), often = make<Block>({0.05, 15.0, 5.0, 0.0});
+  Block once = make<Block>({0.05, 15.0, 5.0, 0.0, 0.0, 0.0}),
+        often = make<Block>({0.05, 15.0, 5.0, 0.0, 0.0, 0.0});
   double a = 0, b = 0;
   for (const double to : {40.0, 12.0, 33.0, 5.0, 60.0, 0.0}) {
     const double start = b;
@@ -43,7 +44,7 @@ TEST(AsymmetricHysteresis, NeitherTimeNorStepSizeMatters) {
 
 // A symmetric loop, settled between 10 and 50 kPa, falls on itself when it is turned about its centre.
 double asymmetry(double unloading_kpa, double loading_kpa) {
-  Block block = make<Block>({0.05, unloading_kpa, loading_kpa, 0.0});
+  Block block = make<Block>({0.05, unloading_kpa, loading_kpa, 0.0, 0.0, 0.0});
   double from = 0;
   for (int i = 0; i < 20; ++i) {
     move(block, from, 50, 1);
@@ -67,19 +68,24 @@ TEST(AsymmetricHysteresis, LoopIsPointSymmetricOnlyForEqualLengths) {
 const std::vector<std::vector<double>> materials{
     {0.35, 0.2, 0.03, 0.05, 1}, {0.35, 0.2, -0.02, 0.05, 1}, {0.211, 0.171, 0.004, 0.006, 2}};
 
-Model skewed(const std::vector<double>& material, double delta_per_kpa) {
+Model skewed(const std::vector<double>& material, double delta_per_kpa, double epsilon_per_kpa = 0,
+             double beta_share = 0) {
   Model model{"skewed", "test", {BlockSpec{*find_block("bouc_wen"), material}}};
-  return with_block(model, {*find_block("asymmetric_hysteresis"), {0.0, 20.0, 5.0, delta_per_kpa}});
+  return with_block(model, {*find_block("asymmetric_hysteresis"),
+                            {0.0, 20.0, 5.0, delta_per_kpa, epsilon_per_kpa, beta_share}});
 }
 
 const std::vector<double> turns{40, 12, 33, -15, 8, -3, 60, 0, 25, 0};
 
 // The equation as it stands in the papers, by Runge-Kutta in steps of 1/200 kPa.
-double integrated(const std::vector<double>& v, double delta, const std::vector<double>& turning_points,
+double integrated(const std::vector<double>& v, const BoucWenSkew<double>& skew,
+                  const std::vector<double>& turning_points,
                   const std::function<void(double p, double y)>& at) {
   const auto sign = [](double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : 0.0; };
   const auto slope = [&](double h, double way) {
-    return v[1] - std::pow(std::fabs(h), v[4]) * (v[2] + v[3] * sign(way * h) + delta * sign(way));
+    const double eta = v[3] + skew.epsilon_per_kpa * sign(way);
+    return v[1] * (1 + skew.beta_share * sign(way)) -
+           std::pow(std::fabs(h), v[4]) * (v[2] + eta * sign(way * h) + skew.delta_per_kpa * sign(way));
   };
   double p = 0, h = 0;
   for (const double to : turning_points) {
@@ -102,7 +108,7 @@ TEST(AsymmetricHysteresis, SkewsTheChainsBoucWenByItsEquation) {
     for (const double share : {-0.8, 0.6}) {
       const double delta = share * std::min(material[3], material[2] + material[3]);
       Chain<double> chain(skewed(material, delta));
-      integrated(material, delta, turns, [&](double p, double y) {
+      integrated(material, {delta, 0, 0}, turns, [&](double p, double y) {
         // 2e-5 is what the integration of the kink at h = 0 leaves.
         ASSERT_NEAR(chain.step(1.0, p), y, 2e-5) << "exponent " << material[4] << " at " << p;
       });
@@ -110,9 +116,36 @@ TEST(AsymmetricHysteresis, SkewsTheChainsBoucWenByItsEquation) {
   }
 }
 
+TEST(AsymmetricHysteresis, LoadingAndUnloadingHaveNumbersOfTheirOwn) {
+  for (const std::vector<double>& material : materials) {
+    for (const double way : {-1.0, 1.0}) {
+      const BoucWenSkew<double> skew{0.2 * way * material[3], -0.3 * way * material[3], 0.15 * way};
+      Chain<double> chain(skewed(material, skew.delta_per_kpa, skew.epsilon_per_kpa, skew.beta_share));
+      integrated(material, skew, turns, [&](double p, double y) {
+        ASSERT_NEAR(chain.step(1.0, p), y, 2e-5) << "exponent " << material[4] << " at " << p;
+      });
+    }
+  }
+}
+
+// Whatever the numbers: what has levelled off one way shrinks on the way back.
+TEST(AsymmetricHysteresis, NoSkewLetsTheStateGrowOnTheWayBack) {
+  for (const std::vector<double>& material : materials) {
+    for (const double epsilon : {-5.0, 5.0}) {
+      for (const double share : {-0.9, 0.9}) {
+        Chain<double> chain(skewed(material, 0.0, epsilon, share));
+        double highest = 0;
+        for (int i = 0; i < 40; ++i)
+          highest = std::fmax(highest, std::fabs(chain.step(1.0, i % 2 == 0 ? 60 : 0)));
+        EXPECT_LT(highest, 100) << epsilon << " " << share;
+      }
+    }
+  }
+}
+
 TEST(AsymmetricHysteresis, SkewedStepSizeDoesNotMatter) {
   for (const std::vector<double>& material : materials) {
-    const Model model = skewed(material, 0.7 * material[3]);
+    const Model model = skewed(material, 0.5 * material[3], -0.2 * material[3], 0.1);
     Chain<double> once(model), often(model);
     double from = 0;
     for (const double to : turns) {
@@ -134,7 +167,7 @@ TEST(AsymmetricHysteresis, SkewLeavesNoTraceAtZero) {
 // What the inverse asks of the chain knows of the skew.
 TEST(AsymmetricHysteresis, PeekKnowsOfTheSkew) {
   for (const std::vector<double>& material : materials) {
-    Chain<double> chain(skewed(material, -0.7 * material[3]));
+    Chain<double> chain(skewed(material, -0.7 * material[3], 0.2 * material[3], -0.1));
     for (const double p : turns) {
       const double h = 1e-5;
       const Dual<double> trial = chain.peek(1.0, Dual<double>(p, 1.0));

@@ -16,7 +16,7 @@ using Block = RateDependentHysteresis<double>;
 
 // Width of the settled loop of a triangle between 0 and 40 kPa.
 double width(double rate_kpa_per_s) {
-  Block block = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05});
+  Block block = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05, 0.0});
   double from = 0;
   double up = 0, down = 0;
   for (int cycle = 0; cycle < 5; ++cycle) {
@@ -40,7 +40,7 @@ TEST(RateDependentHysteresis, LoopGrowsWithTheRateUpToItsWidth) {
 }
 
 TEST(RateDependentHysteresis, Relaxes) {
-  Block block = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05});
+  Block block = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05, 0.0});
   double from = 0;
   const double held = move(block, from, 30, 0.1);
   EXPECT_LT(held, -0.1);
@@ -48,8 +48,8 @@ TEST(RateDependentHysteresis, Relaxes) {
 }
 
 TEST(RateDependentHysteresis, StepSizeDoesNotMatter) {
-  Block once = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05}),
-        often = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05});
+  Block once = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05, 0.0}),
+        often = make<Block>({0.03, 10.0, 1.0, 0.0, 20.0, 0.05, 0.0});
   double a = 0, b = 0;
   for (const double to : {40.0, 12.0, 33.0, 33.0, 5.0}) {
     const double start = b;
@@ -58,10 +58,11 @@ TEST(RateDependentHysteresis, StepSizeDoesNotMatter) {
   }
 }
 
-// A Bouc-Wen element whose loop grows with the rate.
-Model widened(double growth) {
+// A Bouc-Wen element whose loop grows with the rate, or whose eta does.
+Model widened(double growth, double levelling = 0) {
   Model model{"widened", "test", {BlockSpec{*find_block("bouc_wen"), {0.35, 0.2, 0.03, 0.05, 1}}}};
-  return with_block(model, {*find_block("rate_dependent_hysteresis"), {0.0, 10.0, 1.0, growth, 15.0, 0.08}});
+  return with_block(
+      model, {*find_block("rate_dependent_hysteresis"), {0.0, 10.0, 1.0, growth, 15.0, 0.08, levelling}});
 }
 
 struct Move {
@@ -89,6 +90,31 @@ TEST(RateDependentHysteresis, WidensTheChainsBoucWenByItsEquation) {
   }
 }
 
+// The same with an eta that follows the rate; the chain takes that of each step's beginning.
+TEST(RateDependentHysteresis, LevelsTheChainsBoucWenOffByItsEquation) {
+  for (const double levelling : {1.5, -0.6}) {
+    Chain<double> chain(widened(0.0, levelling));
+    double p = 0, h = 0, r = 0;
+    for (const Move& move : moves) {
+      const auto steps = static_cast<int>(std::lround(move.duration_s / 1e-5));
+      const double d = (move.to_kpa - p) / steps, dt = move.duration_s / steps;
+      const double way = d > 0 ? 1 : d < 0 ? -1 : 0;
+      for (int i = 0; i < steps; ++i) {
+        const double eta = 0.05 * (1 + levelling * r / (r + 15));
+        const auto slope = [&](double x) {
+          return 0.2 - (0.03 + (x * way >= 0 ? eta : -eta)) * std::fabs(x);
+        };
+        const double k = slope(h);
+        h += 0.5 * d * (k + slope(h + d * k));
+        r += (std::fabs(d) / dt - r) * -std::expm1(-dt / 0.08);
+        chain.step(dt, p + d * (i + 1));
+      }
+      p = move.to_kpa;
+      ASSERT_NEAR(chain.reading_mm(), 0.35 * p - h, 1e-4) << p;
+    }
+  }
+}
+
 TEST(RateDependentHysteresis, WidenedStepSizeDoesNotMatter) {
   Chain<double> once(widened(0.6)), often(widened(0.6));
   double from = 0;
@@ -105,7 +131,7 @@ TEST(RateDependentHysteresis, SlowMotionKnowsNothingOfTheGrowth) {
 }
 
 TEST(RateDependentHysteresis, PeekKnowsOfTheGrowth) {
-  Chain<double> chain(widened(0.6));
+  Chain<double> chain(widened(0.6, 0.8));
   for (const Move& move : moves) {
     const double h = 1e-5;
     const Dual<double> trial = chain.peek(move.duration_s, Dual<double>(move.to_kpa + 1, 1.0));

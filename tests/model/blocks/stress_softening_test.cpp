@@ -13,7 +13,7 @@ namespace {
 using Block = StressSoftening<double>;
 
 TEST(StressSoftening, LaterLoadsFindItSofter) {
-  Block block = make<Block>({0.01});
+  Block block = make<Block>({0.01, 0.0});
   const std::vector<double> out = drive(block, 0, std::vector<double>{20, 0, 10, 20, 40, 10}, 1.0);
   EXPECT_NEAR(out[0], 20 * 1.2, 1e-12);
   EXPECT_NEAR(out[2], 10 * 1.2, 1e-12);  // on the first rise it was 10 * 1.1
@@ -24,7 +24,7 @@ TEST(StressSoftening, LaterLoadsFindItSofter) {
 }
 
 TEST(StressSoftening, MeanOfARiseBeyondTheLargestLoad) {
-  Block once = make<Block>({0.01}), often = make<Block>({0.01});
+  Block once = make<Block>({0.01, 0.0}), often = make<Block>({0.01, 0.0});
   for (Block* block : {&once, &often}) drive(*block, 0, std::vector<double>{20, 0}, 1.0);
   double mean = 0, fine = 0;
   for (const auto& s : pass(once, Segment<double>::straight(1.0, 0, 50))) mean += s.mean * s.duration_s;
@@ -35,6 +35,20 @@ TEST(StressSoftening, MeanOfARiseBeyondTheLargestLoad) {
   }
   EXPECT_NEAR(mean, fine, 1e-9);
   EXPECT_NEAR(once.output(), often.output(), 1e-12);
+}
+
+TEST(StressSoftening, LevelsOffWithLargerLoads) {
+  Block block = make<Block>({0.01, 0.05});
+  const std::vector<double> out = drive(block, 0, std::vector<double>{20, 10, 40, 10}, 1.0);
+  EXPECT_NEAR(out[0], 20 * (1 + 0.2 / 2), 1e-12);
+  EXPECT_NEAR(out[1], 10 * (1 + 0.2 / 2), 1e-12);
+  EXPECT_NEAR(out[3], 10 * (1 + 0.4 / 3), 1e-12);
+  // The mean of a sample's rise, by Simpson's rule, against a thousand shorter ones.
+  Block once = make<Block>({0.01, 0.05}), often = make<Block>({0.01, 0.05});
+  double fine = 0;
+  for (int i = 0; i < 1000; ++i)
+    fine += pass(often, Segment<double>::straight(1e-3, 2e-3 * i, 2e-3 * (i + 1))).front().mean / 1000;
+  EXPECT_NEAR(pass(once, Segment<double>::straight(1.0, 0, 2)).front().mean, fine, 1e-5);
 }
 
 }  // namespace
