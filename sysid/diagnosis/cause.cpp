@@ -307,8 +307,8 @@ Range fit_range(const Cause& cause, std::size_t index, const model::Model& model
     for (const double tau_s : branch_time_constants_s(model)) slowest_s = std::max(slowest_s, tau_s);
     return {std::min(1.5 * slowest_s, 0.15 * s.campaign_s), 20 * s.campaign_s};
   }
-  // Run in sooner than this it is a load or two that differ; later than the campaign only the trend shows.
-  if (is("ageing", 2)) return {0.02 * s.campaign_s, s.campaign_s};
+  // Run in sooner than this it is a load or two that differ; later only the trend shows.
+  if (is("ageing", 2)) return {0.02 * s.campaign_s, 0.5 * s.campaign_s};
   // Warming up faster than this is creep of the actuator, slower a steady drift.
   if (is("sensor_drift", 2)) return {0.02 * s.campaign_s, s.campaign_s};
   // A wander turns a dozen times in a campaign at most; of a slower one than three campaigns only the trend

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "model/catalogue.h"
@@ -16,6 +17,22 @@ namespace {
 constexpr double damping = 1e-3;
 constexpr double least_size = 0.7;
 constexpr double largest_size = 1.4;
+
+/// Which values of a block a fit moves.
+using Form = std::vector<bool>;
+
+Form form_of(const Cause& cause, const model::BlockSpec& block) {
+  Form form(block.values.size());
+  for (std::size_t i = 0; i < form.size(); ++i) form[i] = is_fitted(cause, block, i);
+  return form;
+}
+
+/// A start at one of the places.
+struct Judged {
+  double mean_square_mm2 = 0;
+  const Scan* place = nullptr;
+  const model::BlockSpec* block = nullptr;
+};
 
 }  // namespace
 
@@ -66,28 +83,35 @@ double Scan::mean_square_with(const model::BlockSpec& block) const {
 }
 
 std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause, const Scales& scales,
-                                  std::size_t count) {
+                                  std::size_t fewest) {
   const std::vector<CauseStart> starts = cause_starts(cause, scales);
-  std::vector<FitPoint> points;
-  const auto add = [&](const Scan& scan, const model::BlockSpec& block) {
-    points.push_back(scan.place());
-    points.back().model = model::with_block(points.back().model, block);
-  };
-  const std::size_t of_each = std::max<std::size_t>(1, count / std::max<std::size_t>(1, scans.size()));
+  std::vector<Judged> judged;
   for (const Scan& scan : scans) {
-    std::vector<std::pair<double, const model::BlockSpec*>> scored;
     for (const CauseStart& start : starts) {
       if (has_free_form(cause, start.block)) continue;
       const double square = scan.mean_square_with(start.block);
-      if (std::isfinite(square)) scored.emplace_back(square, &start.block);
+      if (std::isfinite(square)) judged.push_back({square, &scan, &start.block});
     }
-    std::stable_sort(scored.begin(), scored.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t i = 0; i < std::min(of_each, scored.size()); ++i) add(scan, *scored[i].second);
   }
+  std::stable_sort(judged.begin(), judged.end(),
+                   [](const Judged& a, const Judged& b) { return a.mean_square_mm2 < b.mean_square_mm2; });
+  std::set<Form> forms;
+  std::set<const Scan*> places;
+  std::vector<Judged> chosen, others;
+  for (const Judged& one : judged) {
+    const bool new_form = forms.insert(form_of(cause, *one.block)).second;
+    const bool new_place = places.insert(one.place).second;
+    (new_form || new_place ? chosen : others).push_back(one);
+  }
+  for (std::size_t i = 0; i < others.size() && chosen.size() < fewest; ++i) chosen.push_back(others[i]);
   for (const CauseStart& start : starts) {
     if (has_free_form(cause, start.block) && !scans.empty() && scans.front().usable())
-      add(scans.front(), start.block);
+      chosen.push_back({0, &scans.front(), &start.block});
+  }
+  std::vector<FitPoint> points;
+  for (const Judged& one : chosen) {
+    points.push_back(one.place->place());
+    points.back().model = model::with_block(points.back().model, *one.block);
   }
   return points;
 }

@@ -44,9 +44,11 @@ class Scan {
   Eigen::VectorXd left_;      ///< of it
 };
 
-/// The `count` most promising starts of a cause, as many from every place, and its free form: a base that was
-/// recalibrated to swallow the effect and one that was not lead to different valleys.
+/// The most promising starts of a cause, best first and its free form last: one of every form that the cause
+/// has, since the form with more numbers always promises more, and one from every place, since a base that
+/// was recalibrated to swallow the effect and one that was not lead to different valleys. The next best ones
+/// make up for what is missing to `fewest`.
 [[nodiscard]] std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause,
-                                                const Scales& scales, std::size_t count);
+                                                const Scales& scales, std::size_t fewest);
 
 }  // namespace softgrip::sysid

@@ -18,7 +18,7 @@ constexpr double look_interval_s = 0.0125;
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
 /// Starts that are looked at, and looks that are followed to the end.
-constexpr std::size_t looked_at = 2;
+constexpr std::size_t fewest_looks = 2;
 constexpr std::size_t followed = 2;
 /// By what share of the mean square a form with more numbers must be better.
 constexpr double more_numbers_gain = 0.02;
@@ -53,7 +53,7 @@ std::vector<StructureFit> look_at(const SearchData& data, const StructureFit& cu
   std::vector<Cause> causes = current.causes;
   causes.push_back(cause);
   std::vector<StructureFit> fits;
-  for (const FitPoint& start : best_starts(scans, cause, data.scales, looked_at)) {
+  for (const FitPoint& start : best_starts(scans, cause, data.scales, fewest_looks)) {
     fits.push_back(fit_structure(data.thinned, causes, start, look));
   }
   sort_and_keep(fits, followed);

@@ -198,8 +198,9 @@ class Selector {
       if (twin && s.candidate.cause.type == twin->type) continue;
       if (is_free_form(s)) continue;
       const Spread behind = mean_difference(s.losses, result_.extended_losses, options_.seed);
-      if (behind.value <= std::max(behind.standard_error, 0.002 * noise_ * noise_) &&
-          behind.value <= std::max(rival_share * gained, 0.002 * noise_ * noise_)) {
+      const double negligible = (are_stops(s.candidate.cause, chosen.cause) ? 0.02 : 0.002) * noise_ * noise_;
+      if (behind.value <= std::max(behind.standard_error, negligible) &&
+          behind.value <= std::max(rival_share * gained, negligible)) {
         chosen.rivals.push_back(s.candidate.cause);
       }
     }

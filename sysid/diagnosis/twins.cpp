@@ -21,6 +21,13 @@ std::optional<Cause> twin_of(const Cause& cause, const model::Model& model) {
   return std::nullopt;
 }
 
+bool are_stops(const Cause& one, const Cause& other) {
+  const auto is_stop = [](const Cause& cause) {
+    return cause.id == "contact" || cause.id == "sensor_saturation";
+  };
+  return is_stop(one) && is_stop(other);
+}
+
 bool are_twins(const Cause& one, const Cause& other, const model::Model& model) {
   const auto twin = twin_of(one, model);
   return twin && twin->type == other.type;

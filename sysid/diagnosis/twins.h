@@ -15,6 +15,10 @@ namespace softgrip::sysid {
 /// bend before it and a bend behind it differ.
 [[nodiscard]] std::optional<Cause> twin_of(const Cause& cause, const model::Model& model);
 
+/// Whether both hold the readings back at a place: an object and a sensor that clips. How far an object gives
+/// way decides between them, and of a hard one a few readings say little.
+[[nodiscard]] bool are_stops(const Cause& one, const Cause& other);
+
 /// Whether no command can tell the two apart, as far as `model` is right about the rest.
 [[nodiscard]] bool are_twins(const Cause& one, const Cause& other, const model::Model& model);
 

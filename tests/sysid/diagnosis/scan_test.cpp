@@ -83,5 +83,35 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
+// The form with more numbers promises more from everywhere: each must be looked at, and from each place.
+TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
+  const model::Model given = loaded("zhang2025");
+  const SearchData data =
+      make_search_data(records_of(model::with_block(given, block("ageing", {4, 0, 60, 0}))), given);
+  model::Model other = given;
+  other.blocks[0].values[0] *= 1.05;
+  std::vector<Scan> scans;
+  scans.emplace_back(data.thinned, std::vector<Cause>{}, data.given);
+  scans.emplace_back(data.thinned, std::vector<Cause>{}, FitPoint{other, rest_starts(other, data.thinned)});
+  const auto points = best_starts(scans, *find_cause("ageing"), data.scales, 1);
+  std::size_t with_time = 0, running_in = 0, with_use = 0, elsewhere = 0;
+  for (const FitPoint& point : points) {
+    const std::vector<double>& v = point.model.blocks[*model::position_of(point.model, "ageing")].values;
+    with_time += v[0] != 0 ? 1U : 0U;
+    running_in += v[1] != 0 ? 1U : 0U;
+    with_use += v[3] != 0 ? 1U : 0U;
+    elsewhere += point.model.blocks[0].values[0] == other.blocks[0].values[0] ? 1U : 0U;
+  }
+  EXPECT_GE(with_time, 1U);
+  EXPECT_GE(running_in, 1U);
+  EXPECT_GE(with_use, 1U);
+  EXPECT_GE(elsewhere, 1U);
+  EXPECT_LT(elsewhere, points.size());
+  EXPECT_LE(points.size(), 4U);
+  const FitPoint& last = best_starts(scans, *find_cause("sensor_drift"), data.scales, 1).back();
+  EXPECT_TRUE(has_free_form(*find_cause("sensor_drift"),
+                            last.model.blocks[*model::position_of(last.model, "sensor_drift")]));
+}
+
 }  // namespace
 }  // namespace softgrip::sysid
