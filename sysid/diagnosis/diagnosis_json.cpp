@@ -126,14 +126,13 @@ Json gauge_json(const GaugeEvidence& gauge) {
             {"covered_percent", 100 * check.covered_share},
             {"noise_mm", check.noise_mm},
             {"repeat_noise_mm", check.repeat_noise_mm},
-            {"tolerance_mm", check.tolerance_mm},
             {"log_likelihood_ratio", check.log_likelihood_ratio}};
   json["hypotheses"] = Json::array();
   for (const GaugeFit& fit : check.fits) {
     json["hypotheses"].push_back({{"id", fit.shape.id()},
                                   {"rms_mm", fit.rms_mm},
-                                  {"chi_square", fit.chi_square},
-                                  {"explains", fit.passes},
+                                  {"tolerance_mm", fit.tolerance_mm},
+                                  {"explains", fit.explains},
                                   {"behind", fit.behind},
                                   {"ruled_out", fit.ruled_out},
                                   {"zero_mm", fit.zero_mm},

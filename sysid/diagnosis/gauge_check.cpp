@@ -21,6 +21,8 @@ constexpr double beyond_share = 0.05;
 constexpr double beyond_noise = 10;
 /// Of what the hypotheses differ by.
 constexpr double tolerated_share = 0.2;
+/// Of the logs' noise: a departure so small is none to any log.
+constexpr double never_matters = 0.25;
 /// Of the logs' readings that the gauge's must cover.
 constexpr double least_covered_share = 0.5;
 /// Normal deviate of 1 in 1000, one-sided.
@@ -140,9 +142,6 @@ class Checker {
     result_.straight = fitted({{}, offset_mm}, {});
     result_.free_bend = freely_bent(offset_mm);
     result_.free_end = freely_ending(offset_mm);
-    allow();
-    for (GaugeFit& fit : result_.fits) judge(fit);
-    for (GaugeFit* fit : {&result_.straight, &result_.free_bend, &result_.free_end}) judge(*fit);
     compare();
     return std::move(result_);
   }
@@ -256,53 +255,64 @@ class Checker {
         ends, offset_mm);
   }
 
-  /// A share of what the hypotheses differ by.
-  void allow() {
-    double largest = 0;
-    for (std::size_t a = 0; a < result_.fits.size(); ++a) {
-      for (std::size_t b = a + 1; b < result_.fits.size(); ++b) {
-        double sum = 0;
-        for (std::size_t i = 0; i < readings_.size(); ++i)
-          sum += square(result_.fits[a].predicted_mm[i] - result_.fits[b].predicted_mm[i]);
-        largest = std::max(largest, std::sqrt(sum / static_cast<double>(readings_.size())));
-      }
-    }
-    result_.tolerance_mm = tolerated_share * largest;
+  /// Root mean square of what two hypotheses differ by.
+  [[nodiscard]] double apart_mm(const GaugeFit& one, const GaugeFit& other) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < readings_.size(); ++i)
+      sum += square(one.predicted_mm[i] - other.predicted_mm[i]);
+    return std::sqrt(sum / static_cast<double>(readings_.size()));
   }
 
-  void judge(GaugeFit& fit) const {
-    const auto n = static_cast<double>(readings_.size());
-    fit.chi_square = n * square(fit.rms_mm) / (square(result_.noise_mm) + square(result_.tolerance_mm));
-    fit.passes = fit.chi_square <= chi_square_limit(n - static_cast<double>(fit.free));
+  [[nodiscard]] double chi_square(const GaugeFit& fit, double tolerance_mm) const {
+    return static_cast<double>(readings_.size()) * square(fit.rms_mm) /
+           (square(result_.noise_mm) + square(tolerance_mm));
   }
 
+  [[nodiscard]] bool explains(const GaugeFit& fit, double tolerance_mm) const {
+    const auto freedom = static_cast<double>(readings_.size()) - static_cast<double>(fit.free);
+    return chi_square(fit, tolerance_mm) <= chi_square_limit(freedom);
+  }
+
+  /// Every hypothesis against the most likely one, with a share of what these two differ by allowed.
   void compare() {
     std::vector<GaugeFit>& fits = result_.fits;
-    const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.chi_square < b.chi_square; };
+    const auto likelier = [](const GaugeFit& a, const GaugeFit& b) { return a.rms_mm < b.rms_mm; };
     result_.best =
         static_cast<std::size_t>(std::min_element(fits.begin(), fits.end(), likelier) - fits.begin());
-    const GaugeFit& best = fits[result_.best];
+    GaugeFit& best = fits[result_.best];
     double next = std::numeric_limits<double>::infinity();
-    bool any = false;
+    std::size_t out = 0;
+    best.tolerance_mm = never_matters * scales_.noise_mm;
     for (std::size_t i = 0; i < fits.size(); ++i) {
-      fits[i].behind = (fits[i].chi_square - best.chi_square) / 2;
-      if (i != result_.best) next = std::min(next, fits[i].behind);
-      fits[i].ruled_out = best.passes && fits[i].behind >= gauge_log_likelihood_needed;
-      any |= fits[i].ruled_out;
+      if (i == result_.best) continue;
+      GaugeFit& fit = fits[i];
+      fit.tolerance_mm = tolerated_share * apart_mm(fit, best);
+      fit.behind = (chi_square(fit, fit.tolerance_mm) - chi_square(best, fit.tolerance_mm)) / 2;
+      fit.explains = explains(fit, fit.tolerance_mm);
+      fit.ruled_out = fit.behind >= gauge_log_likelihood_needed && explains(best, fit.tolerance_mm);
+      next = std::min(next, fit.behind);
+      if (fit.ruled_out)
+        ++out;
+      else
+        best.tolerance_mm = std::max(best.tolerance_mm, fit.tolerance_mm);
     }
+    const bool alone = fits.size() > 1 && out + 1 == fits.size();
+    best.explains = alone || explains(best, best.tolerance_mm);
     result_.log_likelihood_ratio = fits.size() > 1 ? next : 0;
+    result_.outcome = !best.explains                ? GaugeOutcome::unexplained
+                      : out > 0 || fits.size() == 1 ? GaugeOutcome::decided
+                                                    : GaugeOutcome::undecided;
+    judge_coverage();
+  }
+
+  void judge_coverage() {
     // By the line, not by the readings: noise of a sensor that does not follow covers nothing.
     const auto [least, most] =
         std::minmax_element(result_.straight.predicted_mm.begin(), result_.straight.predicted_mm.end());
     result_.covered_share = (*most - *least) / std::max(1e-9, scales_.highest_mm - scales_.lowest_mm);
-    if (result_.covered_share < least_covered_share) {
-      for (GaugeFit& fit : fits) fit.ruled_out = false;
-      result_.outcome = GaugeOutcome::uncovered;
-      return;
-    }
-    result_.outcome = !best.passes              ? GaugeOutcome::unexplained
-                      : any || fits.size() == 1 ? GaugeOutcome::decided
-                                                : GaugeOutcome::undecided;
+    if (result_.covered_share >= least_covered_share) return;
+    for (GaugeFit& fit : result_.fits) fit.ruled_out = false;
+    result_.outcome = GaugeOutcome::uncovered;
   }
 
   const std::vector<GaugeReading>& readings_;

@@ -7,9 +7,9 @@
 //
 // The noise is the larger of what readings at one position differ by and the logs' noise, over the root of
 // the samples in a reading. The catalogue's form of a bend is not the sensor's, and its numbers come from
-// fits that shared them with the rest of the model; so a fifth of what the hypotheses differ by is allowed
-// beside the noise. A hypothesis is ruled out where another one that explains the readings (chi-square,
-// 1 in 1000) is at least a thousand times as likely.
+// fits that shared them with the rest of the model; so a fifth of what two hypotheses differ by is allowed
+// beside the noise where they are compared. A hypothesis is ruled out where the most likely one explains the
+// readings (chi-square, 1 in 1000) and is at least a thousand times as likely.
 
 #include <cstddef>
 #include <optional>
@@ -52,16 +52,16 @@ struct GaugeFit {
   std::size_t free = 2;
   std::vector<double> predicted_mm;  ///< per reading, cut as the readings are
   double rms_mm = 0;                 ///< of reading minus prediction, both cut
-  double chi_square = 0;
-  bool passes = false;  ///< explains the readings
+  double tolerance_mm = 0;  ///< allowed beside the noise where it is compared with the most likely one
+  bool explains = false;    ///< the readings
   bool ruled_out = false;
   double behind = 0;  ///< log likelihood ratio of the most likely hypothesis over this one
 };
 
 enum class GaugeOutcome {
-  decided,      ///< at least one hypothesis is ruled out
+  decided,      ///< at least one hypothesis is ruled out, or there is only one and it fits
   undecided,    ///< the readings fit more than one: too noisy, or not where the hypotheses differ
-  unexplained,  ///< they fit none
+  unexplained,  ///< they fit none; what is much further off than another one may be ruled out all the same
   uncovered,    ///< they cover less than half of what the logs have read: nothing is judged
 };
 [[nodiscard]] const char* name_of(GaugeOutcome outcome);
@@ -74,7 +74,6 @@ struct GaugeCheck {
   double covered_share = 0;    ///< of the logs' readings
   double repeat_noise_mm = 0;  ///< 0: no position came twice
   double noise_mm = 0;         ///< that was used
-  double tolerance_mm = 0;     ///< allowed beside it
   std::vector<GaugeFit> fits;  ///< in the order of the hypotheses
   std::size_t best = 0;        ///< the most likely one
   /// Of the best over the next; 0 with a single hypothesis.

@@ -27,6 +27,7 @@ struct Standing {
 struct Explanation {
   std::vector<std::size_t> standing;  ///< by place, index among those that may stand there
   std::size_t shape = 0;
+  bool implied = false;  ///< one of them is
 };
 
 /// What the sensor may be instead of the actuator or the load, or the reverse.
@@ -79,10 +80,16 @@ class Weighing {
   GaugeEvidence run() {
     evidence_.file = question_.file;
     for (std::size_t place = 0; place < selection_.chosen.size(); ++place) add_place(place);
-    explain();
-    evidence_.check =
-        check_gauge(question_.file.readings, shapes_, scales_of(data_.records, question_.noise_mm));
-    if (evidence_.check.outcome == GaugeOutcome::decided) settle();
+    asked_ = is_asked();
+    const GaugeScales scales = scales_of(data_.records, question_.noise_mm);
+    explain(false);
+    evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
+    // What the logs have ruled out comes back only where nothing that they left fits.
+    const std::size_t left_by_logs = shapes_.size();
+    if (evidence_.check.outcome == GaugeOutcome::unexplained) explain(true);
+    if (shapes_.size() > left_by_logs)
+      evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
+    if (evidence_.check.outcome != GaugeOutcome::uncovered) settle();
     speak();
     return std::move(evidence_);
   }
@@ -127,11 +134,16 @@ class Weighing {
     return fit_structure(data_.records, std::move(rest), point);
   }
 
-  /// Every combination of what may stand, with the sensor that it makes.
-  void explain() {
+  /// Every combination of what may stand, with the sensor that it makes; those with implied causes besides.
+  void explain(bool with_implied) {
     std::vector<std::size_t> at(places_.size(), 0);
+    explanations_.clear();
     while (true) {
-      if (auto shape = shape_of(at)) explanations_.push_back({at, number_of(std::move(*shape))});
+      bool implied = false;
+      for (std::size_t place = 0; place < at.size(); ++place) implied |= places_[place][at[place]].implied;
+      if (!implied || with_implied) {
+        if (auto shape = shape_of(at)) explanations_.push_back({at, number_of(std::move(*shape)), implied});
+      }
       std::size_t place = 0;
       while (place < at.size() && ++at[place] == places_[place].size()) at[place++] = 0;
       if (place == at.size()) return;
@@ -172,6 +184,8 @@ class Weighing {
   }
 
   void settle() {
+    const std::vector<GaugeFit>& fits = evidence_.check.fits;
+    if (std::none_of(fits.begin(), fits.end(), [](const GaugeFit& fit) { return fit.ruled_out; })) return;
     std::vector<std::size_t> now(places_.size(), 0);
     std::vector<bool> brought_in(places_.size(), false);
     for (std::size_t place = 0; place < places_.size(); ++place) {
@@ -281,7 +295,7 @@ class Weighing {
   }
 
   /// Whether the logs' own verdict leaves open what the sensor is.
-  [[nodiscard]] bool asked() const {
+  [[nodiscard]] bool is_asked() const {
     return std::any_of(places_.begin(), places_.end(), [](const std::vector<Standing>& standing) {
       return std::any_of(standing.begin(), standing.end(), [&](const Standing& s) {
         return !s.implied && gauge_tells_apart(s.cause, standing.front().cause);
@@ -290,21 +304,32 @@ class Weighing {
   }
 
   [[nodiscard]] std::string sentence_decided() const {
-    const GaugeCheck& check = evidence_.check;
-    const GaugeFit& best = check.fits[check.best];
-    std::string left;
-    std::size_t count = 0;
-    for (const GaugeFit& fit : check.fits) {
-      if (fit.ruled_out) continue;
-      left += (count++ == 0 ? "" : " and ") + in_words(fit.shape);
-    }
-    if (count > 1) return "The gauge leaves " + left + " open and rules out what else these logs allowed.";
+    const GaugeFit& best = evidence_.check.fits[evidence_.check.best];
     if (best.shape.blocks.empty()) {
       return "The gauge shows a straight sensor " + covered() + ", to " + mm(best.rms_mm) +
              ": what bends these readings is the finger or what it meets, not the sensor.";
     }
     return "The gauge shows the sensor " + bend_in_words() + ", as these logs ask for, to " +
            mm(best.rms_mm) + ": the sensor is to blame, not the finger.";
+  }
+
+  /// Where more than one shape is left.
+  [[nodiscard]] std::string sentence_open(bool bent) const {
+    const GaugeCheck& check = evidence_.check;
+    std::string left, out;
+    for (const GaugeFit& fit : check.fits) {
+      std::string& list = fit.ruled_out ? out : left;
+      list += (list.empty() ? "" : ", ") + in_words(fit.shape);
+    }
+    const std::string besides = out.empty() ? "" : " It rules out: " + out + ".";
+    if (check.outcome != GaugeOutcome::unexplained) {
+      return "The gauge does not tell: its readings fit alike " + left + " (" + mm(check.noise_mm) +
+             " of noise). Read up to the largest reading of the logs and beyond it, more often, or with a "
+             "better gauge." +
+             besides;
+    }
+    return "The gauge shows a sensor that is neither straight nor as these logs ask for" +
+           (bent ? ": it is " + bend_in_words() + ". A bend, but not this one." : std::string(".")) + besides;
   }
 
   void speak() {
@@ -318,26 +343,20 @@ class Weighing {
     }
     const GaugeCheck::Departure departure = check.departure();
     const bool bent = departure.clear && departure.rms_mm > worth_telling * question_.noise_mm;
-    const bool decided = check.outcome == GaugeOutcome::decided && check.fits.size() > 1;
-    std::string& text = evidence_.sentence;
-    if (decided) {
-      text = sentence_decided();
-    } else if (asked() && check.outcome == GaugeOutcome::undecided) {
-      text =
-          "The gauge does not tell: its readings fit a straight sensor and what these logs ask for alike (" +
-          mm(check.noise_mm) +
-          " of noise). Read up to the largest reading of the logs and beyond it, more often, or with a "
-          "better gauge.";
-    } else if (asked()) {
-      text = "The gauge shows a sensor that is neither straight nor as these logs ask for";
-      text += bent ? ": it is " + bend_in_words() + ". A bend, but not this one." : ".";
+    const auto left = std::count_if(check.fits.begin(), check.fits.end(),
+                                    [](const GaugeFit& fit) { return !fit.ruled_out; });
+    const bool settled = left == 1 && check.fits.size() > 1;
+    if (settled) {
+      evidence_.sentence = sentence_decided();
+    } else if (asked_) {
+      evidence_.sentence = sentence_open(bent);
     } else {
-      text = bent ? "The gauge shows the sensor " + bend_in_words() + "."
-                  : "The gauge shows a straight sensor " + covered() + ".";
+      evidence_.sentence = bent ? "The gauge shows the sensor " + bend_in_words() + "."
+                                : "The gauge shows a straight sensor " + covered() + ".";
     }
-    if (!decided && bent) doubt();
+    if (!settled && bent) doubt();
     if (bent && check.fits[check.best].shape.blocks.empty()) tell_of_bend();
-    if (asked() && check.outcome == GaugeOutcome::unexplained) {
+    if (asked_ && !settled && check.outcome == GaugeOutcome::unexplained) {
       warnings_.push_back("the gauge readings fit no explanation of these logs (" +
                           mm(check.fits[check.best].rms_mm) + " are left at best, their noise is " +
                           mm(check.noise_mm) + "): the verdict stays open");
@@ -368,6 +387,7 @@ class Weighing {
   std::vector<std::vector<Standing>> places_;
   std::vector<SensorShape> shapes_;
   std::vector<Explanation> explanations_;
+  bool asked_ = false;
   GaugeEvidence evidence_;
 };
 

@@ -25,9 +25,9 @@ Table hypotheses_table(const GaugeCheck& check) {
   table.numeric = {false, true, true, false};
   for (const GaugeFit& fit : check.fits) {
     table.rows.push_back({title_of(fit), significant(fit.rms_mm, 3), significant(fit.behind, 3),
-                          fit.ruled_out ? "ruled out"
-                          : fit.passes  ? "explains the readings"
-                                        : "does not explain the readings"});
+                          fit.ruled_out  ? "ruled out"
+                          : fit.explains ? "explains the readings"
+                                         : "does not explain the readings"});
   }
   return table;
 }
@@ -77,13 +77,14 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
                   "), beside the straight line that fits best; dashed: ruled out. Readings are "
                   "cut a little beyond what the logs have read.");
   page.table(hypotheses_table(check));
-  page.paragraph(
-      "Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
-      significant(check.noise_mm, 2) + " mm (readings at one position differ by " +
-      significant(check.repeat_noise_mm, 2) + "); beside it " + significant(check.tolerance_mm, 2) +
-      " mm are allowed, a fifth of what the hypotheses differ by. Ruled out is what is a thousand times "
-      "less likely than a hypothesis that explains the readings (" +
-      significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
+  page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
+                 significant(check.noise_mm, 2) + " mm (readings at one position differ by " +
+                 significant(check.repeat_noise_mm, 2) +
+                 "); a fifth of what two hypotheses differ by is allowed beside it where they are compared. "
+                 "Ruled out is "
+                 "what is a thousand times less likely than the most likely hypothesis, if that explains the "
+                 "readings (" +
+                 significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
 }
 
 }  // namespace softgrip::sysid

@@ -25,7 +25,7 @@ std::optional<std::string> TerminalOperator::answer() {
     std::fprintf(stderr, "%s\n", next.c_str());
     return next;
   }
-  if (const auto line = take_line()) return line;
+  if (auto line = take_line()) return line;
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (closed_ || ::poll(&input, 1, 0) <= 0) return std::nullopt;
   char bytes[256];

@@ -162,6 +162,31 @@ TEST(GaugeCheck, TellsABendFromAnEnd) {
   EXPECT_FALSE(of(check, "sensor_saturation").ruled_out);
 }
 
+/// What is far off goes, and does not blur what is left.
+TEST(GaugeCheck, AHypothesisThatIsFarOffMakesTheOthersNoBetter) {
+  const std::vector<SensorShape> hypotheses{{}, bend_of_logs(0.4), end_of_logs(15)};
+  const GaugeScales fine{0.01, -0.1, span_mm};
+  const GaugeCheck half = check_gauge(read(bent(0.2), 0.01), hypotheses, fine);
+  EXPECT_EQ(half.outcome, GaugeOutcome::unexplained);
+  EXPECT_TRUE(of(half, "sensor_saturation").ruled_out);
+  EXPECT_FALSE(of(half, "straight").ruled_out);
+  EXPECT_FALSE(of(half, "sensor_nonlinearity").ruled_out);
+  const GaugeCheck whole = check_gauge(read(bent(0.4), 0.01), hypotheses, fine);
+  EXPECT_EQ(whole.outcome, GaugeOutcome::decided);
+  EXPECT_TRUE(of(whole, "straight").ruled_out);
+  EXPECT_TRUE(of(whole, "sensor_saturation").ruled_out);
+}
+
+/// A single hypothesis is what the logs are sure of: no bend that they could not see speaks against it.
+TEST(GaugeCheck, AStraightSensorMayBeBentByLessThanAnyLogCouldTell) {
+  for (const double bow_mm : {0.02, 0.3}) {
+    std::vector<GaugeReading> readings = read(bent(bow_mm), 0.001);
+    for (GaugeReading& r : readings) r.samples = 200;
+    const GaugeCheck check = check_gauge(readings, {SensorShape{}}, GaugeScales{0.04, 0, span_mm});
+    EXPECT_EQ(check.outcome, bow_mm < 0.1 ? GaugeOutcome::decided : GaugeOutcome::unexplained) << bow_mm;
+  }
+}
+
 TEST(GaugeCheck, AGaugeThatCountsTheOtherWayOrInInchesSaysTheSame) {
   for (const double scale : {-1.0, 1 / 25.4}) {
     const auto readings = read(bent(0.4), 0.01, planned_positions(span_mm), 7 * scale, scale);
