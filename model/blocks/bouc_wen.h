@@ -168,8 +168,10 @@ class BoucWen {
   /// dh/dp where the block stands, for a pressure that rises or falls from here [mm/kPa].
   [[nodiscard]] T slope(bool rising) const { return slope_at(hysteresis_, rising ? 1.0 : -1.0); }
   [[nodiscard]] const T& alpha_mm_per_kpa() const { return alpha_; }
-  /// While the pressure rises.
-  [[nodiscard]] const T& beta_mm_per_kpa() const { return beta_[1]; }
+  /// Of loading or unloading, whichever is larger.
+  [[nodiscard]] const T& beta_mm_per_kpa() const {
+    return value_of(beta_[0]) > value_of(beta_[1]) ? beta_[0] : beta_[1];
+  }
 
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T change = in.end - in.begin;

@@ -239,9 +239,7 @@ bool is_fitted(const Cause& cause, const model::BlockSpec& block, std::size_t in
   if (cause.id == "supply_sag") return index == 0;
   if (cause.id == "sensor_nonlinearity") return index < 2;
   if (cause.id == "sensor_saturation") return index == 1;
-  if (cause.id == "asymmetric_hysteresis") {
-    return (index < 3) == (v[0] != 0);
-  }
+  if (cause.id == "asymmetric_hysteresis") return (index < 3) == (v[0] != 0);
   if (cause.id == "rate_dependent_hysteresis") {
     if (index == 4 || index == 5) return v[3] != 0 || v[6] != 0;
     return index < 3 ? v[0] != 0 : v[index] != 0;
