@@ -53,6 +53,17 @@ class WholeTrajectory final : public ceres::CostFunction {
   double huber_mm_;
 };
 
+struct PlainFunctor {
+  const PlainResiduals& residuals;
+  std::size_t numbers;
+  std::size_t count;
+
+  bool operator()(double const* const* parameters, double* r) const {
+    residuals({parameters[0], numbers}, {r, count});
+    return true;
+  }
+};
+
 double rmse(const Residuals& residuals, const std::vector<double>& z) {
   std::vector<double> r(residuals.count());
   if (!residuals.evaluate(z, r, {})) return std::numeric_limits<double>::infinity();
@@ -107,6 +118,26 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
                         : std::sqrt(2 * summary.final_cost / static_cast<double>(residuals.count()));
   minimum.z = std::move(z);
   return minimum;
+}
+
+PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, std::vector<double> start) {
+  quieten_log();
+  auto* cost = new ceres::DynamicNumericDiffCostFunction<PlainFunctor, ceres::CENTRAL>(
+      new PlainFunctor{residuals, start.size(), count});
+  cost->AddParameterBlock(static_cast<int>(start.size()));
+  cost->SetNumResiduals(static_cast<int>(count));
+  ceres::Problem problem;
+  problem.AddResidualBlock(cost, nullptr, start.data());
+  ceres::Solver::Options solver;
+  solver.logging_type = ceres::SILENT;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.num_threads = 1;
+  solver.max_num_iterations = 100;
+  solver.function_tolerance = 1e-12;
+  solver.gradient_tolerance = 0;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  return {std::move(start), 2 * summary.final_cost};
 }
 
 }  // namespace softgrip::sysid

@@ -1,9 +1,11 @@
 #pragma once
 // Least squares with bounds from a given point, by Ceres' trust region.
 
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <optional>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "sysid/residuals.h"
@@ -34,5 +36,18 @@ struct Minimum {
 /// @param z  the start, brought within the bounds first.
 [[nodiscard]] Minimum minimise(const Residuals& residuals, std::vector<double> z,
                                const MinimiseOptions& options = {});
+
+/// Fills `r` at the point `p`.
+using PlainResiduals = std::function<void(std::span<const double> p, std::span<double> r)>;
+
+struct PlainMinimum {
+  std::vector<double> p;
+  double sum_of_squares = 0;
+};
+
+/// Of a few numbers without bounds that are no model's, with differences for derivatives.
+/// @param count  how many residuals.
+[[nodiscard]] PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count,
+                                          std::vector<double> start);
 
 }  // namespace softgrip::sysid

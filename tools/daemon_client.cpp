@@ -131,4 +131,9 @@ ClientFailure DaemonClient::gone() const {
   return {ExitCode::io, "the daemon at " + path_ + " closed the connection"};
 }
 
+bool daemon_runs(const std::string& path) {
+  const auto client = DaemonClient::connect(path);
+  return client.has_value() || !client.error().nobody_listens;
+}
+
 }  // namespace softgrip::tools

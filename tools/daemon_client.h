@@ -53,4 +53,10 @@ class DaemonClient {
   std::string pending_;
 };
 
+/// Whether a daemon runs on that socket, be it that it does not answer: it holds the board then.
+[[nodiscard]] bool daemon_runs(const std::string& path);
+/// What to do about one that must not.
+inline constexpr const char* stop_the_daemon =
+    "softgripd runs and holds the board: stop it first (systemctl stop softgripd)";
+
 }  // namespace softgrip::tools

@@ -96,17 +96,12 @@ class Designer {
     std::vector<Cause> rivals = named.rivals;
     if (rivals.empty() && options_.always) rivals = next_best(named);
     if (rivals.size() > most_rivals) rivals.resize(most_rivals);
-    const auto stands = std::find_if(d_.extended.causes.begin(), d_.extended.causes.end(),
-                                     [&](const Cause& c) { return c.type == named.cause.type; });
-    if (rivals.empty() || stands == d_.extended.causes.end()) return;
-    StructureFit rest = d_.recalibrated;
-    if (d_.extended.causes.size() > 1) {
-      std::vector<Cause> others = d_.extended.causes;
-      others.erase(others.begin() + (stands - d_.extended.causes.begin()));
-      FitPoint point = d_.extended.point;
-      point.model = model::without_block(point.model, named.cause.type);
-      rest = fit_structure(data_.records, std::move(others), point);
-    }
+    const bool stands = std::any_of(d_.extended.causes.begin(), d_.extended.causes.end(),
+                                    [&](const Cause& c) { return c.type == named.cause.type; });
+    if (rivals.empty() || !stands) return;
+    const StructureFit rest = d_.extended.causes.size() > 1
+                                  ? fit_without_cause(data_.records, d_.extended, named.cause)
+                                  : d_.recalibrated;
     add_contest(rest, rivals, std::string(named.cause.id), d_.extended);
   }
 
@@ -240,15 +235,10 @@ class Designer {
   }
 
   void propose_gauge_check(std::vector<std::string> separates) {
-    double largest_mm = 0, smallest_mm = 0;
-    for (const Record& record : d_.records) {
-      for (const double y : record.reading_mm) {
-        if (y > largest_mm) largest_mm = y;
-        if (y < smallest_mm) smallest_mm = y;
-      }
-    }
+    const GaugeScales scales = gauge_scales(d_.records, d_.noise_mm);
     ProposedGaugeCheck check;
-    check.positions_mm = planned_positions(largest_mm > -smallest_mm ? largest_mm : smallest_mm);
+    check.positions_mm =
+        planned_positions(scales.highest_mm > -scales.lowest_mm ? scales.highest_mm : scales.lowest_mm);
     if (check.positions_mm.empty()) return;
     check.separates = std::move(separates);
     check.minutes = minutes_for(check.positions_mm.size());

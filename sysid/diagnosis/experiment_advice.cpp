@@ -5,6 +5,7 @@
 
 #include "sysid/diagnosis/cause.h"
 #include "sysid/diagnosis/experiment.h"
+#include "sysid/diagnosis/gauge_file.h"
 #include "sysid/numbers.h"
 
 namespace softgrip::sysid {
@@ -64,16 +65,14 @@ std::vector<std::string> advice_for(std::string_view one, std::string_view other
 }
 
 std::string gauge_advice(const std::vector<double>& positions_mm, const std::vector<std::string>& separates) {
-  const auto [least, most] = std::minmax_element(positions_mm.begin(), positions_mm.end());
-  std::vector<double> distinct = positions_mm;
-  std::sort(distinct.begin(), distinct.end());
-  distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+  const std::vector<double> distinct = distinct_positions(positions_mm);
   std::string ids;
   for (std::size_t i = 0; i < separates.size(); ++i)
     ids += (i == 0 ? "" : i + 1 == separates.size() ? " and " : ", ") + separates[i];
   return "check the sensor against a gauge: " + ids +
          " give equal readings whatever the pressure. Put the target at " + std::to_string(distinct.size()) +
-         " known positions from " + significant(*least, 3) + " to " + significant(*most, 3) +
+         " known positions from " + significant(distinct.front(), 3) + " to " +
+         significant(distinct.back(), 3) +
          " mm, up, down and up again, write what the sensor reads beside each of them in " +
          gauge_positions_file + ", and diagnose again with --gauge " + gauge_positions_file;
 }

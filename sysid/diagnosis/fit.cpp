@@ -86,4 +86,16 @@ StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause
   return fit;
 }
 
+StructureFit without_cause(StructureFit fit, const Cause& cause) {
+  std::erase_if(fit.causes, [&](const Cause& c) { return c.type == cause.type; });
+  fit.point.model = model::without_block(std::move(fit.point.model), cause.type);
+  return fit;
+}
+
+StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
+                               const Cause& cause) {
+  StructureFit rest = without_cause(fit, cause);
+  return fit_structure(records, std::move(rest.causes), rest.point);
+}
+
 }  // namespace softgrip::sysid

@@ -43,4 +43,10 @@ struct FitEffort {
 [[nodiscard]] StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                               const FitPoint& point);
 
+/// The structure without one of its causes, as it stands: its residuals are still those with the cause.
+[[nodiscard]] StructureFit without_cause(StructureFit fit, const Cause& cause);
+/// The same, fitted again from there.
+[[nodiscard]] StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
+                                             const Cause& cause);
+
 }  // namespace softgrip::sysid

@@ -5,12 +5,12 @@
 #include <functional>
 #include <limits>
 #include <map>
-
-#include <Eigen/Dense>
+#include <span>
 
 #include "model/blocks/sensor_nonlinearity.h"
 #include "model/blocks/sensor_saturation.h"
 #include "model/catalogue.h"
+#include "sysid/minimise.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -59,71 +59,6 @@ Line line_through(const std::vector<GaugeReading>& readings, const std::vector<d
   return {(sy - slope * sx) / n, slope};
 }
 
-/// Least squares of a few parameters with differences for derivatives (Levenberg 1944, Marquardt 1963).
-class SmallFit {
- public:
-  using Model = std::function<std::vector<double>(const Eigen::VectorXd&)>;
-
-  SmallFit(const std::vector<double>& wanted, Model model) : wanted_(wanted), model_(std::move(model)) {}
-
-  Eigen::VectorXd from(Eigen::VectorXd p) const {
-    double damping = 1e-3;
-    Eigen::VectorXd r = residual(p);
-    for (int i = 0; i < most_iterations; ++i) {
-      const Eigen::MatrixXd jacobian = derivative(p, r);
-      Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-      const Eigen::VectorXd gradient = jacobian.transpose() * r;
-      bool better = false;
-      while (!better && damping < 1e12) {
-        Eigen::MatrixXd damped = normal;
-        damped.diagonal() += damping * (normal.diagonal().array() + 1e-12).matrix();
-        const Eigen::VectorXd next = p - damped.ldlt().solve(gradient);
-        const Eigen::VectorXd left = residual(next);
-        better = left.squaredNorm() < r.squaredNorm();
-        if (!better) {
-          damping *= 4;
-          continue;
-        }
-        const double gained = r.squaredNorm() - left.squaredNorm();
-        p = next;
-        const bool converged = gained < 1e-12 * r.squaredNorm();
-        r = left;
-        damping = std::max(damping / 4, 1e-12);
-        if (converged) return p;
-      }
-      if (!better) return p;
-    }
-    return p;
-  }
-
-  [[nodiscard]] double left(const Eigen::VectorXd& p) const { return residual(p).squaredNorm(); }
-
- private:
-  static constexpr int most_iterations = 100;
-
-  [[nodiscard]] Eigen::VectorXd residual(const Eigen::VectorXd& p) const {
-    const std::vector<double> predicted = model_(p);
-    Eigen::VectorXd r(static_cast<Eigen::Index>(wanted_.size()));
-    for (std::size_t i = 0; i < wanted_.size(); ++i)
-      r[static_cast<Eigen::Index>(i)] = predicted[i] - wanted_[i];
-    return r;
-  }
-
-  [[nodiscard]] Eigen::MatrixXd derivative(const Eigen::VectorXd& p, const Eigen::VectorXd& at) const {
-    Eigen::MatrixXd jacobian(at.size(), p.size());
-    for (Eigen::Index j = 0; j < p.size(); ++j) {
-      const double step = 1e-6 * std::max(1.0, std::abs(p[j]));
-      Eigen::VectorXd moved = p;
-      moved[j] += step;
-      jacobian.col(j) = (residual(moved) - at) / step;
-    }
-    return jacobian;
-  }
-
-  const std::vector<double>& wanted_;
-  Model model_;
-};
-
 class Checker {
  public:
   Checker(const std::vector<GaugeReading>& readings, const GaugeScales& scales)
@@ -137,9 +72,9 @@ class Checker {
   }
 
   GaugeCheck run(const std::vector<SensorShape>& hypotheses) {
-    for (const SensorShape& shape : hypotheses) result_.fits.push_back(fitted(shape, {}));
+    for (const SensorShape& shape : hypotheses) result_.fits.push_back(fitted(shape));
     const double offset_mm = hypotheses.front().offset_mm;
-    result_.straight = fitted({{}, offset_mm}, {});
+    result_.straight = fitted({{}, offset_mm});
     result_.free_bend = freely_bent(offset_mm);
     result_.free_end = freely_ending(offset_mm);
     compare();
@@ -198,46 +133,44 @@ class Checker {
     return lines;
   }
 
+  using Numbers = std::span<const double>;
+
   /// Fits zero and scale, and `own` further numbers that `shape_of` makes a shape of.
-  [[nodiscard]] GaugeFit fitted_with(const std::function<SensorShape(const Eigen::VectorXd&)>& shape_of,
+  [[nodiscard]] GaugeFit fitted_with(const std::function<SensorShape(Numbers own)>& shape_of,
                                      const std::vector<std::vector<double>>& own, double offset_mm) const {
-    const SmallFit fit(result_.cut_mm,
-                       [&](const Eigen::VectorXd& p) { return predicted(shape_of(p), p[0], p[1]); });
-    Eigen::VectorXd best;
-    double least = std::numeric_limits<double>::infinity();
+    const auto residuals = [&](Numbers p, std::span<double> r) {
+      const std::vector<double> values = predicted(shape_of(p.subspan(2)), p[0], p[1]);
+      for (std::size_t i = 0; i < r.size(); ++i) r[i] = values[i] - result_.cut_mm[i];
+    };
+    PlainMinimum best{{}, std::numeric_limits<double>::infinity()};
     for (const Line& line : starts(offset_mm)) {
       for (const std::vector<double>& more : own) {
-        Eigen::VectorXd p(static_cast<Eigen::Index>(2 + more.size()));
-        p[0] = line.first;
-        p[1] = line.second;
-        for (std::size_t i = 0; i < more.size(); ++i) p[static_cast<Eigen::Index>(2 + i)] = more[i];
-        p = fit.from(p);
-        const double left = fit.left(p);
-        if (left >= least) continue;
-        least = left;
-        best = p;
+        std::vector<double> p{line.first, line.second};
+        p.insert(p.end(), more.begin(), more.end());
+        PlainMinimum found = minimise_plain(residuals, readings_.size(), std::move(p));
+        if (found.sum_of_squares < best.sum_of_squares) best = std::move(found);
       }
     }
     GaugeFit result;
-    result.shape = shape_of(best);
-    result.zero_mm = best[0];
-    result.scale = best[1];
-    result.free = static_cast<std::size_t>(best.size());
-    result.predicted_mm = predicted(result.shape, best[0], best[1]);
-    result.rms_mm = std::sqrt(least / static_cast<double>(readings_.size()));
+    result.shape = shape_of(Numbers(best.p).subspan(2));
+    result.zero_mm = best.p[0];
+    result.scale = best.p[1];
+    result.free = best.p.size();
+    result.predicted_mm = predicted(result.shape, result.zero_mm, result.scale);
+    result.rms_mm = std::sqrt(best.sum_of_squares / static_cast<double>(readings_.size()));
     return result;
   }
 
-  [[nodiscard]] GaugeFit fitted(const SensorShape& shape, const std::vector<double>& own) const {
-    return fitted_with([&](const Eigen::VectorXd&) { return shape; }, {own}, shape.offset_mm);
+  [[nodiscard]] GaugeFit fitted(const SensorShape& shape) const {
+    return fitted_with([&](Numbers) { return shape; }, {{}}, shape.offset_mm);
   }
 
   [[nodiscard]] GaugeFit freely_bent(double offset_mm) const {
     const auto type = *model::find_block("sensor_nonlinearity");
     const double range_mm = std::max(1e-3, scales_.highest_mm - std::min(0.0, scales_.lowest_mm));
     return fitted_with(
-        [=](const Eigen::VectorXd& p) {
-          return SensorShape{{{type, {p[2], p[3], range_mm}}}, offset_mm};
+        [=](Numbers bend) {
+          return SensorShape{{{type, {bend[0], bend[1], range_mm}}}, offset_mm};
         },
         {{0, 0}, {0.05 * range_mm, 0}, {-0.05 * range_mm, 0}}, offset_mm);
   }
@@ -249,8 +182,8 @@ class Checker {
     const double span = scales_.highest_mm - scales_.lowest_mm;
     for (const double share : {0.0, 0.05, 0.15, 0.3, 0.5}) ends.push_back({highest - share * span});
     return fitted_with(
-        [=](const Eigen::VectorXd& p) {
-          return SensorShape{{{type, {-1e4, std::max(p[2], -9e3)}}}, offset_mm};
+        [=](Numbers end) {
+          return SensorShape{{{type, {-1e4, std::max(end[0], -9e3)}}}, offset_mm};
         },
         ends, offset_mm);
   }
@@ -395,15 +328,6 @@ GaugeCheck::Departure GaugeCheck::departure() const {
 GaugeCheck check_gauge(const std::vector<GaugeReading>& readings, const std::vector<SensorShape>& hypotheses,
                        const GaugeScales& scales) {
   return Checker(readings, scales).run(hypotheses);
-}
-
-std::vector<double> beside_straight_line(const std::vector<GaugeReading>& readings,
-                                         const std::vector<double>& values_mm) {
-  const Line line = line_through(readings, values_mm, [](std::size_t) { return true; });
-  std::vector<double> beside;
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    beside.push_back(values_mm[i] - line.first - line.second * readings[i].position_mm);
-  return beside;
 }
 
 }  // namespace softgrip::sysid

@@ -100,8 +100,4 @@ inline constexpr double gauge_log_likelihood_needed = 6.9;  ///< ln 1000
 [[nodiscard]] GaugeCheck check_gauge(const std::vector<GaugeReading>& readings,
                                      const std::vector<SensorShape>& hypotheses, const GaugeScales& scales);
 
-/// `values_mm` minus the straight line over the positions that fits them best.
-[[nodiscard]] std::vector<double> beside_straight_line(const std::vector<GaugeReading>& readings,
-                                                       const std::vector<double>& values_mm);
-
 }  // namespace softgrip::sysid

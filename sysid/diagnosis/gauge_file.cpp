@@ -156,14 +156,18 @@ std::string format_gauge(const std::vector<GaugeReading>& readings) {
   return text;
 }
 
+std::vector<double> distinct_positions(std::vector<double> positions_mm) {
+  std::sort(positions_mm.begin(), positions_mm.end());
+  const auto same = [](double a, double b) { return b - a < same_mm; };
+  positions_mm.erase(std::unique(positions_mm.begin(), positions_mm.end(), same), positions_mm.end());
+  return positions_mm;
+}
+
 std::vector<double> distinct_positions(const std::vector<GaugeReading>& readings) {
   std::vector<double> positions;
   positions.reserve(readings.size());
   for (const GaugeReading& r : readings) positions.push_back(r.position_mm);
-  std::sort(positions.begin(), positions.end());
-  const auto same = [](double a, double b) { return b - a < same_mm; };
-  positions.erase(std::unique(positions.begin(), positions.end(), same), positions.end());
-  return positions;
+  return distinct_positions(std::move(positions));
 }
 
 std::vector<double> planned_positions(double largest_reading_mm) {

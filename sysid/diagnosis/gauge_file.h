@@ -43,7 +43,9 @@ inline constexpr std::size_t fewest_gauge_positions = 3;
 /// The CSV text; parse_gauge() of it gives the same readings.
 [[nodiscard]] std::string format_gauge(const std::vector<GaugeReading>& readings);
 
-/// The different positions, rising.
+/// The different ones, rising.
+[[nodiscard]] std::vector<double> distinct_positions(std::vector<double> positions_mm);
+/// Those of readings.
 [[nodiscard]] std::vector<double> distinct_positions(const std::vector<GaugeReading>& readings);
 
 /// Where to read: from 0 to about 1.3 times the largest reading of the logs, so that an end of the sensor

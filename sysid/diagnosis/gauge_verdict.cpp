@@ -8,6 +8,7 @@
 
 #include "model/catalogue.h"
 #include "sysid/diagnosis/leftover.h"
+#include "sysid/diagnosis/twins.h"
 #include "sysid/numbers.h"
 
 namespace softgrip::sysid {
@@ -27,17 +28,7 @@ struct Standing {
 struct Explanation {
   std::vector<std::size_t> standing;  ///< by place, index among those that may stand there
   std::size_t shape = 0;
-  bool implied = false;  ///< one of them is
 };
-
-/// What the sensor may be instead of the actuator or the load, or the reverse.
-std::vector<std::string_view> counterparts(std::string_view id) {
-  if (id == "stiffening") return {"sensor_nonlinearity"};
-  if (id == "contact") return {"sensor_saturation", "sensor_nonlinearity"};
-  if (id == "sensor_nonlinearity") return {"stiffening"};
-  if (id == "sensor_saturation") return {"contact"};
-  return {};
-}
 
 std::string in_words(const SensorShape& shape) {
   std::string text;
@@ -50,19 +41,6 @@ std::string in_words(const SensorShape& shape) {
 
 std::string mm(double value) {
   return significant(value, 2) + " mm";
-}
-
-GaugeScales scales_of(const std::vector<Record>& records, double noise_mm) {
-  GaugeScales scales{noise_mm, std::numeric_limits<double>::infinity(),
-                     -std::numeric_limits<double>::infinity()};
-  for (const Record& record : records) {
-    for (const double y : record.reading_mm) {
-      if (std::isnan(y)) continue;
-      scales.lowest_mm = std::min(scales.lowest_mm, y);
-      scales.highest_mm = std::max(scales.highest_mm, y);
-    }
-  }
-  return scales;
 }
 
 double mean_offset_mm(const FitPoint& point) {
@@ -81,7 +59,7 @@ class Weighing {
     evidence_.file = question_.file;
     for (std::size_t place = 0; place < selection_.chosen.size(); ++place) add_place(place);
     asked_ = is_asked();
-    const GaugeScales scales = scales_of(data_.records, question_.noise_mm);
+    const GaugeScales scales = gauge_scales(data_.records, question_.noise_mm);
     explain(false);
     evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
     // What the logs have ruled out comes back only where nothing that they left fits.
@@ -100,10 +78,9 @@ class Weighing {
     std::vector<Standing> standing{{chosen.cause, selection_.extended, false}};
     std::vector<Cause> others = chosen.rivals;
     const std::size_t rivals = others.size();
-    for (const std::string_view id : counterparts(chosen.cause.id)) {
-      const auto cause = find_cause(id);
-      const auto same = [&](const Cause& c) { return c.type == cause->type; };
-      if (cause && std::none_of(others.begin(), others.end(), same)) others.push_back(*cause);
+    for (const Cause& cause : sensor_counterparts(chosen.cause)) {
+      const auto same = [&](const Cause& c) { return c.type == cause.type; };
+      if (std::none_of(others.begin(), others.end(), same)) others.push_back(cause);
     }
     // Where no sensor that is bent or ends is among them, a gauge has nothing to say.
     std::vector<Cause> all = others;
@@ -124,14 +101,8 @@ class Weighing {
   }
 
   [[nodiscard]] StructureFit without(std::size_t place) const {
-    const StructureFit& extended = selection_.extended;
-    if (extended.causes.size() == 1) return selection_.base;
-    const std::size_t type = selection_.chosen[place].cause.type;
-    std::vector<Cause> rest = extended.causes;
-    std::erase_if(rest, [&](const Cause& c) { return c.type == type; });
-    FitPoint point = extended.point;
-    point.model = model::without_block(point.model, type);
-    return fit_structure(data_.records, std::move(rest), point);
+    if (selection_.extended.causes.size() == 1) return selection_.base;
+    return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
   }
 
   /// Every combination of what may stand, with the sensor that it makes; those with implied causes besides.
@@ -142,7 +113,7 @@ class Weighing {
       bool implied = false;
       for (std::size_t place = 0; place < at.size(); ++place) implied |= places_[place][at[place]].implied;
       if (!implied || with_implied) {
-        if (auto shape = shape_of(at)) explanations_.push_back({at, number_of(std::move(*shape)), implied});
+        if (auto shape = shape_of(at)) explanations_.push_back({at, number_of(std::move(*shape))});
       }
       std::size_t place = 0;
       while (place < at.size() && ++at[place] == places_[place].size()) at[place++] = 0;
@@ -368,8 +339,7 @@ class Weighing {
   void doubt() {
     for (ChosenCause& chosen : selection_.chosen) {
       if (!chosen.rivals.empty() || is_static_sensor(chosen.cause.type)) continue;
-      for (const std::string_view id : counterparts(chosen.cause.id))
-        chosen.rivals.push_back(*find_cause(id));
+      chosen.rivals = sensor_counterparts(chosen.cause);
     }
   }
 
@@ -397,6 +367,19 @@ bool gauge_tells_apart(const Cause& one, const Cause& other) {
   const bool first = is_static_sensor(one.type);
   const bool second = is_static_sensor(other.type);
   return first != second || (first && one.type != other.type);
+}
+
+GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm) {
+  GaugeScales scales{noise_mm, std::numeric_limits<double>::infinity(),
+                     -std::numeric_limits<double>::infinity()};
+  for (const Record& record : records) {
+    for (const double y : record.reading_mm) {
+      if (std::isnan(y)) continue;
+      scales.lowest_mm = std::min(scales.lowest_mm, y);
+      scales.highest_mm = std::max(scales.highest_mm, y);
+    }
+  }
+  return scales;
 }
 
 GaugeEvidence weigh_gauge(const GaugeQuestion& question, const SearchData& data, const Division& division,

@@ -30,6 +30,9 @@ struct GaugeQuestion {
 /// Whether a gauge could tell: the two make sensors of different static shapes.
 [[nodiscard]] bool gauge_tells_apart(const Cause& one, const Cause& other);
 
+/// What the readings of a campaign know of its sensor.
+[[nodiscard]] GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm);
+
 /// @param warnings  gets what a reader of the verdict must know besides.
 [[nodiscard]] GaugeEvidence weigh_gauge(const GaugeQuestion& question, const SearchData& data,
                                         const Division& division, Selection& selection,

@@ -27,6 +27,10 @@ constexpr double left_by_a_small_one = 0.1;
 /// is no rival whatever the blocks say.
 constexpr double rival_share = 0.05;
 
+double square(double x) {
+  return x * x;
+}
+
 class Selector {
  public:
   Selector(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
@@ -86,7 +90,7 @@ class Selector {
     const double handicap = one_more_share * mean_square_excess(current);
     const auto held_out = [&](const Scored& s) {
       if (s.losses.empty()) return std::numeric_limits<double>::infinity();
-      return rmse_mm(s.losses) * rmse_mm(s.losses) + (is_free_form(s) ? handicap : 0);
+      return square(rmse_mm(s.losses)) + (is_free_form(s) ? handicap : 0);
     };
     std::stable_sort(scored.begin(), scored.begin() + static_cast<long>(count),
                      [&](const Scored& a, const Scored& b) { return held_out(a) < held_out(b); });
@@ -102,15 +106,14 @@ class Selector {
     if (!without.causes.empty()) {
       const double was = mean_square_excess(without), left = mean_square_excess(with);
       const double share = left > left_by_a_small_one * was ? one_more_share : small_share;
-      worth = std::max(worth, share * mean_square_excess(result_.base));
+      worth = std::max(worth, share * square(result_.base_structure.excess_mm));
     }
     return difference.lower > 0 && difference.value > worth &&
            difference.value > 0.02 * rmse_mm(before) * rmse_mm(before) * 0.5;
   }
 
   [[nodiscard]] double mean_square_excess(const StructureFit& fit) const {
-    const double excess_mm = structure_of(fit.residual_mm, noise_).excess_mm;
-    return excess_mm * excess_mm;
+    return square(structure_of(fit.residual_mm, noise_).excess_mm);
   }
 
   bool add_one() {
@@ -126,19 +129,31 @@ class Selector {
     return true;
   }
 
-  void take(const Scored& best) {
-    result_.extended = *best.candidate.fit;
-    result_.extended_losses = best.losses;
+  void take(const Scored& best) { stand(*best.candidate.fit, best.losses); }
+
+  void stand(StructureFit fit, BlockLosses losses) {
+    result_.extended = std::move(fit);
+    result_.extended_losses = std::move(losses);
     result_.left = structure_of(result_.extended.residual_mm, noise_);
     fresh_.clear();
+    without_.clear();
   }
 
-  [[nodiscard]] StructureFit without(std::size_t index) const {
-    std::vector<Cause> rest = result_.extended.causes;
-    FitPoint point = result_.extended.point;
-    point.model = model::without_block(point.model, rest[index].type);
-    rest.erase(rest.begin() + static_cast<long>(index));
-    return fit_structure(data_.records, std::move(rest), point);
+  /// The structure without one of its causes. It is refitted, and judged, once for as long as the structure
+  /// stands.
+  const StructureFit& without(std::size_t index) {
+    if (result_.extended.causes.size() == 1) return result_.base;
+    std::optional<StructureFit>& fit = without_[index].fit;
+    if (!fit) fit = fit_without_cause(data_.records, result_.extended, result_.extended.causes[index]);
+    return *fit;
+  }
+
+  const BlockLosses& losses_without(std::size_t index) {
+    if (result_.extended.causes.size() == 1) return result_.base_losses;
+    const StructureFit& fit = without(index);
+    std::optional<BlockLosses>& losses = without_[index].losses;
+    if (!losses) losses = held_out_losses(data_.records, division_, fit);
+    return *losses;
   }
 
   /// Looks whether another cause serves better in an earlier one's place, now that one more is there.
@@ -159,38 +174,29 @@ class Selector {
 
   /// What was added beside a cause that was then replaced may have nothing left to do.
   bool drop_idle_one() {
-    std::optional<StructureFit> least;
-    BlockLosses losses;
-    for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) {
-      StructureFit rest = without(i);
-      BlockLosses rest_losses = held_out_losses(data_.records, division_, rest);
-      if (least && rmse_mm(rest_losses) >= rmse_mm(losses)) continue;
-      least = std::move(rest);
-      losses = std::move(rest_losses);
+    std::size_t least = 0;
+    for (std::size_t i = 1; i < result_.extended.causes.size(); ++i) {
+      if (rmse_mm(losses_without(i)) < rmse_mm(losses_without(least))) least = i;
     }
-    if (is_gain(losses, result_.extended_losses, *least, result_.extended)) return false;
-    result_.extended = std::move(*least);
-    result_.extended_losses = std::move(losses);
-    result_.left = structure_of(result_.extended.residual_mm, noise_);
-    fresh_.clear();
+    if (is_gain(losses_without(least), result_.extended_losses, without(least), result_.extended))
+      return false;
+    stand(without(least), losses_without(least));
     return true;
   }
 
   void explain(std::size_t index) {
     ChosenCause chosen;
     chosen.cause = result_.extended.causes[index];
-    const StructureFit rest = result_.extended.causes.size() == 1 ? result_.base : without(index);
     std::vector<Scored> scored;
     const auto fresh = fresh_.find(index);
     if (fresh != fresh_.end()) {
       scored = std::move(fresh->second);
     } else {
-      scored = score(rest);
+      scored = score(without(index));
     }
-    const BlockLosses rest_losses = held_out_losses(data_.records, division_, rest);
+    const BlockLosses& rest_losses = losses_without(index);
     chosen.gain_percent = gain_percent(rest_losses, result_.extended_losses, options_.seed);
-    const double gained = rmse_mm(rest_losses) * rmse_mm(rest_losses) -
-                          rmse_mm(result_.extended_losses) * rmse_mm(result_.extended_losses);
+    const double gained = square(rmse_mm(rest_losses)) - square(rmse_mm(result_.extended_losses));
     const auto twin = twin_of(chosen.cause, result_.extended.point.model);
     if (twin) chosen.rivals.push_back(*twin);
     for (const Scored& s : scored) {
@@ -229,7 +235,13 @@ class Selector {
   const Division& division_;
   const SelectionOptions& options_;
   Selection result_;
+  /// The structure without one cause: its fit, and what it loses held out, as far as they were asked for.
+  struct Without {
+    std::optional<StructureFit> fit;
+    std::optional<BlockLosses> losses;
+  };
   std::map<std::size_t, std::vector<Scored>> fresh_;  ///< searches that still hold, by place
+  std::map<std::size_t, Without> without_;            ///< by place
 };
 
 }  // namespace

@@ -9,20 +9,14 @@
 namespace softgrip::sysid {
 namespace {
 
-StructureFit without(StructureFit fit, const Cause& cause) {
-  std::erase_if(fit.causes, [&](const Cause& c) { return c.type == cause.type; });
-  fit.point.model = model::without_block(fit.point.model, cause.type);
-  return fit;
-}
-
 /// What stands behind the valve, as far as a dead band that is simulated from the command can show it: a
 /// model without one has swallowed the valve's mean lag.
 std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& selected,
                                              const Cause& dead_band) {
-  if (model::position_of(selected.point.model, dead_band.type)) return without(selected, dead_band);
+  if (model::position_of(selected.point.model, dead_band.type)) return without_cause(selected, dead_band);
   std::vector<Candidate> fits = fit_candidates(data, selected, {dead_band});
   if (fits.empty() || !fits.front().fit) return std::nullopt;
-  return without(*fits.front().fit, dead_band);
+  return without_cause(*fits.front().fit, dead_band);
 }
 
 /// The staircase in front of the base, or of all that was selected: whichever leaves less. A cause that was
@@ -46,7 +40,7 @@ std::optional<Staircase> staircase_before(const SearchData& data, const Selectio
 /// The base alone, fitted to records whose drive is where the valve stood.
 StructureFit base_behind(const Staircase& found) {
   StructureFit base = found.fit;
-  for (const Cause& cause : found.fit.causes) base = without(base, cause);
+  for (const Cause& cause : found.fit.causes) base = without_cause(base, cause);
   return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
 }
 

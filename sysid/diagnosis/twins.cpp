@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <string_view>
 
 namespace softgrip::sysid {
@@ -16,9 +17,22 @@ std::optional<Cause> twin_of(const Cause& cause, const model::Model& model) {
     return model::position_of(model, id).has_value();
   });
   if (between) return std::nullopt;
-  if (cause.id == "stiffening") return find_cause("sensor_nonlinearity");
-  if (cause.id == "sensor_nonlinearity") return find_cause("stiffening");
+  if (cause.id == "stiffening" || cause.id == "sensor_nonlinearity")
+    return sensor_counterparts(cause).front();
   return std::nullopt;
+}
+
+std::vector<Cause> sensor_counterparts(const Cause& cause) {
+  const auto causes = [](std::initializer_list<std::string_view> ids) {
+    std::vector<Cause> list;
+    for (const std::string_view id : ids) list.push_back(*find_cause(id));
+    return list;
+  };
+  if (cause.id == "stiffening") return causes({"sensor_nonlinearity"});
+  if (cause.id == "contact") return causes({"sensor_saturation", "sensor_nonlinearity"});
+  if (cause.id == "sensor_nonlinearity") return causes({"stiffening"});
+  if (cause.id == "sensor_saturation") return causes({"contact"});
+  return {};
 }
 
 bool are_stops(const Cause& one, const Cause& other) {

@@ -2,6 +2,7 @@
 // Causes that give the same readings whatever the command.
 
 #include <optional>
+#include <vector>
 
 #include "model/model.h"
 #include "sysid/diagnosis/cause.h"
@@ -14,6 +15,10 @@ namespace softgrip::sysid {
 /// Empty where a block with memory stands between the two in `model` (inertia, backlash, a sensor's lag): a
 /// bend before it and a bend behind it differ.
 [[nodiscard]] std::optional<Cause> twin_of(const Cause& cause, const model::Model& model);
+
+/// What the sensor may be instead of the actuator or the load, or the reverse, in the order in which it is
+/// asked; empty for a cause that bends nothing.
+[[nodiscard]] std::vector<Cause> sensor_counterparts(const Cause& cause);
 
 /// Whether both hold the readings back at a place: an object and a sensor that clips. How far an object gives
 /// way decides between them, and of a hard one a few readings say little.

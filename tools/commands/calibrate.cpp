@@ -92,10 +92,8 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
 
 /// Whether the board is free to be taken.
 std::optional<ExitCode> refuse_beside_daemon(const Options& options, const daemon::RigFile& rig) {
-  const auto client = DaemonClient::connect(options.socket.empty() ? rig.socket.path : options.socket);
-  if (!client && client.error().nobody_listens) return std::nullopt;
-  return fail(ExitCode::state_refused,
-              "softgripd runs and holds the board: stop it first (systemctl stop softgripd)");
+  if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
+  return fail(ExitCode::state_refused, stop_the_daemon);
 }
 
 calibrate::Expected<calibrate::Results> measure(const daemon::RigFile& rig, const Options& options,

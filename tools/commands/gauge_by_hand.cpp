@@ -34,9 +34,7 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
              const std::string& folder) -> tl::expected<sysid::GaugeFile, NotPlayed> {
     if (!consent(what_is_done(rig, positions_mm.size())))
       return tl::unexpected(NotPlayed{true, "not allowed to check the sensor"});
-    const auto client = DaemonClient::connect(rig.rig.socket.path);
-    if (client || !client.error().nobody_listens)
-      return failed("softgripd runs and holds the board: stop it first (systemctl stop softgripd)");
+    if (daemon_runs(rig.rig.socket.path)) return failed(stop_the_daemon);
     const drivers::MonotonicClock clock;
     const auto board = daemon::make_board(rig.rig, clock);
     RealPace pace;
