@@ -10,17 +10,17 @@
 #include <cstdlib>
 #include <vector>
 
-#include "control/actuator_inverse.h"
-#include "control/channel_controller.h"
-#include "control/running_model.h"
-#include "model/model_file.h"
+#include "control/feedforward/actuator_inverse.h"
+#include "control/feedforward/running_model.h"
+#include "control/tick/channel_controller.h"
+#include "model/file/model_file.h"
 
 namespace {
 
 using namespace softgrip;  // NOLINT(google-build-using-namespace)
 
 constexpr double tick_s = 0.005;
-constexpr model::Nanoseconds tick_ns = 5'000'000;
+constexpr Nanoseconds tick_ns = 5'000'000;
 
 model::Model twin() {
   document::Problems problems;

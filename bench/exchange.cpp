@@ -17,9 +17,9 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/board_map_file.h"
-#include "drivers/clock.h"
-#include "drivers/modbus_board.h"
+#include "base/clock.h"
+#include "drivers/modbus/modbus_board.h"
+#include "rig/board_map_file.h"
 
 namespace {
 
@@ -107,9 +107,9 @@ struct Contender {
 };
 
 void run_block(Contender& contender) {
-  const drivers::MonotonicClock clock;
+  const MonotonicClock clock;
   for (std::size_t i = 0; i < block; ++i) {
-    const model::Nanoseconds before = clock.now();
+    const Nanoseconds before = clock.now();
     if (!contender.exchange()) {
       std::fprintf(stderr, "%s failed\n", contender.name.c_str());
       std::exit(1);

@@ -20,13 +20,12 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/daemon_parts.h"
-#include "daemon/sequence_loader.h"
+#include "daemon/service/daemon_parts.h"
+#include "daemon/socket/sequence_loader.h"
 
 namespace {
 
 using namespace softgrip;  // NOLINT(google-build-using-namespace)
-using daemon::Nanoseconds;
 
 constexpr std::uint64_t default_ticks = 400'000;
 constexpr std::uint64_t ticks_per_look = 64;
@@ -41,20 +40,20 @@ Value or_exit(std::optional<Value> value, const document::Problems& problems) {
 }
 
 /// The example rig at another rate.
-daemon::RigFile rig_at(double rate_hz) {
+rig::RigFile rig_at(double rate_hz) {
   document::Problems problems;
   document::Document document = document::parse_file(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
   std::string text = document.text;
   const std::string old = "rate_hz: 200";
   text.replace(text.find(old), old.size(), "rate_hz: " + std::to_string(static_cast<int>(rate_hz)));
   document = document::parse(document.file, text, problems);
-  return or_exit(daemon::read_rig(document, problems), problems);
+  return or_exit(rig::read_rig(document, problems), problems);
 }
 
 Nanoseconds read(clockid_t clock) {
   timespec time{};
   clock_gettime(clock, &time);
-  return time.tv_sec * daemon::ns_per_s + time.tv_nsec;
+  return time.tv_sec * ns_per_s + time.tv_nsec;
 }
 
 struct Times {
@@ -90,7 +89,7 @@ Times time_ticks(double rate_hz, clockid_t clock, std::uint64_t ticks) {
   daemon::DaemonOptions options;
   options.virtual_time = true;
   daemon::DaemonParts parts(rig_at(rate_hz), options);
-  parts.rig.recorder.mode = daemon::RecorderSettings::Mode::off;
+  parts.rig.recorder.mode = rig::RecorderSettings::Mode::off;
   const auto sequence = track_sine(parts.rig.settings);
   Times times;
   times.sorted.reserve(ticks);
@@ -129,7 +128,7 @@ void print_speed(double rate_hz) {
   for (int i = 0; i < runs; ++i) {
     std::string folder = (std::filesystem::temp_directory_path() / "loop_tick-XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) std::exit(4);
-    daemon::RigFile rig = rig_at(rate_hz);
+    rig::RigFile rig = rig_at(rate_hz);
     daemon::DaemonOptions options;
     options.virtual_time = true;
     options.sequence = track_sine(rig.settings);
@@ -139,7 +138,7 @@ void print_speed(double rate_hz) {
     const daemon::Outcome outcome = (*daemon)->run();
     const double rig_s = static_cast<double>(outcome.ticks) / rate_hz;
     by_clock.push_back(rig_s / outcome.wall_s);
-    by_processor.push_back(rig_s / daemon::seconds(read(CLOCK_PROCESS_CPUTIME_ID) - begin));
+    by_processor.push_back(rig_s / seconds(read(CLOCK_PROCESS_CPUTIME_ID) - begin));
     bytes = std::filesystem::file_size(folder + "/run.csv");
     std::filesystem::remove_all(folder);
   }

@@ -8,7 +8,7 @@
 
 #include "model/chain.h"
 #include "model/dual.h"
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 #include "model/signals.h"
 
 namespace softgrip::model {

@@ -12,10 +12,10 @@
 #include <optional>
 #include <vector>
 
-#include "control/rig_controller.h"
-#include "control/sequence_file.h"
+#include "control/sequences/sequence_file.h"
+#include "control/tick/rig_controller.h"
 #include "model/chain.h"
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 
 namespace {
 

@@ -20,11 +20,11 @@
 
 #include <Eigen/QR>
 
-#include "sysid/combinations.h"
-#include "sysid/identify.h"
-#include "sysid/parallel.h"
-#include "sysid/record.h"
-#include "sysid/residuals.h"
+#include "base/parallel.h"
+#include "sysid/fitting/residuals.h"
+#include "sysid/identification/combinations.h"
+#include "sysid/identification/identify.h"
+#include "sysid/logs/record.h"
 #include "tests/sysid/simulated.h"
 
 namespace {

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "sysid/files.h"
-#include "sysid/identify.h"
-#include "sysid/numbers.h"
+#include "base/files.h"
+#include "base/numbers.h"
+#include "sysid/identification/identify.h"
 #include "tests/sysid/simulated.h"
 
 namespace {

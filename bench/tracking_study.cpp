@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "control/gain_search.h"
-#include "control/invertibility.h"
-#include "control/tracking_run.h"
-#include "model/model_file.h"
-#include "model/random.h"
+#include "base/random.h"
+#include "control/feedforward/invertibility.h"
+#include "control/tuning/gain_search.h"
+#include "control/tuning/tracking_run.h"
+#include "model/file/model_file.h"
 
 namespace {
 
@@ -84,7 +84,7 @@ std::vector<model::Model> draws_of(const Scheme& scheme, int count, std::uint64_
   std::vector<model::Model> models;
   refused = 0;
   for (std::uint64_t i = 0; static_cast<int>(models.size()) < count && i < 100000; ++i) {
-    model::Model drawn = control::with_scatter(scheme.believed, scatter, model::derived_seed(seed, i));
+    model::Model drawn = control::with_scatter(scheme.believed, scatter, derived_seed(seed, i));
     const control::LimitSettings limits{0, scheme.pressure_max_kpa, 400, 400, 0, 30, 1};
     if (control::check_feedforward(drawn, {scheme.kind, 0}, limits, tick_s)) {
       models.push_back(std::move(drawn));
@@ -101,7 +101,7 @@ class Cost {
   Cost(const Scheme& scheme, const Options& options, const model::Model& finger, double frequency_hz)
       : scheme_(scheme), options_(options), finger_(finger), frequency_hz_(frequency_hz) {
     int refused = 0;
-    models_ = draws_of(scheme, options.search_draws, model::derived_seed(options.seed, 1000), refused);
+    models_ = draws_of(scheme, options.search_draws, derived_seed(options.seed, 1000), refused);
   }
   double operator()(const PidSettings& pid) const {
     const double sensitivity = control::loop_margins(finger_, pid, 60, tick_s, tick_s).sensitivity;
@@ -111,7 +111,7 @@ class Cost {
       control::TrackingRun run = run_of(scheme_, options_, finger_, frequency_hz_, pid);
       run.settings.model = models_[i];
       run.measured_cycles = 1;
-      run.seed = model::derived_seed(options_.seed, 2000 + i);
+      run.seed = derived_seed(options_.seed, 2000 + i);
       const double rmse = std::min(10.0, control::track(run).rmse_mm);
       squares += rmse * rmse;
     }
@@ -146,7 +146,7 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
     return;
   }
   int refused = 0;
-  const auto models = draws_of(scheme, options.draws, model::derived_seed(options.seed, 1), refused);
+  const auto models = draws_of(scheme, options.draws, derived_seed(options.seed, 1), refused);
   if (refused > 0) {
     std::printf("  %d of %zu scattered models refused (no inverse over 0 to %.0f kPa) and drawn again\n",
                 refused, models.size() + static_cast<std::size_t>(refused), scheme.pressure_max_kpa);
@@ -158,7 +158,7 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
     for (std::size_t i = 0; i < models.size(); ++i) {
       control::TrackingRun run = run_of(scheme, options, finger, frequency, pid);
       run.settings.model = models[i];
-      run.seed = model::derived_seed(options.seed, 5000 + i);
+      run.seed = derived_seed(options.seed, 5000 + i);
       const control::TrackingResult result = control::track(run);
       rmse.push_back(result.rmse_mm);
       worst.push_back(result.worst_mm);
@@ -167,7 +167,7 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
       reach += result.out_of_reach_share / static_cast<double>(models.size());
     }
     control::TrackingRun exact = run_of(scheme, options, finger, frequency, pid);
-    exact.seed = model::derived_seed(options.seed, 9999);
+    exact.seed = derived_seed(options.seed, 9999);
     const double sensitivity = control::loop_margins(finger, pid, 60, tick_s, tick_s).sensitivity;
     std::printf(
         "  %.2f Hz: RMSE %.4f mm [%.4f, %.4f], worst %.3f mm, model exact %.4f mm; "

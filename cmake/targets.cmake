@@ -1,33 +1,117 @@
-# softgrip_library(NAME FILES... [LINK ...])  a static library of one folder
-function(softgrip_library name)
-  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
-  add_library(${name} STATIC ${arg_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PUBLIC softgrip_flags ${arg_LINK})
+# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...])
+# A room is a folder, a static library of all its .cpp files (one that has none is an interface), and the rooms that
+# its files may include. The target of daemon/loop is softgrip_daemon_loop; ${softgrip_room_target} names the last one.
+set_property(GLOBAL PROPERTY softgrip_rooms "")
+function(softgrip_room folder)
+  cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES" ${ARGN})
+  softgrip_target_of(${folder} target)
+  set(folders ${folder} ${arg_FOLDERS})
+  set(sources "")
+  set(headers "")
+  set(reachable "")
+  foreach(one IN LISTS folders)
+    file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${one}/*.cpp)
+    list(APPEND sources ${found})
+    file(GLOB found CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${one}/*.h)
+    list(APPEND headers ${found})
+  endforeach()
+  list(FILTER sources EXCLUDE REGEX "/softgripd\\.cpp$")
+  set(links softgrip_flags ${arg_LIBRARIES})
+  get_property(rooms GLOBAL PROPERTY softgrip_rooms)
+  foreach(used IN LISTS arg_USES)
+    if(NOT used IN_LIST rooms)
+      message(FATAL_ERROR "rooms.cmake: ${folder} uses ${used}, which does not stand above it")
+    endif()
+    softgrip_target_of(${used} used_target)
+    list(APPEND links ${used_target})
+    get_property(used_folders GLOBAL PROPERTY softgrip_folders_of_${used})
+    list(APPEND reachable ${used_folders})
+  endforeach()
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    target_link_libraries(${target} PUBLIC ${links})
+    softgrip_arrows(${target} "${folders}" "${reachable}" ${sources} ${headers})
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE ${links})
+  endif()
+  set_property(GLOBAL APPEND PROPERTY softgrip_rooms ${folder})
+  set_property(GLOBAL PROPERTY softgrip_folders_of_${folder} ${folders})
+  set(softgrip_room_target ${target} PARENT_SCOPE)
 endfunction()
 
-# softgrip_program(NAME FILES... [LINK ...])  an installed executable
-function(softgrip_program name)
-  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
-  add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LINK})
+function(softgrip_target_of folder variable)
+  string(REPLACE "/" "_" name "softgrip_${folder}")
+  set(${variable} ${name} PARENT_SCOPE)
+endfunction()
+
+# Before anything of a room compiles, what its files include is held against what the room may use.
+function(softgrip_arrows target folders uses)
+  set(stamp ${CMAKE_BINARY_DIR}/arrows/${target}.checked)
+  string(REPLACE ";" "," folders "${folders}")
+  string(REPLACE ";" "," uses "${uses}")
+  set(list ${CMAKE_BINARY_DIR}/arrows/${target}.files)
+  string(REPLACE ";" "\n" files "${ARGN}")
+  file(CONFIGURE OUTPUT ${list} CONTENT "${files}\n")
+  add_custom_command(OUTPUT ${stamp}
+    COMMAND ${CMAKE_COMMAND} -DFOLDERS=${folders} -DUSES=${uses} -DFILES=${list} -DSOURCE=${PROJECT_SOURCE_DIR}
+            -DSTAMP=${stamp} -P ${PROJECT_SOURCE_DIR}/cmake/arrows.cmake
+    DEPENDS ${ARGN} ${list} ${PROJECT_SOURCE_DIR}/cmake/arrows.cmake
+    COMMENT "" VERBATIM)
+  add_custom_target(${target}_arrows DEPENDS ${stamp})
+  add_dependencies(${target} ${target}_arrows)
+endfunction()
+
+# softgrip_flags_of(ROOM FLAG FILES...)  compile options of some files of a room
+function(softgrip_flags_of folder flag)
+  list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS ${flag})
+endfunction()
+
+# softgrip_program(NAME FILES OUTPUT ROOM room [USES room ...] [LIBRARIES target ...])  an installed executable, in
+# the folder OUTPUT of the build tree
+function(softgrip_program name files output)
+  cmake_parse_arguments(arg "" "ROOM" "USES;LIBRARIES" ${ARGN})
+  list(TRANSFORM files PREPEND ${PROJECT_SOURCE_DIR}/)
+  add_executable(${name} ${files})
+  foreach(room IN LISTS arg_ROOM arg_USES)
+    softgrip_target_of(${room} target)
+    target_link_libraries(${name} PRIVATE ${target})
+  endforeach()
+  target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LIBRARIES})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${output})
   # All symbols are bound at the start: a first call in the loop must not look one up.
   target_link_options(${name} PRIVATE -Wl,-z,relro,-z,now)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# softgrip_test(NAME FILES... [LINK ...])  a GoogleTest program; its tests are discovered one by one
+# softgrip_rooms(OUT room ...)  the targets of rooms
+function(softgrip_rooms variable)
+  set(targets "")
+  foreach(room IN LISTS ARGN)
+    softgrip_target_of(${room} target)
+    list(APPEND targets ${target})
+  endforeach()
+  set(${variable} ${targets} PARENT_SCOPE)
+endfunction()
+
+# softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...])  a GoogleTest program; its tests are discovered one
+# by one
 function(softgrip_test name)
-  cmake_parse_arguments(arg "" "" "LINK;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "ROOMS;LINK;PROPERTIES" ${ARGN})
+  softgrip_rooms(rooms ${arg_ROOMS})
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LINK} GTest::gtest GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE softgrip_flags ${rooms} ${arg_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE SOFTGRIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name} PROPERTIES TIMEOUT 120 ${arg_PROPERTIES} DISCOVERY_TIMEOUT 60)
 endfunction()
 
-# softgrip_fuzzer(NAME FILES... [LINK ...])  a libFuzzer target; only with SOFTGRIP_FUZZERS
+# softgrip_fuzzer(NAME FILES... [ROOMS room ...] [LINK ...])  a libFuzzer target; only with SOFTGRIP_FUZZERS
 function(softgrip_fuzzer name)
-  cmake_parse_arguments(arg "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(arg "" "" "ROOMS;LINK" ${ARGN})
+  softgrip_rooms(rooms ${arg_ROOMS})
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LINK})
+  target_link_libraries(${name} PRIVATE softgrip_flags ${rooms} ${arg_LINK})
+  target_compile_definitions(${name} PRIVATE SOFTGRIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
 endfunction()

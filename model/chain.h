@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
+#include "base/random.h"
 #include "model/catalogue.h"
 #include "model/model.h"
-#include "model/random.h"
 #include "model/registry.h"
 #include "model/segment.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text.h"
 #include "model/catalogue.h"
-#include "model/text.h"
 
 namespace softgrip::model {
 namespace {

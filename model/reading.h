@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <limits>
 
-namespace softgrip::model {
+#include "base/time.h"
 
-/// Nanoseconds of CLOCK_MONOTONIC, or of the virtual clock.
-using Nanoseconds = std::int64_t;
+namespace softgrip::model {
 
 /// Why a reading can or cannot be used. The first reason that holds.
 enum class Validity : std::uint8_t {

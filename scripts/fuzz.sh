@@ -14,12 +14,12 @@ home=build/fuzz
 # target | corpus in the tree | more seeds | dictionary | longest input
 targets() {
   cat <<'TABLE'
-yaml_fuzz|tests/model/document/corpus||tests/model/document/yaml.dict|4096
-model_file_fuzz|tests/model/model_file_corpus|config/models|tests/model/document/yaml.dict|4096
-sequence_file_fuzz|tests/control/sequence_file_corpus|config/sequences|tests/model/document/yaml.dict|4096
-rig_file_fuzz|tests/daemon/rig_file_corpus|config|tests/model/document/yaml.dict|8192
-board_map_fuzz|tests/drivers/board_map_corpus|config/boards|tests/model/document/yaml.dict|8192
-faults_file_fuzz|tests/tools/rig/faults_file_corpus||tests/model/document/yaml.dict|4096
+yaml_fuzz|tests/model/document/corpus||tests/document/yaml.dict|4096
+model_file_fuzz|tests/model/model_file_corpus|config/models|tests/document/yaml.dict|4096
+sequence_file_fuzz|tests/control/sequence_file_corpus|config/sequences|tests/document/yaml.dict|4096
+rig_file_fuzz|tests/daemon/rig_file_corpus|config|tests/document/yaml.dict|8192
+board_map_fuzz|tests/drivers/board_map_corpus|config/boards|tests/document/yaml.dict|8192
+faults_file_fuzz|tests/tools/rig/faults_file_corpus||tests/document/yaml.dict|4096
 modbus_reply_fuzz|tests/drivers/modbus_reply_corpus|||512
 rtu_reply_fuzz|tests/drivers/rtu_reply_corpus|||512
 emulator_fuzz|tests/tools/rig/emulator_corpus|||1024

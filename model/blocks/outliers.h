@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "base/random.h"
 #include "model/block.h"
-#include "model/random.h"
 
 namespace softgrip::model {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/random.h"
 #include "model/block.h"
-#include "model/random.h"
 
 namespace softgrip::model {
 

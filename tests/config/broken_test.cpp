@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "daemon/check.h"
+#include "rig/check.h"
 
 namespace softgrip::daemon {
 namespace {
@@ -31,18 +31,18 @@ std::vector<std::string> names() {
 }
 
 /// Checked from tests/config, so that messages carry short names.
-CheckReport check(const std::string& name) {
+rig::CheckReport check(const std::string& name) {
   std::filesystem::current_path(folder);
   std::vector<std::string> paths{"broken/" + name + ".yaml"};
   std::istringstream also(text_of("broken/" + name + ".also"));
   for (std::string path; std::getline(also, path);) paths.push_back(path);
-  return check_files(paths);
+  return rig::check_files(paths);
 }
 
 class Broken : public testing::TestWithParam<std::string> {};
 
 TEST_P(Broken, SaysAllThatIsWrong) {
-  const CheckReport report = check(GetParam());
+  const rig::CheckReport report = check(GetParam());
   EXPECT_FALSE(report.accepted());
   EXPECT_EQ(report.problems.format(), text_of("broken/" + GetParam() + ".expected"));
 }

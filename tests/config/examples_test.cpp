@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "daemon/check.h"
+#include "rig/check.h"
 
 namespace softgrip::daemon {
 namespace {
@@ -24,19 +24,20 @@ std::vector<std::string> shipped() {
 }
 
 TEST(Examples, AreAccepted) {
-  const CheckReport report = check_files(shipped());
+  const rig::CheckReport report = rig::check_files(shipped());
   EXPECT_TRUE(report.accepted());
   EXPECT_EQ(report.problems.format(), "");
-  for (const CheckedFile& file : report.files) {
-    EXPECT_NE(file.kind, FileKind::unknown) << file.path;
+  for (const rig::CheckedFile& file : report.files) {
+    EXPECT_NE(file.kind, rig::FileKind::unknown) << file.path;
     EXPECT_FALSE(file.name.empty()) << file.path;
   }
 }
 
 TEST(Examples, OfEveryKindAreThere) {
-  const CheckReport report = check_files(shipped());
-  for (const FileKind kind : {FileKind::rig, FileKind::board_map, FileKind::model, FileKind::sequence}) {
-    const auto of_kind = [&](const CheckedFile& file) { return file.kind == kind; };
+  const rig::CheckReport report = rig::check_files(shipped());
+  for (const rig::FileKind kind :
+       {rig::FileKind::rig, rig::FileKind::board_map, rig::FileKind::model, rig::FileKind::sequence}) {
+    const auto of_kind = [&](const rig::CheckedFile& file) { return file.kind == kind; };
     EXPECT_GE(std::count_if(report.files.begin(), report.files.end(), of_kind), 2) << name_of(kind);
   }
 }
@@ -66,20 +67,20 @@ TEST(Examples, UseOnlyKeysThatTheManualDescribes) {
 
 TEST(Check, AFileGivenTwiceIsReadOnce) {
   const std::string path = std::string(SOFTGRIP_SOURCE_DIR) + "/config/rig.yaml";
-  EXPECT_EQ(check_files(std::vector<std::string>{path, path}).files.size(), 1U);
+  EXPECT_EQ(rig::check_files(std::vector<std::string>{path, path}).files.size(), 1U);
 }
 
 TEST(Check, CountsErrorsOfEachFileAlone) {
   const std::string broken = std::string(SOFTGRIP_SOURCE_DIR) + "/tests/config/broken/";
-  const CheckReport report =
-      check_files(std::vector<std::string>{broken + "files_broken.yaml", broken + "model.yaml"});
+  const rig::CheckReport report =
+      rig::check_files(std::vector<std::string>{broken + "files_broken.yaml", broken + "model.yaml"});
   EXPECT_EQ(report.files[0].errors, 0U);
   EXPECT_EQ(report.files[1].errors, 5U);
   EXPECT_FALSE(report.accepted());
 }
 
 TEST(Check, AMissingFileIsAProblem) {
-  const CheckReport report = check_files(std::vector<std::string>{"/nonexistent.yaml"});
+  const rig::CheckReport report = rig::check_files(std::vector<std::string>{"/nonexistent.yaml"});
   ASSERT_EQ(report.problems.size(), 1U);
   EXPECT_EQ(report.problems.list()[0].message, "the file cannot be read: No such file or directory");
 }

@@ -1,6 +1,6 @@
 // What the shipped rigs are read into, and that nothing in them may be absent or wrong unnoticed.
 
-#include "daemon/rig_file.h"
+#include "rig/rig_file.h"
 
 #include <gtest/gtest.h>
 
@@ -20,15 +20,15 @@ std::string shipped(const std::string& name) {
   return std::string(SOFTGRIP_SOURCE_DIR) + "/config/" + name;
 }
 
-RigFile loaded(const std::string& name) {
+rig::RigFile loaded(const std::string& name) {
   Problems problems;
-  std::optional<RigFile> rig = load_rig(shipped(name), problems);
+  std::optional<rig::RigFile> rig = rig::load_rig(shipped(name), problems);
   EXPECT_TRUE(rig.has_value()) << problems.format();
-  return rig.value_or(RigFile{});
+  return rig.value_or(rig::RigFile{});
 }
 
 TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
-  const RigFile rig = loaded("rig_tcp.yaml");
+  const rig::RigFile rig = loaded("rig_tcp.yaml");
   EXPECT_EQ(rig.name, "bench");
   EXPECT_EQ(rig.settings.rate_hz, 200);
   ASSERT_EQ(rig.settings.channels.size(), 2U);
@@ -51,7 +51,7 @@ TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
   EXPECT_EQ(rig.settings.faults.readback_cycles, 10U);
   EXPECT_EQ(rig.settings.rest_timeout_s, 10);
   EXPECT_EQ(rig.valves[1].range_max_kpa, 100);
-  EXPECT_EQ(rig.valves[1].on_power_loss, PowerLoss::vents);
+  EXPECT_EQ(rig.valves[1].on_power_loss, rig::PowerLoss::vents);
   const auto& board = std::get<drivers::ModbusSettings>(rig.board);
   ASSERT_EQ(board.links.size(), 1U);
   EXPECT_EQ(std::get<drivers::TcpAddress>(board.links[0]), (drivers::TcpAddress{"127.0.0.1", 1502}));
@@ -65,14 +65,14 @@ TEST(RigFile, OfTheBenchHoldsWhatTheFileSays) {
   EXPECT_EQ(rig.reconnect.longest_pause, std::chrono::seconds(2));
   EXPECT_EQ(rig.real_time.cpus, (std::vector<int>{1}));
   EXPECT_EQ(rig.socket.mode, 0660U);
-  EXPECT_EQ(rig.recorder.mode, RecorderSettings::Mode::sequences);
+  EXPECT_EQ(rig.recorder.mode, rig::RecorderSettings::Mode::sequences);
   EXPECT_EQ(rig.inputs.size(), 3U);
   EXPECT_EQ(rig.seed, std::nullopt);
 }
 
 TEST(RigFile, OfTheSimulatedRigHoldsItsPlants) {
-  const RigFile rig = loaded("rig.yaml");
-  const auto& board = std::get<drivers::SimulatedBoardSettings>(rig.board);
+  const rig::RigFile rig = loaded("rig.yaml");
+  const auto& board = std::get<simulation::SimulatedBoardSettings>(rig.board);
   ASSERT_EQ(board.channels.size(), 2U);
   EXPECT_EQ(board.channels[0].plant.model.name, "bench_twin");
   EXPECT_EQ(board.channels[0].plant.object->position_mm, 12);
@@ -87,12 +87,12 @@ TEST(RigFile, OfTheSimulatedRigHoldsItsPlants) {
 
 TEST(RigFile, PathsAreRelativeToTheFile) {
   std::filesystem::current_path("/");
-  const RigFile rig = loaded("rig.yaml");
+  const rig::RigFile rig = loaded("rig.yaml");
   EXPECT_EQ(rig.socket.sequence_directory, shipped("sequences"));
   EXPECT_EQ(rig.recorder.directory, "/tmp/softgrip-runs");
   std::filesystem::current_path(shipped(""));
   Problems problems;
-  const auto here = load_rig("rig.yaml", problems);
+  const auto here = rig::load_rig("rig.yaml", problems);
   ASSERT_TRUE(here.has_value()) << problems.format();
   EXPECT_EQ(here->socket.sequence_directory, "sequences");
 }

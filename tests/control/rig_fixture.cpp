@@ -73,7 +73,7 @@ void SimulatedRig::read() {
 
 const TickOutput& SimulatedRig::tick() {
   if (!first_) {
-    now_ += static_cast<model::Nanoseconds>(std::llround(1e9 / settings_.rate_hz));
+    now_ += static_cast<Nanoseconds>(std::llround(1e9 / settings_.rate_hz));
     step_plants();
   }
   read();

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "control/rig_controller.h"
-#include "control/sequence.h"
-#include "control/settings.h"
+#include "control/tick/rig_controller.h"
+#include "control/tick/sequence.h"
+#include "control/tick/settings.h"
 #include "model/chain.h"
 #include "tests/control/settings_fixture.h"
 
@@ -91,7 +91,7 @@ class SimulatedRig {
   std::mt19937_64 random_;
   std::optional<double> stone_mm_;
   bool pulling_out_ = false;
-  model::Nanoseconds now_ = 1'000'000'000;
+  Nanoseconds now_ = 1'000'000'000;
   double silent_s_ = 0;
   std::uint32_t failures_ = 0;
   std::uint32_t next_request_ = 1;

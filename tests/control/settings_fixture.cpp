@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "control/sequence_file.h"
-#include "model/model_file.h"
+#include "control/sequences/sequence_file.h"
+#include "model/file/model_file.h"
 
 namespace softgrip::control {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "control/sequence.h"
-#include "control/settings.h"
+#include "control/tick/sequence.h"
+#include "control/tick/settings.h"
 #include "model/model.h"
 
 namespace softgrip::control {

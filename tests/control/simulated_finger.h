@@ -6,15 +6,15 @@
 #include <limits>
 #include <random>
 
-#include "control/channel_settings.h"
+#include "control/tick/channel_settings.h"
 #include "model/chain.h"
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 #include "model/reading.h"
 
 namespace softgrip::control::sim {
 
 inline constexpr double tick_s = 0.005;
-inline constexpr model::Nanoseconds tick_ns = 5'000'000;
+inline constexpr Nanoseconds tick_ns = 5'000'000;
 
 /// A model of config/models/.
 inline model::Model model_named(const std::string& name) {
@@ -45,7 +45,7 @@ class SimulatedFinger {
       : chain_(model, {}, tick_s / sub_steps), noise_mm_(noise_mm), random_(seed) {}
 
   /// One tick of a held command; returns the reading at its start.
-  model::Reading write(double command_kpa, model::Nanoseconds now) {
+  model::Reading write(double command_kpa, Nanoseconds now) {
     chain_.step(0, command_kpa);
     model::Reading reading;
     reading.displacement_mm = chain_.reading_mm() + noise_mm_ * normal_(random_);

@@ -7,21 +7,21 @@
 #include <string>
 #include <utility>
 
-#include "daemon/rig_file.h"
-#include "daemon/sequence_loader.h"
+#include "daemon/socket/sequence_loader.h"
+#include "rig/rig_file.h"
 
 namespace softgrip::daemon::testing {
 
 /// config/NAME; a failure of the test if it is refused.
-[[nodiscard]] inline RigFile example_rig(const std::string& name) {
+[[nodiscard]] inline rig::RigFile example_rig(const std::string& name) {
   document::Problems problems;
-  auto rig = load_rig(std::string(SOFTGRIP_SOURCE_DIR "/config/") + name, problems);
+  auto rig = rig::load_rig(std::string(SOFTGRIP_SOURCE_DIR "/config/") + name, problems);
   EXPECT_TRUE(rig.has_value()) << problems.format();
-  return rig ? std::move(*rig) : RigFile{};
+  return rig ? std::move(*rig) : rig::RigFile{};
 }
 
 /// config/sequences/NAME fitted to a rig, or nullptr and a failure of the test.
-[[nodiscard]] inline std::shared_ptr<const LoadedSequence> example_sequence(const RigFile& rig,
+[[nodiscard]] inline std::shared_ptr<const LoadedSequence> example_sequence(const rig::RigFile& rig,
                                                                             const std::string& name) {
   auto sequence = SequenceLoader(rig.settings, "")
                       .load_file(std::string(SOFTGRIP_SOURCE_DIR "/config/sequences/") + name);

@@ -5,19 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "drivers/board.h"
-#include "drivers/clock.h"
+#include "base/clock.h"
+#include "drivers/board/board.h"
 
 namespace softgrip::daemon::testing {
 
 class ScriptedBoard final : public drivers::Board {
  public:
-  ScriptedBoard(std::size_t channels, const drivers::Clock& clock) : channels_(channels), clock_(clock) {}
+  ScriptedBoard(std::size_t channels, const Clock& clock) : channels_(channels), clock_(clock) {}
 
   drivers::BusStatus next_connect = drivers::BusStatus::ok;
   drivers::BusStatus next_exchange = drivers::BusStatus::ok;
-  std::vector<std::vector<double>> written;          ///< by good exchanges
-  std::vector<model::Nanoseconds> connect_attempts;  ///< when
+  std::vector<std::vector<double>> written;   ///< by good exchanges
+  std::vector<Nanoseconds> connect_attempts;  ///< when
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }
   [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {
@@ -43,7 +43,7 @@ class ScriptedBoard final : public drivers::Board {
 
  private:
   std::size_t channels_;
-  const drivers::Clock& clock_;
+  const Clock& clock_;
 };
 
 }  // namespace softgrip::daemon::testing

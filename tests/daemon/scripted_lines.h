@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "drivers/clock.h"
-#include "drivers/gpio_lines.h"
+#include "base/clock.h"
+#include "drivers/gpio/gpio_lines.h"
 
 namespace softgrip::daemon::testing {
 
@@ -51,7 +51,7 @@ class Terminals {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  drivers::MonotonicClock clock_;
+  MonotonicClock clock_;
   std::array<bool, drivers::gpio_role_count> levels_{};
   std::array<std::vector<bool>, drivers::gpio_role_count> written_;
   std::deque<drivers::GpioEdge> edges_;

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <string>
 
+#include "base/text.h"
 #include "model/catalogue.h"
-#include "model/text.h"
 
 namespace softgrip::model {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 
 namespace softgrip::model::testing {
 

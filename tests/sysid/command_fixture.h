@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sysid/files.h"
+#include "base/files.h"
 
 namespace softgrip::sysid {
 

@@ -6,7 +6,7 @@
 
 #include "model/model.h"
 #include "model/signals.h"
-#include "sysid/log.h"
+#include "sysid/logs/log.h"
 
 namespace softgrip::sysid {
 

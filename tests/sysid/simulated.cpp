@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "model/chain.h"
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 
 namespace softgrip::sysid {
 

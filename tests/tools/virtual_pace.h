@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "drivers/clock.h"
-#include "tools/hand_drive.h"
+#include "base/clock.h"
+#include "tools/commissioning/hand_drive.h"
 
 namespace softgrip::tools::testing {
 
@@ -17,7 +17,7 @@ class VirtualPace final : public Pace {
   }
   [[nodiscard]] bool stopped() noexcept override { return clock.now() >= stop_at; }
 
-  drivers::VirtualClock clock;
+  VirtualClock clock;
   Nanoseconds stop_at = std::numeric_limits<Nanoseconds>::max();
 };
 

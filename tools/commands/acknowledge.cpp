@@ -1,7 +1,7 @@
 // softgrip acknowledge: takes note of a latched fault.
 
-#include "tools/commands.h"
-#include "tools/daemon_command.h"
+#include "tools/client/daemon_command.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 

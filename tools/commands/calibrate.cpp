@@ -11,15 +11,15 @@
 #include <string>
 #include <vector>
 
-#include "daemon/daemon.h"
-#include "drivers/clock.h"
-#include "tools/calibrate/procedure.h"
-#include "tools/calibrate/snippet.h"
-#include "tools/calibrate/terminal_operator.h"
-#include "tools/commands.h"
-#include "tools/configuration.h"
-#include "tools/daemon_client.h"
-#include "tools/output.h"
+#include "base/clock.h"
+#include "daemon/service/daemon.h"
+#include "tools/client/daemon_client.h"
+#include "tools/command_line/configuration.h"
+#include "tools/command_line/output.h"
+#include "tools/commands/commands.h"
+#include "tools/commissioning/procedure.h"
+#include "tools/commissioning/snippet.h"
+#include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
 namespace {
@@ -53,7 +53,7 @@ std::string today() {
   return text;
 }
 
-std::optional<std::size_t> channel_of(const daemon::RigFile& rig, const std::string& name) {
+std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string& name) {
   const auto& channels = rig.settings.channels;
   if (name.empty() && channels.size() == 1) return 0;
   const auto found =
@@ -63,7 +63,7 @@ std::optional<std::size_t> channel_of(const daemon::RigFile& rig, const std::str
   return static_cast<std::size_t>(found - channels.begin());
 }
 
-std::string names_of(const daemon::RigFile& rig) {
+std::string names_of(const rig::RigFile& rig) {
   std::string names;
   for (const auto& channel : rig.settings.channels) names += (names.empty() ? "" : ", ") + channel.name;
   return names;
@@ -91,12 +91,12 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
 }
 
 /// Whether the board is free to be taken.
-std::optional<ExitCode> refuse_beside_daemon(const Options& options, const daemon::RigFile& rig) {
+std::optional<ExitCode> refuse_beside_daemon(const Options& options, const rig::RigFile& rig) {
   if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
   return fail(ExitCode::state_refused, stop_the_daemon);
 }
 
-calibrate::Expected<calibrate::Results> measure(const daemon::RigFile& rig, const Options& options,
+calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const Options& options,
                                                 const calibrate::Settings& settings, HandDrive& drive,
                                                 calibrate::TerminalOperator& terminal) {
   calibrate::Results results;
@@ -124,8 +124,7 @@ calibrate::Expected<calibrate::Results> measure(const daemon::RigFile& rig, cons
   return results;
 }
 
-ExitCode write_results(const daemon::RigFile& rig, const calibrate::Results& results,
-                       const Options& options) {
+ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& results, const Options& options) {
   const std::string text = calibrate::snippet(rig, results);
   if (const auto written = write_output(options.out, text); !written)
     return fail(ExitCode::io, written.error());
@@ -141,7 +140,7 @@ ExitCode run(Options options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
   if (const auto code = unreadable(path)) return *code;
   document::Problems problems;
-  const auto rig = daemon::load_rig(path, problems);
+  const auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
   std::fputs(problems.format().c_str(), stderr);  // warnings
   const auto channel = channel_of(*rig, options.channel);
@@ -165,7 +164,7 @@ ExitCode run(Options options) {
   if (const auto ready = prepare_parent(options.out); !ready) return fail(ExitCode::io, ready.error());
   if (const auto code = refuse_beside_daemon(options, *rig)) return *code;
 
-  const drivers::MonotonicClock clock;
+  const MonotonicClock clock;
   const auto board = daemon::make_board(*rig, clock);
   RealPace pace;
   HandDrive drive(*rig, *board, pace);

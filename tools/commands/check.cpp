@@ -1,6 +1,6 @@
 // softgrip check: what is wrong with configuration files, all of it at once.
 
-#include "daemon/check.h"
+#include "rig/check.h"
 
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/commands.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {
@@ -32,14 +32,14 @@ nlohmann::ordered_json to_json(const document::Problem& problem, const char* sev
   return json;
 }
 
-void print_json(const daemon::CheckReport& report) {
+void print_json(const rig::CheckReport& report) {
   nlohmann::ordered_json json;
   json["accepted"] = report.accepted();
   json["files"] = nlohmann::ordered_json::array();
-  for (const daemon::CheckedFile& file : report.files) {
+  for (const rig::CheckedFile& file : report.files) {
     nlohmann::ordered_json entry;
     entry["path"] = file.path;
-    entry["kind"] = daemon::name_of(file.kind);
+    entry["kind"] = rig::name_of(file.kind);
     entry["name"] = file.name;
     entry["errors"] = file.errors;
     entry["warnings"] = file.warnings;
@@ -52,11 +52,11 @@ void print_json(const daemon::CheckReport& report) {
   std::printf("%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void print_text(const daemon::CheckReport& report) {
+void print_text(const rig::CheckReport& report) {
   std::fputs(report.problems.format().c_str(), stderr);
-  for (const daemon::CheckedFile& file : report.files) {
+  for (const rig::CheckedFile& file : report.files) {
     std::printf("%s: %s", document::shown(file.path, 400).c_str(),
-                std::string(daemon::name_of(file.kind)).c_str());
+                std::string(rig::name_of(file.kind)).c_str());
     if (!file.name.empty()) std::printf(" '%s'", document::shown(file.name).c_str());
     if (file.errors > 0) {
       std::printf(": %zu %s\n", file.errors, file.errors == 1 ? "error" : "errors");
@@ -67,7 +67,7 @@ void print_text(const daemon::CheckReport& report) {
 }
 
 ExitCode run(const Options& options) {
-  const daemon::CheckReport report = daemon::check_files(options.files);
+  const rig::CheckReport report = rig::check_files(options.files);
   options.json ? print_json(report) : print_text(report);
   const bool all_there = std::all_of(options.files.begin(), options.files.end(), [](const std::string& path) {
     return ::access(path.c_str(), R_OK) == 0;

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "sysid/diagnosis/diagnosis.h"
-#include "sysid/diagnosis/report.h"
-#include "sysid/files.h"
-#include "sysid/numbers.h"
-#include "tools/commands.h"
-#include "tools/diagnosis_folder.h"
-#include "tools/log_input.h"
-#include "tools/model_input.h"
-#include "tools/progress_line.h"
+#include "base/files.h"
+#include "base/numbers.h"
+#include "sysid/diagnosis/report/report.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
+#include "tools/command_line/log_input.h"
+#include "tools/command_line/model_input.h"
+#include "tools/command_line/progress_line.h"
+#include "tools/commands/commands.h"
+#include "tools/investigation/diagnosis_folder.h"
 
 namespace softgrip::tools {
 namespace {
@@ -48,18 +48,17 @@ tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::L
 
 void print_cause(const sysid::NamedCause& named) {
   std::printf("  %-26s held-out gain %s %% (%s .. %s)\n", std::string(named.cause.id).c_str(),
-              sysid::fixed(named.heldout_gain_percent.value, 1).c_str(),
-              sysid::fixed(named.heldout_gain_percent.lower, 1).c_str(),
-              sysid::fixed(named.heldout_gain_percent.upper, 1).c_str());
+              fixed(named.heldout_gain_percent.value, 1).c_str(),
+              fixed(named.heldout_gain_percent.lower, 1).c_str(),
+              fixed(named.heldout_gain_percent.upper, 1).c_str());
   for (const sysid::CauseParameter& p : named.parameters) {
     // An interval many times the value says that the logs do not determine it.
     const bool loose = p.ci95.upper - p.ci95.lower > 20 * std::abs(p.value);
-    const std::string interval = p.has_interval && loose ? "(not determined by these logs)"
-                                 : p.has_interval ? "(" + sysid::significant(p.ci95.lower, 4) + " .. " +
-                                                        sysid::significant(p.ci95.upper, 4) + ")"
-                                                  : "";
-    std::printf("      %-22s %s %s\n", p.name.c_str(), sysid::significant(p.value, 5).c_str(),
-                interval.c_str());
+    const std::string interval =
+        p.has_interval && loose ? "(not determined by these logs)"
+        : p.has_interval ? "(" + significant(p.ci95.lower, 4) + " .. " + significant(p.ci95.upper, 4) + ")"
+                         : "";
+    std::printf("      %-22s %s %s\n", p.name.c_str(), significant(p.value, 5).c_str(), interval.c_str());
   }
   for (const sysid::Cause& rival : named.rivals) {
     std::printf("      %s explains as much\n", std::string(rival.id).c_str());
@@ -68,13 +67,11 @@ void print_cause(const sysid::NamedCause& named) {
 
 void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   std::printf("%s\n\n", sysid::verdict_sentence(d).c_str());
-  std::printf("  %-34s %s mm\n", "noise of the readings", sysid::significant(d.noise_mm, 3).c_str());
-  std::printf("  %-34s %s mm\n", "RMSE of the model as given",
-              sysid::significant(d.as_given_rmse_mm, 4).c_str());
-  std::printf("  %-34s %s mm\n", "recalibrated, held out",
-              sysid::significant(d.recalibrated_rmse_mm, 4).c_str());
-  std::printf("  %-34s %s mm\n", "extended, held out", sysid::significant(d.extended_rmse_mm, 4).c_str());
-  std::printf("  %-34s %s %%\n\n", "structure left", sysid::fixed(d.unexplained_percent, 1).c_str());
+  std::printf("  %-34s %s mm\n", "noise of the readings", significant(d.noise_mm, 3).c_str());
+  std::printf("  %-34s %s mm\n", "RMSE of the model as given", significant(d.as_given_rmse_mm, 4).c_str());
+  std::printf("  %-34s %s mm\n", "recalibrated, held out", significant(d.recalibrated_rmse_mm, 4).c_str());
+  std::printf("  %-34s %s mm\n", "extended, held out", significant(d.extended_rmse_mm, 4).c_str());
+  std::printf("  %-34s %s %%\n\n", "structure left", fixed(d.unexplained_percent, 1).c_str());
   if (d.evidence && d.structure_recalibrated.present)
     std::printf("%s\n", sysid::dependence_sentence(d.evidence->recalibrated).c_str());
   for (const sysid::NamedCause& named : d.causes) print_cause(named);
@@ -82,10 +79,10 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   for (const sysid::NamedCause& named : d.partial) print_cause(named);
   if (const auto& nulls = d.null_calibration) {
     std::printf("of %zu null campaigns the search named something in %zu; p = %s for the gain\n",
-                nulls->campaigns, nulls->named, sysid::significant(nulls->p_value, 2).c_str());
+                nulls->campaigns, nulls->named, significant(nulls->p_value, 2).c_str());
   }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%s s; report: %s\n", sysid::significant(d.wall_s, 3).c_str(),
+  std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(),
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
@@ -140,7 +137,7 @@ ExitCode run(Options options) {
                                       proposed_experiment(consequences),
                                       consequences.experiment.advice};
   const std::string page = (std::filesystem::path(options.out) / "report.html").string();
-  if (const auto written = sysid::write_file(page, sysid::diagnosis_html(report)); !written)
+  if (const auto written = write_file(page, sysid::diagnosis_html(report)); !written)
     return fail(ExitCode::io, written.error());
   if (options.json) {
     std::fputs(complete_json(*result, consequences).c_str(), stdout);

@@ -5,16 +5,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "daemon/daemon.h"
-#include "drivers/clock.h"
-#include "tools/commands.h"
-#include "tools/configuration.h"
-#include "tools/daemon_client.h"
-#include "tools/daemon_command.h"
-#include "tools/doctor/daemon_examination.h"
-#include "tools/doctor/machine.h"
-#include "tools/doctor/rig_examination.h"
-#include "tools/terminal.h"
+#include "base/clock.h"
+#include "daemon/service/daemon.h"
+#include "tools/client/daemon_client.h"
+#include "tools/client/daemon_command.h"
+#include "tools/command_line/configuration.h"
+#include "tools/command_line/terminal.h"
+#include "tools/commands/commands.h"
+#include "tools/commissioning/daemon_examination.h"
+#include "tools/commissioning/machine.h"
+#include "tools/commissioning/rig_examination.h"
 
 namespace softgrip::tools {
 namespace {
@@ -27,7 +27,7 @@ struct Options {
 };
 
 /// Asks the daemon; nothing is left to be looked at but the disk and the clock.
-void ask_running(DaemonClient& client, const daemon::RigFile& rig, doctor::Findings& findings) {
+void ask_running(DaemonClient& client, const rig::RigFile& rig, doctor::Findings& findings) {
   const auto status = client.ask({{"command", "status"}});
   const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
   if (!status || !statistics) {
@@ -39,11 +39,11 @@ void ask_running(DaemonClient& client, const daemon::RigFile& rig, doctor::Findi
   doctor::examine_daemon(*status, *statistics, rig.name, findings);
 }
 
-void look_myself(const daemon::RigFile& rig, bool move, doctor::Findings& findings) {
+void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings) {
   doctor::examine_machine(rig, findings);
   doctor::examine_clock(findings);
   doctor::examine_disk(rig, findings);
-  const drivers::MonotonicClock clock;
+  const MonotonicClock clock;
   const auto board = daemon::make_board(rig, clock);
   doctor::examine_description(rig, *board, findings);
   doctor::examine_gpio(rig, findings);
@@ -55,7 +55,7 @@ ExitCode run(const Options& options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
   if (const auto code = unreadable(path)) return *code;
   document::Problems problems;
-  const auto rig = daemon::load_rig(path, problems);
+  const auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
   std::fputs(problems.format().c_str(), stderr);  // warnings
 

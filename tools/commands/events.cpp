@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tools/commands.h"
-#include "tools/daemon_command.h"
-#include "tools/event_text.h"
+#include "tools/client/daemon_command.h"
+#include "tools/client/event_text.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {

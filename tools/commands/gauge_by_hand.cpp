@@ -4,13 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/daemon.h"
-#include "drivers/clock.h"
-#include "sysid/numbers.h"
-#include "tools/calibrate/procedure.h"
-#include "tools/calibrate/terminal_operator.h"
-#include "tools/daemon_client.h"
-#include "tools/hand_drive.h"
+#include "base/clock.h"
+#include "base/numbers.h"
+#include "daemon/service/daemon.h"
+#include "tools/client/daemon_client.h"
+#include "tools/commissioning/hand_drive.h"
+#include "tools/commissioning/procedure.h"
+#include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
 namespace {
@@ -22,7 +22,7 @@ tl::unexpected<NotPlayed> failed(std::string why) {
 std::string what_is_done(const ExperimentRig& rig, std::size_t readings) {
   return "The sensor of channel '" + rig.channel_name() + "' of " + rig.rig.name +
          " is checked against a gauge: you hold its target at " + std::to_string(readings) + " positions, " +
-         sysid::significant(sysid::minutes_for(readings), 2) +
+         significant(sysid::minutes_for(readings), 2) +
          " minutes. The finger is vented and stays so; nothing moves by itself";
 }
 
@@ -35,7 +35,7 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     if (!consent(what_is_done(rig, positions_mm.size())))
       return tl::unexpected(NotPlayed{true, "not allowed to check the sensor"});
     if (daemon_runs(rig.rig.socket.path)) return failed(stop_the_daemon);
-    const drivers::MonotonicClock clock;
+    const MonotonicClock clock;
     const auto board = daemon::make_board(rig.rig, clock);
     RealPace pace;
     HandDrive drive(rig.rig, *board, pace);

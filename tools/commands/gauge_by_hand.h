@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/experiment_rig.h"
+#include "tools/investigation/experiment_rig.h"
 
 namespace softgrip::tools {
 

@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
-#include "model/model_file.h"
-#include "sysid/files.h"
-#include "sysid/identify.h"
-#include "sysid/identify_report.h"
-#include "sysid/numbers.h"
-#include "sysid/page.h"
-#include "sysid/validate.h"
-#include "tools/commands.h"
-#include "tools/log_input.h"
-#include "tools/model_input.h"
-#include "tools/option_check.h"
-#include "tools/progress_line.h"
+#include "base/files.h"
+#include "base/numbers.h"
+#include "model/file/model_file.h"
+#include "sysid/identification/identify.h"
+#include "sysid/identification/identify_report.h"
+#include "sysid/identification/validate.h"
+#include "sysid/pages/page.h"
+#include "tools/command_line/log_input.h"
+#include "tools/command_line/model_input.h"
+#include "tools/command_line/option_check.h"
+#include "tools/command_line/progress_line.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {
@@ -40,7 +40,7 @@ sysid::ShowProgress progress_on(const ProgressLine& line) {
   if (!show) return {};
   return [show](const sysid::Progress& progress) {
     show("start " + std::to_string(progress.done) + " of " + std::to_string(progress.starts) +
-         ", best RMSE " + sysid::significant(progress.best_rmse_mm, 4) + " mm");
+         ", best RMSE " + significant(progress.best_rmse_mm, 4) + " mm");
   };
 }
 
@@ -61,19 +61,19 @@ tl::expected<model::Model, ExitCode> start_model(const Options& options,
 }
 
 std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const model::Model& start) {
-  std::string source = "identified by " + sysid::software_version() + " from ";
+  std::string source = "identified by " + sysid::software_and_version() + " from ";
   for (std::size_t i = 0; i < logs.size(); ++i) source += (i == 0 ? "" : ", ") + logs[i].name;
-  return source + " (RMSE " + sysid::significant(rmse_mm, 3) + " mm), starting from " + start.name;
+  return source + " (RMSE " + significant(rmse_mm, 3) + " mm), starting from " + start.name;
 }
 
 void print_estimates(const std::vector<sysid::Estimate>& list) {
   for (const sysid::Estimate& e : list) {
     std::string range;
     if (e.ci95) {
-      range = sysid::significant(e.ci95->lower, 4) + " .. " + sysid::significant(e.ci95->upper, 4);
+      range = significant(e.ci95->lower, 4) + " .. " + significant(e.ci95->upper, 4);
     }
-    std::printf("  %-34s %12s  %-26s %s\n", e.name.c_str(), sysid::significant(e.value, 5).c_str(),
-                range.c_str(), e.note.c_str());
+    std::printf("  %-34s %12s  %-26s %s\n", e.name.c_str(), significant(e.value, 5).c_str(), range.c_str(),
+                e.note.c_str());
   }
 }
 
@@ -82,9 +82,8 @@ void print_scores(const char* title, const std::vector<sysid::Score>& scores) {
   std::printf("%s\n", title);
   for (const sysid::Score& s : scores) {
     std::printf("  %-24s RMSE %8s mm  %6s %% of span  largest %8s mm\n", s.name.c_str(),
-                sysid::significant(s.rmse_mm, 4).c_str(),
-                sysid::significant(s.rmse_percent_of_span, 3).c_str(),
-                sysid::significant(s.largest_error_mm, 3).c_str());
+                significant(s.rmse_mm, 4).c_str(), significant(s.rmse_percent_of_span, 3).c_str(),
+                significant(s.largest_error_mm, 3).c_str());
   }
 }
 
@@ -101,7 +100,7 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
   print_estimates(r.combinations);
   for (const std::string& warning : r.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%.0f %% of %zu starts reached the best fit, %s s; report: %s\n",
-              100 * r.multistart.share_at_best, r.multistart.starts, sysid::significant(r.wall_s, 3).c_str(),
+              100 * r.multistart.share_at_best, r.multistart.starts, significant(r.wall_s, 3).c_str(),
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
@@ -139,7 +138,7 @@ ExitCode run(Options options) {
        {std::pair<const char*, std::string>{"model.yaml", model::to_yaml(result->model)},
         {"identify.json", json},
         {"report.html", sysid::identify_html(report)}}) {
-    if (const auto written = sysid::write_file((out / name).string(), text); !written) {
+    if (const auto written = write_file((out / name).string(), text); !written) {
       return fail(ExitCode::io, written.error());
     }
   }

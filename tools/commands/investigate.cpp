@@ -14,16 +14,16 @@
 #include <string>
 #include <vector>
 
-#include "daemon/rig_file.h"
-#include "sysid/files.h"
-#include "sysid/numbers.h"
-#include "tools/commands.h"
+#include "base/files.h"
+#include "base/numbers.h"
+#include "rig/rig_file.h"
+#include "tools/command_line/log_input.h"
+#include "tools/command_line/model_input.h"
+#include "tools/commands/commands.h"
 #include "tools/commands/gauge_by_hand.h"
-#include "tools/experiment_rig.h"
-#include "tools/investigation.h"
-#include "tools/log_input.h"
-#include "tools/model_input.h"
-#include "tools/rig_tracking.h"
+#include "tools/investigation/experiment_rig.h"
+#include "tools/investigation/investigation.h"
+#include "tools/investigation/rig_tracking.h"
 
 namespace softgrip::tools {
 namespace {
@@ -100,7 +100,7 @@ tl::expected<Playground, ExitCode> playground_of(const Options& options, const C
   }
   if (const auto code = unreadable(options.rig)) return tl::unexpected(*code);
   document::Problems problems;
-  auto file = daemon::load_rig(options.rig, problems);
+  auto file = rig::load_rig(options.rig, problems);
   if (!file) return tl::unexpected(refuse(problems));
   auto rig = experiment_rig(std::move(*file), options.logs.channel);
   if (!rig) return tl::unexpected(fail(ExitCode::usage, rig.error()));
@@ -145,9 +145,9 @@ void print_end(const Investigation& investigation, const std::optional<ClosedLoo
                const std::string& out) {
   std::printf("\n%s\n", sysid::verdict_sentence(investigation.last).c_str());
   std::printf("%s after %s of %s minutes on the rig%s%s\n", name_of(investigation.end),
-              sysid::significant(investigation.spent_minutes, 3).c_str(),
-              sysid::significant(investigation.budget_minutes, 3).c_str(),
-              investigation.why.empty() ? "" : ": ", investigation.why.c_str());
+              significant(investigation.spent_minutes, 3).c_str(),
+              significant(investigation.budget_minutes, 3).c_str(), investigation.why.empty() ? "" : ": ",
+              investigation.why.c_str());
   if (gain) std::fputs(text_of({{}, gain}, out).c_str(), stdout);
   std::printf("investigation: %s\n", (std::filesystem::path(out) / "investigation.json").c_str());
 }
@@ -182,16 +182,15 @@ ExitCode conclude(const Options& options, const Playground& ground, const Invest
   const auto tracking = on_rig(options, ground, investigation, consequences.closed_loop);
   const std::string json = completed(investigation, ground, consequences.closed_loop, tracking);
   const std::string path = (std::filesystem::path(options.out) / "investigation.json").string();
-  if (const auto written = sysid::write_file(path, json); !written)
-    return fail(ExitCode::io, written.error());
+  if (const auto written = write_file(path, json); !written) return fail(ExitCode::io, written.error());
   if (options.json) {
     std::fputs(json.c_str(), stdout);
   } else {
     print_end(investigation, consequences.closed_loop, options.out);
     if (tracking) {
       std::printf("on the rig: recalibrated %s mm, extended %s mm\n",
-                  sysid::significant(tracking->recalibrated_rmse_mm, 3).c_str(),
-                  sysid::significant(tracking->extended_rmse_mm, 3).c_str());
+                  significant(tracking->recalibrated_rmse_mm, 3).c_str(),
+                  significant(tracking->extended_rmse_mm, 3).c_str());
     }
   }
   return exit_code_of(investigation);

@@ -5,11 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/commands.h"
-#include "tools/output.h"
-#include "tools/recording.h"
-#include "tools/recording_picture.h"
-#include "tools/recording_tracking.h"
+#include "tools/command_line/output.h"
+#include "tools/commands/commands.h"
+#include "tools/recordings/recording.h"
+#include "tools/recordings/recording_picture.h"
+#include "tools/recordings/recording_tracking.h"
 
 namespace softgrip::tools {
 namespace {

@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "daemon/daemon.h"
-#include "daemon/sequence_loader.h"
-#include "daemon/status_json.h"
-#include "sysid/numbers.h"
-#include "tools/commands.h"
-#include "tools/configuration.h"
-#include "tools/daemon_command.h"
-#include "tools/event_text.h"
+#include "base/numbers.h"
+#include "daemon/service/daemon.h"
+#include "daemon/socket/sequence_loader.h"
+#include "daemon/socket/status_json.h"
+#include "tools/client/daemon_command.h"
+#include "tools/client/event_text.h"
+#include "tools/command_line/configuration.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {
@@ -49,7 +49,7 @@ void report(const Options& options, const daemon::Outcome& outcome) {
     std::printf("%s: %s\n", channels[i].c_str(), title(i).c_str());
   std::printf("sequence %s; %s ticks, %s slips in %s s; %s\n", end.c_str(),
               std::to_string(outcome.ticks).c_str(), std::to_string(outcome.slips).c_str(),
-              sysid::significant(outcome.wall_s, 4).c_str(),
+              significant(outcome.wall_s, 4).c_str(),
               outcome.left_safely ? "the board confirmed the safe outputs"
                                   : "the board did NOT confirm the safe outputs");
 }
@@ -60,10 +60,10 @@ ExitCode run(const Options& options) {
     if (const auto code = unreadable(file)) return *code;
   }
   document::Problems problems;
-  auto rig = daemon::load_rig(path, problems);
+  auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
   std::fputs(problems.format().c_str(), stderr);  // warnings
-  if (options.seed && !daemon::reseed(*rig, *options.seed))
+  if (options.seed && !rig::reseed(*rig, *options.seed))
     return fail(ExitCode::usage, "--seed needs a simulated board");
   auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence);
   if (!sequence) return refuse(sequence.error());

@@ -7,12 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "sysid/numbers.h"
-#include "tools/commands.h"
-#include "tools/model_input.h"
-#include "tools/option_check.h"
-#include "tools/output.h"
-#include "tools/simulation.h"
+#include "base/numbers.h"
+#include "tools/command_line/model_input.h"
+#include "tools/command_line/option_check.h"
+#include "tools/command_line/output.h"
+#include "tools/commands/commands.h"
+#include "tools/studies/simulation.h"
 
 namespace softgrip::tools {
 namespace {
@@ -82,8 +82,8 @@ void report(const Options& options, const model::Model& model, const sysid::Log&
     return;
   }
   std::fprintf(stream, "%s answers %s: %zu samples, %s s, span %s mm, noise %s mm, seed %s -> %s\n",
-               model.name.c_str(), options.input.c_str(), log.size(), sysid::significant(duration_s).c_str(),
-               sysid::significant(span_mm).c_str(), sysid::significant(options.settings.noise_mm).c_str(),
+               model.name.c_str(), options.input.c_str(), log.size(), significant(duration_s).c_str(),
+               significant(span_mm).c_str(), significant(options.settings.noise_mm).c_str(),
                std::to_string(options.settings.seed).c_str(), options.out.c_str());
 }
 

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "sysid/files.h"
-#include "tools/commands.h"
-#include "tools/daemon_command.h"
-#include "tools/event_text.h"
+#include "base/files.h"
+#include "tools/client/daemon_command.h"
+#include "tools/client/event_text.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {
@@ -59,7 +59,7 @@ ExitCode run(const Options& options) {
   Json request{{"command", "start"}, {"sequence", options.sequence}};
   // A file here goes as a text; other names are the daemon's to find.
   if (::access(options.sequence.c_str(), R_OK) == 0) {
-    const auto text = sysid::read_file(options.sequence, longest_sequence);
+    const auto text = read_file(options.sequence, longest_sequence);
     if (!text) return fail(ExitCode::io, text.error());
     request["sequence_text"] = *text;
   }

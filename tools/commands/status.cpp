@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "tools/commands.h"
-#include "tools/daemon_command.h"
-#include "tools/status_view.h"
-#include "tools/terminal.h"
+#include "tools/client/daemon_command.h"
+#include "tools/client/status_view.h"
+#include "tools/command_line/terminal.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {

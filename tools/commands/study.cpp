@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "sysid/files.h"
-#include "tools/commands.h"
-#include "tools/option_check.h"
-#include "tools/output.h"
-#include "tools/progress_line.h"
+#include "base/files.h"
+#include "tools/command_line/option_check.h"
+#include "tools/command_line/output.h"
+#include "tools/command_line/progress_line.h"
+#include "tools/commands/commands.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/published.h"
 
@@ -29,7 +29,7 @@ ExitCode write_all(const Output& output, const std::string& json_name, const std
   const std::filesystem::path folder(output.out);
   for (const auto& [name, content] :
        {std::pair<std::string, const std::string&>{json_name, json}, {"report.html", html}}) {
-    if (const auto written = sysid::write_file((folder / name).string(), content); !written) {
+    if (const auto written = write_file((folder / name).string(), content); !written) {
       return fail(ExitCode::io, written.error());
     }
   }

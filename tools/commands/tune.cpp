@@ -1,6 +1,6 @@
 // softgrip tune: PID gains and filter for a model, a feedforward and a rate.
 
-#include "control/tune.h"
+#include "control/tuning/tune.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,19 +10,16 @@
 #include <optional>
 #include <string>
 
-#include "control/invertibility.h"
-#include "daemon/rig_file.h"
-#include "sysid/numbers.h"
-#include "tools/commands.h"
-#include "tools/model_input.h"
-#include "tools/option_check.h"
-#include "tools/output.h"
+#include "base/numbers.h"
+#include "control/feedforward/invertibility.h"
+#include "rig/rig_file.h"
+#include "tools/command_line/model_input.h"
+#include "tools/command_line/option_check.h"
+#include "tools/command_line/output.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {
-
-using sysid::shortest;
-using sysid::significant;
 
 struct Options {
   std::string model;
@@ -54,7 +51,7 @@ std::optional<control::FeedforwardKind> kind_named(const std::string& name) {
 std::optional<ExitCode> take_rig(const Options& options, control::TuneTask& task) {
   if (const auto code = unreadable(options.rig)) return code;
   document::Problems problems;
-  const auto rig = daemon::load_rig(options.rig, problems);
+  const auto rig = rig::load_rig(options.rig, problems);
   if (!rig) return refuse(problems);
   const auto& channels = rig->settings.channels;
   const auto found = options.channel.empty()

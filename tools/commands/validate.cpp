@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "sysid/files.h"
-#include "sysid/numbers.h"
-#include "sysid/validate.h"
-#include "tools/commands.h"
-#include "tools/log_input.h"
-#include "tools/model_input.h"
-#include "tools/option_check.h"
+#include "base/files.h"
+#include "base/numbers.h"
+#include "sysid/identification/validate.h"
+#include "tools/command_line/log_input.h"
+#include "tools/command_line/model_input.h"
+#include "tools/command_line/option_check.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {
@@ -32,11 +32,9 @@ void print_summary(const sysid::Validation& v) {
   std::printf("%s\n\n", sysid::verdict_of(v).c_str());
   for (const sysid::Score& s : v.scores) {
     std::printf("  %-24s RMSE %8s mm  %6s %% of span  first cycle %8s mm  settled %8s mm  largest %8s mm\n",
-                s.name.c_str(), sysid::significant(s.rmse_mm, 4).c_str(),
-                sysid::significant(s.rmse_percent_of_span, 3).c_str(),
-                sysid::significant(s.first_cycle_rmse_mm, 4).c_str(),
-                sysid::significant(s.settled_rmse_mm, 4).c_str(),
-                sysid::significant(s.largest_error_mm, 3).c_str());
+                s.name.c_str(), significant(s.rmse_mm, 4).c_str(),
+                significant(s.rmse_percent_of_span, 3).c_str(), significant(s.first_cycle_rmse_mm, 4).c_str(),
+                significant(s.settled_rmse_mm, 4).c_str(), significant(s.largest_error_mm, 3).c_str());
   }
 }
 
@@ -51,7 +49,7 @@ ExitCode run(const Options& options) {
     const std::filesystem::path out(options.out);
     for (const auto& [name, text] : {std::pair<const char*, std::string>{"validate.json", json},
                                      {"report.html", sysid::validate_html(v, *logs)}}) {
-      if (const auto written = sysid::write_file((out / name).string(), text); !written) {
+      if (const auto written = write_file((out / name).string(), text); !written) {
         return fail(ExitCode::io, written.error());
       }
     }

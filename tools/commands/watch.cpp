@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "tools/commands.h"
-#include "tools/daemon_command.h"
-#include "tools/option_check.h"
-#include "tools/status_view.h"
-#include "tools/terminal.h"
+#include "tools/client/daemon_command.h"
+#include "tools/client/status_view.h"
+#include "tools/command_line/option_check.h"
+#include "tools/command_line/terminal.h"
+#include "tools/commands/commands.h"
 
 namespace softgrip::tools {
 namespace {

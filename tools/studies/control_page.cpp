@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "sysid/numbers.h"
-#include "sysid/page.h"
+#include "base/numbers.h"
+#include "sysid/pages/page.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/models.h"
 
@@ -13,8 +13,6 @@ namespace softgrip::tools {
 namespace {
 
 using sysid::Colour;
-using sysid::fixed;
-using sysid::significant;
 
 /// RMSE of one scheme over that of another; NaN where one is missing.
 double gain_of(const ControlStudy& study, const std::string& worse, const std::string& better,
@@ -101,7 +99,7 @@ std::string control_html(const ControlStudy& study) {
   const double mismatch = options.mismatches.front();
   sysid::Page page("Study of control", verdict(study), sysid::Tone::good);
   page.provenance(
-      {{"Software", sysid::software_version()},
+      {{"Software", sysid::software_and_version()},
        {"Command", "softgrip study control --draws " + std::to_string(options.draws) + " --seed " +
                        std::to_string(options.seed)},
        {"Reference", significant(options.mean_mm) + " +- " + significant(options.amplitude_mm) +

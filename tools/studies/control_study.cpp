@@ -7,14 +7,14 @@
 #include <iterator>
 #include <limits>
 
-#include "control/invertibility.h"
-#include "control/tracking_run.h"
-#include "control/tune.h"
-#include "model/random.h"
-#include "sysid/identify.h"
-#include "sysid/parallel.h"
-#include "tools/simulation.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "control/feedforward/invertibility.h"
+#include "control/tuning/tracking_run.h"
+#include "control/tuning/tune.h"
+#include "sysid/identification/identify.h"
 #include "tools/studies/models.h"
+#include "tools/studies/simulation.h"
 
 namespace softgrip::tools {
 namespace {
@@ -180,7 +180,7 @@ control::Tuned tune_for(const ControlScheme& scheme, double frequency_hz, double
   task.mismatch = options.mismatches.front();
   task.draws = options.search_draws;
   task.most_sensitivity = options.most_sensitivity;
-  task.seed = model::derived_seed(options.seed, tuning_part);
+  task.seed = derived_seed(options.seed, tuning_part);
   task.iterations = options.iterations;
   return control::tune(task);
 }
@@ -210,13 +210,13 @@ ControlFigure figure_of(const ControlScheme& scheme, const control::Tuned& tuned
     run.plan = &plan;
   }
   std::vector<double> most;
-  const std::uint64_t fingers = model::derived_seed(options.seed, fingers_part);
-  const std::uint64_t noise = model::derived_seed(options.seed, noise_part);
+  const std::uint64_t fingers = derived_seed(options.seed, fingers_part);
+  const std::uint64_t noise = derived_seed(options.seed, noise_part);
   const double share = 1.0 / options.draws;
   for (int i = 0; i < options.draws; ++i) {
     const auto part = static_cast<std::uint64_t>(i);
-    run.finger = control::with_scatter(scheme.finger, mismatch, model::derived_seed(fingers, part));
-    run.seed = model::derived_seed(noise, part);
+    run.finger = control::with_scatter(scheme.finger, mismatch, derived_seed(fingers, part));
+    run.seed = derived_seed(noise, part);
     const control::TrackingResult result = control::track(run);
     figure.draws_mm.push_back(result.rmse_mm);
     most.push_back(result.worst_mm);
@@ -272,7 +272,7 @@ ControlStudy study_control(const ControlStudyOptions& options) {
     }
   }
   std::atomic<std::size_t> done{0};
-  sysid::parallel_for(jobs.size(), options.threads, [&](std::size_t i) {
+  parallel_for(jobs.size(), options.threads, [&](std::size_t i) {
     Job& job = jobs[i];
     const control::Tuned tuned = tune_for(*job.scheme, job.frequency_hz, job.amplitude_mm, options);
     for (const double mismatch : options.mismatches) {

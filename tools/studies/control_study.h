@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "control/feedforward.h"
-#include "control/pid.h"
+#include "control/elements/feedforward.h"
+#include "control/elements/pid.h"
 #include "model/model.h"
 
 namespace softgrip::tools {

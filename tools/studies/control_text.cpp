@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sysid/numbers.h"
-#include "sysid/page.h"
+#include "base/numbers.h"
+#include "sysid/pages/page.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/models.h"
 
@@ -12,8 +12,6 @@ namespace softgrip::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using sysid::fixed;
-using sysid::significant;
 
 std::string cell(const std::string& text, std::size_t width) {
   return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
@@ -84,7 +82,7 @@ std::string control_text(const ControlStudy& study) {
 std::string control_json(const ControlStudy& study) {
   Json json;
   json["schema"] = 1;
-  json["software"] = sysid::software_version();
+  json["software"] = sysid::software_and_version();
   json["seed"] = study.options.seed;
   json["draws"] = study.options.draws;
   json["rate_hz"] = study.options.rate_hz;

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "model/random.h"
-#include "sysid/minimise.h"
-#include "sysid/parallel.h"
-#include "sysid/record.h"
-#include "sysid/residuals.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "sysid/fitting/minimise.h"
+#include "sysid/fitting/residuals.h"
+#include "sysid/logs/record.h"
 
 namespace softgrip::tools {
 namespace {
@@ -91,11 +91,11 @@ model::Model invertible_match(const std::vector<sysid::Log>& logs, const model::
   const WithBoundOnRatio residuals(records, space, start, options.most_ratio);
 
   std::vector<sysid::Minimum> minima(options.starts);
-  sysid::parallel_for(options.starts, options.threads, [&](std::size_t i) {
+  parallel_for(options.starts, options.threads, [&](std::size_t i) {
     std::vector<double> values = model::flat_values(start);
-    const std::uint64_t seed = model::derived_seed(options.seed, i);
+    const std::uint64_t seed = derived_seed(options.seed, i);
     for (std::size_t k = 0; k < free.size() && i > 0; ++k) {
-      values[free[k]] *= std::pow(spread, 2 * model::uniform_at(seed, k) - 1);
+      values[free[k]] *= std::pow(spread, 2 * uniform_at(seed, k) - 1);
     }
     sysid::FitPoint point;
     point.model = model::with_values(start, values);

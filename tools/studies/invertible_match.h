@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/model.h"
-#include "sysid/log.h"
+#include "sysid/logs/log.h"
 
 namespace softgrip::tools {
 

@@ -3,11 +3,11 @@
 #include <array>
 #include <utility>
 
-#include "model/random.h"
-#include "sysid/identify.h"
-#include "sysid/validate.h"
-#include "tools/simulation.h"
+#include "base/random.h"
+#include "sysid/identification/identify.h"
+#include "sysid/identification/validate.h"
 #include "tools/studies/models.h"
+#include "tools/studies/simulation.h"
 
 namespace softgrip::tools {
 namespace {
@@ -23,7 +23,7 @@ std::vector<PaperFigure> figures_of(const model::Model& finger, const PaperTable
   for (std::size_t i = 0; i < printed.size(); ++i) {
     sysid::Log log = sampled_signal(printed[i].first, options.rate_hz);
     log.name = model::name_of(printed[i].first);
-    simulate(finger, {options.noise_mm, model::derived_seed(options.seed, i)}, log);
+    simulate(finger, {options.noise_mm, derived_seed(options.seed, i)}, log);
     logs.push_back(std::move(log));
   }
   sysid::IdentifyOptions fit;

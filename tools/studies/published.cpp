@@ -7,16 +7,16 @@
 #include <numbers>
 #include <span>
 
-#include "control/actuator_inverse.h"
-#include "control/invertibility.h"
+#include "base/random.h"
+#include "control/feedforward/actuator_inverse.h"
+#include "control/feedforward/invertibility.h"
 #include "model/chain.h"
-#include "model/random.h"
-#include "sysid/identify.h"
-#include "sysid/record.h"
-#include "sysid/trajectory.h"
-#include "tools/simulation.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/identification/identify.h"
+#include "sysid/logs/record.h"
 #include "tools/studies/invertible_match.h"
 #include "tools/studies/models.h"
+#include "tools/studies/simulation.h"
 
 namespace softgrip::tools {
 namespace {

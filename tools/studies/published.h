@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "model/model.h"
-#include "sysid/log.h"
+#include "sysid/logs/log.h"
 #include "tools/studies/paper_table.h"
 
 namespace softgrip::tools {

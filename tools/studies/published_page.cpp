@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sysid/numbers.h"
-#include "sysid/page.h"
+#include "base/numbers.h"
+#include "sysid/pages/page.h"
 #include "tools/studies/published.h"
 
 namespace softgrip::tools {
@@ -12,9 +12,7 @@ namespace {
 
 using sysid::Chart;
 using sysid::Colour;
-using sysid::fixed;
 using sysid::Series;
-using sysid::significant;
 
 constexpr double kpa_per_bar = 100;
 
@@ -230,7 +228,7 @@ void paper_section(sysid::Page& page, const PublishedStudy& study) {
 
 std::string published_html(const PublishedStudy& study) {
   sysid::Page page("Study of the published model", verdict(study), sysid::Tone::doubtful);
-  page.provenance({{"Software", sysid::software_version()},
+  page.provenance({{"Software", sysid::software_and_version()},
                    {"Command", "softgrip study published --seed " + std::to_string(study.options.seed)},
                    {"Logs", significant(study.options.rate_hz) + " Hz, noise " +
                                 significant(study.options.noise_mm) + " mm"},

@@ -3,16 +3,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "sysid/numbers.h"
-#include "sysid/page.h"
+#include "base/numbers.h"
+#include "sysid/pages/page.h"
 #include "tools/studies/published.h"
 
 namespace softgrip::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using sysid::fixed;
-using sysid::significant;
 
 constexpr double kpa_per_bar = 100;
 
@@ -107,7 +105,7 @@ std::string published_text(const PublishedStudy& study) {
 std::string published_json(const PublishedStudy& study) {
   Json json;
   json["schema"] = 1;
-  json["software"] = sysid::software_version();
+  json["software"] = sysid::software_and_version();
   json["seed"] = study.options.seed;
   json["rate_hz"] = study.options.rate_hz;
   json["noise_mm"] = study.options.noise_mm;

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "control/channel_controller.h"
+#include "control/tick/channel_controller.h"
 #include "tests/control/simulated_finger.h"
 
 namespace {

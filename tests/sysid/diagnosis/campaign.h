@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sysid/record.h"
+#include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
 

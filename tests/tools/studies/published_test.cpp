@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "model/model_file.h"
-#include "tools/simulation.h"
+#include "model/file/model_file.h"
 #include "tools/studies/invertible_match.h"
 #include "tools/studies/models.h"
+#include "tools/studies/simulation.h"
 
 namespace softgrip::tools {
 namespace {

@@ -1,0 +1,16 @@
+#pragma once
+// Exit codes of every program of the project.
+
+namespace softgrip {
+
+enum class ExitCode : int {
+  done = 0,
+  failed = 1,
+  usage = 2,
+  input_refused = 3,   ///< configuration, model, log or sequence
+  io = 4,              ///< a file, the daemon's socket, a network address
+  state_refused = 5,   ///< the daemon's state does not allow it
+  not_acceptable = 6,  ///< finished, but the result is not what was asked for
+};
+
+}  // namespace softgrip

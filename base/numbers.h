@@ -1,0 +1,19 @@
+#pragma once
+// Numbers to text and back, never by locale.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace softgrip {
+
+/// The fewest digits that read back to the same double ("nan", "inf" as such).
+[[nodiscard]] std::string shortest(double value);
+/// `digits` significant ones, for people; trailing zeros kept out, no exponent between 1e-4 and 1e7.
+[[nodiscard]] std::string significant(double value, int digits = 4);
+/// `decimals` digits after the point.
+[[nodiscard]] std::string fixed(double value, int decimals);
+/// A number that fills the whole text (blanks around it allowed).
+[[nodiscard]] std::optional<double> to_number(std::string_view text);
+
+}  // namespace softgrip

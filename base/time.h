@@ -1,0 +1,22 @@
+#pragma once
+// Time as the project counts it: whole nanoseconds of one clock.
+
+#include <cmath>
+#include <cstdint>
+
+namespace softgrip {
+
+/// Nanoseconds of CLOCK_MONOTONIC, or of the virtual clock.
+using Nanoseconds = std::int64_t;
+
+inline constexpr Nanoseconds ns_per_s = 1'000'000'000;
+
+/// To the nearest double: a division is exact where a product with 1e-9 would leave 13.120000000000001.
+[[nodiscard]] constexpr double seconds(Nanoseconds duration) noexcept {
+  return static_cast<double>(duration) / 1e9;
+}
+[[nodiscard]] inline Nanoseconds nanoseconds(double duration_s) noexcept {
+  return std::llround(duration_s * 1e9);
+}
+
+}  // namespace softgrip

@@ -1,0 +1,121 @@
+# The house: every room (a folder), and the rooms whose headers it may include. Arrows point one way: a room may use
+# only rooms that stand above it in this file, and of those only the ones that it names. A source that includes another
+# room's header does not compile (arrows.cmake says which line and why). docs/explanation/architecture.md draws it.
+#
+# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...])
+# Every .cpp of a room belongs to its library, but for the programs' main files; a new file needs no edit here.
+
+# Ground floor: nobody's in particular.
+softgrip_room(base LIBRARIES Threads::Threads)
+target_sources(softgrip_base PRIVATE ${version_file})
+add_dependencies(softgrip_base softgrip_version_file)
+softgrip_room(document USES base LIBRARIES yaml-cpp)
+
+# What a rig does, and its files.
+softgrip_room(model FOLDERS model/blocks USES base)
+softgrip_room(model/file USES base document model)
+
+# What a tick runs.
+softgrip_room(control/elements USES base model)
+softgrip_room(control/feedforward USES base model control/elements LIBRARIES Eigen3::Eigen)
+softgrip_room(control/tick USES base document model control/elements control/feedforward)
+# What is done before it.
+softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick)
+softgrip_room(control/tuning USES base model control/elements control/feedforward control/tick)
+
+# Boards.
+softgrip_room(drivers/board USES base model)
+softgrip_room(drivers/modbus USES base model drivers/board LIBRARIES PkgConfig::modbus)
+softgrip_room(drivers/iio USES base model drivers/board)
+softgrip_room(drivers/gpio USES base model LIBRARIES PkgConfig::gpiod)
+if(gpiod_VERSION VERSION_GREATER_EQUAL 2)
+  target_compile_definitions(softgrip_drivers_gpio PRIVATE SOFTGRIP_GPIOD_2=1)
+endif()
+
+# What stands in for the rig.
+softgrip_room(simulation/plant USES base model drivers/board)
+softgrip_room(simulation/emulator USES base document model drivers/board drivers/modbus simulation/plant)
+
+# The rig file.
+softgrip_room(rig
+  USES base document model model/file control/elements control/feedforward control/tick control/sequences
+       drivers/board drivers/modbus drivers/iio drivers/gpio simulation/plant)
+
+# The daemon.
+softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig)
+softgrip_room(daemon/recording USES base model control/elements control/tick drivers/board rig daemon/loop
+  LIBRARIES spdlog::spdlog nlohmann_json::nlohmann_json)
+softgrip_room(daemon/panel USES base model control/elements control/tick drivers/gpio rig daemon/loop daemon/recording)
+softgrip_room(daemon/socket
+  USES base document model control/elements control/tick control/sequences rig daemon/loop daemon/recording
+  LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(daemon/service
+  USES base document model control/elements control/tick drivers/board drivers/modbus drivers/iio drivers/gpio
+       simulation/plant rig daemon/loop daemon/recording daemon/panel daemon/socket
+  LIBRARIES spdlog::spdlog PkgConfig::systemd)
+
+# From a log to the reason.
+softgrip_room(sysid/logs USES base document model)
+softgrip_room(sysid/pages USES base document model model/file sysid/logs)
+softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
+softgrip_room(sysid/identification USES base document model model/file sysid/logs sysid/pages sysid/fitting
+  LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
+softgrip_room(sysid/diagnosis/residual USES base model sysid/logs)
+softgrip_room(sysid/diagnosis/causes USES base model sysid/logs sysid/fitting sysid/diagnosis/residual)
+softgrip_room(sysid/diagnosis/search
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes)
+softgrip_room(sysid/diagnosis/evidence
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
+       sysid/diagnosis/search)
+softgrip_room(sysid/diagnosis/gauge
+  USES base document model sysid/logs sysid/fitting sysid/diagnosis/residual sysid/diagnosis/causes
+       sysid/diagnosis/search)
+softgrip_room(sysid/diagnosis/verdict
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
+       sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
+softgrip_room(sysid/diagnosis/experiments
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
+       sysid/diagnosis/search sysid/diagnosis/gauge sysid/diagnosis/verdict)
+softgrip_room(sysid/diagnosis/report
+  USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/residual
+       sysid/diagnosis/causes sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge
+       sysid/diagnosis/verdict
+  LIBRARIES nlohmann_json::nlohmann_json)
+# The innermost loops of a fit.
+softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
+
+# Programs.
+softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/diagnosis/gauge
+  LIBRARIES CLI11::CLI11)
+target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
+softgrip_room(tools/client USES base document tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
+  LIBRARIES nlohmann_json::nlohmann_json)
+# What moves a rig by hand: doctor and calibrate.
+softgrip_room(tools/commissioning
+  USES base document model control/elements control/feedforward control/tick drivers/board rig daemon/loop
+       daemon/recording daemon/service
+  LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/investigation
+  USES base document model model/file control/elements control/feedforward control/tuning drivers/board
+       simulation/plant rig daemon/service daemon/socket sysid/logs sysid/fitting sysid/identification
+       sysid/diagnosis/causes sysid/diagnosis/gauge sysid/diagnosis/verdict sysid/diagnosis/experiments
+       sysid/diagnosis/report tools/recordings
+  LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/studies
+  USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
+       sysid/identification)
+softgrip_room(tools/commands
+  USES base document model model/file control/elements control/feedforward control/tick control/tuning drivers/board
+       rig daemon/service daemon/socket sysid/logs sysid/pages sysid/fitting sysid/identification
+       sysid/diagnosis/causes sysid/diagnosis/gauge sysid/diagnosis/verdict sysid/diagnosis/experiments
+       sysid/diagnosis/report tools/command_line tools/client tools/recordings tools/commissioning
+       tools/investigation tools/studies
+  LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
+
+softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)
+softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)
+softgrip_program(softgrip-rig "tools/programs/softgrip_rig.cpp;tools/programs/softgrip_rig_options.cpp" tools
+  ROOM simulation/emulator USES base document model model/file drivers/board drivers/modbus simulation/plant
+       simulation/emulator rig tools/command_line
+  LIBRARIES CLI11::CLI11)

@@ -1,0 +1,7 @@
+# softgrip_version_file: version.cpp, written at each build, part of the room base.
+set(version_file ${CMAKE_BINARY_DIR}/version.cpp)
+add_custom_target(softgrip_version_file BYPRODUCTS ${version_file}
+  COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
+    -DINPUT=${PROJECT_SOURCE_DIR}/base/version.cpp.in -DOUTPUT=${version_file}
+    -P ${PROJECT_SOURCE_DIR}/cmake/version.cmake
+  VERBATIM)

@@ -1,0 +1,131 @@
+#include "control/elements/fault.h"
+
+#include <array>
+
+namespace softgrip::control {
+
+namespace {
+
+constexpr FaultInfo no_fault{FaultCode::none, "F000", "none", "No fault.", "", "", ""};
+
+constexpr std::array faults{
+    FaultInfo{FaultCode::bus_down, "F101", "bus_down", "No exchange with the board succeeded.",
+              "cable, switch, power of the board, address in the rig file",
+              "Restore the connection; the daemon reconnects by itself.", "bus_down_cycles"},
+    FaultInfo{FaultCode::bus_timed_out, "F102", "bus_timed_out", "The board did not answer in time.",
+              "rate too high for the bus, busy board, wrong unit id on a serial line",
+              "Compare rate_hz with the bus budget printed at start.", "bus_down_cycles"},
+    FaultInfo{FaultCode::bus_bad_reply, "F103", "bus_bad_reply",
+              "Replies did not belong to the question (unit id, length, transaction, function).",
+              "two masters on one line, a gateway that mixes replies, a wrong address",
+              "Look at the event's text for what was wrong; check for a second master.", "bus_down_cycles"},
+    FaultInfo{FaultCode::bus_exception, "F104", "bus_exception",
+              "The board answered with a Modbus exception.",
+              "register or function that this board does not have", "Compare the board map with the manual.",
+              "bus_down_cycles"},
+    FaultInfo{FaultCode::reading_stale, "F201", "reading_stale", "Readings of a channel stopped coming.",
+              "a bus slower than the loop, a board that repeats old values",
+              "Compare the reading age in `softgrip status` with max_age_s.", "invalid_reading_cycles + 1"},
+    FaultInfo{FaultCode::reading_out_of_range, "F202", "reading_out_of_range",
+              "The displacement signal was outside the electrical range of the sensor.",
+              "target out of the sensor's distance, broken wire, wrong scaling",
+              "Look at the sensor's own display; measure the signal.", "invalid_reading_cycles + 1"},
+    FaultInfo{FaultCode::sensor_error, "F203", "sensor_error",
+              "The sensor or the board reported an error of its own.",
+              "no target in view, dirty window, input card error", "Look at the sensor's own display.",
+              "invalid_reading_cycles + 1"},
+    FaultInfo{FaultCode::reading_jumped, "F204", "reading_jumped",
+              "A reading moved faster than a finger can.",
+              "something passed the beam, loose mount, electrical disturbance",
+              "Clear the beam; check mount and shield.", "invalid_reading_cycles + 1"},
+    FaultInfo{FaultCode::reading_frozen, "F205", "reading_frozen",
+              "A reading stood still while the command moved.",
+              "sensor in hold mode, blocked beam, kinked line, no supply pressure",
+              "Move the finger by hand and watch the reading; check the supply pressure.",
+              "invalid_reading_cycles + 1"},
+    FaultInfo{FaultCode::displacement_beyond_limits, "F206", "displacement_beyond_limits",
+              "A valid reading was outside the displacement limits by more than their margin.",
+              "finger pushed or torn off, sensor moved, limits too narrow",
+              "Look at the finger; compare the reading at rest with the limits.", "displacement_cycles + 1"},
+    FaultInfo{FaultCode::pressure_not_followed, "F207", "pressure_not_followed",
+              "The measured pressure does not follow the command.",
+              "burst or kinked line, leak, no supply pressure, a valve without power",
+              "Look for the leak; check supply, valve and pressure sensor.",
+              "pressure_cycles, for what differs by more than the motion of pressure_delay_s"},
+    FaultInfo{FaultCode::readback_mismatch, "F301", "readback_mismatch",
+              "The board's output is not what was written.",
+              "a second master, a board in manual mode, a wrong scaling of the output",
+              "Read the output register with another master.",
+              "readback_cycles, for what differs by more than the motion of readback_delay_s"},
+    FaultInfo{FaultCode::write_refused, "F302", "write_refused", "The board did not take the write.",
+              "output in a locked or manual mode, a latched trip of the board", "Clear the board's own trip.",
+              "1 cycle"},
+    FaultInfo{FaultCode::board_watchdog_tripped, "F303", "board_watchdog_tripped",
+              "The board's own watchdog holds the outputs at their safe value.",
+              "the daemon or the line was silent for longer than the board's watchdog time",
+              "Find the silence in the recording; clear the board's trip.", "1 cycle"},
+    FaultInfo{FaultCode::model_unfit, "F401", "model_unfit",
+              "The running model does not describe the finger any more.",
+              "wear, another finger, leak, moved sensor", "Record tp1 and identify again.",
+              "1 cycle after the health says so, if model_unfit_is_fault"},
+    FaultInfo{FaultCode::emergency_stop, "F501", "emergency_stop",
+              "The emergency stop is pressed, or was not yet seen released since the start.",
+              "somebody pressed it; a start with an emergency stop input; a broken wire to it",
+              "Make the place safe, reset the emergency stop.", "1 cycle after the input's debounce_s"},
+    FaultInfo{FaultCode::inputs_lost, "F502", "inputs_lost", "The digital inputs cannot be read.",
+              "a USB or expander chip that went away, a machine too busy to read them",
+              "Restore the chip and restart the daemon; see stale_after_s.", "stale_after_s + 1 cycle"},
+    FaultInfo{FaultCode::cycles_lost, "F901", "cycles_lost",
+              "The loop lost more cycles at once than allowed.",
+              "no real-time scheduling, an overloaded machine",
+              "Look at the start-up report and the loop statistics.", "1 cycle, if slipped_cycles is not 0"},
+    FaultInfo{FaultCode::not_finite, "F902", "not_finite", "A computed command was not a finite number.",
+              "a model or gains that diverge", "Keep the recording; it is a defect or an unusable model.",
+              "1 cycle"},
+};
+
+struct RefusalInfo {
+  std::string_view id;
+  std::string_view name;
+};
+constexpr std::array<RefusalInfo, 10> refusals{{
+    {"R00", "none"},
+    {"R01", "faulted"},
+    {"R02", "not_idle"},
+    {"R03", "interlock_open"},
+    {"R04", "emergency_stop"},
+    {"R05", "sequence_unfit"},
+    {"R06", "no_valid_reading"},
+    {"R07", "nothing_to_stop"},
+    {"R08", "nothing_to_acknowledge"},
+    {"R09", "cause_persists"},
+}};
+
+const RefusalInfo& info_of(RefusalCode code) noexcept {
+  const auto index = static_cast<std::size_t>(code);
+  return index < refusals.size() ? refusals[index] : refusals[0];
+}
+
+}  // namespace
+
+std::span<const FaultInfo> all_faults() noexcept {
+  return faults;
+}
+
+const FaultInfo& info_of(FaultCode code) noexcept {
+  for (const FaultInfo& info : faults) {
+    if (info.code == code) {
+      return info;
+    }
+  }
+  return no_fault;
+}
+
+std::string_view id_of(RefusalCode code) noexcept {
+  return info_of(code).id;
+}
+std::string_view name_of(RefusalCode code) noexcept {
+  return info_of(code).name;
+}
+
+}  // namespace softgrip::control

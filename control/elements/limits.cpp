@@ -1,0 +1,31 @@
+#include "control/elements/limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrip::control {
+
+LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
+                     double elapsed_s) noexcept {
+  const double lower = limits.pressure_min_kpa;
+  const double upper = limits.pressure_max_kpa;
+  // Without a usable last command only the lowest pressure is known to do no harm.
+  const double last = std::isfinite(last_kpa) ? std::clamp(last_kpa, lower, upper) : lower;
+  if (std::isnan(wanted_kpa)) return {last, false, false, true};
+  const double inside = std::clamp(wanted_kpa, lower, upper);
+  const double reached = std::clamp(inside, last - limits.slew_down_kpa_per_s * elapsed_s,
+                                    last + limits.slew_up_kpa_per_s * elapsed_s);
+  return {reached, inside != wanted_kpa, reached != inside, false};
+}
+
+LimitedReference limit_reference(const LimitSettings& limits, double reference_mm) noexcept {
+  const double inside = std::clamp(reference_mm, limits.displacement_min_mm, limits.displacement_max_mm);
+  return {inside, inside != reference_mm};
+}
+
+bool displacement_beyond(const LimitSettings& limits, double displacement_mm) noexcept {
+  return !(displacement_mm >= limits.displacement_min_mm - limits.displacement_margin_mm &&
+           displacement_mm <= limits.displacement_max_mm + limits.displacement_margin_mm);
+}
+
+}  // namespace softgrip::control

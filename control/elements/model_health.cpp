@@ -1,0 +1,144 @@
+#include "control/elements/model_health.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrip::control {
+namespace {
+
+/// An unfit model is fit again only well below the bound, so that the state does not flicker.
+constexpr double recovery_share = 0.7;
+/// After an alarm the CUSUM is kept from growing on, so that a model that fits again is healthy again soon.
+constexpr double cap_share = 1.5;
+/// Siegmund's correction for the overshoot of the discrete walk over the threshold, one for each end.
+constexpr double overshoot = 1.166;
+
+}  // namespace
+
+const char* name_of(HealthState state) noexcept {
+  switch (state) {
+    case HealthState::unknown:
+      return "unknown";
+    case HealthState::healthy:
+      return "healthy";
+    case HealthState::suspect:
+      return "suspect";
+    case HealthState::unfit:
+      return "unfit";
+  }
+  return "unknown";
+}
+
+double cusum_run_length(double allowance, double threshold) noexcept {
+  const double reach = 2 * allowance * (threshold + overshoot);
+  const double one_sided = (std::expm1(reach) - reach) / (2 * allowance * allowance);
+  return one_sided / 2;
+}
+
+double cusum_threshold(double allowance, double run_length) noexcept {
+  double lower = 0;
+  double upper = 1;
+  while (cusum_run_length(allowance, upper) < run_length && upper < 1e6) upper *= 2;
+  for (int i = 0; i < 80; ++i) {
+    const double middle = 0.5 * (lower + upper);
+    (cusum_run_length(allowance, middle) < run_length ? lower : upper) = middle;
+  }
+  return upper;
+}
+
+ResidualWhitener::ResidualWhitener(const ModelHealthSettings& settings) noexcept {
+  const double interval = settings.interval_s;
+  const double memory = settings.correlation_time_s;
+  slow_variance_ = settings.model_error_mm * settings.model_error_mm;
+  keep_ = std::exp(-interval / memory);
+  // Moments of an Ornstein-Uhlenbeck process and of its average over one interval, given its start.
+  observe_ = memory / interval * (1 - keep_);
+  process_variance_ = slow_variance_ * (1 - keep_ * keep_);
+  average_variance_ = slow_variance_ * memory / (interval * interval) *
+                      (2 * interval - memory * (3 - 4 * keep_ + keep_ * keep_));
+  shared_covariance_ = slow_variance_ * memory / interval * (1 - keep_) * (1 - keep_);
+  noise_variance_ = settings.noise_mm * settings.noise_mm;
+  variance_ = slow_variance_;
+}
+
+void ResidualWhitener::reset() noexcept {
+  estimate_mm_ = 0;
+  variance_ = slow_variance_;
+}
+
+double ResidualWhitener::next(double average_mm, double count) noexcept {
+  const double innovation = average_mm - observe_ * estimate_mm_;
+  const double expected = observe_ * observe_ * variance_ + average_variance_ + noise_variance_ / count;
+  const double gain = (keep_ * observe_ * variance_ + shared_covariance_) / expected;
+  estimate_mm_ = keep_ * estimate_mm_ + gain * innovation;
+  variance_ = keep_ * keep_ * variance_ + process_variance_ - gain * gain * expected;
+  return innovation / std::sqrt(expected);
+}
+
+ModelHealth::ModelHealth(const ModelHealthSettings& settings, double tick_s) noexcept
+    : settings_(settings), whitener_(settings) {
+  threshold_ = cusum_threshold(settings.allowance_sigma,
+                               std::max(2.0, settings.false_alarm_interval_s / settings.interval_s));
+  forget_ = -std::expm1(-settings.interval_s / settings.unfit_window_s);
+  ticks_per_interval_ = static_cast<std::uint32_t>(std::max(1.0, std::round(settings.interval_s / tick_s)));
+}
+
+void ModelHealth::reset() noexcept {
+  whitener_.reset();
+  ticks_ = observed_ = 0;
+  sum_mm_ = up_ = down_ = mean_square_mm2_ = 0;
+  alarmed_ = false;
+  state_ = HealthState::unknown;
+}
+
+bool ModelHealth::observe(double residual_mm) noexcept {
+  sum_mm_ += residual_mm;
+  ++observed_;
+  return end_tick();
+}
+
+bool ModelHealth::skip() noexcept {
+  return end_tick();
+}
+
+bool ModelHealth::end_tick() noexcept {
+  if (++ticks_ < ticks_per_interval_) return false;
+  // Half an interval of readings still stands for the whole; less does not.
+  const bool enough = 2 * observed_ >= ticks_per_interval_;
+  const bool changed = enough && judge_interval();
+  if (!enough) whitener_.reset();
+  ticks_ = observed_ = 0;
+  sum_mm_ = 0;
+  return changed;
+}
+
+bool ModelHealth::judge_interval() noexcept {
+  const double average_mm = sum_mm_ / observed_;
+  const double innovation = whitener_.next(average_mm, observed_);
+  const double cap = cap_share * threshold_;
+  up_ = std::clamp(up_ + innovation - settings_.allowance_sigma, 0.0, cap);
+  down_ = std::clamp(down_ - innovation - settings_.allowance_sigma, 0.0, cap);
+  alarmed_ = std::max(up_, down_) >= threshold_ || (alarmed_ && std::max(up_, down_) > 0);
+  const double square = average_mm * average_mm;
+  mean_square_mm2_ =
+      state_ == HealthState::unknown ? square : mean_square_mm2_ + forget_ * (square - mean_square_mm2_);
+
+  const double bound_mm = settings_.unfit_mm * (state_ == HealthState::unfit ? recovery_share : 1);
+  const HealthState before = state_;
+  if (rms_mm() > bound_mm) {
+    state_ = HealthState::unfit;
+  } else {
+    state_ = alarmed_ ? HealthState::suspect : HealthState::healthy;
+  }
+  return state_ != before;
+}
+
+double ModelHealth::rms_mm() const noexcept {
+  return std::sqrt(mean_square_mm2_);
+}
+
+double ModelHealth::drift() const noexcept {
+  return std::max(up_, down_) / threshold_;
+}
+
+}  // namespace softgrip::control

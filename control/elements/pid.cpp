@@ -1,0 +1,86 @@
+#include "control/elements/pid.h"
+
+#include <cmath>
+
+namespace softgrip::control {
+
+Pid::Pid(const PidSettings& settings, double tick_s) noexcept : settings_(settings), tick_s_(tick_s) {
+  change(settings);
+}
+
+void Pid::align(double command_kpa) noexcept {
+  align_ = true;
+  held_ = false;
+  fresh_ = true;
+  rate_mm_per_s_ = 0;
+  align_to_kpa_ = command_kpa;
+}
+
+double Pid::immediate_kpa(double reference_mm, double measurement_mm) const noexcept {
+  return settings_.kp_kpa_per_mm * (settings_.setpoint_weight * reference_mm - measurement_mm) -
+         settings_.kd_kpa_s_per_mm * rate_mm_per_s_;
+}
+
+double Pid::step(double error_reference_mm, double measurement_mm, double feedforward_kpa) noexcept {
+  const double error_mm = error_reference_mm - measurement_mm;
+  increment_kpa_ = 0;
+  if (!fresh_) {
+    const double rate = (measurement_mm - last_measurement_mm_) / tick_s_;
+    rate_mm_per_s_ = filter_keep_ * rate_mm_per_s_ + (1 - filter_keep_) * rate;
+    increment_kpa_ = settings_.ki_kpa_per_mm_s * tick_s_ * 0.5 * (error_mm + last_error_mm_);
+  }
+  const double immediate = immediate_kpa(error_reference_mm, measurement_mm);
+  if (align_) {
+    integral_kpa_ = align_to_kpa_ - feedforward_kpa - immediate;
+    increment_kpa_ = 0;
+    align_ = false;
+  } else {
+    integral_kpa_ += increment_kpa_;
+  }
+  fresh_ = false;
+  last_error_mm_ = error_mm;
+  last_reference_mm_ = error_reference_mm;
+  last_measurement_mm_ = measurement_mm;
+  feedback_kpa_ = immediate + integral_kpa_;
+  request_kpa_ = feedforward_kpa + feedback_kpa_;
+  return feedback_kpa_;
+}
+
+double Pid::hold(double feedforward_kpa) noexcept {
+  if (align_ && !held_) {
+    feedback_kpa_ = align_to_kpa_ - feedforward_kpa;
+    held_ = true;
+  }
+  increment_kpa_ = 0;
+  fresh_ = true;
+  request_kpa_ = feedforward_kpa + feedback_kpa_;
+  return feedback_kpa_;
+}
+
+void Pid::sent(double command_kpa) noexcept {
+  if (align_) align_to_kpa_ = command_kpa;
+  const double cut_kpa = command_kpa - request_kpa_;
+  // Without an integral part nothing would ever bring back what the anti-windup put in.
+  if (cut_kpa == 0 || settings_.ki_kpa_per_mm_s == 0) return;
+  switch (settings_.anti_windup) {
+    case AntiWindup::none:
+      break;
+    case AntiWindup::conditional:
+      if (increment_kpa_ * cut_kpa < 0) integral_kpa_ -= increment_kpa_;
+      break;
+    case AntiWindup::back_calculation:
+      integral_kpa_ += tracking_share_ * cut_kpa;
+      break;
+  }
+  increment_kpa_ = 0;
+}
+
+void Pid::change(const PidSettings& settings) noexcept {
+  const double before = immediate_kpa(last_reference_mm_, last_measurement_mm_);
+  settings_ = settings;
+  filter_keep_ = settings.derivative_filter_s > 0 ? std::exp(-tick_s_ / settings.derivative_filter_s) : 0;
+  tracking_share_ = settings.tracking_time_s > 0 ? -std::expm1(-tick_s_ / settings.tracking_time_s) : 1;
+  integral_kpa_ += before - immediate_kpa(last_reference_mm_, last_measurement_mm_);
+}
+
+}  // namespace softgrip::control

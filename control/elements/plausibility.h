@@ -1,0 +1,49 @@
+#pragma once
+// Judges readings that are electrically sound: fresh, not frozen, not faster than the finger can be.
+
+#include "model/reading.h"
+
+namespace softgrip::control {
+
+struct PlausibilitySettings {
+  double max_age_s = 0.05;          ///< > 0; an older reading is stale
+  double max_speed_mm_per_s = 500;  ///< > 0; faster than the finger can ever move
+  double jump_margin_mm = 0.5;      ///< >= 0; allowed on top, for the sensor's noise
+  /// > 0; how long the reading may stand still while the command moves. Longer than the delay of the valve.
+  double frozen_after_s = 1.0;
+  double frozen_band_mm = 0;       ///< >= 0; changes up to this are standing still (a quantisation step)
+  double frozen_command_kpa = 10;  ///< > 0; the command must have travelled this far in that time
+};
+
+/// The judge of one channel.
+class Plausibility {
+ public:
+  explicit Plausibility(const PlausibilitySettings& settings) noexcept;
+
+  /// Forgets everything: the next sound reading is taken as it is.
+  void reset() noexcept;
+
+  /// The validity of `reading` at `now`, when `command_kpa` is the last command sent. What the driver found
+  /// wrong stands. A jump is measured from the last valid reading, and what the finger could have travelled
+  /// since then grows with time: a sensor that comes back after a gap is believed again.
+  [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now,
+                                      double command_kpa) noexcept;
+
+ private:
+  [[nodiscard]] bool jumped(const model::Reading& reading) const noexcept;
+  [[nodiscard]] bool frozen(const model::Reading& reading, double command_kpa) noexcept;
+
+  PlausibilitySettings settings_;
+  Nanoseconds max_age_;
+  Nanoseconds frozen_after_;
+  bool known_ = false;  ///< there is a last valid reading
+  double last_mm_ = 0;
+  Nanoseconds last_sampled_at_ = 0;
+  bool watching_ = false;  ///< there is a displacement from which standing still is counted
+  double still_mm_ = 0;
+  Nanoseconds still_since_ = 0;
+  double lowest_command_kpa_ = 0;
+  double highest_command_kpa_ = 0;
+};
+
+}  // namespace softgrip::control

@@ -1,0 +1,170 @@
+#include "control/elements/reference.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace softgrip::control {
+namespace {
+
+/// Peak speed of a minimum-jerk move of unit length in unit time (Flash and Hogan, J. Neurosci. 5, 1985).
+constexpr double peak_speed_factor = 1.875;
+/// How long a reference that was cut in motion takes to come to rest before it moves on.
+constexpr double brake_s = 0.2;
+
+/// The quintic from a moving start to rest at `value`, over `duration`: powers of the time since its start.
+std::array<double, 6> quintic_to_rest(const ReferencePoint& from, double value, double duration) {
+  const double t = duration;
+  const double distance = value - from.value;
+  const double v = from.rate * t;
+  const double a = from.acceleration * t * t;
+  const double t2 = t * t;
+  return {from.value,
+          from.rate,
+          from.acceleration / 2,
+          (10 * distance - 6 * v - 1.5 * a) / (t2 * t),
+          (-15 * distance + 8 * v + 1.5 * a) / (t2 * t2),
+          (6 * distance - 3 * v - 0.5 * a) / (t2 * t2 * t)};
+}
+
+}  // namespace
+
+void Reference::start(double time_s, double value) noexcept {
+  start(time_s, ReferencePoint{value, 0, 0});
+}
+
+void Reference::start(double time_s, const ReferencePoint& point) noexcept {
+  count_ = 0;
+  rest_from_s_ = time_s;
+  rest_ = point;
+}
+
+ReferencePoint Reference::evaluate(const Segment& segment, double time_s) noexcept {
+  const double t = time_s - segment.start_s;
+  const auto& c = segment.c;
+  switch (segment.shape) {
+    case Shape::quintic:
+      return {c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5])))),
+              c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5]))),
+              2 * c[2] + t * (6 * c[3] + t * (12 * c[4] + t * 20 * c[5]))};
+    case Shape::sine: {
+      const double phase = c[2] * t;
+      const double cosine = std::cos(phase);
+      return {c[0] - c[1] * cosine, c[1] * c[2] * std::sin(phase), c[1] * c[2] * c[2] * cosine};
+    }
+    case Shape::curve:
+      return segment.curve.at(segment.curve.object, t);
+  }
+  return {};
+}
+
+ReferencePoint Reference::last_point() const noexcept {
+  if (count_ == 0) return rest_;
+  const Segment& last = segments_[count_ - 1];
+  return evaluate(last, last.start_s + last.duration_s);
+}
+
+ReferencePoint Reference::at(double time_s) const noexcept {
+  for (std::size_t i = count_; i-- > 0;) {
+    const Segment& segment = segments_[i];
+    if (time_s < segment.start_s) continue;
+    if (time_s <= segment.start_s + segment.duration_s) return evaluate(segment, time_s);
+    return {evaluate(segment, segment.start_s + segment.duration_s).value, 0, 0};
+  }
+  if (count_ == 0) return {rest_.value, 0, 0};
+  return {evaluate(segments_[0], segments_[0].start_s).value, 0, 0};
+}
+
+double Reference::end_s() const noexcept {
+  return count_ == 0 ? rest_from_s_ : segments_[count_ - 1].start_s + segments_[count_ - 1].duration_s;
+}
+
+double Reference::final_value() const noexcept {
+  return last_point().value;
+}
+
+Reference::Segment* Reference::append(Shape shape, double duration_s) noexcept {
+  if (count_ == capacity || !(duration_s >= 0)) return nullptr;
+  const double start_s = end_s();
+  Segment& segment = segments_[count_++];
+  segment = Segment{};
+  segment.shape = shape;
+  segment.start_s = start_s;
+  segment.duration_s = duration_s;
+  return &segment;
+}
+
+bool Reference::ramp_for(double value, double duration_s) noexcept {
+  if (!(duration_s > 0)) return false;
+  const ReferencePoint from = last_point();
+  Segment* segment = append(Shape::quintic, duration_s);
+  if (segment == nullptr) return false;
+  segment->c = quintic_to_rest(from, value, duration_s);
+  return true;
+}
+
+bool Reference::ramp_to(double value, double speed) noexcept {
+  if (!(speed > 0)) return false;
+  const ReferencePoint from = last_point();
+  const bool moving = from.rate != 0 || from.acceleration != 0;
+  if (count_ + (moving ? 2U : 1U) > capacity) return false;
+  // The distance at which the speed falls smoothly, without turning round.
+  if (moving && !ramp_for(from.value + from.rate * brake_s / 2, brake_s)) return false;
+  const double distance = std::abs(value - final_value());
+  if (distance == 0) return moving || hold_for(0);
+  return ramp_for(value, peak_speed_factor * distance / speed);
+}
+
+bool Reference::hold_for(double duration_s) noexcept {
+  const double value = final_value();
+  Segment* segment = append(Shape::quintic, duration_s);
+  if (segment == nullptr) return false;
+  segment->c[0] = value;
+  return true;
+}
+
+bool Reference::sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept {
+  if (!(frequency_hz > 0) || !(cycles > 0)) return false;
+  Segment* segment = append(Shape::sine, cycles / frequency_hz);
+  if (segment == nullptr) return false;
+  segment->c = {mean, amplitude, 2 * std::numbers::pi * frequency_hz, 0, 0, 0};
+  return true;
+}
+
+bool Reference::follow(const Curve& curve, double duration_s) noexcept {
+  if (curve.at == nullptr) return false;
+  Segment* segment = append(Shape::curve, duration_s);
+  if (segment == nullptr) return false;
+  segment->curve = curve;
+  return true;
+}
+
+void Reference::cut(double time_s) noexcept {
+  while (count_ > 0 && segments_[count_ - 1].start_s >= time_s) {
+    rest_ = {evaluate(segments_[count_ - 1], segments_[count_ - 1].start_s).value, 0, 0};
+    --count_;
+  }
+  if (count_ == 0) {
+    rest_from_s_ = time_s;
+    return;
+  }
+  Segment& last = segments_[count_ - 1];
+  if (end_s() >= time_s) {
+    last.duration_s = time_s - last.start_s;
+  } else if (!hold_for(time_s - end_s())) {
+    start(time_s, final_value());
+  }
+}
+
+void Reference::forget_before(double time_s) noexcept {
+  std::size_t gone = 0;
+  while (gone < count_ && segments_[gone].start_s + segments_[gone].duration_s < time_s) ++gone;
+  if (gone == 0) return;
+  if (gone == count_) {
+    start(end_s(), final_value());
+    return;
+  }
+  for (std::size_t i = gone; i < count_; ++i) segments_[i - gone] = segments_[i];
+  count_ -= gone;
+}
+
+}  // namespace softgrip::control

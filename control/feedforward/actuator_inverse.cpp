@@ -1,0 +1,70 @@
+#include "control/feedforward/actuator_inverse.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/dual.h"
+
+namespace softgrip::control {
+namespace {
+
+constexpr double tolerance_mm = 1e-11;
+/// A Newton step this short is taken without looking again: with curvatures below 0.05 mm/kPa^2 the equation
+/// is then solved to 1e-11 mm.
+constexpr double last_step_kpa = 2e-5;
+constexpr int most_iterations = 60;
+
+}  // namespace
+
+ActuatorInverse::ActuatorInverse(const model::Model& body, double tick_s)
+    : tick_s_(tick_s), body_(body, {}, tick_s) {}
+
+ActuatorInverse::Solution ActuatorInverse::solve(double displacement_mm, double lower_kpa,
+                                                 double upper_kpa) const noexcept {
+  using Number = model::Dual<double>;
+  const double guess = 3 * (past_kpa_[0] - past_kpa_[1]) + past_kpa_[2];
+  double x = std::clamp(guess, lower_kpa, upper_kpa);
+  double lower = lower_kpa;
+  double upper = upper_kpa;
+  for (int i = 0; i < most_iterations; ++i) {
+    const Number y = body_.peek(tick_s_, Number(x, 1));
+    const double miss = y.a - displacement_mm;
+    if (std::abs(miss) <= tolerance_mm) return {x, true};
+    (miss > 0 ? upper : lower) = x;
+    // Outside even at the bound, or a bracket without room: this is as near as it gets.
+    if (x == upper_kpa && miss < 0) return {x, false};
+    if (x == lower_kpa && miss > 0) return {x, false};
+    const double next = x - miss / y.v;
+    if (!(next > lower && next < upper)) {
+      // A bound that was not tried yet is tried first: it may be the answer.
+      const double bound = miss < 0 ? upper : lower;
+      const bool untried = bound == (miss < 0 ? upper_kpa : lower_kpa);
+      const double middle = 0.5 * (lower + upper);
+      if (!untried && !(middle > lower && middle < upper)) return {x, true};
+      x = untried ? bound : middle;
+      continue;
+    }
+    // The slope has a kink where the pressure turns, so a last step must not cross it.
+    const bool same_side = (x - past_kpa_[0]) * (next - past_kpa_[0]) > 0;
+    if (same_side && std::abs(next - x) <= last_step_kpa) return {next, true};
+    if (next == x) return {x, true};
+    x = next;
+  }
+  return {x, true};
+}
+
+void ActuatorInverse::advance(double pressure_kpa) noexcept {
+  body_.step(tick_s_, pressure_kpa);
+  past_kpa_ = {pressure_kpa, past_kpa_[0], past_kpa_[1]};
+}
+
+void ActuatorInverse::take_over(const model::Chain<double>& body, double pressure_kpa) noexcept {
+  body_ = body;
+  past_kpa_ = {pressure_kpa, pressure_kpa, pressure_kpa};
+}
+
+double ActuatorInverse::displacement_at(double pressure_kpa) const noexcept {
+  return body_.peek(tick_s_, pressure_kpa);
+}
+
+}  // namespace softgrip::control

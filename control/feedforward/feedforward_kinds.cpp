@@ -1,0 +1,249 @@
+#include "control/feedforward/feedforward_kinds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "model/dual.h"
+
+namespace softgrip::control {
+namespace {
+
+/// How long a difference between plan and reference takes to fade out at least.
+constexpr double fade_s = 0.5;
+/// What the reference may turn by from tick to tick before it is called a jump; a corner between 50 mm/s up
+/// and 50 mm/s down at 200 Hz is as much.
+constexpr double jump_mm = 0.5;
+/// Peak acceleration and peak speed of a minimum-jerk move of unit length in unit time.
+constexpr double peak_acceleration = 5.774;
+constexpr double peak_speed = 1.875;
+/// A plan that differs from what the reference needs by more than this is called out of reach.
+constexpr double late_kpa = 1e-6;
+/// A plan whose model is further from the reference than this is called out of reach.
+constexpr double missed_mm = 0.2;
+/// A reference that begins further from where its plan begins than this is not what was planned for: a plan
+/// moves at the speed of another way, and is worse then than none.
+constexpr double off_plan_mm = 1;
+/// Two clocks that count the same may differ by so much.
+constexpr double clock_rounding_s = 1e-6;
+/// How long the difference between the pressure before and the start of a plan takes to fade.
+constexpr double plan_fade_s = 3;
+
+/// The value of a parameter of the first block with that id, or nothing.
+std::optional<double> value_in(const model::Model& model, std::string_view id, std::string_view parameter) {
+  const std::optional<std::size_t> position = model::position_of(model, id);
+  if (!position) return std::nullopt;
+  const model::BlockSpec& block = model.blocks[*position];
+  return block.values[model::find_parameter(block, parameter).value()];
+}
+
+model::Model bouc_wen_of(const model::Model& model) {
+  // Its asymmetry is a part of it.
+  return model::only(model, [](const model::BlockInfo& info) {
+    return info.id == "bouc_wen" || info.id == "asymmetric_hysteresis";
+  });
+}
+
+}  // namespace
+
+BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSettings& limits, double tick_s)
+    : limits_(limits), inverse_(bouc_wen_of(model), tick_s) {}
+
+void BoucWenFeedforward::enter(const RunningModel& running, const FeedforwardQuery&, double) noexcept {
+  // What it did while nobody asked: one stretch from where it was. The hysteresis forgets the rest.
+  inverse_.advance(running.pressure_kpa());
+}
+
+FeedforwardStep BoucWenFeedforward::step(const FeedforwardQuery& query) noexcept {
+  const double target_mm =
+      limit_reference(limits_, query.reference->at(query.time_s).value).reference_mm - query.offset_mm;
+  const auto solution = inverse_.solve(target_mm, limits_.pressure_min_kpa, limits_.pressure_max_kpa);
+  inverse_.advance(solution.pressure_kpa);
+  return {solution.pressure_kpa, !solution.reached};
+}
+
+FullModelFeedforward::FullModelFeedforward(const model::Model& model, const FeedforwardSettings& settings,
+                                           const LimitSettings& limits, double tick_s)
+    : limits_(limits),
+      tick_s_(tick_s),
+      ceiling_kpa_(std::min(
+          limits.pressure_max_kpa,
+          value_in(model, "pressure_saturation", "limit_kpa").value_or(std::numeric_limits<double>::max()))),
+      lag_s_(value_in(model, "valve_lag", "time_constant_s").value_or(0)),
+      lag_share_(lag_s_ > 0 ? -std::expm1(-tick_s / lag_s_) : 1),
+      preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
+      inverse_(body_of(model), tick_s) {
+  // What follows the pressure at once moves with its slew; what creeps accelerates with it.
+  const model::Chain<double> body(body_of(model), {}, tick_s);
+  const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
+  const double after_tick = body.peek(tick_s, model::Dual<double>(0, 1)).v;
+  const double slew = std::min(limits.slew_up_kpa_per_s, limits.slew_down_kpa_per_s);
+  easy_mm_per_s_ = at_once * slew;
+  easy_mm_per_s2_ = 2 * (after_tick - at_once) / tick_s * slew;
+}
+
+ReferencePoint FullModelFeedforward::target(const FeedforwardQuery& query) const noexcept {
+  const double then_s = query.time_s + preview_s_;
+  ReferencePoint point = query.reference->at(then_s);
+  const LimitedReference inside = limit_reference(limits_, point.value);
+  if (inside.clamped) point = {inside.reference_mm, 0, 0};
+  point.value -= query.offset_mm;
+  return point;
+}
+
+double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
+  const double now = inverse_.pressure_kpa();
+  double next = wanted_kpa;
+  if (lag_s_ > 0) {
+    // The way that is left when the pressure has moved along with what it is wanted to be.
+    const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
+                                    limits_.slew_up_kpa_per_s * tick_s_);
+    const double left = wanted_kpa - now - along;
+    const double brake = (left > 0 ? limits_.slew_down_kpa_per_s : limits_.slew_up_kpa_per_s) / lag_s_;
+    const double stoppable = tick_s_ * std::sqrt(2 * brake * std::abs(left));
+    if (std::abs(left) > stoppable) next = now + along + std::copysign(stoppable, left);
+  }
+  last_wanted_kpa_ = wanted_kpa;
+  const double ideal = lag_s_ > 0 ? now + (next - now) / lag_share_ : 0.5 * (now + next);
+  return limit(limits_, ideal, command_kpa_, tick_s_).command_kpa;
+}
+
+double FullModelFeedforward::pressure_under(double command_kpa) const noexcept {
+  const double now = inverse_.pressure_kpa();
+  const double next = lag_s_ > 0 ? now + lag_share_ * (command_kpa - now) : 2 * command_kpa - now;
+  return std::min(next, ceiling_kpa_);
+}
+
+void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQuery& query,
+                                 double command_kpa) noexcept {
+  inverse_.take_over(running.body(), running.pressure_kpa());
+  command_kpa_ = command_kpa;
+  last_wanted_kpa_ = running.pressure_kpa();
+  // Left alone, the pressure goes on toward the command; where the model then is, the fade begins.
+  const double before_mm = inverse_.displacement_mm();
+  const double alone_mm = inverse_.displacement_at(pressure_under(command_kpa));
+  const ReferencePoint wanted = target(query);
+  fade_from(alone_mm, (alone_mm - before_mm) / tick_s_, wanted, query.time_s + preview_s_);
+  last_displacement_mm_ = before_mm;
+  last_target_mm_ = {wanted.value, wanted.value};
+}
+
+void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per_s, const ReferencePoint& to,
+                                     double then_s) noexcept {
+  const double difference_mm = displacement_mm - to.value;
+  const double distance_mm = std::abs(difference_mm);
+  // Either is enough: an element that follows at once, or one that creeps.
+  const double by_speed_s = peak_speed * distance_mm / easy_mm_per_s_;
+  const double by_acceleration_s = std::sqrt(peak_acceleration * distance_mm / easy_mm_per_s2_);
+  fade_.start(then_s, {difference_mm, speed_mm_per_s - to.rate, 0});
+  (void)fade_.ramp_for(0, std::max(fade_s, std::min(by_speed_s, by_acceleration_s)));
+}
+
+FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexcept {
+  const double then_s = query.time_s + preview_s_;
+  const ReferencePoint wanted = target(query);
+  const double now_mm = inverse_.displacement_mm();
+  if (std::abs(wanted.value - 2 * last_target_mm_[0] + last_target_mm_[1]) > jump_mm) {
+    const double going_mm = now_mm - last_displacement_mm_;
+    fade_from(now_mm + going_mm, going_mm / tick_s_, wanted, then_s);
+    last_target_mm_[0] = wanted.value;
+  }
+  last_target_mm_ = {wanted.value, last_target_mm_[0]};
+  last_displacement_mm_ = now_mm;
+
+  const auto solution =
+      inverse_.solve(wanted.value + fade_.at(then_s).value, limits_.pressure_min_kpa, ceiling_kpa_);
+  command_kpa_ = command_toward(solution.pressure_kpa);
+  const double next_kpa = pressure_under(command_kpa_);
+  inverse_.advance(next_kpa);
+  const bool late = std::abs(next_kpa - solution.pressure_kpa) > late_kpa;
+  return {command_kpa_, late || !solution.reached};
+}
+
+double plan_ahead_s(const model::Model& model, const FeedforwardSettings& settings, double tick_s) {
+  return 0.5 * tick_s + dead_time_s(model) + settings.extra_latency_s;
+}
+
+PlannedFeedforward::PlannedFeedforward(const model::Model& model, const FeedforwardSettings& settings,
+                                       const LimitSettings& limits, double tick_s)
+    : limits_(limits),
+      settled_(settled_line(model, limits)),
+      tick_s_(tick_s),
+      ahead_s_(plan_ahead_s(model, settings, tick_s)) {}
+
+void PlannedFeedforward::enter(const RunningModel&, const FeedforwardQuery&, double command_kpa) noexcept {
+  entering_ = true;
+  last_kpa_ = command_kpa;
+}
+
+double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wanted_mm,
+                                        double then_s) const noexcept {
+  double least_mm = std::numeric_limits<double>::max();
+  // Where the reference jumps, the two clocks must not differ by a rounding.
+  for (const double aside_s : {0.0, -clock_rounding_s, clock_rounding_s}) {
+    const double on_plan_s = then_s - query.plan_origin_s + aside_s;
+    const double planned_mm =
+        limit_reference(limits_, query.plan->reference.at(on_plan_s).value).reference_mm;
+    const double difference_mm = wanted_mm - planned_mm;
+    if (std::abs(difference_mm) < std::abs(least_mm)) least_mm = difference_mm;
+  }
+  return least_mm;
+}
+
+FeedforwardStep PlannedFeedforward::step(const FeedforwardQuery& query) noexcept {
+  const double then_s = query.time_s + ahead_s_;
+  const double wanted_mm =
+      limit_reference(limits_, query.reference->at(then_s).value).reference_mm - query.offset_mm;
+  const double aside_mm = query.plan != nullptr ? unplanned_mm(query, wanted_mm, then_s) : 0;
+  const bool changed = entering_ || query.plan != plan_ || query.plan_origin_s != origin_s_;
+  if (changed) on_plan_ = query.plan != nullptr && std::abs(aside_mm) <= off_plan_mm;
+  const double source =
+      on_plan_ ? query.plan->at(then_s - query.plan_origin_s) + aside_mm / settled_.gain_mm_per_kpa
+               : settled_.pressure_kpa(wanted_mm);
+  if (changed) {
+    entering_ = false;
+    plan_ = query.plan;
+    origin_s_ = query.plan_origin_s;
+    difference_kpa_ = last_kpa_ - source;
+    fade_left_s_ = plan_fade_s;
+  }
+  const double faded = source + difference_kpa_ * fade_left_s_ / plan_fade_s;
+  fade_left_s_ = std::max(0.0, fade_left_s_ - tick_s_);
+  last_kpa_ = std::clamp(faded, limits_.pressure_min_kpa, limits_.pressure_max_kpa);
+  const bool missed = on_plan_ && plan_->miss_mm(then_s - origin_s_) > missed_mm;
+  return {last_kpa_, missed || std::abs(faded - last_kpa_) > late_kpa};
+}
+
+Feedforward::Feedforward(const model::Model& model, const FeedforwardSettings& settings,
+                         const LimitSettings& limits, double tick_s) {
+  switch (settings.kind) {
+    case FeedforwardKind::none:
+      break;
+    case FeedforwardKind::bouc_wen:
+      kind_.emplace<BoucWenFeedforward>(model, limits, tick_s);
+      break;
+    case FeedforwardKind::full_model:
+      kind_.emplace<FullModelFeedforward>(model, settings, limits, tick_s);
+      break;
+    case FeedforwardKind::planned:
+      kind_.emplace<PlannedFeedforward>(model, settings, limits, tick_s);
+      break;
+  }
+}
+
+void Feedforward::enter(const RunningModel& running, const FeedforwardQuery& query,
+                        double command_kpa) noexcept {
+  std::visit([&](auto& kind) { kind.enter(running, query, command_kpa); }, kind_);
+}
+
+FeedforwardStep Feedforward::step(const FeedforwardQuery& query) noexcept {
+  return std::visit([&](auto& kind) { return kind.step(query); }, kind_);
+}
+
+double Feedforward::preview_s() const noexcept {
+  return std::visit([](const auto& kind) { return kind.preview_s(); }, kind_);
+}
+
+}  // namespace softgrip::control

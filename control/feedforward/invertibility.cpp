@@ -1,0 +1,177 @@
+#include "control/feedforward/invertibility.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string_view>
+
+#include "control/feedforward/planned_feedforward.h"
+#include "control/feedforward/running_model.h"
+#include "model/chain.h"
+#include "model/dual.h"
+
+namespace softgrip::control {
+namespace {
+
+using model::BlockInfo;
+using model::Inverse;
+using model::Kind;
+using model::Station;
+
+constexpr std::string_view usual_cause =
+    ": the model moves the wrong way first; a latency in the data is the usual cause, run `softgrip "
+    "diagnose`";
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+/// The smallest slope of displacement over pressure that was met, and where.
+struct Worst {
+  double gain_mm_per_kpa = std::numeric_limits<double>::max();
+  double pressure_kpa = 0;
+  bool rising = false;
+};
+
+/// The slope either way where the chain stands at `pressure_kpa`: at once, and at the end of a tick.
+void look(const model::Chain<double>& chain, double pressure_kpa, double tick_s, Worst& worst) {
+  constexpr double aside_kpa = 1e-7;
+  for (const bool rising : {true, false}) {
+    const model::Dual<double> there(pressure_kpa + (rising ? aside_kpa : -aside_kpa), 1);
+    for (const double duration_s : {0.0, tick_s}) {
+      const double gain = chain.peek(duration_s, there).v;
+      if (std::isnan(gain) || gain < worst.gain_mm_per_kpa) worst = {gain, pressure_kpa, rising};
+    }
+  }
+}
+
+/// Walks a chain through its working range and looks at every step. The outermost hysteresis states are met
+/// on the first loading and the full unloading after it, whatever came before being wiped out; inner loops
+/// and a slow pass, in which creep moves what depends on the displacement, fill in the rest.
+Worst worst_gain(const model::Model& model, double pressure_max_kpa, double tick_s) {
+  constexpr int steps = 200;
+  constexpr std::array<double, 10> turns{1, 0, 1, 0.3, 0.8, 0.5, 0.6, 0, 0.4, 0};
+  Worst worst;
+  for (const double step_s : {0.0, 0.5}) {
+    model::Chain<double> chain(model, {}, tick_s);
+    chain.reset(0);
+    double from = 0;
+    for (const double turn : turns) {
+      const double to = turn * pressure_max_kpa;
+      for (int i = 0; i < steps; ++i) {
+        const double pressure = from + (to - from) * i / steps;
+        chain.step(step_s, pressure);
+        look(chain, pressure, tick_s, worst);
+      }
+      from = to;
+    }
+  }
+  return worst;
+}
+
+/// What to say of a Bouc-Wen element that falls before it rises, or nothing. `stiff` is what else follows the
+/// pressure at once, `stiff_name` how to call it.
+std::string wrong_way(const model::Chain<double>& chain, double stiff, std::string_view stiff_name) {
+  const auto* bouc_wen = chain.find<model::BoucWen<double>>();
+  if (bouc_wen == nullptr) return {};
+  const double beta = bouc_wen->beta_mm_per_kpa();
+  const double gain = bouc_wen->alpha_mm_per_kpa() + stiff;
+  if (beta < gain) return {};
+  return "beta " + std::string(beta > gain ? ">" : "=") + " alpha" + std::string(stiff_name) + " (" +
+         number(beta) + (beta > gain ? " > " : " = ") + number(gain) + " mm/kPa)" + std::string(usual_cause);
+}
+
+tl::expected<void, Refusal> check_gain(const model::Model& model, double pressure_max_kpa, double tick_s,
+                                       double stiff, std::string_view stiff_name) {
+  std::string text = wrong_way(model::Chain<double>(model), stiff, stiff_name);
+  if (!text.empty()) return tl::unexpected(Refusal{std::move(text)});
+  const Worst worst = worst_gain(model, pressure_max_kpa, tick_s);
+  if (worst.gain_mm_per_kpa > 0) return {};
+  return tl::unexpected(Refusal{"the instantaneous gain is " + number(worst.gain_mm_per_kpa) + " mm/kPa at " +
+                                number(worst.pressure_kpa) + " kPa while the pressure " +
+                                (worst.rising ? "rises" : "falls") + std::string(usual_cause)});
+}
+
+/// Blocks that full_model cannot undo, by name. The sensor does not move the finger and is left alone.
+std::string without_inverse(const model::Model& model) {
+  std::string names;
+  for (const model::BlockSpec& spec : model.blocks) {
+    const BlockInfo& info = model::catalogue()[spec.type].info;
+    if (info.station == Station::sensor || info.inverse == Inverse::ignored) continue;
+    const bool in_valve = info.station == Station::valve;
+    const bool undone = info.inverse == Inverse::implicit
+                            ? !in_valve
+                            : in_valve && (info.inverse == Inverse::preview || info.id == "valve_lag" ||
+                                           info.id == "pressure_saturation");
+    if (undone) continue;
+    names += (names.empty() ? "`" : ", `") + std::string(info.id) + "`";
+  }
+  return names;
+}
+
+tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const LimitSettings& limits,
+                                           double tick_s) {
+  const auto part = model::only(model, [](const BlockInfo& info) {
+    return info.id == "bouc_wen" || info.id == "asymmetric_hysteresis";  // its asymmetry is a part of it
+  });
+  if (!model::position_of(part, "bouc_wen")) {
+    return tl::unexpected(
+        Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of"});
+  }
+  return check_gain(part, limits.pressure_max_kpa, tick_s, 0, "");
+}
+
+/// Any model can be planned for that moves the finger.
+tl::expected<void, Refusal> check_planned(const model::Model& model, const LimitSettings& limits) {
+  const auto elements = model::only(model, [](const BlockInfo& info) { return info.kind == Kind::element; });
+  if (elements.blocks.empty())
+    return tl::unexpected(Refusal{"the model has no element that moves the finger"});
+  const double gain = settled_line(model, limits).gain_mm_per_kpa;
+  if (gain > 0) return {};
+  return tl::unexpected(Refusal{"the model's settled gain between the lowest and the highest command is " +
+                                number(gain) + " mm/kPa: planning needs one above 0"});
+}
+
+tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,
+                                             double tick_s) {
+  const std::string names = without_inverse(model);
+  if (!names.empty()) {
+    return tl::unexpected(
+        Refusal{"the model contains " + names + ", which has no inverse; feedforward `none` is left for it"});
+  }
+  const model::Model body = body_of(model);
+  const auto elements = model::only(body, [](const BlockInfo& info) { return info.kind == Kind::element; });
+  if (elements.blocks.empty())
+    return tl::unexpected(Refusal{"the model has no element that moves the finger"});
+  const model::Chain<double> chain(body);
+  const auto* spring = chain.find<model::KelvinVoigt<double>>();
+  return check_gain(body, limits.pressure_max_kpa, tick_s,
+                    spring != nullptr ? spring->instantaneous_mm_per_kpa() : 0,
+                    spring != nullptr ? " + 1/k0" : "");
+}
+
+}  // namespace
+
+tl::expected<void, Refusal> check_feedforward(const model::Model& model, const FeedforwardSettings& settings,
+                                              const LimitSettings& limits, double tick_s) {
+  if (!(settings.extra_latency_s >= 0 && settings.extra_latency_s <= 1)) {
+    return tl::unexpected(Refusal{"extra_latency_s must be between 0 and 1 s"});
+  }
+  switch (settings.kind) {
+    case FeedforwardKind::none:
+      break;
+    case FeedforwardKind::bouc_wen:
+      return check_bouc_wen(model, limits, tick_s);
+    case FeedforwardKind::full_model:
+      return check_full_model(model, limits, tick_s);
+    case FeedforwardKind::planned:
+      return check_planned(model, limits);
+  }
+  return {};
+}
+
+}  // namespace softgrip::control

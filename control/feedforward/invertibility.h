@@ -1,0 +1,24 @@
+#pragma once
+// Whether a feedforward exists for a model, asked once when a rig is loaded, never when it diverges.
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "control/elements/feedforward.h"
+#include "control/elements/limits.h"
+#include "model/model.h"
+
+namespace softgrip::control {
+
+/// Why something is not done, in words for the user.
+struct Refusal {
+  std::string text;
+};
+
+/// Checks that `settings.kind` can be computed for `model` over the working range (0 to pressure_max_kpa,
+/// every hysteresis state reachable in it). A refusal names the block or the numbers.
+[[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
+                                                            const FeedforwardSettings& settings,
+                                                            const LimitSettings& limits, double tick_s);
+
+}  // namespace softgrip::control

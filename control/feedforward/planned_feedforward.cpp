@@ -1,0 +1,323 @@
+#include "control/feedforward/planned_feedforward.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "model/chain.h"
+
+namespace softgrip::control {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+/// Distance of the points of a plan.
+constexpr double finest_step_s = 0.025;
+/// What a window decides, and how much further it looks: the effect of what comes later on the best command
+/// now fades by exp(-z t) with z the wrong-way zero, 7/s for the published model.
+constexpr double decided_s = 4;
+constexpr double ahead_s = 1.5;
+/// Weight of the second difference of the command [mm/kPa]: far below what a plan must reach.
+constexpr double smooth_mm_per_kpa = 1e-3;
+/// Weight of what a command is outside its bounds [mm/kPa].
+constexpr double bound_mm_per_kpa = 30;
+/// For the derivatives of the chain.
+constexpr double aside_kpa = 1e-6;
+/// Of one search, and of all searches of a window together: the time that planning takes at most.
+constexpr int most_iterations = 25;
+constexpr int most_iterations_of_window = 60;
+/// A window whose root mean square miss is below this needs no other guess.
+constexpr double good_mm = 0.01;
+/// A window is done when an iteration lowers its cost by less than this share.
+constexpr double done_share = 2e-3;
+
+bool without_dead_time(const model::BlockInfo& info) {
+  return info.station != model::Station::sensor && info.inverse != model::Inverse::preview &&
+         info.inverse != model::Inverse::ignored;
+}
+
+/// One window: the chain where it begins, the command before it, what is wanted.
+class Window {
+ public:
+  Window(const model::Chain<double>& begin, std::array<double, 2> before_kpa, Vector wanted_mm,
+         const LimitSettings& limits, double step_s)
+      : begin_(begin),
+        before_kpa_(before_kpa),
+        wanted_mm_(std::move(wanted_mm)),
+        limits_(limits),
+        step_s_(step_s),
+        rise_kpa_(limits.slew_up_kpa_per_s * step_s),
+        fall_kpa_(limits.slew_down_kpa_per_s * step_s) {}
+
+  /// The command that is best, from a guess.
+  Vector solve(Vector u) {
+    double cost = cost_of(u);
+    double damping = 1e-4;
+    for (int i = 0; i < most_iterations && iterations_left_ > 0; ++i, --iterations_left_) {
+      Matrix normal;
+      Vector gradient;
+      linearise(u, normal, gradient);
+      bool better = false;
+      double last = cost;
+      for (int attempt = 0; attempt < 12 && !better; ++attempt) {
+        Matrix damped = normal;
+        damped.diagonal().array() += damping;
+        const Vector next = u - damped.selfadjointView<Eigen::Lower>().ldlt().solve(gradient);
+        const double at_next = cost_of(next);
+        better = at_next < cost;
+        if (better) {
+          u = next;
+          last = cost;
+          cost = at_next;
+          damping = std::max(1e-7, damping / 10);
+        } else {
+          damping *= 10;
+        }
+      }
+      // A short step under strong damping is no sign of the end.
+      if (!better || (cost > (1 - done_share) * last && damping < 1e-3)) break;
+    }
+    return u;
+  }
+
+  double cost_of(const Vector& u) const {
+    model::Chain<double> chain = begin_;
+    double cost = 0;
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      chain.step(step_s_, u[i]);
+      const double miss = chain.after(model::Station::load) - wanted_mm_[i];
+      const double bend = smooth_mm_per_kpa * (u[i] - 2 * before(u, i - 1) + before(u, i - 2));
+      const double out = bound_mm_per_kpa * outside(u[i]);
+      const double fast = bound_mm_per_kpa * too_fast(u[i] - before(u, i - 1));
+      cost += miss * miss + bend * bend + out * out + fast * fast;
+    }
+    return cost;
+  }
+
+ private:
+  [[nodiscard]] double before(const Vector& u, Eigen::Index i) const {
+    return i >= 0 ? u[i] : before_kpa_[static_cast<std::size_t>(-1 - i)];
+  }
+
+  /// How far a command is outside the pressure range and the slew limits: the sign says on which side.
+  [[nodiscard]] double outside(double u) const {
+    return std::max(0.0, u - limits_.pressure_max_kpa) + std::min(0.0, u - limits_.pressure_min_kpa);
+  }
+  [[nodiscard]] double too_fast(double change) const {
+    return std::max(0.0, change - rise_kpa_) + std::min(0.0, change + fall_kpa_);
+  }
+
+  void linearise(const Vector& u, Matrix& normal, Vector& gradient) {
+    const Eigen::Index n = u.size();
+    Matrix jacobian = Matrix::Zero(n, n);
+    Vector miss(n);
+    model::Chain<double> chain = begin_;
+    std::vector<model::Chain<double>> states;
+    states.reserve(static_cast<std::size_t>(n));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      states.push_back(chain);
+      chain.step(step_s_, u[i]);
+      miss[i] = chain.after(model::Station::load) - wanted_mm_[i];
+    }
+    // By the change of the command at point j, everything after it shifted along: one stretch becomes longer
+    // in the direction in which it goes. A single point moved to and fro would run around a small loop of the
+    // hysteresis instead. The difference of neighbouring columns is the derivative by the point itself.
+    for (Eigen::Index j = 0; j < n; ++j) {
+      model::Chain<double>& other = states[static_cast<std::size_t>(j)];
+      const double aside = std::copysign(aside_kpa, u[j] - before(u, j - 1));
+      for (Eigen::Index i = j; i < n; ++i) {
+        other.step(step_s_, u[i] + aside);
+        jacobian(i, j) = (other.after(model::Station::load) - wanted_mm_[i] - miss[i]) / aside;
+      }
+    }
+    for (Eigen::Index j = 0; j + 1 < n; ++j) jacobian.col(j) -= jacobian.col(j + 1);
+    normal = Matrix::Zero(n, n);
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+    gradient = jacobian.transpose() * miss;
+    add_rows(u, normal, gradient);
+  }
+
+  /// The smoothness and the bounds.
+  void add_rows(const Vector& u, Matrix& normal, Vector& gradient) const {
+    constexpr double smooth = smooth_mm_per_kpa * smooth_mm_per_kpa;
+    constexpr double bound = bound_mm_per_kpa * bound_mm_per_kpa;
+    constexpr std::array<double, 3> bend{1, -2, 1};
+    for (Eigen::Index i = 0; i < u.size(); ++i) {
+      const double bent = u[i] - 2 * before(u, i - 1) + before(u, i - 2);
+      for (Eigen::Index a = 0; a < 3 && i - a >= 0; ++a) {
+        const auto at = static_cast<std::size_t>(a);
+        gradient[i - a] += smooth * bend[at] * bent;
+        for (Eigen::Index b = a; b < 3 && i - b >= 0; ++b) {
+          normal(i - a, i - b) += smooth * bend[at] * bend[static_cast<std::size_t>(b)];
+        }
+      }
+      if (const double out = outside(u[i]); out != 0) {
+        gradient[i] += bound * out;
+        normal(i, i) += bound;
+      }
+      if (const double fast = too_fast(u[i] - before(u, i - 1)); fast != 0) {
+        gradient[i] += bound * fast;
+        normal(i, i) += bound;
+        if (i > 0) {
+          gradient[i - 1] -= bound * fast;
+          normal(i - 1, i - 1) += bound;
+          normal(i, i - 1) -= bound;
+        }
+      }
+    }
+  }
+
+  const model::Chain<double>& begin_;
+  std::array<double, 2> before_kpa_;  ///< newest first
+  Vector wanted_mm_;
+  const LimitSettings& limits_;
+  double step_s_;
+  double rise_kpa_;
+  double fall_kpa_;
+  int iterations_left_ = most_iterations_of_window;
+};
+
+/// The best command from several guesses, as long as what was found is not good: where the command turns the
+/// slope jumps, and a search may come to rest at such a corner.
+Vector best_of(Window& window, const Vector& guess, const Vector& proportional) {
+  Vector best = window.solve(guess);
+  double least = window.cost_of(best);
+  const double good = good_mm * good_mm * static_cast<double>(best.size());
+  for (const double share : {1.0, 0.8, 1.2}) {
+    if (least <= good) break;
+    Vector u = window.solve(share * proportional);
+    const double cost = window.cost_of(u);
+    if (cost < least) {
+      least = cost;
+      best = std::move(u);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+double PressurePlan::at(double time_s) const noexcept {
+  if (pressure_kpa.empty()) return 0;
+  const double place = (time_s - start_s) / step_s;
+  if (!(place > 0)) return pressure_kpa.front();
+  const auto whole = static_cast<std::size_t>(place);
+  if (whole + 1 >= pressure_kpa.size()) return pressure_kpa.back();
+  const double share = place - static_cast<double>(whole);
+  return pressure_kpa[whole] + share * (pressure_kpa[whole + 1] - pressure_kpa[whole]);
+}
+
+double PressurePlan::miss_mm(double time_s) const noexcept {
+  if (displacement_mm.empty()) return 0;
+  const double last = static_cast<double>(displacement_mm.size() - 1);
+  const double place = std::round(std::clamp((time_s - start_s) / step_s, 0.0, last));
+  return std::abs(displacement_mm[static_cast<std::size_t>(place)] -
+                  reference.at(start_s + place * step_s).value);
+}
+
+SettledLine settled_line(const model::Model& model, const LimitSettings& limits) {
+  const model::Model finger = model::only(model, without_dead_time);
+  model::Chain<double> chain(finger);
+  SettledLine line;
+  line.lowest_kpa = limits.pressure_min_kpa;
+  chain.reset(limits.pressure_min_kpa);
+  line.at_lowest_mm = chain.after(model::Station::load);
+  chain.reset(limits.pressure_max_kpa);
+  line.gain_mm_per_kpa = (chain.after(model::Station::load) - line.at_lowest_mm) /
+                         (limits.pressure_max_kpa - limits.pressure_min_kpa);
+  return line;
+}
+
+Planner::Planner(const model::Model& model, const LimitSettings& limits, double tick_s)
+    : model_(model::only(model, without_dead_time)),
+      limits_(limits),
+      step_s_(std::max(tick_s, finest_step_s)),
+      settled_(settled_line(model, limits)) {}
+
+double Planner::command_kpa() const noexcept {
+  return past_kpa_.empty() ? limits_.pressure_min_kpa : past_kpa_.back();
+}
+
+model::Chain<double> Planner::finger() const {
+  model::Chain<double> chain(model_, {}, step_s_);
+  chain.reset(limits_.pressure_min_kpa);
+  for (const double pressure : past_kpa_) chain.step(step_s_, pressure);
+  return chain;
+}
+
+double Planner::displacement_mm() const {
+  return finger().after(model::Station::load);
+}
+
+void Planner::drive(const std::function<double(double time_s)>& command_kpa, double duration_s) {
+  const auto points = static_cast<std::size_t>(std::lround(std::max(0.0, duration_s) / step_s_));
+  for (std::size_t i = 1; i <= points; ++i) {
+    const double wanted = command_kpa(static_cast<double>(i) * step_s_);
+    past_kpa_.push_back(limit(limits_, wanted, this->command_kpa(), step_s_).command_kpa);
+  }
+}
+
+/// One more point: what the limits make of a command, and what the model does under it.
+void Planner::add_point(double wanted_kpa, model::Chain<double>& chain, PressurePlan& plan) {
+  const double command = limit(limits_, wanted_kpa, command_kpa(), step_s_).command_kpa;
+  chain.step(step_s_, command);
+  past_kpa_.push_back(command);
+  plan.pressure_kpa.push_back(command);
+  plan.displacement_mm.push_back(chain.after(model::Station::load));
+}
+
+PressurePlan Planner::plan(const Reference& reference, double from_s, double to_s,
+                           const std::stop_token& stop) {
+  PressurePlan result;
+  result.start_s = from_s;
+  result.step_s = step_s_;
+  result.reference = reference;
+  model::Chain<double> chain = finger();
+  result.pressure_kpa.push_back(command_kpa());
+  result.displacement_mm.push_back(chain.after(model::Station::load));
+
+  const auto wanted_at = [&](std::size_t i) {
+    return limit_reference(limits_, reference.at(from_s + static_cast<double>(i) * step_s_).value)
+        .reference_mm;
+  };
+  const auto in_proportion = [&](double displacement_mm) {
+    return std::clamp(settled_.pressure_kpa(displacement_mm), limits_.pressure_min_kpa,
+                      limits_.pressure_max_kpa);
+  };
+  const auto points = static_cast<std::size_t>(std::ceil((to_s - from_s) / step_s_ - 1e-9)) + 1;
+  const auto keep = static_cast<std::size_t>(std::lround(decided_s / step_s_));
+  const auto look = static_cast<std::size_t>(std::lround(ahead_s / step_s_));
+  const auto n = static_cast<Eigen::Index>(keep + look);
+  double squares = 0;
+  Vector guess;
+  for (std::size_t done = 1; done < points && !stop.stop_requested();) {
+    Vector wanted(n);
+    for (Eigen::Index i = 0; i < n; ++i) wanted[i] = wanted_at(done + static_cast<std::size_t>(i));
+    // What the window before thought beyond what it decided; then in proportion. A guess that stands still
+    // would be a bad place for derivatives: hysteresis has one slope up and another down.
+    const Vector proportional = wanted.unaryExpr(in_proportion);
+    const Eigen::Index known = guess.size();
+    guess.conservativeResize(n);
+    guess.tail(n - known) = proportional.tail(n - known);
+    const double before = past_kpa_.size() > 1 ? past_kpa_[past_kpa_.size() - 2] : command_kpa();
+    Window window(chain, {command_kpa(), before}, std::move(wanted), limits_, step_s_);
+    const Vector u = best_of(window, guess, proportional);
+    const std::size_t now = std::min(keep, points - done);
+    for (std::size_t i = 0; i < now; ++i) {
+      add_point(u[static_cast<Eigen::Index>(i)], chain, result);
+      const double miss = std::abs(result.displacement_mm.back() - wanted_at(done + i));
+      squares += miss * miss;
+      result.worst_mm = std::max(result.worst_mm, miss);
+    }
+    done += now;
+    guess = u.tail(n - static_cast<Eigen::Index>(now));
+  }
+  result.rmse_mm = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(points - 1, 1)));
+  return result;
+}
+
+}  // namespace softgrip::control

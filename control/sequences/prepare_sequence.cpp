@@ -1,0 +1,322 @@
+// Fits a sequence to a rig: prepare() of control/tick/sequence.h.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "control/sequences/sequence_plans.h"
+#include "control/tick/sequence.h"
+#include "document/node.h"
+
+namespace softgrip::control {
+
+namespace {
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+using document::Problems;
+
+/// "12.5" for messages.
+std::string text_of(double value) {
+  std::string text = std::to_string(value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') {
+    text.pop_back();
+  }
+  return text;
+}
+
+double rounded(double value) {
+  return std::round(value * 100) / 100;
+}
+
+class Fitting {
+ public:
+  Fitting(const Sequence& sequence, const RigSettings& settings, Problems& problems)
+      : sequence_(sequence), settings_(settings), problems_(problems) {
+    source_.file = sequence.file;
+    source_.text = sequence.text;
+  }
+
+  PreparedSequence run() {
+    PreparedSequence result;
+    result.name = sequence_.name;
+    result.interlock = sequence_.interlock;
+    result.rig = rig_key(settings_);
+    const std::uint32_t all = mask_of(sequence_.channels, {}, (1U << settings_.channels.size()) - 1);
+    for (const Step& step : sequence_.steps) {
+      PreparedStep prepared{step, mask_of(step.channels, step.at, all), 0, {}};
+      if ((prepared.channels & ~all) != 0) {
+        report(step, "names a channel that the sequence does not use");
+      }
+      check(step, prepared.channels);
+      result.channels |= prepared.channels;
+      if (step.kind == StepKind::grip && step.verify.by == VerifyBy::detection) {
+        result.needs_detection |= prepared.channels;
+      }
+      result.steps.push_back(std::move(prepared));
+    }
+    point_to_releases(result.steps);
+    return result;
+  }
+
+  void plan(PreparedSequence& prepared, const std::stop_token& stop) {
+    for (const MissedPlan& missed : plan_steps(prepared, settings_, stop)) {
+      const Step& step = sequence_.steps[missed.step];
+      problems_.warn(source_.problem(step.at,
+                                     "step '" + step.name + "': the model of channel '" +
+                                         settings_.channels[missed.channel].name +
+                                         "' cannot follow within the limits: it stays up to " +
+                                         text_of(rounded(missed.worst_mm)) + " mm from the reference",
+                                     "a slower or smaller motion, or wider limits"));
+    }
+    if (stop.stop_requested()) report(sequence_.steps.front(), "its planning was stopped");
+    if (prepared.planned_s > most_planned_s) {
+      report(
+          sequence_.steps.front(),
+          "more than " + text_of(most_planned_s) + " s of motion would have to be planned before the start",
+          "split the sequence, or use another feedforward");
+    }
+  }
+
+ private:
+  void report(const Step& step, const std::string& message, std::string hint = {}) {
+    problems_.add(source_.problem(step.at, "step '" + step.name + "': " + message, std::move(hint)));
+  }
+
+  std::uint32_t mask_of(const std::vector<std::string>& names, document::Location at,
+                        std::uint32_t if_empty) {
+    if (names.empty()) {
+      return if_empty;
+    }
+    std::uint32_t mask = 0;
+    std::vector<std::string> known;
+    for (const ChannelSettings& channel : settings_.channels) {
+      known.push_back(channel.name);
+    }
+    for (const std::string& name : names) {
+      const auto found = std::find(known.begin(), known.end(), name);
+      if (found == known.end()) {
+        const std::string near = document::nearest(name, known);
+        problems_.add(source_.problem(at, "the rig has no channel '" + name + "'",
+                                      near.empty() ? "" : "did you mean '" + near + "'?"));
+      } else {
+        mask |= 1U << (found - known.begin());
+      }
+    }
+    return mask;
+  }
+
+  void check(const Step& step, std::uint32_t channels) {
+    for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
+      if ((channels >> i & 1U) != 0) {
+        check_channel(step, settings_.channels[i], i);
+      }
+    }
+    check_times(step);
+    if (step.kind == StepKind::grip) {
+      gripped_ |= channels;
+    } else if (step.kind == StepKind::hold && (gripped_ & channels) == 0) {
+      report(step, "holds what no step before has gripped", "put a grip step before it");
+    }
+  }
+
+  void check_channel(const Step& step, const ChannelSettings& channel, std::size_t index) {
+    double& follows = follows_mm_[index];
+    switch (step.kind) {
+      case StepKind::track:
+        check_track(step, channel, follows);
+        break;
+      case StepKind::pressure:
+        check_profile(step, channel);
+        follows = unknown;
+        break;
+      case StepKind::move:
+      case StepKind::grip:
+      case StepKind::release:
+        check_target(step, channel);
+        follows = step.target.quantity == Target::Quantity::displacement_mm ? step.target.value : unknown;
+        break;
+      case StepKind::hold:
+        break;
+    }
+    if (step.kind == StepKind::grip) {
+      check_verify(step, channel);
+    }
+  }
+
+  void check_target(const Step& step, const ChannelSettings& channel) {
+    if (step.target.quantity == Target::Quantity::displacement_mm) {
+      check_displacement(step, channel, step.target.value, step.target.value);
+    } else if (!step.target.lowest) {
+      check_pressure(step, channel, step.target.value, step.target.value);
+    }
+  }
+
+  void check_displacement(const Step& step, const ChannelSettings& channel, double lowest, double highest) {
+    const LimitSettings& limits = channel.limits;
+    if (lowest < limits.displacement_min_mm || highest > limits.displacement_max_mm) {
+      report(step, "goes to " + text_of(lowest < limits.displacement_min_mm ? lowest : highest) +
+                       " mm, channel '" + channel.name + "' allows " + text_of(limits.displacement_min_mm) +
+                       " to " + text_of(limits.displacement_max_mm) + " mm");
+    }
+    if (!channel.displacement_used) {
+      report(step, "channel '" + channel.name + "' does not use its displacement",
+             "give the target in pressure_kpa");
+    } else if (channel.feedforward.kind == FeedforwardKind::none && channel.pid.kp_kpa_per_mm == 0 &&
+               channel.pid.ki_kpa_per_mm_s == 0) {
+      report(step,
+             "channel '" + channel.name + "' has neither feedforward nor gains to follow a displacement");
+    }
+  }
+
+  void check_pressure(const Step& step, const ChannelSettings& channel, double lowest, double highest) {
+    const LimitSettings& limits = channel.limits;
+    if (lowest < limits.pressure_min_kpa || highest > limits.pressure_max_kpa) {
+      report(step, "goes to " + text_of(lowest < limits.pressure_min_kpa ? lowest : highest) +
+                       " kPa, channel '" + channel.name + "' allows " + text_of(limits.pressure_min_kpa) +
+                       " to " + text_of(limits.pressure_max_kpa) + " kPa");
+    }
+  }
+
+  void check_track(const Step& step, const ChannelSettings& channel, double& follows) {
+    const Sine& sine = step.sine;
+    const double start = sine.mean_mm - sine.amplitude_mm;
+    check_displacement(step, channel, start, sine.mean_mm + sine.amplitude_mm);
+    if (!(std::abs(follows - start) < 1e-9)) {
+      report(step, "starts at " + text_of(start) + " mm (mean_mm - amplitude_mm)",
+             "put a move to displacement_mm: " + text_of(start) + " before it");
+    }
+    if (sine.frequency_hz > settings_.rate_hz / 20) {
+      report(step, "frequency_hz is above a twentieth of the rig's rate_hz");
+    }
+    follows = start;
+  }
+
+  void check_profile(const Step& step, const ChannelSettings& channel) {
+    double lowest = infinite;
+    double highest = -infinite;
+    const auto see = [&](double value) {
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+    };
+    if (step.profile.signal) {
+      constexpr int samples = 2000;
+      for (int i = 0; i <= samples; ++i) {
+        see(value_at(step.profile, cycle_s(step.profile) * i / samples));
+      }
+    }
+    for (const Point& point : step.profile.points) {
+      see(point.pressure_kpa);
+    }
+    check_pressure(step, channel, lowest, highest);
+  }
+
+  void check_verify(const Step& step, const ChannelSettings& channel) {
+    if (step.verify.by == VerifyBy::pressure) {
+      if (!channel.pressure_measured) {
+        report(step, "verifies by pressure, but channel '" + channel.name + "' does not measure it");
+      }
+      check_pressure(step, channel, step.verify.pressure_min_kpa, step.verify.pressure_min_kpa);
+    } else if (!channel.displacement_used) {
+      report(step, "channel '" + channel.name + "' does not use its displacement", "verify by: pressure");
+    }
+  }
+
+  void check_times(const Step& step) {
+    const double period = 1 / settings_.rate_hz;
+    if (step.kind == StepKind::grip && step.verify.window_s < 2 * period) {
+      report(step, "window_s is shorter than two periods of the loop");
+    }
+    if (step.kind == StepKind::hold && step.reverify_every_s < 2 * period) {
+      report(step, "reverify_every_s is shorter than two periods of the loop");
+    }
+    const double least = step.target.duration_s + step.settle_s + step.purge_s +
+                         (step.kind == StepKind::grip ? step.verify.window_s : 0);
+    if (step.timeout_s && *step.timeout_s <= least) {
+      report(step, "timeout_s is not longer than the step's own times, " + text_of(least) + " s");
+    }
+  }
+
+  static void point_to_releases(std::vector<PreparedStep>& steps) {
+    auto next = static_cast<std::uint16_t>(steps.size());
+    for (std::size_t i = steps.size(); i-- > 0;) {
+      steps[i].release_step = next;
+      if (steps[i].step.kind == StepKind::release) {
+        next = static_cast<std::uint16_t>(i);
+      }
+    }
+  }
+
+  const Sequence& sequence_;
+  const RigSettings& settings_;
+  Problems& problems_;
+  document::Document source_;
+  std::uint32_t gripped_ = 0;
+  /// The displacement that each channel follows before a step; NaN while it follows none.
+  std::vector<double> follows_mm_ = std::vector<double>(settings_.channels.size(), unknown);
+};
+
+/// FNV-1a over the bytes of what a prepared sequence depends on.
+class Key {
+ public:
+  void add(double value) { add_bits(std::bit_cast<std::uint64_t>(value)); }
+  void add(const std::string& text) {
+    add_bits(text.size());
+    for (const char c : text) {
+      add_bits(static_cast<unsigned char>(c));
+    }
+  }
+  void add_bits(std::uint64_t bits) {
+    for (int i = 0; i < 8; ++i) {
+      value_ = (value_ ^ (bits >> 8 * i & 0xff)) * 1099511628211ULL;
+    }
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ULL;
+};
+
+}  // namespace
+
+std::uint64_t rig_key(const RigSettings& settings) noexcept {
+  Key key;
+  key.add(settings.rate_hz);
+  for (const ChannelSettings& channel : settings.channels) {
+    key.add(channel.name);
+    key.add(channel.limits.pressure_min_kpa);
+    key.add(channel.limits.pressure_max_kpa);
+    key.add(channel.limits.displacement_min_mm);
+    key.add(channel.limits.displacement_max_mm);
+    key.add_bits((channel.pressure_measured ? 1U : 0U) | (channel.displacement_used ? 2U : 0U));
+    if (channel.feedforward.kind != FeedforwardKind::planned) continue;
+    key.add(channel.limits.slew_up_kpa_per_s);
+    key.add(channel.limits.slew_down_kpa_per_s);
+    key.add(channel.feedforward.extra_latency_s);
+    for (const model::BlockSpec& block : channel.model.blocks) {
+      key.add_bits(block.type);
+      for (const double value : block.values) key.add(value);
+    }
+  }
+  return key.value();
+}
+
+std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
+                                        document::Problems& problems, const std::stop_token& stop) {
+  const std::size_t before = problems.size();
+  Fitting fitting(sequence, settings, problems);
+  PreparedSequence result = fitting.run();
+  if (problems.size() == before) {
+    fitting.plan(result, stop);
+  }
+  if (problems.size() != before) {
+    return std::nullopt;
+  }
+  return result;
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,328 @@
+#include "control/sequences/sequence_file.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "document/reader.h"
+
+namespace softgrip::control {
+
+namespace {
+
+using document::Document;
+using document::MapReader;
+using document::Node;
+using document::Problems;
+using document::Range;
+
+// Bounds that no rig of soft fingers exceeds; the rig's own, narrower limits are checked by prepare().
+constexpr Range displacement_mm{-100, 200};
+constexpr Range pressure_kpa{-100, 1000};
+constexpr Range speed{0.01, 1000};
+constexpr Range short_time_s{0, 600};
+constexpr Range long_time_s{0, 86400};
+constexpr Range ramp_s{0.01, 600};
+constexpr Range window_s{0.02, 60};
+constexpr std::size_t most_steps = 200;
+constexpr std::size_t most_points = 5000;
+
+template <class Enum>
+std::vector<std::string> names(std::initializer_list<Enum> values) {
+  std::vector<std::string> list;
+  for (const Enum value : values) {
+    list.emplace_back(name_of(value));
+  }
+  return list;
+}
+
+/// Reads the parts of one file; each function adds what is wrong and goes on.
+class FileReader {
+ public:
+  FileReader(const Document& document, Problems& problems) : document_(document), problems_(problems) {}
+
+  Sequence sequence() {
+    Sequence result;
+    result.file = document_.file;
+    result.text = document_.text;
+    MapReader map(document_, document_.root, problems_, "the sequence");
+    result.name = map.text("name");
+    result.about = map.optional_text("about").value_or("");
+    result.channels = channel_names(map);
+    if (const auto choice = map.optional_choice("interlock", {"start", "always"})) {
+      result.interlock = *choice == 0 ? Interlock::start : Interlock::always;
+    }
+    const auto items = map.sequence("steps", true);
+    if (items.size() > most_steps) {
+      map.report("steps", "more than " + std::to_string(most_steps) + " steps");
+    }
+    for (std::size_t i = 0; i < std::min(items.size(), most_steps); ++i) {
+      result.steps.push_back(step(*items[i], i + 1));
+    }
+    if (items.empty() && map.has("steps")) {
+      map.report("steps", "a sequence needs at least one step");
+    }
+    return result;
+  }
+
+ private:
+  std::vector<std::string> channel_names(MapReader& map) {
+    std::vector<std::string> list;
+    if (!map.has("channels")) {
+      return list;
+    }
+    for (const Node* item : map.sequence("channels", true)) {
+      if (item->kind != Node::Kind::scalar || item->scalar.empty()) {
+        problems_.add(document_.problem(item->at, "expected the name of a channel"));
+      } else if (std::find(list.begin(), list.end(), item->scalar) != list.end()) {
+        problems_.add(document_.problem(item->at, "channel '" + item->scalar + "' is listed twice"));
+      } else {
+        list.push_back(item->scalar);
+      }
+    }
+    if (list.empty()) {
+      map.report("channels", "name at least one channel", "leave the key out for all channels of the rig");
+    }
+    return list;
+  }
+
+  Step step(const Node& node, std::size_t number) {
+    static const std::vector<std::string> kinds =
+        names({StepKind::move, StepKind::grip, StepKind::hold, StepKind::release, StepKind::track,
+               StepKind::pressure});
+    Step result;
+    result.at = node.at;
+    const std::string shape =
+        "a step is a list item with one key: move, grip, hold, release, track or pressure";
+    if (node.kind != Node::Kind::map || node.entries.size() != 1) {
+      problems_.add(document_.problem(node.at, shape, "  - move: {pressure_kpa: 20, duration_s: 1}"));
+      return result;
+    }
+    const Node::Entry& entry = node.entries.front();
+    const auto kind = std::find(kinds.begin(), kinds.end(), entry.key);
+    if (kind == kinds.end()) {
+      const std::string near = document::nearest(entry.key, kinds);
+      problems_.add(document_.problem(entry.key_at, "unknown kind of step '" + entry.key + "'; " + shape,
+                                      near.empty() ? "" : "did you mean '" + near + "'?"));
+      return result;
+    }
+    result.kind = static_cast<StepKind>(kind - kinds.begin());
+    MapReader map(document_, entry.value, problems_,
+                  "step " + std::to_string(number) + " (" + entry.key + ")");
+    result.name = map.optional_text("name").value_or(entry.key);
+    result.channels = channel_names(map);
+    body(map, result);
+    map.finish();
+    return result;
+  }
+
+  void body(MapReader& map, Step& step) {
+    switch (step.kind) {
+      case StepKind::move:
+        target(map, step.target);
+        step.settle_s = map.optional_number("settle_s", short_time_s).value_or(0);
+        tolerance(map, step);
+        break;
+      case StepKind::grip:
+        target(map, step.target);
+        step.settle_s = map.number("settle_s", short_time_s);
+        step.verify = verify(map);
+        step.timeout_s = map.number("timeout_s", short_time_s);
+        step.retries = retries(map);
+        step.on_fail = on_fail(map);
+        break;
+      case StepKind::hold:
+        step.hold_s = map.number("hold_s", long_time_s);
+        step.reverify_every_s = map.number("reverify_every_s", window_s);
+        step.on_fail = on_fail(map);
+        break;
+      case StepKind::release:
+        release(map, step);
+        break;
+      case StepKind::track:
+        step.sine.mean_mm = map.number("mean_mm", displacement_mm);
+        step.sine.amplitude_mm = map.number("amplitude_mm", {0.001, 100});
+        step.sine.frequency_hz = map.number("frequency_hz", {0.001, 50});
+        step.sine.cycles = static_cast<std::uint32_t>(map.integer("cycles", 1, 10'000));
+        break;
+      case StepKind::pressure:
+        profile(map, step.profile);
+        break;
+    }
+  }
+
+  /// displacement_mm or pressure_kpa, and how to get there.
+  void target(MapReader& map, Target& target) {
+    const bool displacement = map.has("displacement_mm");
+    const bool pressure = map.has("pressure_kpa");
+    target.quantity = displacement ? Target::Quantity::displacement_mm : Target::Quantity::pressure_kpa;
+    if (displacement && pressure) {
+      map.optional_number("pressure_kpa", pressure_kpa);
+      map.report("pressure_kpa", "a step goes to displacement_mm or to pressure_kpa, not to both");
+    }
+    target.value = displacement ? map.number("displacement_mm", displacement_mm)
+                                : map.number("pressure_kpa", pressure_kpa);
+    ramp(map, target);
+  }
+
+  void ramp(MapReader& map, Target& target) {
+    const bool displacement = target.quantity == Target::Quantity::displacement_mm;
+    const std::string_view own = displacement ? "speed_mm_per_s" : "speed_kpa_per_s";
+    const std::string_view other = displacement ? "speed_kpa_per_s" : "speed_mm_per_s";
+    const auto by_speed = map.optional_number(own, speed);
+    const auto by_duration = map.optional_number("duration_s", ramp_s);
+    if (map.optional_number(other, speed)) {
+      map.report(other, "the speed has another unit than the target", "write " + std::string(own));
+    } else if (by_speed && by_duration) {
+      map.report("duration_s", "a ramp has a speed or a duration, not both");
+    } else if (displacement && !by_speed && !by_duration) {
+      map.report("displacement_mm", "a displacement needs speed_mm_per_s or duration_s");
+    }
+    target.speed = by_speed.value_or(0);
+    target.duration_s = by_duration.value_or(0);
+  }
+
+  /// A move can only fail when it has a tolerance; then it says how.
+  void tolerance(MapReader& map, Step& step) {
+    step.tolerance_mm = map.optional_number("tolerance_mm", {0.01, 50});
+    if (!step.tolerance_mm) {
+      return;
+    }
+    if (step.target.quantity != Target::Quantity::displacement_mm) {
+      map.report("tolerance_mm", "tolerance_mm belongs to a target in displacement_mm");
+    }
+    step.timeout_s = map.number("timeout_s", short_time_s);
+    step.retries = retries(map);
+    step.on_fail = on_fail(map);
+  }
+
+  Verify verify(MapReader& map) {
+    Verify result;
+    const Node* node = map.child("verify", true);
+    if (node == nullptr) {
+      return result;
+    }
+    MapReader inner(document_, *node, problems_, "verify");
+    result.by = static_cast<VerifyBy>(
+        inner.choice("by", names({VerifyBy::detection, VerifyBy::position, VerifyBy::pressure})));
+    result.window_s = inner.number("window_s", window_s);
+    if (result.by == VerifyBy::pressure) {
+      result.pressure_min_kpa = inner.number("pressure_min_kpa", pressure_kpa);
+    } else {
+      position_window(inner, result);
+    }
+    inner.finish();
+    return result;
+  }
+
+  void position_window(MapReader& map, Verify& verify) {
+    const auto lower = map.optional_number("displacement_min_mm", displacement_mm);
+    const auto upper = map.optional_number("displacement_max_mm", displacement_mm);
+    verify.displacement_min_mm = lower.value_or(verify.displacement_min_mm);
+    verify.displacement_max_mm = upper.value_or(verify.displacement_max_mm);
+    if (verify.by == VerifyBy::position && !(lower && upper)) {
+      map.report("by", "verification by position needs displacement_min_mm and displacement_max_mm");
+    }
+    if (lower && upper && *lower >= *upper) {
+      map.report("displacement_max_mm", "displacement_max_mm must be above displacement_min_mm");
+    }
+  }
+
+  std::uint32_t retries(MapReader& map) {
+    return static_cast<std::uint32_t>(map.optional_integer("retries", 0, 10).value_or(0));
+  }
+
+  /// Required: what happens when a step fails is never a hidden default.
+  OnFail on_fail(MapReader& map) {
+    return static_cast<OnFail>(map.choice(
+        "on_fail", names({OnFail::vent, OnFail::hold, OnFail::abort, OnFail::release, OnFail::carry_on})));
+  }
+
+  void release(MapReader& map, Step& step) {
+    step.target.quantity = Target::Quantity::pressure_kpa;
+    const auto level = map.optional_number("pressure_kpa", pressure_kpa);
+    step.target.lowest = !level;
+    step.target.value = level.value_or(0);
+    ramp(map, step.target);
+    step.purge_s = map.number("purge_s", short_time_s);
+    step.timeout_s = map.number("timeout_s", short_time_s);
+    step.on_fail = on_fail(map);
+  }
+
+  void profile(MapReader& map, Profile& profile) {
+    const bool has_signal = map.has("signal");
+    const bool has_points = map.has("points");
+    if (has_signal && has_points) {
+      map.report("signal", "a pressure step has points or a signal, not both");
+    }
+    if (has_signal) {
+      std::vector<std::string> signals;
+      for (const model::SignalName signal : model::all_signals()) {
+        signals.emplace_back(model::name_of(signal));
+      }
+      profile.signal = model::all_signals()[map.choice("signal", signals)];
+      profile.scale = map.optional_number("scale", {0.01, 20}).value_or(1);
+    }
+    if (has_points || !has_signal) {
+      points(map, profile.points);
+    }
+    profile.cycles = static_cast<std::uint32_t>(map.optional_integer("cycles", 1, 10'000).value_or(1));
+    if (profile.cycles > 1 && !profile.points.empty() &&
+        profile.points.front().pressure_kpa != profile.points.back().pressure_kpa) {
+      map.report("cycles", "points that are repeated must end at the pressure at which they start");
+    }
+  }
+
+  void points(MapReader& map, std::vector<Point>& points) {
+    const auto items = map.sequence("points", true);
+    if (items.size() > most_points) {
+      map.report("points", "more than " + std::to_string(most_points) + " points");
+      return;
+    }
+    for (const Node* item : items) {
+      MapReader inner(document_, *item, problems_, "point");
+      const Point point{inner.number("time_s", long_time_s), inner.number("pressure_kpa", pressure_kpa)};
+      if (points.empty() ? point.time_s != 0 : point.time_s < points.back().time_s) {
+        inner.report("time_s",
+                     points.empty() ? "the first point is at time_s: 0" : "points must not go back in time");
+      }
+      points.push_back(point);
+    }
+    if (points.size() < 2 && map.has("points")) {
+      map.report("points", "a profile needs at least two points");
+    }
+  }
+
+  const Document& document_;
+  Problems& problems_;
+};
+
+/// Parsing goes on after an error, so that what is left can look sound.
+bool refused(const Document& document, const Problems& problems) {
+  return !document.complete ||
+         std::any_of(problems.list().begin(), problems.list().end(),
+                     [&](const document::Problem& problem) { return problem.file == document.file; });
+}
+
+}  // namespace
+
+std::optional<Sequence> read_sequence(const document::Document& document, document::Problems& problems) {
+  const std::size_t before = problems.size();
+  Sequence sequence = FileReader(document, problems).sequence();
+  if (problems.size() != before || refused(document, problems)) {
+    return std::nullopt;
+  }
+  return sequence;
+}
+
+std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems) {
+  const std::size_t before = problems.size();
+  const document::Document document = document::parse_file(path, problems);
+  if (document.root.kind == document::Node::Kind::null) {
+    return std::nullopt;
+  }
+  auto sequence = read_sequence(document, problems);
+  return problems.size() == before ? std::move(sequence) : std::nullopt;
+}
+
+}  // namespace softgrip::control

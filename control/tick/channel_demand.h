@@ -1,0 +1,32 @@
+#pragma once
+// What the sequence player or the supervisor asks of one channel in one tick.
+
+#include <cstdint>
+
+#include "control/elements/reference.h"
+#include "control/feedforward/planned_feedforward.h"
+
+namespace softgrip::control {
+
+/// Modes can change from any to any at any tick; the command stays continuous.
+struct ChannelDemand {
+  enum class Mode : std::uint8_t {
+    hold,          ///< the command stays where it is
+    vent,          ///< down to the lowest command, at the slew limit
+    pressure,      ///< the command is `pressure_kpa`, within the limits; no feedback
+    displacement,  ///< feedforward and feedback follow `reference`
+  };
+  Mode mode = Mode::hold;
+  double pressure_kpa = 0;               ///< of pressure
+  const Reference* reference = nullptr;  ///< of displacement [mm]; on the clock of `time_s`
+  double time_s = 0;                     ///< now, on that clock
+  /// Of displacement with feedforward `planned`: the plan for the reference; nullptr where there is none. Its
+  /// clock is that of `time_s` less plan_origin_s.
+  const PressurePlan* plan = nullptr;
+  double plan_origin_s = 0;
+  /// Of displacement: the finger meets an object. The feedback stays as it is, so that it does not press
+  /// ever harder against what does not yield; the feedforward goes on.
+  bool feedback_held = false;
+};
+
+}  // namespace softgrip::control

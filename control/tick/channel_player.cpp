@@ -1,0 +1,290 @@
+#include "control/tick/channel_player.h"
+
+#include <cmath>
+#include <limits>
+
+namespace softgrip::control {
+
+namespace {
+constexpr double infinite = std::numeric_limits<double>::infinity();
+/// How much of the past reference is kept: feedback compares a reading with the reference of its time.
+constexpr double kept_s = 1;
+using Mode = ChannelDemand::Mode;
+
+/// False when the reference is full.
+bool append_ramp(Reference& reference, const Target& target, double value) noexcept {
+  if (target.speed > 0) {
+    return reference.ramp_to(value, target.speed);
+  }
+  if (target.duration_s > 0) {
+    return reference.ramp_for(value, target.duration_s);
+  }
+  reference.start(reference.end_s(), value);
+  return true;
+}
+
+}  // namespace
+
+void ChannelPlayer::reset() noexcept {
+  step_ = nullptr;
+  stage_ = Stage::done;
+  freeze();
+  contact_.reset();
+  answer(GripResult::none, GripEvidence::none);
+}
+
+void ChannelPlayer::answer(GripResult result, GripEvidence evidence) noexcept {
+  result_ = result;
+  evidence_ = evidence;
+}
+
+void ChannelPlayer::answer_holding(double time_s) noexcept {
+  held_by_ = step_->verify;
+  answer(GripResult::holding, evidence_of(held_by_.by));
+  watch_from(time_s, held_by_.window_s);
+}
+
+GripEvidence ChannelPlayer::evidence_of(VerifyBy by) const noexcept {
+  if (by == VerifyBy::pressure) {
+    return GripEvidence::pressure;
+  }
+  return sighted_ ? GripEvidence::displacement : GripEvidence::none;
+}
+
+void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double time_s,
+                          const ChannelView& view) noexcept {
+  step_ = &step;
+  if (step.kind != StepKind::hold) {
+    plan_ = plan;
+    plan_origin_s_ = plan != nullptr ? time_s - plan->begin_s : 0;
+  }
+  sighted_ = view.sighted;
+  failure_ = GripResult::error;
+  deadline_s_ = step.timeout_s ? time_s + *step.timeout_s : infinite;
+  switch (step.kind) {
+    case StepKind::move:
+    case StepKind::grip:
+    case StepKind::release:
+      go_to(step.target, step.target.lowest ? view.lowest_kpa : step.target.value, time_s, view);
+      stage_ = Stage::ramp;
+      break;
+    case StepKind::hold:
+      watch_from(time_s, step.reverify_every_s);
+      stage_end_s_ = time_s + step.hold_s;
+      stage_ = Stage::watch;
+      break;
+    case StepKind::track:
+      displacement_.forget_before(time_s - kept_s);
+      displacement_.cut(time_s + view.preview_s);
+      displacement_.sine(step.sine.mean_mm, step.sine.amplitude_mm, step.sine.frequency_hz, step.sine.cycles);
+      stage_end_s_ = displacement_.end_s();
+      stage_ = Stage::profile;
+      break;
+    case StepKind::pressure:
+      mode_ = Mode::pressure;
+      profile_start_s_ = time_s;
+      pressure_kpa_ = value_at(step.profile, 0);
+      stage_end_s_ = time_s + duration_s(step.profile);
+      stage_ = Stage::profile;
+      break;
+  }
+}
+
+/// Starts the ramp of a target. A displacement goes on from the reference that is followed, else from where
+/// the finger is; a pressure from the last command.
+void ChannelPlayer::go_to(const Target& target, double value, double time_s,
+                          const ChannelView& view) noexcept {
+  Reference& reference = target.quantity == Target::Quantity::displacement_mm ? displacement_ : pressure_;
+  if (target.quantity == Target::Quantity::pressure_kpa) {
+    reference.start(time_s, view.command_kpa);
+    start_value_ = view.command_kpa;
+    mode_ = Mode::pressure;
+    pressure_kpa_ = view.command_kpa;
+  } else if (mode_ == Mode::displacement) {
+    reference.forget_before(time_s - kept_s);
+    start_value_ = reference.at(time_s).value;
+    reference.cut(time_s + view.preview_s);
+  } else {
+    reference.start(time_s, view.displacement_mm);
+    reference.hold_for(view.preview_s);
+    start_value_ = view.displacement_mm;
+    mode_ = Mode::displacement;
+  }
+  if (!append_ramp(reference, target, value)) {
+    reference.forget_before(time_s);  // many short steps: give up the past
+    append_ramp(reference, target, value);
+  }
+  ramp_end_s_ = reference.end_s();
+}
+
+void ChannelPlayer::back_off(double time_s, const ChannelView& view) noexcept {
+  const double value = start_value_;
+  plan_ = nullptr;
+  go_to(step_->target, value, time_s, view);
+  deadline_s_ = infinite;
+  stage_ = Stage::back;
+}
+
+Progress ChannelPlayer::tick(double time_s, const ChannelView& view) noexcept {
+  contact_.observe(view);
+  deficit_mm_ = view.deficit_mm;
+  Progress progress = advance(time_s, view);
+  if (mode_ == Mode::pressure) pressure_kpa_ = pressure_at(time_s);
+  if (progress == Progress::pending && time_s >= deadline_s_) {
+    // Nobody who could not look may say that there is nothing.
+    const bool looked = stage_ == Stage::verify && !window_.blinded(time_s);
+    failure_ = looked ? GripResult::no_part : GripResult::error;
+    progress = Progress::failed;
+  }
+  if (progress == Progress::failed) {
+    stage_ = Stage::done;
+  }
+  return progress;
+}
+
+double ChannelPlayer::pressure_at(double time_s) const noexcept {
+  if (step_->kind == StepKind::pressure) return value_at(step_->profile, time_s - profile_start_s_);
+  return pressure_.at(time_s).value;
+}
+
+Progress ChannelPlayer::advance(double time_s, const ChannelView& view) noexcept {
+  switch (stage_) {
+    case Stage::ramp:
+      return time_s >= ramp_end_s_ ? after_ramp(time_s, view) : Progress::pending;
+    case Stage::settle:
+      return settle(time_s, view);
+    case Stage::verify:
+      return verify(time_s, view);
+    case Stage::watch:
+      if (watch(time_s, view)) {
+        return Progress::failed;
+      }
+      return time_s >= stage_end_s_ ? pass() : Progress::pending;
+    case Stage::purge:
+    case Stage::free:
+      return release(time_s, view);
+    case Stage::profile:
+      return time_s >= stage_end_s_ ? pass() : Progress::pending;
+    case Stage::back:
+      return time_s >= ramp_end_s_ + step_->settle_s ? pass() : Progress::pending;
+    case Stage::done:
+      break;
+  }
+  return Progress::passed;
+}
+
+Progress ChannelPlayer::pass() noexcept {
+  stage_ = Stage::done;
+  return Progress::passed;
+}
+
+Progress ChannelPlayer::after_ramp(double time_s, const ChannelView& view) noexcept {
+  if (step_->kind == StepKind::release) {
+    stage_ = Stage::purge;
+    mode_ = Mode::vent;
+    stage_end_s_ = time_s + step_->purge_s;
+    return Progress::pending;
+  }
+  stage_ = Stage::settle;
+  stage_end_s_ = time_s + step_->settle_s;
+  within_ = false;
+  return settle(time_s, view);
+}
+
+Progress ChannelPlayer::settle(double time_s, const ChannelView& view) noexcept {
+  if (step_->tolerance_mm) {
+    const double target = step_->target.value;
+    const bool within = view.valid && std::abs(view.displacement_mm - target) <= *step_->tolerance_mm;
+    if (within && !within_) {
+      stage_end_s_ = time_s + step_->settle_s;
+    }
+    within_ = within;
+    if (!within) {
+      return Progress::pending;
+    }
+  }
+  if (time_s < stage_end_s_) {
+    return Progress::pending;
+  }
+  if (step_->kind != StepKind::grip) {
+    return pass();
+  }
+  stage_ = Stage::verify;
+  window_.start(time_s, step_->verify.window_s);
+  return verify(time_s, view);
+}
+
+bool ChannelPlayer::usable(const Verify& verify, const ChannelView& view) const noexcept {
+  return verify.by == VerifyBy::pressure ? std::isfinite(view.pressure_kpa)
+                                         : view.valid && std::isfinite(view.deficit_mm);
+}
+
+bool ChannelPlayer::evident(const Verify& verify, const ChannelView& view) const noexcept {
+  if (verify.by == VerifyBy::pressure) {
+    return view.pressure_kpa >= verify.pressure_min_kpa;
+  }
+  const bool inside = view.displacement_mm >= verify.displacement_min_mm &&
+                      view.displacement_mm <= verify.displacement_max_mm;
+  return inside && (verify.by == VerifyBy::position || view.deficit_mm >= margin_mm_);
+}
+
+Progress ChannelPlayer::verify(double time_s, const ChannelView& view) noexcept {
+  const Verify& verify = step_->verify;
+  switch (window_.observe(time_s, usable(verify, view), evident(verify, view))) {
+    case EvidenceWindow::Verdict::verified:
+      return pass();
+    case EvidenceWindow::Verdict::refuted:
+      failure_ = GripResult::no_part;
+      return Progress::failed;
+    case EvidenceWindow::Verdict::pending:
+      break;
+  }
+  return Progress::pending;
+}
+
+/// Purges, then waits until the finger is where the free model says. A channel without sight cannot know.
+Progress ChannelPlayer::release(double time_s, const ChannelView& view) noexcept {
+  if (time_s < stage_end_s_) {
+    return Progress::pending;
+  }
+  stage_ = Stage::free;
+  const bool free = view.valid && std::isfinite(view.deficit_mm) && !contact_.touching();
+  return !view.sighted || free ? pass() : Progress::pending;
+}
+
+void ChannelPlayer::watch_from(double time_s, double interval_s) noexcept {
+  const bool pressure = held_by_.by == VerifyBy::pressure;
+  const bool position = held_by_.by == VerifyBy::position;
+  hold_.start(time_s, interval_s, pressure ? held_by_.pressure_min_kpa : position ? 0.5 : 0.5 * margin_mm_);
+}
+
+bool ChannelPlayer::watch(double time_s, const ChannelView& view) noexcept {
+  deficit_mm_ = view.deficit_mm;
+  if (result_ != GripResult::holding) {
+    return false;
+  }
+  const bool inside = view.displacement_mm >= held_by_.displacement_min_mm &&
+                      view.displacement_mm <= held_by_.displacement_max_mm;
+  double evidence = inside ? view.deficit_mm : 0;
+  if (held_by_.by == VerifyBy::pressure) {
+    evidence = view.pressure_kpa;
+  } else if (held_by_.by == VerifyBy::position) {
+    evidence = inside ? 1 : 0;
+  }
+  return hold_.observe(time_s, usable(held_by_, view), evidence);
+}
+
+ChannelDemand ChannelPlayer::demand(double time_s) const noexcept {
+  ChannelDemand demand;
+  demand.mode = mode_;
+  demand.pressure_kpa = pressure_kpa_;
+  demand.reference = &displacement_;
+  demand.time_s = time_s;
+  demand.plan = plan_;
+  demand.plan_origin_s = plan_origin_s_;
+  const bool closing = step_ != nullptr && (step_->kind == StepKind::grip || step_->kind == StepKind::hold);
+  demand.feedback_held = contact_.touching() && (closing || result_ == GripResult::holding);
+  return demand;
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,102 @@
+#pragma once
+// One channel's way through one step of a sequence.
+
+#include <cstdint>
+
+#include "control/elements/grip_detector.h"
+#include "control/elements/grip_result.h"
+#include "control/elements/reference.h"
+#include "control/tick/channel_demand.h"
+#include "control/tick/sequence.h"
+
+namespace softgrip::control {
+
+/// How far a channel is with its step.
+enum class Progress : std::uint8_t { pending, passed, failed };
+
+class ChannelPlayer {
+ public:
+  explicit ChannelPlayer(double margin_mm) noexcept : margin_mm_(margin_mm), contact_(margin_mm) {}
+
+  /// Before the first step: keeps its command, touches nothing, forgets the last answer.
+  void reset() noexcept;
+  /// The first or another attempt at a step. `step` and `plan` (nullptr: none) outlive it. A hold step goes
+  /// on with the plan of the step before.
+  void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelView& view) noexcept;
+  /// Back to where the attempt started, as fast as it went.
+  void back_off(double time_s, const ChannelView& view) noexcept;
+  /// One tick of the step, or of backing off (passed: there).
+  Progress tick(double time_s, const ChannelView& view) noexcept;
+  /// Outside a sequence: true once when what is held is lost.
+  bool watch(double time_s, const ChannelView& view) noexcept;
+
+  /// Of the last tick; `reference` points into this object.
+  [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
+  /// The finger touches something.
+  [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
+  /// What a failed step would answer now: NO PART or ERROR.
+  [[nodiscard]] GripResult failure() const noexcept { return failure_; }
+
+  [[nodiscard]] GripResult result() const noexcept { return result_; }
+  [[nodiscard]] GripEvidence evidence() const noexcept { return evidence_; }
+  void answer(GripResult result, GripEvidence evidence) noexcept;
+  /// A grip was verified: HOLDING, watched from now on with the step's criterion.
+  void answer_holding(double time_s) noexcept;
+  /// On what a verification of this channel rests.
+  [[nodiscard]] GripEvidence evidence_of(VerifyBy by) const noexcept;
+  /// Of the last tick, for the events [mm].
+  [[nodiscard]] double deficit_mm() const noexcept { return deficit_mm_; }
+
+  /// Keeps the command where it is.
+  void freeze() noexcept {
+    mode_ = ChannelDemand::Mode::hold;
+    plan_ = nullptr;
+  }
+  /// When the ramp or the profile of the present step ends.
+  [[nodiscard]] double motion_end_s() const noexcept {
+    return stage_ == Stage::profile ? stage_end_s_ : ramp_end_s_;
+  }
+  /// In mode pressure: what the present step asks for at a time [kPa].
+  [[nodiscard]] double pressure_at(double time_s) const noexcept;
+
+ private:
+  enum class Stage : std::uint8_t { ramp, settle, verify, watch, purge, free, profile, back, done };
+
+  void go_to(const Target& target, double value, double time_s, const ChannelView& view) noexcept;
+  Progress advance(double time_s, const ChannelView& view) noexcept;
+  Progress after_ramp(double time_s, const ChannelView& view) noexcept;
+  Progress settle(double time_s, const ChannelView& view) noexcept;
+  Progress verify(double time_s, const ChannelView& view) noexcept;
+  Progress release(double time_s, const ChannelView& view) noexcept;
+  Progress pass() noexcept;
+  [[nodiscard]] bool usable(const Verify& verify, const ChannelView& view) const noexcept;
+  [[nodiscard]] bool evident(const Verify& verify, const ChannelView& view) const noexcept;
+  void watch_from(double time_s, double interval_s) noexcept;
+
+  double margin_mm_;
+  const Step* step_ = nullptr;
+  Stage stage_ = Stage::done;
+  ChannelDemand::Mode mode_ = ChannelDemand::Mode::hold;
+  Reference displacement_;  ///< of mode displacement [mm]
+  Reference pressure_;      ///< of mode pressure [kPa], but for profiles
+  const PressurePlan* plan_ = nullptr;
+  double plan_origin_s_ = 0;
+  double profile_start_s_ = 0;
+  double pressure_kpa_ = 0;
+  double start_value_ = 0;  ///< where the attempt started, in the target's unit
+  double ramp_end_s_ = 0;
+  double stage_end_s_ = 0;
+  double deadline_s_ = 0;
+  double deficit_mm_ = 0;
+  bool sighted_ = true;  ///< the channel uses its displacement
+  bool within_ = false;  ///< the tolerance
+  Contact contact_;
+  EvidenceWindow window_;
+  HoldWatch hold_;
+  Verify held_by_;  ///< criterion of what is held
+  GripResult failure_ = GripResult::error;
+  GripResult result_ = GripResult::none;
+  GripEvidence evidence_ = GripEvidence::none;
+};
+
+}  // namespace softgrip::control

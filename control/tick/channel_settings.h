@@ -1,0 +1,33 @@
+#pragma once
+// What one channel's control needs to know: plain values, in the units of the rig file. Whoever makes them
+// checks them (settings_problems() in settings.h); control takes them as they are.
+
+#include <string>
+
+#include "control/elements/feedforward.h"
+#include "control/elements/limits.h"
+#include "control/elements/model_health.h"
+#include "control/elements/pid.h"
+#include "control/elements/plausibility.h"
+#include "model/model.h"
+
+namespace softgrip::control {
+
+/// One finger.
+struct ChannelSettings {
+  std::string name;
+  model::Model model;  ///< of the free finger, without contact
+  PidSettings pid;
+  FeedforwardSettings feedforward;
+  LimitSettings limits;
+  PlausibilitySettings plausibility;
+  ModelHealthSettings health;
+  /// The channel has an input for the measured pressure (a monitor output of the valve).
+  bool pressure_measured = false;
+  /// False: the displacement sensor is absent or blocked by the work. Its readings are recorded, but nothing
+  /// depends on them: no fault, no feedback, no detection; only pressure targets and verification by pressure
+  /// (the weaker kind) are possible.
+  bool displacement_used = true;
+};
+
+}  // namespace softgrip::control

@@ -1,0 +1,188 @@
+#include "control/tick/fault_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace softgrip::control {
+
+namespace {
+
+FaultCode code_of(model::Validity validity) noexcept {
+  switch (validity) {
+    case model::Validity::valid:
+      return FaultCode::none;
+    case model::Validity::none_yet:
+    case model::Validity::stale:
+      return FaultCode::reading_stale;
+    case model::Validity::out_of_range:
+      return FaultCode::reading_out_of_range;
+    case model::Validity::sensor_error:
+      return FaultCode::sensor_error;
+    case model::Validity::jumped:
+      return FaultCode::reading_jumped;
+    case model::Validity::frozen:
+      return FaultCode::reading_frozen;
+  }
+  return FaultCode::sensor_error;
+}
+
+/// The board itself says so: no need to wait for more of the same.
+bool said_by_board(FaultCode code) noexcept {
+  return code == FaultCode::write_refused || code == FaultCode::board_watchdog_tripped;
+}
+
+/// Commands of so many seconds, the one under way and the one that is being compared included.
+std::size_t window_of(double delay_s, double rate_hz) {
+  return static_cast<std::size_t>(std::ceil(delay_s * rate_hz)) + 2;
+}
+
+/// In windows: how long a finger may take to deflate that still had pressure when the daemon or the bus came.
+constexpr std::size_t grace_windows = 4;
+
+}  // namespace
+
+FaultMonitor::FaultMonitor(const RigSettings& settings)
+    : settings_(settings.faults),
+      readback_window_(window_of(settings.faults.readback_delay_s, settings.rate_hz)),
+      pressure_window_(window_of(settings.faults.pressure_delay_s, settings.rate_hz)),
+      channels_(settings.channels.size()) {
+  const std::size_t ring =
+      settings.faults.pressure_cycles > 0 ? std::max(readback_window_, pressure_window_) : readback_window_;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    sighted_.push_back(settings.channels[i].displacement_used);
+    channels_[i].sent_kpa.assign(ring, settings.channels[i].limits.pressure_min_kpa);
+  }
+}
+
+Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelStep> steps,
+                            bool starting) noexcept {
+  cause_present_ = input.emergency_stop || input.inputs_lost;
+  Fault first;
+  const auto note = [&first](const Fault& fault) {
+    if (first.code == FaultCode::none) {
+      first = fault;
+    }
+  };
+  if (input.emergency_stop) {
+    note({FaultCode::emergency_stop, whole_rig, 0});
+  }
+  if (input.inputs_lost) {
+    note({FaultCode::inputs_lost, whole_rig, 0});
+  }
+  note(bus(input.bus, starting));
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    note(channel(i, input, steps[i], starting));
+  }
+  if (settings_.slipped_cycles > 0 && input.slipped_cycles >= settings_.slipped_cycles) {
+    note({FaultCode::cycles_lost, whole_rig, static_cast<double>(input.slipped_cycles)});
+  }
+  return first;
+}
+
+Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
+  const bool good = bus.connected && bus.consecutive_failures == 0 && bus.fault == FaultCode::none;
+  bus_cycles_ = good ? 0 : bus_cycles_ + 1;
+  cause_present_ = cause_present_ || !good;
+  if (good || (starting && !said_by_board(bus.fault))) {
+    return {};
+  }
+  const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
+  if (said_by_board(code) || bus_cycles_ >= settings_.bus_down_cycles) {
+    return {code, whole_rig, static_cast<double>(bus_cycles_)};
+  }
+  return {};
+}
+
+Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const ChannelStep& step,
+                            bool starting) noexcept {
+  Channel& channel = channels_[index];
+  const auto number = static_cast<std::uint8_t>(index);
+  if (step.request_invalid) {
+    return {FaultCode::not_finite, number, 0};
+  }
+  const Fault of_reading = sighted_[index] ? reading(channel, number, step, starting) : Fault{};
+  const double readback = input.readings[index].command_readback_kpa;
+  const bool readback_off = bus_good() && std::isfinite(readback) &&
+                            off(channel, readback, readback_window_, settings_.readback_tolerance_kpa);
+  channel.readback_cycles = readback_off ? channel.readback_cycles + 1 : 0;
+  const bool pressure_off = pressure_due(channel, input.readings[index].pressure_kpa, starting);
+  cause_present_ = cause_present_ || channel.invalid_cycles > 0 || channel.beyond_cycles > 0 ||
+                   readback_off || channel.pressure_cycles > 0;
+  if (of_reading.code != FaultCode::none) {
+    return of_reading;
+  }
+  if (readback_off && channel.readback_cycles >= settings_.readback_cycles) {
+    return {FaultCode::readback_mismatch, number, readback};
+  }
+  if (pressure_off) {
+    return {FaultCode::pressure_not_followed, number, input.readings[index].pressure_kpa};
+  }
+  if (settings_.model_unfit_is_fault && step.health_changed && step.health == HealthState::unfit) {
+    return {FaultCode::model_unfit, number, step.health_rms_mm};
+  }
+  return {};
+}
+
+Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelStep& step,
+                            bool starting) const noexcept {
+  const bool silent = step.validity == model::Validity::none_yet || step.validity == model::Validity::stale;
+  // While the bus is down, silence is its fault, and the reading is still old in the tick in which it is
+  // back.
+  const bool invalid = step.validity != model::Validity::valid && !(silent && (starting || !bus_good()));
+  channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
+  channel.beyond_cycles = step.displacement_beyond ? channel.beyond_cycles + 1 : 0;
+  if (invalid && channel.invalid_cycles >= settings_.invalid_reading_cycles) {
+    return {code_of(step.validity), index, step.age_s};
+  }
+  if (channel.beyond_cycles >= settings_.displacement_cycles) {
+    return {FaultCode::displacement_beyond_limits, index, step.displacement_mm};
+  }
+  return {};
+}
+
+/// A cycle without an exchange says nothing, neither for nor against: a wire that stutters must not hide a
+/// burst line. Without a measured pressure there is nothing to be off. While the daemon starts and after a
+/// gap that is a fault itself the finger may still have the pressure of before.
+bool FaultMonitor::pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept {
+  if (settings_.pressure_cycles == 0) return false;
+  if (starting || bus_cycles_ >= settings_.bus_down_cycles) {
+    channel.pressure_grace = static_cast<std::uint32_t>(grace_windows * pressure_window_);
+    channel.pressure_cycles = 0;
+    return false;
+  }
+  if (!bus_good()) return false;
+  if (channel.pressure_grace > 0) --channel.pressure_grace;
+  const bool wrong = std::isfinite(pressure_kpa) && channel.pressure_grace == 0 &&
+                     off(channel, pressure_kpa, pressure_window_, settings_.pressure_tolerance_kpa);
+  channel.pressure_cycles = wrong ? channel.pressure_cycles + 1 : 0;
+  return channel.pressure_cycles >= settings_.pressure_cycles;
+}
+
+/// The newest command is the usual answer.
+bool FaultMonitor::off(const Channel& channel, double kpa, std::size_t window,
+                       double tolerance_kpa) const noexcept {
+  const std::vector<double>& sent = channel.sent_kpa;
+  std::size_t at = ring_at_;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (std::size_t i = 0; i < std::min(window, sent.size()); ++i) {
+    at = (at == 0 ? sent.size() : at) - 1;
+    lowest = std::min(lowest, sent[at]);
+    highest = std::max(highest, sent[at]);
+    if (kpa >= lowest - tolerance_kpa && kpa <= highest + tolerance_kpa) return false;
+  }
+  return true;
+}
+
+void FaultMonitor::sent(std::size_t channel, double command_kpa) noexcept {
+  channels_[channel].sent_kpa[ring_at_] = command_kpa;
+}
+
+void FaultMonitor::end_tick() noexcept {
+  if (!channels_.empty() && ++ring_at_ == channels_.front().sent_kpa.size()) {
+    ring_at_ = 0;
+  }
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,69 @@
+#pragma once
+// Sees what is wrong in a tick and says when it has lasted long enough to be a fault. Latches nothing.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "control/elements/fault.h"
+#include "control/tick/channel_controller.h"
+#include "control/tick/event_list.h"
+#include "control/tick/rig_controller.h"
+#include "control/tick/settings.h"
+
+namespace softgrip::control {
+
+struct Fault {
+  FaultCode code = FaultCode::none;
+  std::uint8_t channel = whole_rig;
+  double value = 0;  ///< what goes with it: an age, a displacement, a read-back, a number of cycles
+};
+
+class FaultMonitor {
+ public:
+  explicit FaultMonitor(const RigSettings& settings);
+
+  /// One tick. `steps` are those of the tick before. While `starting`, silence is no fault: nobody has
+  /// answered yet. Returns the gravest fault that is due now, in the order of the checks below.
+  Fault observe(const TickInput& input, std::span<const ChannelStep> steps, bool starting) noexcept;
+
+  /// Something that is or grows to a fault is there in this tick: acknowledging would not last.
+  [[nodiscard]] bool cause_present() const noexcept { return cause_present_; }
+  /// No bus fault is there in this tick.
+  [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
+
+  /// What was sent in this tick; the read-back is compared with it.
+  void sent(std::size_t channel, double command_kpa) noexcept;
+  /// To be called after the commands of all channels of a tick.
+  void end_tick() noexcept;
+
+ private:
+  struct Channel {
+    std::uint32_t invalid_cycles = 0;
+    std::uint32_t beyond_cycles = 0;
+    std::uint32_t readback_cycles = 0;
+    std::uint32_t pressure_cycles = 0;
+    std::uint32_t pressure_grace = 0;  ///< cycles for which the pressure may still be what it was before
+    std::vector<double> sent_kpa;      ///< ring of the past commands, as far back as anything looks
+  };
+  Fault bus(const BusHealth& bus, bool starting) noexcept;
+  Fault channel(std::size_t index, const TickInput& input, const ChannelStep& step, bool starting) noexcept;
+  Fault reading(Channel& channel, std::uint8_t index, const ChannelStep& step, bool starting) const noexcept;
+  bool pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept;
+  /// Farther than the tolerance from every command of the newest `window`.
+  [[nodiscard]] bool off(const Channel& channel, double kpa, std::size_t window,
+                         double tolerance_kpa) const noexcept;
+
+  FaultSettings settings_;
+  std::size_t readback_window_ = 0;  ///< commands, the newest included
+  std::size_t pressure_window_ = 0;
+  std::vector<bool> sighted_;
+  std::vector<Channel> channels_;
+  std::size_t ring_at_ = 0;
+  std::uint32_t bus_cycles_ = 0;
+  bool cause_present_ = false;
+};
+
+}  // namespace softgrip::control

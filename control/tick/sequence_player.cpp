@@ -1,0 +1,256 @@
+#include "control/tick/sequence_player.h"
+
+#include <algorithm>
+
+namespace softgrip::control {
+
+namespace {
+constexpr std::uint32_t bit(std::size_t channel) noexcept {
+  return 1U << channel;
+}
+}  // namespace
+
+SequencePlayer::SequencePlayer(const RigSettings& settings)
+    : channels_(settings.channels.size(), ChannelPlayer(settings.detection.margin_mm)) {}
+
+template <class Do>
+void SequencePlayer::for_each_of_step(Do&& act) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if ((now().channels & bit(i)) != 0) {
+      act(i);
+    }
+  }
+}
+
+void SequencePlayer::start(const PreparedSequence& sequence, double time_s,
+                           std::span<const ChannelView> views, EventList& events) noexcept {
+  sequence_ = &sequence;
+  failed_ = false;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if ((sequence.channels & bit(i)) != 0) {
+      channels_[i].reset();
+    }
+  }
+  attempts_ = 0;
+  begin_step(0, time_s, views, events);
+}
+
+void SequencePlayer::begin_step(std::uint16_t index, double time_s, std::span<const ChannelView> views,
+                                EventList& events) noexcept {
+  step_ = index;
+  backing_off_ = false;
+  done_ = 0;
+  refused_ = 0;
+  for_each_of_step(
+      [&](std::size_t i) { channels_[i].begin(now().step, now().plan_of(i), time_s, views[i]); });
+  events.add(Event::Kind::step_started, index, 0, attempts_);
+}
+
+SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const ChannelView> views,
+                                             EventList& events) noexcept {
+  const bool holds = now().step.kind == StepKind::hold;
+  for_each_of_step([&](std::size_t i) {
+    const Progress progress = channels_[i].tick(time_s, views[i]);
+    if ((done_ & bit(i)) != 0 || progress == Progress::pending) {
+      return;
+    }
+    done_ |= bit(i);
+    if (progress == Progress::failed) {
+      refused_ |= bit(i);
+      if (holds) {
+        lose(i, events);
+      }
+    }
+  });
+  // A lost part is acted on at once; every other answer waits for the other fingers.
+  if (done_ != now().channels && !(holds && refused_ != 0)) {
+    return {};
+  }
+  if (backing_off_) {
+    begin_step(step_, time_s, views, events);
+    return {};
+  }
+  if (refused_ != 0) {
+    return failed(time_s, views, events);
+  }
+  for_each_of_step([&](std::size_t i) { answer_passed(i, time_s, events); });
+  return next_step(step_ + std::size_t{1}, time_s, views, events);
+}
+
+SequencePlayer::Outcome SequencePlayer::next_step(std::size_t index, double time_s,
+                                                  std::span<const ChannelView> views,
+                                                  EventList& events) noexcept {
+  if (index < sequence_->steps.size()) {
+    attempts_ = 0;
+    begin_step(static_cast<std::uint16_t>(index), time_s, views, events);
+    return {};
+  }
+  return finished(OnFail::hold, events);
+}
+
+SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const ChannelView> views,
+                                               EventList& events) noexcept {
+  const Step& step = now().step;
+  if (attempts_ < step.retries) {
+    ++attempts_;
+    backing_off_ = true;
+    done_ = 0;
+    refused_ = 0;
+    for_each_of_step([&](std::size_t i) { channels_[i].back_off(time_s, views[i]); });
+    return {};
+  }
+  failed_ = true;
+  for_each_of_step([&](std::size_t i) {
+    if ((refused_ & bit(i)) == 0) {
+      answer_passed(i, time_s, events);
+    } else if (step.kind != StepKind::hold) {
+      answer(i, channels_[i].failure(), channels_[i].evidence_of(step.verify.by), events);
+    }
+  });
+  if (step.on_fail == OnFail::carry_on) {
+    return next_step(step_ + std::size_t{1}, time_s, views, events);
+  }
+  if (step.on_fail == OnFail::release && now().release_step < sequence_->steps.size()) {
+    return next_step(now().release_step, time_s, views, events);
+  }
+  return finished(step.on_fail == OnFail::release ? OnFail::vent : step.on_fail, events);
+}
+
+/// What a channel that passed its step answers.
+void SequencePlayer::answer_passed(std::size_t channel, double time_s, EventList& events) noexcept {
+  ChannelPlayer& player = channels_[channel];
+  const Step& step = now().step;
+  if (step.kind == StepKind::grip) {
+    player.answer_holding(time_s);
+    tell(channel, events);
+  } else if (step.kind == StepKind::release &&
+             (player.result() == GripResult::none || player.result() == GripResult::holding)) {
+    answer(channel, GripResult::released, player.evidence_of(VerifyBy::detection), events);
+  }
+}
+
+void SequencePlayer::answer(std::size_t channel, GripResult result, GripEvidence evidence,
+                            EventList& events) noexcept {
+  channels_[channel].answer(result, evidence);
+  tell(channel, events);
+}
+
+void SequencePlayer::tell(std::size_t channel, EventList& events) const noexcept {
+  const ChannelPlayer& player = channels_[channel];
+  events.add(Event{Event::Kind::grip_result, static_cast<std::uint8_t>(channel),
+                   static_cast<std::uint16_t>(player.result()), 0, player.deficit_mm(), player.evidence()});
+}
+
+void SequencePlayer::lose(std::size_t channel, EventList& events) noexcept {
+  answer(channel, GripResult::part_lost, channels_[channel].evidence(), events);
+}
+
+SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& events) noexcept {
+  if (failed_) {
+    answer_the_rest(events);
+  }
+  stop_playing();
+  return {true, failed_ ? SequenceEnd::failed : SequenceEnd::done, action};
+}
+
+/// Nobody who took part stays without an answer when something went wrong.
+void SequencePlayer::answer_the_rest(EventList& events) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if ((sequence_->channels & bit(i)) != 0 && channels_[i].result() == GripResult::none) {
+      answer(i, GripResult::error, GripEvidence::none, events);
+    }
+  }
+}
+
+void SequencePlayer::stop_playing() noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    channels_[i].freeze();
+  }
+  sequence_ = nullptr;
+}
+
+void SequencePlayer::interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept {
+  const bool releasing = sequence_ != nullptr && now().step.kind == StepKind::release;
+  const std::uint32_t half_released = releasing ? now().channels & ~venting : 0;
+  if (sequence_ != nullptr) {
+    answer_the_rest(events);
+  }
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const bool unsure = end == SequenceEnd::faulted || (half_released & bit(i)) != 0;
+    if (unsure && channels_[i].result() == GripResult::holding) {
+      answer(i, GripResult::error, GripEvidence::none, events);
+    }
+  }
+  stop_playing();
+}
+
+void SequencePlayer::idle_tick(double time_s, std::span<const ChannelView> views,
+                               EventList& events) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if (channels_[i].watch(time_s, views[i])) {
+      lose(i, events);
+    }
+  }
+}
+
+void SequencePlayer::vented(std::uint32_t channels, EventList& events) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if ((channels & bit(i)) != 0 && channels_[i].result() == GripResult::holding) {
+      answer(i, GripResult::released, GripEvidence::none, events);
+    }
+  }
+}
+
+void SequencePlayer::refuse(std::uint32_t channels, EventList& events) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    if ((channels & bit(i)) != 0) {
+      answer(i, GripResult::error, GripEvidence::none, events);
+    }
+  }
+}
+
+bool SequencePlayer::has_answers() const noexcept {
+  return std::any_of(channels_.begin(), channels_.end(), [](const ChannelPlayer& channel) {
+    return channel.result() != GripResult::none && channel.result() != GripResult::holding;
+  });
+}
+
+void SequencePlayer::acknowledge(std::uint32_t request, EventList& events) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const GripResult result = channels_[i].result();
+    if (result != GripResult::none && result != GripResult::holding) {
+      channels_[i].answer(GripResult::none, GripEvidence::none);
+      events.add_of_channel(i, Event::Kind::grip_result, GripResult::none, request);
+    }
+  }
+}
+
+ChannelDemand SequencePlayer::demand(std::size_t channel, double time_s) const noexcept {
+  return channels_[channel].demand(time_s);
+}
+
+Phase SequencePlayer::phase() const noexcept {
+  if (sequence_ != nullptr && now().step.kind == StepKind::release) {
+    return Phase::releasing;
+  }
+  const bool holding = std::any_of(channels_.begin(), channels_.end(), [](const ChannelPlayer& channel) {
+    return channel.result() == GripResult::holding;
+  });
+  if (holding) {
+    return Phase::holding;
+  }
+  return sequence_ != nullptr ? Phase::closing : Phase::idle;
+}
+
+bool SequencePlayer::free_motion(std::size_t channel) const noexcept {
+  const ChannelPlayer& player = channels_[channel];
+  if (player.result() == GripResult::holding) {
+    return false;
+  }
+  const bool may_touch =
+      sequence_ != nullptr && (now().step.kind == StepKind::grip || now().step.kind == StepKind::hold ||
+                               now().step.kind == StepKind::release);
+  return !(may_touch && player.touching());
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,82 @@
+#pragma once
+// Plays a prepared sequence: all channels of a step start it together and the next step starts when the last
+// of them has its answer. Allocates nothing after construction.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "control/tick/channel_player.h"
+#include "control/tick/event_list.h"
+#include "control/tick/settings.h"
+
+namespace softgrip::control {
+
+class SequencePlayer {
+ public:
+  explicit SequencePlayer(const RigSettings& settings);
+
+  /// From rest: clears the answers of the sequence's channels and begins the first step.
+  void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelView> views,
+             EventList& events) noexcept;
+
+  /// How the sequence stands after a tick.
+  struct Outcome {
+    bool finished = false;
+    SequenceEnd end = SequenceEnd::done;
+    OnFail action = OnFail::hold;  ///< of a finished one: vent, hold or abort
+  };
+  /// One tick of the running sequence.
+  Outcome tick(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
+
+  /// The sequence ends from outside. Channels without an answer get ERROR. So do those that were HOLDING,
+  /// when nobody can vouch for it any more: after a fault, or half released and not `venting`.
+  void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
+  /// No sequence runs: re-verifies what is still held.
+  void idle_tick(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
+  /// What these channels held was let go by a vent: HOLDING becomes RELEASED.
+  void vented(std::uint32_t channels, EventList& events) noexcept;
+  /// The sequence could not start: ERROR for its channels.
+  void refuse(std::uint32_t channels, EventList& events) noexcept;
+  /// NO PART, PART LOST, RELEASED or ERROR stands somewhere.
+  [[nodiscard]] bool has_answers() const noexcept;
+  /// Clears these.
+  void acknowledge(std::uint32_t request, EventList& events) noexcept;
+
+  [[nodiscard]] ChannelDemand demand(std::size_t channel, double time_s) const noexcept;
+  [[nodiscard]] const ChannelPlayer& channel(std::size_t index) const noexcept { return channels_[index]; }
+  [[nodiscard]] std::uint16_t step() const noexcept { return step_; }
+  /// What the rig is doing, for the choice of what is safe.
+  [[nodiscard]] Phase phase() const noexcept;
+  /// The finger moves without touching anything, as far as is known.
+  [[nodiscard]] bool free_motion(std::size_t channel) const noexcept;
+
+ private:
+  template <class Do>
+  void for_each_of_step(Do&& act) noexcept;
+  [[nodiscard]] const PreparedStep& now() const noexcept { return sequence_->steps[step_]; }
+  void begin_step(std::uint16_t index, double time_s, std::span<const ChannelView> views,
+                  EventList& events) noexcept;
+  Outcome next_step(std::size_t index, double time_s, std::span<const ChannelView> views,
+                    EventList& events) noexcept;
+  Outcome failed(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
+  void answer_passed(std::size_t channel, double time_s, EventList& events) noexcept;
+  void answer(std::size_t channel, GripResult result, GripEvidence evidence, EventList& events) noexcept;
+  void tell(std::size_t channel, EventList& events) const noexcept;
+  void lose(std::size_t channel, EventList& events) noexcept;
+  Outcome finished(OnFail action, EventList& events) noexcept;
+  void answer_the_rest(EventList& events) noexcept;
+  void stop_playing() noexcept;
+
+  std::vector<ChannelPlayer> channels_;
+  const PreparedSequence* sequence_ = nullptr;  ///< while one runs
+  std::uint16_t step_ = 0;
+  std::uint32_t attempts_ = 0;  ///< at the present step
+  bool backing_off_ = false;
+  bool failed_ = false;        ///< some step failed
+  std::uint32_t done_ = 0;     ///< channels with an answer to the step
+  std::uint32_t refused_ = 0;  ///< those whose answer is a failure
+};
+
+}  // namespace softgrip::control

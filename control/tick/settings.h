@@ -1,0 +1,89 @@
+#pragma once
+// What a RigController needs to know of a rig: plain values. The rig file is read elsewhere (daemon/).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "control/tick/channel_settings.h"
+
+namespace softgrip::control {
+
+/// Most channels of one rig. A bound, so that snapshots and rows are plain values of fixed size.
+inline constexpr std::size_t max_channels = 16;
+
+/// What a rig is doing, as far as it decides what a safe output is.
+enum class Phase : std::uint8_t {
+  idle,       ///< no sequence runs (also: starting, re-synchronising)
+  closing,    ///< approach, grip, settle, verify; tracking and pressure steps of studies
+  holding,    ///< a hold step
+  releasing,  ///< a release step
+};
+inline constexpr std::size_t phase_count = 4;
+/// "idle", "closing", "holding", "releasing": the keys of `safe_action` in the rig file.
+[[nodiscard]] std::string_view name_of(Phase phase) noexcept;
+
+/// What the outputs do when motion must end.
+enum class SafeAction : std::uint8_t {
+  vent,  ///< down to the lowest command, at the limits' slew down
+  hold,  ///< stay at the last command
+};
+/// "vent", "hold"
+[[nodiscard]] std::string_view name_of(SafeAction action) noexcept;
+
+/// Grip detection, for all channels.
+struct DetectionSettings {
+  /// A finger that moved less than the free model by at least this, at the same command, meets something.
+  double margin_mm = 0.6;
+  /// RMSE of the models, if known (NaN: unknown). The margin must be at least three times as large.
+  double model_rmse_mm = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What the daemon knows of the world behind the bus. All explicit in the rig file.
+struct SafetySettings {
+  /// What stop, faults and leaving do, by the phase in which they come.
+  std::array<SafeAction, phase_count> safe_action{};
+  /// What an emergency stop does. `hold` only where its circuit does not vent by itself: a held command
+  /// would fill the fingers again when the circuit is reset.
+  SafeAction on_emergency_stop = SafeAction::vent;
+  /// The board puts its outputs to the lowest pressure by itself when nobody talks to it. Then faults of the
+  /// bus vent in every phase: a held command would fill the fingers again on reconnection.
+  bool board_vents_when_silent = true;
+};
+
+/// How many cycles something may be wrong before it is a fault: the reaction bounds that the rig promises.
+struct FaultSettings {
+  std::uint32_t bus_down_cycles = 5;         ///< cycles in a row without a good exchange
+  std::uint32_t invalid_reading_cycles = 3;  ///< cycles in a row in which a channel's reading is not valid
+  std::uint32_t displacement_cycles = 3;     ///< cycles in a row outside the limits' displacement range
+  std::uint32_t readback_cycles = 5;         ///< cycles in a row in which the read-back is off
+  double readback_tolerance_kpa = 1;         ///< off: farther than this from every command of the window
+  double readback_delay_s = 0.1;             ///< how far back that window of past commands reaches
+  std::uint32_t pressure_cycles = 0;  ///< cycles in a row in which the measured pressure is off; 0: unwatched
+  double pressure_tolerance_kpa = 5;  ///< off: farther than this from every command of the window
+  double pressure_delay_s = 0.5;      ///< how far back that window of past commands reaches
+  bool model_unfit_is_fault = false;  ///< false: model health is only reported
+  std::uint32_t slipped_cycles = 0;   ///< so many cycles lost at once are a fault; 0: only counted
+};
+
+/// Everything that RigController needs.
+struct RigSettings {
+  double rate_hz = 200;                   ///< of tick()
+  std::vector<ChannelSettings> channels;  ///< 1 to max_channels, names unique
+  SafetySettings safety;
+  double rest_band_mm = 0.2;   ///< a finger is at rest when its readings stay within this band ...
+  double rest_time_s = 0.3;    ///< ... for so long; a sequence starts from there
+  double rest_timeout_s = 10;  ///< a start that finds no rest by then ends with ERROR
+  DetectionSettings detection;
+  FaultSettings faults;
+};
+
+/// What is wrong with settings, one sentence each; empty: RigController takes them. The rig file's reader
+/// reports most of it with its place; this is what it can not see key by key, and what code must respect.
+[[nodiscard]] std::vector<std::string> settings_problems(const RigSettings& settings);
+
+}  // namespace softgrip::control

@@ -1,0 +1,234 @@
+#include "control/tick/supervisor.h"
+
+#include <cstddef>
+
+namespace softgrip::control {
+
+Supervisor::Supervisor(const RigSettings& settings)
+    : safety_(settings.safety), all_((1U << settings.channels.size()) - 1), rig_(rig_key(settings)) {
+  venting_ = all_;
+}
+
+void Supervisor::go(State state, std::uint32_t request, EventList& events) noexcept {
+  state_ = state;
+  events.add(Event::Kind::state_changed, state, request);
+}
+
+Orders Supervisor::tick(const Facts& facts, const Request& request, EventList& events) noexcept {
+  Orders orders;
+  if (facts.fault.code != FaultCode::none) {
+    latch(facts, orders, events);
+  }
+  if (request.kind != Request::Kind::none) {
+    answer(facts, request, orders, events);
+  }
+  if (facts.interlock_open && playing() && sequence_->interlock == Interlock::always) {
+    stop(facts, 0, orders, events);
+  }
+  move_on(facts, orders, events);
+  return orders;
+}
+
+/// The first fault stays; later ones are told once each and can only turn a hold into a vent.
+void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) noexcept {
+  const Fault& fault = facts.fault;
+  std::uint32_t place = 1;
+  for (const FaultInfo& info : all_faults()) {
+    if (info.code == fault.code) {
+      break;
+    }
+    place <<= 1U;
+  }
+  if (state_ == State::faulted && (told_ & place) != 0) {
+    return;
+  }
+  told_ |= place;
+  events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
+                   fault.value, GripEvidence::none});
+  // Later faults find the rig idle, but what it holds it holds because of the phase in which the first one
+  // came.
+  const bool first = state_ != State::faulted;
+  if (first) {
+    fault_phase_ = facts.phase;
+  }
+  if (action_for(fault.code, fault_phase_) == SafeAction::vent) {
+    venting_ = all_;
+  }
+  if (!first) {
+    return;
+  }
+  first_fault_ = fault.code;
+  orders.interrupt = true;
+  orders.end = SequenceEnd::faulted;
+  end_sequence(SequenceEnd::faulted, events);
+  go(State::faulted, 0, events);
+}
+
+SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
+  const auto number = static_cast<unsigned>(code);
+  if (code == FaultCode::board_watchdog_tripped) {
+    return SafeAction::vent;
+  }
+  // Inputs that cannot be read may hide an emergency stop.
+  if (code == FaultCode::emergency_stop || code == FaultCode::inputs_lost) {
+    return safety_.on_emergency_stop;
+  }
+  if (number / 100 == 1 && safety_.board_vents_when_silent) {
+    return SafeAction::vent;
+  }
+  return safety_.safe_action[static_cast<std::size_t>(phase)];
+}
+
+std::uint32_t Supervisor::venting_on_leaving(Phase phase) const noexcept {
+  const bool decided = state_ == State::faulted || state_ == State::stopping;
+  const bool vents = safety_.safe_action[static_cast<std::size_t>(phase)] == SafeAction::vent;
+  return !decided && vents ? all_ : venting_;
+}
+
+void Supervisor::answer(const Facts& facts, const Request& request, Orders& orders,
+                        EventList& events) noexcept {
+  switch (request.kind) {
+    case Request::Kind::none:
+      break;
+    case Request::Kind::start:
+      answer_start(facts, request, orders, events);
+      break;
+    case Request::Kind::stop:
+      if (playing()) {
+        stop(facts, request.id, orders, events);
+      } else {
+        events.add(Event::Kind::request_refused,
+                   state_ == State::faulted ? RefusalCode::faulted : RefusalCode::nothing_to_stop,
+                   request.id);
+      }
+      break;
+    case Request::Kind::vent:
+      answer_vent(request, orders, events);
+      break;
+    case Request::Kind::acknowledge:
+      answer_acknowledge(facts, request, orders, events);
+      break;
+  }
+}
+
+RefusalCode Supervisor::refusal_of_start(const Facts& facts, const Request& request) const noexcept {
+  if (state_ == State::faulted) {
+    return RefusalCode::faulted;
+  }
+  if (facts.emergency_stop) {
+    return RefusalCode::emergency_stop;
+  }
+  if (state_ == State::starting) {
+    return RefusalCode::no_valid_reading;
+  }
+  if (state_ != State::idle) {
+    return RefusalCode::not_idle;
+  }
+  if (facts.interlock_open) {
+    return RefusalCode::interlock_open;
+  }
+  if (request.sequence == nullptr || request.sequence->rig != rig_ || request.sequence->steps.empty()) {
+    return RefusalCode::sequence_unfit;
+  }
+  if (!facts.bus_good || (request.sequence->channels & ~facts.ready) != 0) {
+    return RefusalCode::no_valid_reading;
+  }
+  return RefusalCode::none;
+}
+
+void Supervisor::answer_start(const Facts& facts, const Request& request, Orders& orders,
+                              EventList& events) noexcept {
+  const RefusalCode refusal = refusal_of_start(facts, request);
+  if (refusal != RefusalCode::none) {
+    events.add(Event::Kind::request_refused, refusal, request.id);
+    return;
+  }
+  sequence_ = request.sequence;
+  start_request_ = request.id;
+  orders.seek_rest = true;
+  events.add(Event::Kind::sequence_started, 0, request.id);
+  go(State::resynchronising, request.id, events);
+}
+
+/// Everything down. Never refused: it is the way out of a hold, faulted or not.
+void Supervisor::answer_vent(const Request& request, Orders& orders, EventList& events) noexcept {
+  venting_ = all_;
+  if (state_ == State::faulted || state_ == State::starting) {
+    events.add(Event::Kind::state_changed, state_, request.id);
+    return;
+  }
+  if (playing()) {
+    orders.interrupt = true;
+    orders.end = SequenceEnd::stopped;
+    end_sequence(SequenceEnd::stopped, events);
+  }
+  go(State::stopping, request.id, events);
+}
+
+void Supervisor::answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,
+                                    EventList& events) noexcept {
+  if (state_ == State::faulted) {
+    if (facts.cause_present) {
+      events.add(Event::Kind::request_refused, RefusalCode::cause_persists, request.id);
+      return;
+    }
+    events.add(Event::Kind::fault_acknowledged, first_fault_, request.id);
+    first_fault_ = FaultCode::none;
+    told_ = 0;
+    orders.clear_answers = true;
+    orders.acknowledged_by = request.id;
+    go(State::starting, request.id, events);
+  } else if (facts.answers) {
+    orders.clear_answers = true;
+    orders.acknowledged_by = request.id;
+  } else {
+    events.add(Event::Kind::request_refused, RefusalCode::nothing_to_acknowledge, request.id);
+  }
+}
+
+void Supervisor::stop(const Facts& facts, std::uint32_t request, Orders& orders, EventList& events) noexcept {
+  if (safety_.safe_action[static_cast<std::size_t>(facts.phase)] == SafeAction::vent) {
+    venting_ |= sequence_->channels;
+  }
+  orders.interrupt = true;
+  orders.end = SequenceEnd::stopped;
+  end_sequence(SequenceEnd::stopped, events);
+  go(State::stopping, request, events);
+}
+
+void Supervisor::sequence_ended(SequenceEnd end, OnFail action, Phase phase, EventList& events) noexcept {
+  const bool vents =
+      action == OnFail::vent ||
+      (action == OnFail::abort && safety_.safe_action[static_cast<std::size_t>(phase)] == SafeAction::vent);
+  if (vents) {
+    venting_ |= sequence_->channels;
+  }
+  end_sequence(end, events);
+  go(vents ? State::stopping : State::idle, 0, events);
+}
+
+void Supervisor::end_sequence(SequenceEnd end, EventList& events) noexcept {
+  if (playing()) {
+    events.add(Event::Kind::sequence_finished, end, start_request_);
+  }
+  sequence_ = nullptr;
+}
+
+void Supervisor::move_on(const Facts& facts, Orders& orders, EventList& events) noexcept {
+  if (state_ == State::starting && facts.bus_good && facts.ready == all_) {
+    go(State::idle, 0, events);
+  } else if (state_ == State::stopping && (venting_ & ~facts.lowest) == 0) {
+    orders.vented = venting_;
+    go(State::idle, 0, events);
+  } else if (state_ == State::resynchronising && !orders.seek_rest && facts.rest == Rest::at_rest) {
+    venting_ = 0;
+    orders.begin = sequence_;
+    go(State::running, start_request_, events);
+  } else if (state_ == State::resynchronising && !orders.seek_rest && facts.rest == Rest::timed_out) {
+    orders.no_rest = sequence_->channels;
+    end_sequence(SequenceEnd::failed, events);
+    go(State::idle, 0, events);
+  }
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,35 @@
+#pragma once
+// PID gains by one and the same search, so that what is compared is what stands beside the PID.
+
+#include <array>
+#include <functional>
+
+#include "control/elements/pid.h"
+
+namespace softgrip::control {
+
+/// What is searched over: ln kp, ln ki and something for the derivative.
+using GainPoint = std::array<double, 3>;
+
+/// Nelder and Mead's simplex (Computer Journal 7, 1965).
+struct Simplex {
+  GainPoint edges{0.4, 0.4, 0.02};  ///< from the start to the other corners
+  int iterations = 60;              ///< each costs one or two evaluations
+  double done_share = 0;            ///< it ends when the corners' costs differ by less than this share
+};
+/// The best corner at the end.
+[[nodiscard]] GainPoint nelder_mead(const std::function<double(const GainPoint&)>& cost,
+                                    const GainPoint& start, double cost_at_start, const Simplex& simplex);
+
+struct GainSearch {
+  int iterations = 60;  ///< of the simplex after the grid
+  /// Every how many points of the grid's 5 x 6 in kp and ki: 1 is all.
+  int coarseness = 1;
+};
+
+/// The gains with the smallest `cost`: a coarse grid of kp and ki, then the simplex on ln kp, ln ki and
+/// kd from its best. Everything else of the settings keeps its default.
+[[nodiscard]] PidSettings search_gains(const std::function<double(const PidSettings&)>& cost,
+                                       const GainSearch& search = {});
+
+}  // namespace softgrip::control

@@ -1,0 +1,57 @@
+#pragma once
+// The loop: wake, read, control, command, record, sleep.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "base/clock.h"
+#include "base/grid.h"
+#include "control/tick/rig_controller.h"
+#include "daemon/loop/statistics.h"
+#include "daemon/loop/wires.h"
+
+namespace softgrip::daemon {
+
+/// Nothing in here allocates, locks, logs, throws or enters the kernel but for the clock and the sleep.
+class Loop {
+ public:
+  /// `channels` of the rig, at most control::max_channels. A row is recorded every `decimation` ticks, at
+  /// least 1. All references outlive the loop.
+  Loop(control::RigController& controller, std::size_t channels, std::uint32_t decimation, const Clock& clock,
+       Wires& wires, LoopStatistics& statistics) noexcept;
+
+  /// Ticks on the grid until wires.leave is set; then leave().
+  void run(Grid grid) noexcept;
+
+  /// One tick that was due at `due`, for callers that keep the time themselves.
+  void tick(Nanoseconds due) noexcept;
+
+  /// Sends the safe outputs of the present phase, marked as last, and records them.
+  void leave() noexcept;
+
+ private:
+  void read(control::TickInput& input) noexcept;
+  [[nodiscard]] bool inputs_lost(Nanoseconds now) const noexcept;
+  void command() noexcept;
+  void record_events() noexcept;
+  void record_rows() noexcept;
+  void show(const control::BusHealth& bus) noexcept;
+  void count_slips(std::uint64_t skipped, bool woken_late) noexcept;
+
+  control::RigController& controller_;
+  const Clock& clock_;
+  Wires& wires_;
+  LoopStatistics& statistics_;
+  std::size_t channels_;
+  std::uint32_t decimation_;
+  std::uint64_t ticks_ = 0;
+  std::uint32_t unreported_ = 0;  // ticks since the bus last reported
+  std::uint32_t slipped_ = 0;     // told to the next tick
+  Nanoseconds woken_ = 0;
+  Nanoseconds ended_ = 0;
+  control::TickOutput output_;
+  std::array<Record, control::max_channels> rows_;
+};
+
+}  // namespace softgrip::daemon

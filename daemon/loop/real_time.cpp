@@ -1,0 +1,323 @@
+#include "daemon/loop/real_time.h"
+
+#include "base/errno_text.h"
+
+#include <fcntl.h>
+#include <linux/capability.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace softgrip::daemon {
+
+namespace {
+
+using Outcome = RealTimeStep::Outcome;
+
+long page_bytes() {
+  return sysconf(_SC_PAGESIZE);
+}
+
+/// Page faults of the calling thread so far.
+long page_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
+void touch(volatile char* memory, std::size_t bytes) {
+  for (std::size_t at = 0; at < bytes; at += static_cast<std::size_t>(page_bytes())) memory[at] = 1;
+}
+
+/// Whether a block of the heap can be taken and touched without a page fault.
+long faults_of_a_heap_block(std::size_t bytes) {
+  const long before = page_faults();
+  const std::unique_ptr<char[]> block(new char[bytes]);
+  touch(block.get(), bytes);
+  return page_faults() - before;
+}
+
+RealTimeStep prepare_heap(std::size_t bytes) {
+  RealTimeStep step{"heap", Outcome::not_asked, "",
+                    "an allocation of the threads beside the loop may page-fault"};
+  if (bytes == 0) return step;
+  // Freed blocks stay with the process, and large ones come from the same heap instead of fresh mappings.
+  const bool accepted = mallopt(M_TRIM_THRESHOLD, -1) == 1 && mallopt(M_MMAP_MAX, 0) == 1;
+  faults_of_a_heap_block(bytes);
+  const long faults = faults_of_a_heap_block(bytes);
+  if (accepted && faults == 0) {
+    step.outcome = Outcome::verified;
+    step.detail = fmt::format("{} KiB touched and kept", bytes / 1024);
+  } else {
+    step.outcome = Outcome::failed;
+    step.detail = accepted ? fmt::format("{} page faults in a block that was touched before", faults)
+                           : "the allocator does not take M_TRIM_THRESHOLD and M_MMAP_MAX";
+  }
+  return step;
+}
+
+/// Why a page mapped now is not known to be there at once, the proof of MCL_FUTURE; empty if it is.
+std::string doubt_of_a_new_mapping() {
+  const auto bytes = static_cast<std::size_t>(page_bytes());
+  void* page = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (page == MAP_FAILED) return fmt::format("no page can be mapped afterwards: {}", text_of_errno(errno));
+  unsigned char resident = 0;
+  const int error = mincore(page, bytes, &resident) == 0 ? 0 : errno;
+  munmap(page, bytes);
+  if (error != 0) {
+    return fmt::format(
+        "whether pages mapped afterwards are resident could not be asked: {} (mincore in SystemCallFilter=)",
+        text_of_errno(error));
+  }
+  return (resident & 1) != 0 ? "" : "a page mapped afterwards was not resident";
+}
+
+/// Whether the limit on locked memory does not apply to this process.
+bool may_lock_without_limit() {
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  if (limit.rlim_cur == RLIM_INFINITY) return true;
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> data{};
+  if (syscall(SYS_capget, &header, data.data()) != 0) return false;
+  return (data[CAP_TO_INDEX(CAP_IPC_LOCK)].effective & CAP_TO_MASK(CAP_IPC_LOCK)) != 0;
+}
+
+RealTimeStep lock_memory(bool wanted) {
+  RealTimeStep step{
+      "memory lock", Outcome::not_asked, "",
+      "the first use of a page, or its return from swap, stops the loop for up to milliseconds"};
+  if (!wanted) return step;
+  step.outcome = Outcome::failed;
+  // Under a limit the lock might succeed now, and the memory that is mapped later be refused for it.
+  const bool unlimited = may_lock_without_limit();
+  if (!unlimited || mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
+    const int error = unlimited ? errno : EPERM;
+    rlimit limit{};
+    getrlimit(RLIMIT_MEMLOCK, &limit);
+    step.detail = fmt::format("{}; the limit is {} KiB (LimitMEMLOCK=infinity in the unit, or CAP_IPC_LOCK)",
+                              text_of_errno(error), limit.rlim_cur / 1024);
+  } else if (const std::string doubt = doubt_of_a_new_mapping(); !doubt.empty()) {
+    step.detail = "the kernel accepted it, but " + doubt;
+  } else {
+    step.outcome = Outcome::verified;
+    step.detail = "all pages resident, those mapped later too";
+  }
+  return step;
+}
+
+RealTimeStep request_processor_latency(std::optional<int> latency_us, int& descriptor) {
+  RealTimeStep step{"processor latency", Outcome::not_asked, "",
+                    "a processor that idles may need 10 to 200 us to wake the loop"};
+  if (!latency_us) return step;
+  step.outcome = Outcome::failed;
+  descriptor = open("/dev/cpu_dma_latency", O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) {
+    step.detail = fmt::format("/dev/cpu_dma_latency: {} (the udev rule gives it to the softgrip group)",
+                              text_of_errno(errno));
+    return step;
+  }
+  const std::int32_t wanted = *latency_us;
+  std::int32_t in_force = -1;
+  if (write(descriptor, &wanted, sizeof wanted) != sizeof wanted ||
+      pread(descriptor, &in_force, sizeof in_force, 0) != sizeof in_force) {
+    step.detail = fmt::format("/dev/cpu_dma_latency: {}", text_of_errno(errno));
+  } else if (in_force > wanted) {
+    step.detail = fmt::format("{} us asked, {} us in force", wanted, in_force);
+  } else {
+    step.outcome = Outcome::verified;
+    step.detail = fmt::format("at most {} us", in_force);
+  }
+  return step;
+}
+
+RealTimeStep set_processors(const std::vector<int>& cpus, std::string_view who) {
+  RealTimeStep step{fmt::format("processors of {}", who), Outcome::not_asked, "",
+                    "the thread is moved between processors and shares them with all work of the machine"};
+  if (cpus.empty()) return step;
+  step.outcome = Outcome::failed;
+  cpu_set_t wanted;
+  CPU_ZERO(&wanted);
+  for (const int cpu : cpus) {
+    if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &wanted);
+  }
+  if (sched_setaffinity(0, sizeof wanted, &wanted) != 0) {
+    step.detail = fmt::format("{}: processors {} (there are {})", text_of_errno(errno), fmt::join(cpus, ", "),
+                              sysconf(_SC_NPROCESSORS_ONLN));
+    return step;
+  }
+  cpu_set_t in_force;
+  CPU_ZERO(&in_force);
+  if (sched_getaffinity(0, sizeof in_force, &in_force) == 0 && CPU_EQUAL(&wanted, &in_force)) {
+    step.outcome = Outcome::verified;
+    step.detail = fmt::format("{}", fmt::join(cpus, ", "));
+  } else {
+    step.detail =
+        "the kernel gave another set than asked for (a cgroup's cpuset, or a processor that is offline)";
+  }
+  return step;
+}
+
+RealTimeStep set_scheduling(int priority, std::string_view who) {
+  RealTimeStep step{fmt::format("scheduling of {}", who), Outcome::not_asked, "",
+                    "the thread waits behind every other process: wake-ups may come milliseconds late"};
+  // Matters only without SCHED_FIFO: the kernel may then delay each wake-up by 50 us to save power.
+  prctl(PR_SET_TIMERSLACK, 1UL);
+  if (priority <= 0) return step;
+  step.outcome = Outcome::failed;
+  sched_param parameters{};
+  parameters.sched_priority = priority;
+  if (sched_setscheduler(0, SCHED_FIFO, &parameters) != 0) {
+    const int error = errno;
+    rlimit limit{};
+    getrlimit(RLIMIT_RTPRIO, &limit);
+    step.detail = fmt::format(
+        "{}; the limit is {} (LimitRTPRIO= in the unit, or CAP_SYS_NICE; a cpu cgroup without real-time "
+        "budget denies it too)",
+        text_of_errno(error), limit.rlim_cur);
+    return step;
+  }
+  sched_param in_force{};
+  const int policy = sched_getscheduler(0);
+  if (sched_getparam(0, &in_force) == 0 && policy == SCHED_FIFO && in_force.sched_priority == priority) {
+    step.outcome = Outcome::verified;
+    step.detail = fmt::format("SCHED_FIFO {}", in_force.sched_priority);
+  } else {
+    step.detail =
+        fmt::format("accepted, but policy {} priority {} is in force", policy, in_force.sched_priority);
+  }
+  return step;
+}
+
+/// Not inlined: its frame is the stack that the thread will use later.
+[[gnu::noinline]] long touch_stack(std::size_t bytes) {
+  const long before = page_faults();
+  auto* memory = static_cast<volatile char*>(__builtin_alloca(bytes));
+  touch(memory, bytes);
+  return page_faults() - before;
+}
+
+/// Bytes of the calling thread's stack that are not used, less a margin for what the calls below need.
+std::size_t stack_left() {
+  constexpr std::size_t margin = 64 * 1024;
+  pthread_attr_t attributes;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return 0;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  pthread_attr_getstack(&attributes, &lowest, &size);
+  pthread_attr_destroy(&attributes);
+  const char here = 0;
+  const auto used_from = reinterpret_cast<std::uintptr_t>(&here);
+  const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(lowest) + margin;
+  return used_from > end ? used_from - end : 0;
+}
+
+RealTimeStep prepare_stack(std::size_t bytes, std::string_view who) {
+  RealTimeStep step{fmt::format("stack of {}", who), Outcome::not_asked, "",
+                    "the first deep call of the thread page-faults"};
+  if (bytes == 0) return step;
+  if (const std::size_t left = stack_left(); bytes > left) {
+    step.outcome = Outcome::failed;
+    step.detail = fmt::format("{} KiB asked for, the thread has {} KiB left", bytes / 1024, left / 1024);
+    return step;
+  }
+  touch_stack(bytes);
+  const long faults = touch_stack(bytes);
+  step.outcome = faults == 0 ? Outcome::verified : Outcome::failed;
+  step.detail = faults == 0 ? fmt::format("{} KiB touched", bytes / 1024)
+                            : fmt::format("{} page faults in a stack that was touched before", faults);
+  return step;
+}
+
+}  // namespace
+
+std::string_view name_of(Outcome outcome) noexcept {
+  switch (outcome) {
+    case Outcome::verified:
+      return "verified";
+    case Outcome::failed:
+      return "failed";
+    case Outcome::not_asked:
+      return "not asked for";
+  }
+  return "?";
+}
+
+void RealTimeReport::append(const RealTimeReport& other) {
+  steps_.insert(steps_.end(), other.steps_.begin(), other.steps_.end());
+}
+
+bool RealTimeReport::degraded() const noexcept {
+  return std::any_of(steps_.begin(), steps_.end(),
+                     [](const RealTimeStep& step) { return step.outcome == Outcome::failed; });
+}
+
+std::string RealTimeReport::format() const {
+  std::string text;
+  for (const RealTimeStep& step : steps_) {
+    text += fmt::format("{}: {}{}{}\n", step.name, name_of(step.outcome), step.detail.empty() ? "" : ", ",
+                        step.detail);
+    if (step.outcome == Outcome::failed) text += fmt::format("  cost: {}\n", step.cost);
+  }
+  return text;
+}
+
+ProcessorLatencyRequest::ProcessorLatencyRequest(ProcessorLatencyRequest&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+ProcessorLatencyRequest& ProcessorLatencyRequest::operator=(ProcessorLatencyRequest&& other) noexcept {
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+ProcessorLatencyRequest::~ProcessorLatencyRequest() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+ProcessorLatencyRequest prepare_process(const rig::RealTimeSettings& settings, RealTimeReport& report) {
+  report.add(kernel_step());
+  report.add(lock_memory(settings.lock_memory));
+  report.add(prepare_heap(settings.prefault_heap_bytes));
+  int descriptor = -1;
+  report.add(request_processor_latency(settings.cpu_dma_latency_us, descriptor));
+  return ProcessorLatencyRequest(descriptor);
+}
+
+void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::string_view who,
+                    RealTimeReport& report) {
+  report.add(set_processors(settings.cpus, who));
+  report.add(set_scheduling(priority, who));
+  report.add(prepare_stack(settings.prefault_stack_bytes, who));
+}
+
+RealTimeStep kernel_step() {
+  RealTimeStep step{"kernel", Outcome::not_asked, "", ""};
+  utsname name{};
+  uname(&name);
+  // /sys/kernel/realtime is missing on some real-time kernels from 6.12 on; the version text is not.
+  const bool real_time = std::string_view(name.version).find("PREEMPT_RT") != std::string_view::npos ||
+                         access("/sys/kernel/realtime", F_OK) == 0;
+  step.detail = fmt::format(
+      "{}, {}", name.release,
+      real_time ? "PREEMPT_RT" : "no PREEMPT_RT: under load a wake-up may come milliseconds late");
+  return step;
+}
+
+}  // namespace softgrip::daemon

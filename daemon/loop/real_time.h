@@ -1,0 +1,63 @@
+#pragma once
+// Asks the operating system for what a punctual loop needs, and believes nothing that it cannot read back.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rig/real_time_settings.h"
+
+namespace softgrip::daemon {
+
+/// One thing that was asked for.
+struct RealTimeStep {
+  enum class Outcome { verified, failed, not_asked };
+  std::string name;
+  Outcome outcome = Outcome::not_asked;
+  std::string detail;  ///< what was read back, or why it failed and what usually helps
+  std::string cost;    ///< what a failure costs, in one sentence
+};
+[[nodiscard]] std::string_view name_of(RealTimeStep::Outcome outcome) noexcept;
+
+/// What became of all steps of one thread or of the process.
+class RealTimeReport {
+ public:
+  void add(RealTimeStep step) { steps_.push_back(std::move(step)); }
+  void append(const RealTimeReport& other);
+  [[nodiscard]] const std::vector<RealTimeStep>& steps() const noexcept { return steps_; }
+  /// True if anything that was asked for could not be verified.
+  [[nodiscard]] bool degraded() const noexcept;
+  /// One line per step, and for a failed one a second line with its cost.
+  [[nodiscard]] std::string format() const;
+
+ private:
+  std::vector<RealTimeStep> steps_;
+};
+
+/// Keeps the processors out of deep sleep as long as it lives.
+class ProcessorLatencyRequest {
+ public:
+  ProcessorLatencyRequest() = default;
+  explicit ProcessorLatencyRequest(int descriptor) noexcept : descriptor_(descriptor) {}
+  ProcessorLatencyRequest(const ProcessorLatencyRequest&) = delete;
+  ProcessorLatencyRequest& operator=(const ProcessorLatencyRequest&) = delete;
+  ProcessorLatencyRequest(ProcessorLatencyRequest&& other) noexcept;
+  ProcessorLatencyRequest& operator=(ProcessorLatencyRequest&& other) noexcept;
+  ~ProcessorLatencyRequest();
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// For the whole process, before its threads start: heap, locked memory, processor latency.
+[[nodiscard]] ProcessorLatencyRequest prepare_process(const rig::RealTimeSettings& settings,
+                                                      RealTimeReport& report);
+
+/// For the calling thread: processors, scheduling at `priority`, stack. `who` names it in the report.
+void prepare_thread(const rig::RealTimeSettings& settings, int priority, std::string_view who,
+                    RealTimeReport& report);
+
+/// Whether the running kernel is PREEMPT_RT, as a step that never fails.
+[[nodiscard]] RealTimeStep kernel_step();
+
+}  // namespace softgrip::daemon

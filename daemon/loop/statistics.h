@@ -1,0 +1,43 @@
+#pragma once
+// Loop statistics: always on, written by loop and bus, read by anyone.
+
+#include <atomic>
+#include <cstdint>
+
+#include "daemon/loop/histogram.h"
+
+namespace softgrip::daemon {
+
+/// A count with one writer; any thread may read.
+class Counter {
+ public:
+  void add(std::uint64_t amount = 1) noexcept {
+    value_.store(value_.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
+  }
+  [[nodiscard]] std::uint64_t value() const noexcept { return value_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> value_{0};
+};
+
+/// A slip is a period of the grid in which no tick began.
+struct LoopStatistics {
+  Histogram wake_up;      ///< from the grid's time to the first instruction of the tick
+  Histogram compute;      ///< from there to the end of the tick
+  Histogram reading_age;  ///< of the oldest channel, at the tick that uses it
+  Counter ticks;
+  Counter slips_woken_late;  ///< because the thread was woken a period late or more
+  Counter slips_took_long;   ///< because the tick itself did not end in time
+};
+
+struct BusStatistics {
+  Histogram wake_up;
+  Histogram exchange;  ///< duration of good exchanges
+  Counter steps;       ///< of its grid, with an exchange or without
+  Counter exchanges;
+  Counter failures;
+  Counter slips;
+  Counter sessions;  ///< successful connects
+};
+
+}  // namespace softgrip::daemon

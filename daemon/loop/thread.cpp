@@ -1,0 +1,67 @@
+#include "daemon/loop/thread.h"
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace softgrip::daemon {
+
+namespace {
+
+struct Start {
+  std::string name;
+  std::function<void()> body;
+  std::function<void(const std::string&)> on_exception;
+};
+
+void* run(void* argument) {
+  const std::unique_ptr<Start> start(static_cast<Start*>(argument));
+  pthread_setname_np(pthread_self(), start->name.substr(0, 15).c_str());
+  try {
+    start->body();
+  } catch (const std::exception& error) {
+    start->on_exception(error.what());
+  } catch (...) {
+    start->on_exception("an exception that is no std::exception");
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Thread::Thread(const Options& options, std::function<void()> body,
+               std::function<void(const std::string&)> on_exception) {
+  auto start = std::make_unique<Start>(Start{options.name, std::move(body), std::move(on_exception)});
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, options.stack_bytes);
+  const int error = pthread_create(&handle_, &attributes, run, start.get());
+  pthread_attr_destroy(&attributes);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "thread " + options.name);
+  static_cast<void>(start.release());  // the thread owns it now
+  started_ = true;
+}
+
+Thread::Thread(Thread&& other) noexcept
+    : handle_(other.handle_), started_(std::exchange(other.started_, false)) {}
+
+Thread& Thread::operator=(Thread&& other) noexcept {
+  join();
+  handle_ = other.handle_;
+  started_ = std::exchange(other.started_, false);
+  return *this;
+}
+
+Thread::~Thread() {
+  join();
+}
+
+void Thread::join() noexcept {
+  if (!started_) return;
+  pthread_join(handle_, nullptr);
+  started_ = false;
+}
+
+}  // namespace softgrip::daemon

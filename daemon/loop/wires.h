@@ -1,0 +1,121 @@
+#pragma once
+// What runs between the loop and the threads around it. Every wire has one writer and one reader.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "control/tick/rig_controller.h"
+#include "daemon/loop/latest.h"
+#include "daemon/loop/ring.h"
+#include "drivers/board/board.h"
+#include "model/reading.h"
+
+namespace softgrip::daemon {
+
+/// From the loop to the bus: what the board shall output.
+struct Commands {
+  Nanoseconds at = 0;  ///< the tick they come from
+  std::array<double, control::max_channels> command_kpa{};
+  /// What to write instead when the loop stops sending.
+  std::array<double, control::max_channels> safe_kpa{};
+  bool moving = false;  ///< a sequence runs: not in starting, idle or faulted
+  bool last = false;    ///< the loop has ended; write these until the board confirms them
+};
+
+/// From the bus to the loop: what came back.
+struct BusReport {
+  std::array<model::Reading, control::max_channels> readings{};
+  control::BusHealth health;
+};
+
+/// From the bus to the log: something changed.
+struct BusEvent {
+  enum class Kind : std::uint8_t {
+    connected,    ///< a session was opened
+    failed,       ///< the first failure after a good exchange; `status` and `detail` say what
+    recovered,    ///< the first good exchange after failures
+    loop_silent,  ///< no new commands from the loop: the safe outputs are written
+    loop_back,    ///< the loop's commands are written again
+  };
+  Kind kind = Kind::connected;
+  Nanoseconds at = 0;
+  drivers::BusStatus status = drivers::BusStatus::ok;
+  std::array<char, 120> detail{};  ///< what the board said, ended by 0
+};
+
+/// From the loop to the recorder: a row of one channel, or an event; in the order in which they happened.
+struct Record {
+  Nanoseconds at = 0;
+  control::State state = control::State::starting;
+  std::uint8_t channel = 0;
+  bool is_event = false;
+  control::ChannelOutput output;  ///< of a row
+  control::Event event;           ///< of an event
+};
+
+/// From the loop to the log.
+struct StampedEvent {
+  Nanoseconds at = 0;
+  control::Event event;
+};
+
+/// From the loop to whoever asks for the status: one tick.
+struct Snapshot {
+  Nanoseconds at = 0;
+  std::uint64_t ticks = 0;
+  control::State state = control::State::starting;
+  control::FaultCode first_fault = control::FaultCode::none;
+  std::size_t channel_count = 0;
+  std::array<control::ChannelOutput, control::max_channels> channels{};
+  control::BusHealth bus;
+};
+
+/// Inputs that are levels, not requests; whoever reads the lines (daemon/panel/panel.h) stores them.
+struct InputLevels {
+  std::atomic<bool> emergency_stop{false};
+  std::atomic<bool> interlock_open{false};
+  std::atomic<bool> lost{false};          ///< the lines cannot be read any more
+  std::atomic<Nanoseconds> looked_at{0};  ///< when the lines were read last
+  /// A look that is older than this means that nobody reads the lines: they are lost; 0: there are none.
+  Nanoseconds longest_silence = 0;
+};
+
+/// From the reader of the digital lines to the log.
+struct PanelEvent {
+  enum class Kind : std::uint8_t {
+    emergency_stop_pressed,
+    emergency_stop_released,
+    part_in_position,
+    part_away,
+    enable_on,
+    enable_off,
+    loop_hangs,  ///< no tick for too long: the enable output was dropped
+    gpio_lost,   ///< the chip failed
+  };
+  Kind kind = Kind::gpio_lost;
+  Nanoseconds at = 0;
+};
+
+struct Wires {
+  /// `record_capacity`: rows the recorder may lag behind.
+  explicit Wires(std::size_t record_capacity) : records(record_capacity) {}
+
+  Latest<Commands> commands;
+  Latest<BusReport> bus;
+  Latest<Snapshot> snapshot;
+  Ring<BusEvent> bus_events{256};
+  Ring<Record> records;
+  Ring<StampedEvent> events{1024};
+  Ring<PanelEvent> panel_events{64};
+  Ring<control::Request> requests{64};
+  std::atomic<control::State> state{control::State::starting};  ///< of the last tick
+  std::atomic<bool> enable_on{false};                           ///< the enable output, as it was written
+  InputLevels inputs;
+  std::atomic<std::uint64_t> records_dropped{0};  ///< no room: the recorder lagged
+  std::atomic<std::uint64_t> events_dropped{0};
+  std::atomic<bool> leave{false};        ///< to the loop: end after a last, safe tick
+  std::atomic<bool> left_safely{false};  ///< from the bus: the board confirmed the last commands
+};
+
+}  // namespace softgrip::daemon

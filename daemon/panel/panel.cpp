@@ -1,0 +1,180 @@
+#include "daemon/panel/panel.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace softgrip::daemon {
+
+using control::State;
+using drivers::GpioRole;
+
+namespace {
+
+/// Edges taken at once: the kernel keeps 16 per line.
+constexpr std::size_t edges_at_once = 32;
+
+bool works(State state) noexcept {
+  return state != State::starting && state != State::faulted;
+}
+
+}  // namespace
+
+Panel::Panel(std::unique_ptr<drivers::GpioLines> lines, const rig::GpioSettings& settings, const Clock& clock,
+             Wires& wires, const LoopStatistics& loop) noexcept
+    : lines_(std::move(lines)),
+      settings_(settings),
+      clock_(clock),
+      wires_(wires),
+      loop_(loop),
+      look_interval_(nanoseconds(settings.look_interval_s)),
+      stale_after_(nanoseconds(settings.stale_after_s)) {
+  const Nanoseconds debounce = nanoseconds(settings.debounce_s);
+  if (settings.has(GpioRole::emergency_stop)) emergency_stop_.emplace(debounce);
+  if (settings.has(GpioRole::part_in_position)) part_.emplace(debounce);
+  wires.inputs.emergency_stop.store(emergency_stop_.has_value());
+  wires.inputs.interlock_open.store(part_.has_value());
+  wires.inputs.longest_silence = stale_after_;
+  wires.inputs.looked_at.store(clock.now());
+  ticked_ = clock.now();
+}
+
+Panel::~Panel() {
+  drop();
+}
+
+void Panel::run() noexcept {
+  while (!stopped_.load()) step();
+}
+
+TripInput* Panel::input(GpioRole role) noexcept {
+  if (role == GpioRole::emergency_stop && emergency_stop_) return &*emergency_stop_;
+  if (role == GpioRole::part_in_position && part_) return &*part_;
+  return nullptr;
+}
+
+Nanoseconds Panel::pause(Nanoseconds now) const noexcept {
+  Nanoseconds due = now + look_interval_;
+  if (emergency_stop_) due = std::min(due, emergency_stop_->due());
+  if (part_) due = std::min(due, part_->due());
+  return std::max<Nanoseconds>(due - now, 0);
+}
+
+void Panel::step() noexcept {
+  if (lost_) {
+    sleep_until(clock_.now() + look_interval_);
+  } else {
+    read_inputs();
+  }
+  const Nanoseconds now = clock_.now();
+  if (!lost_) publish(now);
+  drive(now);
+}
+
+void Panel::read_inputs() noexcept {
+  std::array<drivers::GpioEdge, edges_at_once> edges;
+  const auto count = lines_->wait(pause(clock_.now()), edges);
+  if (!count) return lose(clock_.now());
+  for (const drivers::GpioEdge& edge : std::span(edges).first(*count)) {
+    // Active means pressed of the emergency stop, and good of the part.
+    if (TripInput* const to = input(edge.role)) {
+      to->edge(edge.active == (edge.role == GpioRole::emergency_stop), edge.at);
+    }
+  }
+  for (const GpioRole role : {GpioRole::emergency_stop, GpioRole::part_in_position}) {
+    TripInput* const to = input(role);
+    if (to == nullptr) continue;
+    const std::optional<bool> active = lines_->read(role);
+    if (!active) return lose(clock_.now());
+    to->level(*active == (role == GpioRole::emergency_stop), clock_.now());
+  }
+}
+
+void Panel::publish(Nanoseconds now) noexcept {
+  const bool faulted = wires_.state.load(std::memory_order_relaxed) == State::faulted;
+  latched_ = latched_ || faulted;
+  if (emergency_stop_) {
+    const bool pressed = emergency_stop_->tripped() || !latched_;
+    if (wires_.inputs.emergency_stop.exchange(pressed, std::memory_order_relaxed) != pressed) {
+      tell(pressed ? PanelEvent::Kind::emergency_stop_pressed : PanelEvent::Kind::emergency_stop_released,
+           now);
+    }
+  }
+  if (part_) {
+    const bool open = part_->tripped();
+    if (wires_.inputs.interlock_open.exchange(open, std::memory_order_relaxed) != open) {
+      tell(open ? PanelEvent::Kind::part_away : PanelEvent::Kind::part_in_position, now);
+    }
+  }
+  if (faulted && !hung_) wires_.inputs.lost.store(false, std::memory_order_relaxed);
+  wires_.inputs.looked_at.store(now, std::memory_order_relaxed);
+}
+
+void Panel::lose(Nanoseconds now) noexcept {
+  lost_ = true;
+  wires_.inputs.lost.store(true, std::memory_order_relaxed);
+  if (part_) wires_.inputs.interlock_open.store(true, std::memory_order_relaxed);
+  tell(PanelEvent::Kind::gpio_lost, now);
+}
+
+bool Panel::loop_hangs(Nanoseconds now) noexcept {
+  const std::uint64_t ticks = loop_.ticks.value();
+  if (ticks != ticks_ || ticks == 0) {
+    ticks_ = ticks;
+    ticked_ = now;
+  }
+  const bool leaving = wires_.leave.load(std::memory_order_relaxed);
+  const bool hangs = !leaving && now - ticked_ > stale_after_;
+  if (hangs && !hung_) {
+    tell(PanelEvent::Kind::loop_hangs, now);
+    // Should it come back, it shall not go on as if nothing had happened.
+    wires_.inputs.lost.store(true, std::memory_order_relaxed);
+  }
+  hung_ = hangs;
+  return hangs;
+}
+
+/// Rises when the rig is ready; what a fault does to it is the rig file's choice, but an emergency stop, lost
+/// inputs and a loop that hangs always drop it. While it is being found out whether all is well, it stays.
+bool Panel::enable_wanted(State state, bool hangs) const noexcept {
+  if (hangs || lost_ || wires_.inputs.emergency_stop.load(std::memory_order_relaxed)) return false;
+  if (works(state)) return true;
+  const bool on = written_[static_cast<std::size_t>(GpioRole::enable)].value_or(false);
+  return on && (state == State::starting || !settings_.enable_drops_on_fault);
+}
+
+void Panel::drive(Nanoseconds now) noexcept {
+  const State state = wires_.state.load(std::memory_order_relaxed);
+  const bool hangs = loop_hangs(now);
+  const bool enable = enable_wanted(state, hangs);
+  const auto& was = written_[static_cast<std::size_t>(GpioRole::enable)];
+  const bool changed = settings_.has(GpioRole::enable) && was.value_or(false) != enable;
+  write(GpioRole::enable, enable);
+  wires_.enable_on.store(enable && !dropped_.load(), std::memory_order_relaxed);
+  if (changed) tell(enable ? PanelEvent::Kind::enable_on : PanelEvent::Kind::enable_off, now);
+  write(GpioRole::ready_lamp, works(state) && !hangs && !lost_);
+  write(GpioRole::fault_lamp, state == State::faulted || hangs || lost_);
+}
+
+void Panel::write(GpioRole role, bool active) noexcept {
+  std::optional<bool>& written = written_[static_cast<std::size_t>(role)];
+  if (written == active) return;
+  const bool droppable = role != GpioRole::fault_lamp;
+  if (droppable && active && dropped_.load()) return;
+  const bool taken = lines_->write(role, active);
+  // A drop() from another thread between the two lines above has come first.
+  if (droppable && dropped_.load()) lines_->write(role, false);
+  written = active;
+  if (!taken && !lost_) lose(clock_.now());
+}
+
+void Panel::drop() noexcept {
+  dropped_.store(true);
+  lines_->write(GpioRole::enable, false);
+  lines_->write(GpioRole::ready_lamp, false);
+}
+
+void Panel::tell(PanelEvent::Kind kind, Nanoseconds now) noexcept {
+  wires_.panel_events.push(PanelEvent{kind, now});
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,54 @@
+#include "daemon/panel/trip_input.h"
+
+#include <algorithm>
+
+namespace softgrip::daemon {
+
+void TripInput::settle(Nanoseconds now) noexcept {
+  if (!known_) return;
+  const bool steady = now - since_ >= debounce_;
+  if (steady && !asks_) {
+    tripped_ = false;
+    suspect_ = never;
+  } else if ((steady && asks_) || (suspect_ != never && now - suspect_ >= 2 * debounce_)) {
+    tripped_ = true;
+  }
+}
+
+void TripInput::change(bool trips, Nanoseconds at) noexcept {
+  known_ = true;
+  asks_ = trips;
+  since_ = at;
+  // Whatever broke the steadiness of a clear line is a reason for suspicion, also an edge whose partner was
+  // lost.
+  if (suspect_ == never) suspect_ = at;
+}
+
+void TripInput::edge(bool trips, Nanoseconds at) noexcept {
+  // The level may have been read after the interrupt and before its event: then the change is known already.
+  if (known_ && at <= since_) {
+    if (trips != asks_) change(trips, since_);
+    return;
+  }
+  settle(at);
+  change(trips, at);
+}
+
+void TripInput::level(bool trips, Nanoseconds now) noexcept {
+  if (!known_ || trips != asks_) {
+    settle(now);
+    change(trips, now);
+  }
+  settle(now);
+}
+
+Nanoseconds TripInput::due() const noexcept {
+  if (!known_) return 0;
+  const bool pending = asks_ != tripped_ || (!tripped_ && suspect_ != never);
+  if (!pending) return never;
+  Nanoseconds next = since_ + debounce_;
+  if (!tripped_ && suspect_ != never) next = std::min(next, suspect_ + 2 * debounce_);
+  return next;
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,66 @@
+#pragma once
+// Events in words: what the socket API, the recordings and the log show.
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/loop/wires.h"
+
+namespace softgrip::daemon {
+
+/// How much attention an event wants.
+enum class Severity : std::uint8_t { information, warning, error };
+
+/// One event, as everybody outside the loop sees it.
+struct EventEntry {
+  std::uint64_t id = 0;  ///< counts from 1, without gaps
+  double time_s = 0;     ///< since the daemon's start, or since the recording's
+  std::string kind;      ///< "fault_latched", "bus_failed", ...; a contract
+  Severity severity = Severity::information;
+  std::string channel;        ///< its name, or empty for the whole rig
+  std::string code;           ///< "F101", "R02", "HOLDING", a state, a step; by kind; may be empty
+  std::string text;           ///< one sentence
+  std::uint32_t request = 0;  ///< the request it answers, or 0
+  double value = 0;           ///< a number that goes with it, or 0
+};
+
+/// Describes an event of the controller. `time_s` and `id` are left to the caller. `sequence` is the one that
+/// runs or is started, or nullptr.
+[[nodiscard]] EventEntry describe(const control::Event& event, const std::vector<std::string>& channel_names,
+                                  const control::PreparedSequence* sequence);
+/// Describes an event of the bus.
+[[nodiscard]] EventEntry describe(const BusEvent& event);
+/// Describes an event of the digital lines.
+[[nodiscard]] EventEntry describe(const PanelEvent& event);
+/// "fault_latched" ...
+[[nodiscard]] std::string_view name_of(control::Event::Kind kind) noexcept;
+[[nodiscard]] std::string_view name_of(BusEvent::Kind kind) noexcept;
+[[nodiscard]] std::string_view name_of(PanelEvent::Kind kind) noexcept;
+/// "information", "warning", "error"
+[[nodiscard]] std::string_view name_of(Severity severity) noexcept;
+
+/// The newest events, for all threads but the loop.
+class EventLog {
+ public:
+  explicit EventLog(std::size_t capacity) : capacity_(capacity) {}
+
+  /// Gives the event its id, which it returns.
+  std::uint64_t add(EventEntry entry);
+  /// Those after `id`, oldest first, at most `limit`.
+  [[nodiscard]] std::vector<EventEntry> since(std::uint64_t id, std::size_t limit) const;
+  /// The id of the newest event; 0 if there is none.
+  [[nodiscard]] std::uint64_t newest() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::size_t capacity_;
+  std::uint64_t last_id_ = 0;
+  std::deque<EventEntry> entries_;
+};
+
+}  // namespace softgrip::daemon

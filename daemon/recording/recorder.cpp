@@ -1,0 +1,296 @@
+#include "daemon/recording/recorder.h"
+
+#include <array>
+#include <ctime>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/grid.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+constexpr std::size_t batch_records = 256;
+constexpr std::size_t text_bytes = 256 * 1024;
+/// After the last motion: how the finger settles.
+constexpr Nanoseconds tail = ns_per_s / 2;
+/// Between two versions of run.json.
+constexpr Nanoseconds json_pause = ns_per_s / 4;
+/// After the disk refused, before the next attempt.
+constexpr Nanoseconds retry_pause = 60 * ns_per_s;
+constexpr std::size_t events_per_file = 10'000;
+
+using Kind = control::Event::Kind;
+
+bool moves(const Record& record) {
+  return record.state == control::State::resynchronising || record.state == control::State::running ||
+         record.state == control::State::stopping;
+}
+
+bool is_event(const Record& record, Kind kind) {
+  return record.is_event && record.event.kind == kind;
+}
+
+Nanoseconds read_clock(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return time.tv_sec * ns_per_s + time.tv_nsec;
+}
+
+/// The wall clock at a moment of the monotonic one, as "2025-11-20T03:46:12Z".
+std::string utc_text(Nanoseconds monotonic) {
+  const Nanoseconds wall = read_clock(CLOCK_REALTIME) - (read_clock(CLOCK_MONOTONIC) - monotonic);
+  const time_t whole = wall / ns_per_s;
+  tm parts{};
+  gmtime_r(&whole, &parts);
+  std::array<char, 32> text{};
+  strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+/// Letters, digits, '-' and '_' of a name; all else becomes '_'.
+std::string file_name_of(std::string_view name) {
+  std::string text;
+  for (const char c : name.substr(0, 60)) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    text += plain ? c : '_';
+  }
+  return text;
+}
+
+}  // namespace
+
+struct Recorder::Recording {
+  explicit Recording(RunFolder where) : folder(std::move(where)) {}
+
+  RunFolder folder;
+  RunStory story;
+  Nanoseconds begin = 0;
+  Nanoseconds last_motion = 0;
+  std::uint64_t dropped_before = 0;
+  bool json_due = true;
+  Nanoseconds json_at = 0;
+  Nanoseconds synced_at = 0;
+  std::string text;  // rows that the kernel does not have yet
+};
+
+Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& provenance,
+                   std::string only_folder, Nanoseconds origin, Wires& wires, EventLog& events,
+                   const SequenceShelf& shelf)
+    : settings_(settings),
+      provenance_(provenance),
+      only_folder_(std::move(only_folder)),
+      always_(!only_folder_.empty() || settings.mode == rig::RecorderSettings::Mode::always),
+      origin_(origin),
+      wires_(wires),
+      events_(events),
+      shelf_(shelf),
+      rows_(provenance.channel_names, provenance.measures_pressure),
+      batch_(batch_records) {}
+
+Recorder::~Recorder() = default;
+
+void Recorder::drain() {
+  for (std::size_t count = wires_.records.pop(batch_); count > 0; count = wires_.records.pop(batch_)) {
+    for (std::size_t i = 0; i < count; ++i) take(batch_[i]);
+    if (recording_ && recording_->text.size() >= text_bytes) flush(false);
+  }
+  if (recording_) flush(false);
+  show();
+}
+
+void Recorder::finish() {
+  drain();
+  if (recording_) end("complete");
+  show();
+}
+
+void Recorder::take(const Record& record) {
+  now_ = record.at;
+  if (recording_ && ends_with(record)) end("complete");
+  if (!recording_ && begins_with(record)) begin(record);
+  if (!recording_) {
+    remember(record);
+  } else if (record.is_event) {
+    take_event(record);
+  } else {
+    take_row(record);
+  }
+}
+
+bool Recorder::begins_with(const Record& record) const {
+  if (record.at < blocked_) return false;
+  if (always_) return true;
+  if (settings_.mode == rig::RecorderSettings::Mode::off) return false;
+  return is_event(record, Kind::sequence_started) || is_event(record, Kind::fault_latched) ||
+         (!record.is_event && moves(record));
+}
+
+bool Recorder::ends_with(const Record& record) const {
+  if (always_) return false;
+  // A start within the tail of the last run begins a recording of its own.
+  if (is_event(record, Kind::sequence_started)) return recording_->story.sequence != nullptr;
+  return !record.is_event && !moves(record) && record.at - recording_->last_motion > tail;
+}
+
+void Recorder::begin(const Record& record) {
+  const std::string path = folder_for(record);
+  auto folder = RunFolder::create(path, rows_.header(), !provenance_.virtual_time);
+  if (!folder) {
+    block();
+    tell("recording_failed", Severity::error, fmt::format("Nothing is recorded: {}.", folder.error()));
+    const std::scoped_lock lock(status_mutex_);
+    status_.error = folder.error();
+    return;
+  }
+  ++recordings_;
+  recording_ = std::make_unique<Recording>(std::move(*folder));
+  Recording& now = *recording_;
+  now.begin = record.at;
+  now.last_motion = record.at;
+  now.dropped_before = wires_.records_dropped.load(std::memory_order_relaxed);
+  now.synced_at = record.at;
+  now.text.reserve(2 * text_bytes);
+  const bool fault = !always_ && is_event(record, Kind::fault_latched);
+  now.story.reason = always_ ? "always" : fault ? "fault" : "sequence";
+  if (fault && !history_.empty()) now.begin = history_.front().at;
+  if (!provenance_.virtual_time) now.story.started_at = utc_text(now.begin);
+  if (fault) {
+    for (const Record& old : history_) old.is_event ? take_event(old) : take_row(old);
+  }
+  history_.clear();
+  write_json();
+  tell("recording_started", Severity::information, fmt::format("Recording to {}.", path));
+}
+
+std::string Recorder::folder_for(const Record& record) const {
+  if (!only_folder_.empty()) return only_folder_;
+  std::string name =
+      provenance_.virtual_time ? fmt::format("run-{:04}", recordings_ + 1) : utc_text(record.at);
+  for (char& c : name) c = c == ':' ? '-' : c;
+  if (is_event(record, Kind::sequence_started)) {
+    const auto sequence = shelf_.find(record.event.request);
+    if (sequence) name += "_" + file_name_of(sequence->prepared.name);
+  } else if (is_event(record, Kind::fault_latched) && !always_) {
+    name += "_fault";
+  }
+  const std::string first = settings_.directory + "/" + name;
+  std::string path = first;
+  std::error_code ignored;
+  for (int n = 2; n < 1000 && std::filesystem::exists(path, ignored); ++n)
+    path = fmt::format("{}-{}", first, n);
+  return path;
+}
+
+void Recorder::take_row(const Record& record) {
+  Recording& now = *recording_;
+  if (moves(record)) now.last_motion = record.at;
+  now.story.duration_s = seconds(record.at - now.begin);
+  ++now.story.rows;
+  rows_.append(now.text, record, now.begin);
+}
+
+void Recorder::take_event(const Record& record) {
+  Recording& now = *recording_;
+  if (record.event.kind == Kind::sequence_started) {
+    now.story.sequence = shelf_.find(record.event.request);
+    now.story.request = record.event.request;
+  }
+  if (now.story.events.size() == events_per_file) {
+    ++now.story.events_left_out;
+    return;
+  }
+  const control::PreparedSequence* sequence = now.story.sequence ? &now.story.sequence->prepared : nullptr;
+  EventEntry entry = describe(record.event, provenance_.channel_names, sequence);
+  entry.time_s = seconds(record.at - now.begin);
+  now.story.events.push_back(std::move(entry));
+  now.json_due = true;
+}
+
+void Recorder::remember(const Record& record) {
+  history_.push_back(record);
+  const Nanoseconds oldest = record.at - nanoseconds(settings_.history_s);
+  while (history_.front().at < oldest) history_.pop_front();
+}
+
+void Recorder::flush(bool last) {
+  Recording& now = *recording_;
+  bool good = now.text.empty() || now.folder.append(now.text);
+  now.text.clear();
+  const bool sync_due = settings_.sync_interval_s > 0 && !provenance_.virtual_time &&
+                        (last || now_ - now.synced_at >= nanoseconds(settings_.sync_interval_s));
+  if (good && sync_due) {
+    good = now.folder.sync();
+    now.synced_at = now_;
+  }
+  if (!good && !last) {
+    end("stopped_early");
+    return;
+  }
+  // In virtual time hours pass in seconds, and nobody can read along.
+  if (now.json_due && !provenance_.virtual_time && now_ - now.json_at >= json_pause) write_json();
+}
+
+bool Recorder::write_json() {
+  Recording& now = *recording_;
+  now.story.dropped_rows = wires_.records_dropped.load(std::memory_order_relaxed) - now.dropped_before;
+  now.story.error = now.folder.error();
+  now.json_due = false;
+  now.json_at = now_;
+  return now.folder.replace_json(run_json(provenance_, now.story));
+}
+
+void Recorder::end(const char* state) {
+  flush(true);
+  Recording& now = *recording_;
+  now.story.state = now.folder.healthy() ? state : "stopped_early";
+  write_json();
+  const std::string error = now.folder.error();
+  if (error.empty()) {
+    tell("recording_finished", Severity::information,
+         fmt::format("Recorded {} rows in {}.", now.story.rows, now.folder.path()));
+  } else {
+    block();
+    tell("recording_failed", Severity::error,
+         fmt::format("The recording ended early, control goes on: {}.", error));
+  }
+  show();
+  recording_.reset();
+  const std::scoped_lock lock(status_mutex_);
+  status_.active = false;
+}
+
+void Recorder::block() {
+  // A folder that the user named is there already; a second attempt could only say so.
+  blocked_ = only_folder_.empty() ? now_ + retry_pause : std::numeric_limits<Nanoseconds>::max();
+}
+
+void Recorder::tell(const char* kind, Severity severity, std::string text) {
+  EventEntry entry;
+  entry.kind = kind;
+  entry.severity = severity;
+  entry.time_s = seconds(now_ - origin_);
+  entry.text = std::move(text);
+  events_.add(std::move(entry));
+}
+
+void Recorder::show() {
+  const std::scoped_lock lock(status_mutex_);
+  status_.dropped_rows = wires_.records_dropped.load(std::memory_order_relaxed);
+  status_.active = recording_ != nullptr;
+  if (!recording_) return;
+  status_.folder = recording_->folder.path();
+  status_.rows = recording_->story.rows;
+  status_.error = recording_->folder.error();
+}
+
+RecorderStatus Recorder::status() const {
+  const std::scoped_lock lock(status_mutex_);
+  return status_;
+}
+
+}  // namespace softgrip::daemon

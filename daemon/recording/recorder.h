@@ -1,0 +1,92 @@
+#pragma once
+// The recorder: takes what the loop left in its ring and makes recordings of it.
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "daemon/loop/wires.h"
+#include "daemon/recording/csv_row.h"
+#include "daemon/recording/event_log.h"
+#include "daemon/recording/provenance.h"
+#include "daemon/recording/run_folder.h"
+#include "daemon/recording/run_json.h"
+#include "daemon/recording/sequence_shelf.h"
+#include "rig/recorder_settings.h"
+
+namespace softgrip::daemon {
+
+/// What the status shows of it.
+struct RecorderStatus {
+  bool active = false;
+  std::string folder;  ///< of the present or last recording; empty before the first
+  std::uint64_t rows = 0;
+  std::uint64_t dropped_rows = 0;  ///< since the daemon's start
+  std::string error;               ///< of the present or last recording
+};
+
+/// Decides where recordings begin and end, and writes them. A recording begins with a sequence and ends half
+/// a second after its motion; a fault outside a sequence gets a recording of its own that begins history_s
+/// before it. What disks do is told as an event and survived: that recording ends, the next one is tried
+/// again. All calls but status() come from one thread.
+class Recorder {
+ public:
+  /// `only_folder`: if not empty, everything goes into this one folder from start to stop, whatever the mode.
+  /// `origin`: time 0 of the event log. All references outlive the recorder.
+  Recorder(const rig::RecorderSettings& settings, const Provenance& provenance, std::string only_folder,
+           Nanoseconds origin, Wires& wires, EventLog& events, const SequenceShelf& shelf);
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  Recorder(Recorder&&) = delete;
+  Recorder& operator=(Recorder&&) = delete;
+  ~Recorder();
+
+  /// Takes what is in the ring and hands it to the kernel. To be called at least every flush_interval_s.
+  void drain();
+  /// drain(), and the end of the recording.
+  void finish();
+
+  /// From any thread.
+  [[nodiscard]] RecorderStatus status() const;
+
+ private:
+  struct Recording;
+
+  void take(const Record& record);
+  void take_row(const Record& record);
+  void take_event(const Record& record);
+  void remember(const Record& record);
+  [[nodiscard]] bool begins_with(const Record& record) const;
+  [[nodiscard]] bool ends_with(const Record& record) const;
+  void begin(const Record& record);
+  [[nodiscard]] std::string folder_for(const Record& record) const;
+  void end(const char* state);
+  void flush(bool last);
+  bool write_json();
+  void block();
+  void tell(const char* kind, Severity severity, std::string text);
+  void show();
+
+  const rig::RecorderSettings& settings_;
+  const Provenance& provenance_;
+  std::string only_folder_;
+  bool always_;  // one recording from start to stop
+  Nanoseconds origin_;
+  Wires& wires_;
+  EventLog& events_;
+  const SequenceShelf& shelf_;
+  CsvRows rows_;
+  std::vector<Record> batch_;
+  std::deque<Record> history_;  // while nothing is recorded
+  std::unique_ptr<Recording> recording_;
+  std::uint32_t recordings_ = 0;
+  Nanoseconds now_ = 0;      // of the newest record
+  Nanoseconds blocked_ = 0;  // no new recording before: the disk refused the last one
+  mutable std::mutex status_mutex_;
+  RecorderStatus status_;
+};
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,127 @@
+#include "daemon/recording/run_folder.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace softgrip::daemon {
+
+namespace {
+
+constexpr mode_t file_mode = 0644;
+
+std::string sentence(const std::string& what, int error) {
+  return fmt::format("{}: {}", what, std::strerror(error));
+}
+
+/// All of `text`, or the errno of what stopped it.
+int write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    if (written == 0) return ENOSPC;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+}  // namespace
+
+tl::expected<RunFolder, std::string> RunFolder::create(const std::string& path, std::string_view header,
+                                                       bool durable) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) return tl::unexpected(fmt::format("{}: {}", path, error.message()));
+  const std::string file = path + "/run.csv";
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, file_mode);
+  if (descriptor < 0 && errno == EEXIST) {
+    return tl::unexpected(file + " exists already; a recording is never overwritten");
+  }
+  if (descriptor < 0) return tl::unexpected(sentence(file, errno));
+  RunFolder folder(path, descriptor, durable);
+  if (!folder.append(header)) {
+    unlink(file.c_str());
+    return tl::unexpected(folder.error());
+  }
+  return folder;
+}
+
+RunFolder::RunFolder(RunFolder&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      durable_(other.durable_),
+      whole_bytes_(other.whole_bytes_),
+      error_(std::move(other.error_)) {}
+
+RunFolder& RunFolder::operator=(RunFolder&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  std::swap(durable_, other.durable_);
+  std::swap(whole_bytes_, other.whole_bytes_);
+  std::swap(error_, other.error_);
+  return *this;
+}
+
+RunFolder::~RunFolder() {
+  close();
+}
+
+void RunFolder::close() noexcept {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  descriptor_ = -1;
+}
+
+void RunFolder::fail(const std::string& what, int error) {
+  if (error_.empty()) error_ = sentence(what, error);
+}
+
+bool RunFolder::append(std::string_view lines) {
+  if (descriptor_ < 0) return false;
+  const int error = write_all(descriptor_, lines);
+  if (error == 0) {
+    whole_bytes_ += static_cast<std::int64_t>(lines.size());
+    return true;
+  }
+  fail(path_ + "/run.csv", error);
+  // A full disk may have taken half of it. Cutting back needs no space; if it fails, the last line is
+  // incomplete, which readers of recordings stand.
+  if (ftruncate(descriptor_, whole_bytes_) != 0) error_ += "; its last line may be incomplete";
+  close();
+  return false;
+}
+
+bool RunFolder::sync() {
+  if (descriptor_ < 0) return false;
+  if (fdatasync(descriptor_) == 0) return true;
+  // After a failed fdatasync the kernel drops the pages: what is on the disk is unknown, so nothing more is
+  // added.
+  fail(path_ + "/run.csv", errno);
+  close();
+  return false;
+}
+
+bool RunFolder::replace_json(std::string_view text) {
+  const std::string file = path_ + "/run.json";
+  const std::string temporary = file + ".tmp";
+  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, file_mode);
+  int error = descriptor < 0 ? errno : write_all(descriptor, text);
+  // Without this a power failure may leave the new name with the old file's absence: an empty run.json.
+  if (error == 0 && durable_ && fdatasync(descriptor) != 0) error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (error == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) error = errno;
+  if (error == 0) return true;
+  fail(file, error);
+  unlink(temporary.c_str());
+  return false;
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,68 @@
+#include "daemon/recording/run_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::daemon {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// File names and messages may hold bytes that are no UTF-8; they must not make the file unreadable.
+std::string dump(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json json_of(const EventEntry& event) {
+  Json json{{"time_s", event.time_s}, {"kind", event.kind}, {"severity", name_of(event.severity)}};
+  if (!event.channel.empty()) json["channel"] = event.channel;
+  if (!event.code.empty()) json["code"] = event.code;
+  if (event.request != 0) json["request"] = event.request;
+  if (event.value != 0) json["value"] = event.value;
+  json["text"] = event.text;
+  return json;
+}
+
+Json json_of(const LoadedSequence& sequence, std::uint32_t request) {
+  return {{"name", sequence.prepared.name},
+          {"file", sequence.written.file},
+          {"sha256", sequence.sha256},
+          {"request", request},
+          {"text", sequence.written.text}};
+}
+
+}  // namespace
+
+std::string run_json(const Provenance& provenance, const RunStory& story) {
+  Json json;
+  json["schema"] = 1;
+  json["state"] = story.state;
+  json["reason"] = story.reason;
+  json["software_version"] = provenance.software_version;
+  if (!story.started_at.empty()) json["started_at"] = story.started_at;
+  json["virtual_time"] = provenance.virtual_time;
+  json["seed"] = provenance.seed ? Json(*provenance.seed) : Json(nullptr);
+  json["rig"] = provenance.rig;
+  json["files"] = Json::array();
+  for (const SourceFile& file : provenance.files) {
+    json["files"].push_back({{"role", file.role}, {"path", file.path}, {"sha256", file.sha256}});
+  }
+  json["channels"] = provenance.channel_names;
+  json["rate_hz"] = provenance.rate_hz;
+  json["decimation"] = provenance.decimation;
+  json["sequence"] = story.sequence ? json_of(*story.sequence, story.request) : Json(nullptr);
+  json["duration_s"] = story.duration_s;
+  json["rows"] = story.rows;
+  json["dropped_rows"] = story.dropped_rows;
+  json["error"] = story.error.empty() ? Json(nullptr) : Json(story.error);
+  json["faults"] = Json::array();
+  json["events"] = Json::array();
+  for (const EventEntry& event : story.events) {
+    json["events"].push_back(json_of(event));
+    if (event.kind == "fault_latched") json["faults"].push_back(json_of(event));
+  }
+  json["events_left_out"] = story.events_left_out;
+  return dump(json);
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,32 @@
+#pragma once
+// The text of run.json.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/recording/event_log.h"
+#include "daemon/recording/provenance.h"
+#include "daemon/recording/sequence_shelf.h"
+
+namespace softgrip::daemon {
+
+/// What one recording has come to.
+struct RunStory {
+  std::string state = "recording";  ///< "recording", "complete", "stopped_early" (rows could not be written)
+  std::string reason;               ///< why it began: "sequence", "fault", "always"
+  std::string started_at;           ///< UTC, ISO 8601; empty in virtual time
+  double duration_s = 0;
+  std::uint64_t rows = 0;
+  std::uint64_t dropped_rows = 0;
+  std::shared_ptr<const LoadedSequence> sequence;
+  std::uint32_t request = 0;  ///< that started the sequence
+  std::vector<EventEntry> events;
+  std::uint64_t events_left_out = 0;  ///< beyond what one file holds
+  std::string error;                  ///< of the disk
+};
+
+[[nodiscard]] std::string run_json(const Provenance& provenance, const RunStory& story);
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,208 @@
+#include "daemon/service/daemon.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/sha256.h"
+#include "base/version.h"
+#include "daemon/service/daemon_parts.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+/// Rows the recorder may lag behind: so many seconds of a slow disk are survived.
+constexpr double seconds_of_rows = 8;
+constexpr std::size_t fewest_records = 4096;
+constexpr std::size_t most_records = std::size_t{1} << 18;
+constexpr std::size_t events_kept = 10'000;
+/// A reading that was sampled at 0 has not been sampled.
+constexpr Nanoseconds virtual_origin = ns_per_s;
+/// How long the rig may take to become idle before a sequence of the options is given up.
+constexpr Nanoseconds patience = 10 * ns_per_s;
+
+std::size_t records_of(const control::RigSettings& settings) {
+  const double rows = seconds_of_rows * settings.rate_hz * static_cast<double>(settings.channels.size());
+  return std::clamp(static_cast<std::size_t>(rows), fewest_records, most_records);
+}
+
+const char* name_of(rig::InputFile::Role role) {
+  switch (role) {
+    case rig::InputFile::Role::rig:
+      return "rig";
+    case rig::InputFile::Role::board:
+      return "board";
+    case rig::InputFile::Role::model:
+      return "model";
+    case rig::InputFile::Role::plant:
+      return "plant";
+  }
+  return "?";
+}
+
+bool measures_pressure(const rig::RigFile& rig) {
+  const auto& channels = rig.settings.channels;
+  return std::any_of(channels.begin(), channels.end(),
+                     [](const control::ChannelSettings& channel) { return channel.pressure_measured; });
+}
+
+Provenance provenance_of(const rig::RigFile& rig, const DaemonOptions& options) {
+  Provenance provenance;
+  provenance.software_version = software_version();
+  provenance.rig = rig.name;
+  for (const rig::InputFile& file : rig.inputs) {
+    provenance.files.push_back({name_of(file.role), file.path, sha256(file.text)});
+  }
+  for (const control::ChannelSettings& channel : rig.settings.channels) {
+    provenance.channel_names.push_back(channel.name);
+  }
+  provenance.measures_pressure = measures_pressure(rig);
+  provenance.rate_hz = rig.settings.rate_hz;
+  provenance.decimation = rig.recorder.decimation;
+  provenance.seed = rig.seed;
+  provenance.virtual_time = options.virtual_time;
+  return provenance;
+}
+
+}  // namespace
+
+std::unique_ptr<drivers::Board> make_board(const rig::RigFile& rig, const Clock& clock) {
+  if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&rig.board)) {
+    return std::make_unique<simulation::SimulatedBoard>(*simulated, clock);
+  }
+  if (const auto* converters = std::get_if<drivers::IioSettings>(&rig.board)) {
+    return std::make_unique<drivers::IioBoard>(*converters);
+  }
+  return std::make_unique<drivers::ModbusBoard>(std::get<drivers::ModbusSettings>(rig.board));
+}
+
+DaemonParts::DaemonParts(rig::RigFile rig_file, DaemonOptions run_options)
+    : rig(std::move(rig_file)),
+      options(std::move(run_options)),
+      provenance(provenance_of(rig, options)),
+      clock(options.virtual_time ? static_cast<const Clock&>(virtual_clock) : system_clock),
+      origin(options.virtual_time ? virtual_origin : system_clock.now()),
+      board(make_board(rig, clock)),
+      board_text(board->describe()),
+      controller(rig.settings),
+      wires(records_of(rig.settings)),
+      events(events_kept),
+      loader(rig.settings, rig.socket.sequence_directory),
+      loop(controller, rig.settings.channels.size(), rig.recorder.decimation, clock, wires, loop_statistics),
+      bus(*board, rig.loop, rig.reconnect, clock, wires, bus_statistics),
+      recorder(rig.recorder, provenance, options.record_folder, origin, wires, events, shelf),
+      service(provenance.channel_names, origin, wires, events, shelf) {
+  if (options.sequence) errand.emplace(options.sequence, patience);
+}
+
+Nanoseconds DaemonParts::period() const noexcept {
+  return nanoseconds(1 / rig.settings.rate_hz);
+}
+
+Nanoseconds DaemonParts::bus_offset() const noexcept {
+  return nanoseconds(rig.loop.bus_offset_fraction / rig.settings.rate_hz);
+}
+
+void DaemonParts::deliver_events() {
+  if (!options.on_event) return;
+  for (const EventEntry& event : events.since(delivered, events_kept)) {
+    options.on_event(event);
+    delivered = event.id;
+  }
+}
+
+void DaemonParts::conclude(Outcome& outcome) {
+  outcome.last = service.snapshot();
+  outcome.channel_names = provenance.channel_names;
+  outcome.ticks = loop_statistics.ticks.value();
+  outcome.slips = loop_statistics.slips_took_long.value() + loop_statistics.slips_woken_late.value();
+  if (!options.record_folder.empty()) outcome.recording_error = recorder.status().error;
+  outcome.left_safely = wires.left_safely.load(std::memory_order_acquire);
+  if (outcome.ending != Ending::asked || !errand || !errand->over()) return;
+  outcome.sequence_end = errand->end();
+  switch (errand->state()) {
+    case Errand::State::refused:
+      outcome.ending = Ending::sequence_refused;
+      outcome.message = control::name_of(errand->refusal());
+      break;
+    case Errand::State::not_idle:
+      outcome.ending = Ending::not_idle;
+      outcome.message = fmt::format("the rig did not become idle within {} s{}", patience / ns_per_s,
+                                    outcome.last.first_fault == control::FaultCode::none
+                                        ? ""
+                                        : fmt::format(": {} {} is latched, `softgrip acknowledge` clears it",
+                                                      control::info_of(outcome.last.first_fault).id,
+                                                      control::info_of(outcome.last.first_fault).name));
+      break;
+    default:
+      outcome.ending = Ending::sequence_ended;
+      break;
+  }
+}
+
+void DaemonParts::tell(const char* kind, Severity severity, std::string text) {
+  EventEntry entry;
+  entry.kind = kind;
+  entry.severity = severity;
+  entry.time_s = seconds(clock.now() - origin);
+  entry.text = std::move(text);
+  events.add(std::move(entry));
+}
+
+int exit_code_of(const Outcome& outcome) noexcept {
+  const int done = !outcome.left_safely ? 1 : outcome.recording_error.empty() ? 0 : 4;
+  switch (outcome.ending) {
+    case Ending::asked:
+      return done;
+    case Ending::sequence_ended:
+      if (outcome.sequence_end == control::SequenceEnd::done) return done;
+      return outcome.sequence_end == control::SequenceEnd::failed ? 6 : 1;
+    case Ending::gpio_refused:
+      return 3;
+    case Ending::socket_failed:
+    case Ending::gpio_failed:
+      return 4;
+    case Ending::sequence_refused:
+    case Ending::not_idle:
+      return 5;
+    case Ending::real_time_refused:
+    case Ending::broken:
+      return 1;
+  }
+  return 1;
+}
+
+tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile rig, DaemonOptions options) {
+  if (options.virtual_time) {
+    if (!std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board)) {
+      return tl::unexpected(
+          std::string("virtual time needs a simulated board; a real one keeps its own time"));
+    }
+    if (rig.gpio) {
+      return tl::unexpected(std::string("virtual time has no digital lines: this rig file has `gpio`"));
+    }
+    if (!options.sequence && !options.duration_s) {
+      return tl::unexpected(std::string("virtual time needs an end: a sequence or a duration"));
+    }
+  }
+  return std::unique_ptr<Daemon>(
+      new Daemon(std::make_unique<DaemonParts>(std::move(rig), std::move(options))));
+}
+
+Daemon::Daemon(std::unique_ptr<DaemonParts> parts) : parts_(std::move(parts)) {}
+Daemon::~Daemon() = default;
+
+Outcome Daemon::run() {
+  return parts_->options.virtual_time ? run_in_virtual_time(*parts_) : run_in_real_time(*parts_);
+}
+
+const LoopStatistics& Daemon::loop_statistics() const noexcept {
+  return parts_->loop_statistics;
+}
+const BusStatistics& Daemon::bus_statistics() const noexcept {
+  return parts_->bus_statistics;
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,61 @@
+#pragma once
+// Inside of Daemon: the parts that both kinds of run put in motion.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/clock.h"
+#include "control/tick/rig_controller.h"
+#include "daemon/loop/bus.h"
+#include "daemon/loop/loop.h"
+#include "daemon/recording/provenance.h"
+#include "daemon/recording/recorder.h"
+#include "daemon/service/daemon.h"
+#include "daemon/socket/service.h"
+
+namespace softgrip::daemon {
+
+struct DaemonParts {
+  DaemonParts(rig::RigFile rig_file, DaemonOptions run_options);
+
+  /// Between two ticks.
+  [[nodiscard]] Nanoseconds period() const noexcept;
+  /// From a tick to the exchange that follows it.
+  [[nodiscard]] Nanoseconds bus_offset() const noexcept;
+  /// Gives new events to options.on_event.
+  void deliver_events();
+  /// What the present state means for the end of the run, if the sequence is over.
+  void conclude(Outcome& outcome);
+  void tell(const char* kind, Severity severity, std::string text);
+
+  rig::RigFile rig;
+  DaemonOptions options;
+  Provenance provenance;
+  MonotonicClock system_clock;
+  VirtualClock virtual_clock;
+  const Clock& clock;
+  Nanoseconds origin;  // time 0 of the event log
+  std::unique_ptr<drivers::Board> board;
+  std::string board_text;
+  control::RigController controller;
+  Wires wires;
+  EventLog events;
+  SequenceShelf shelf;
+  SequenceLoader loader;
+  LoopStatistics loop_statistics;
+  BusStatistics bus_statistics;
+  Loop loop;
+  Bus bus;
+  Recorder recorder;
+  Service service;
+  std::optional<Errand> errand;
+  std::uint64_t delivered = 0;  // id of the last event given to on_event
+};
+
+/// Ticks as fast as it can, in this thread alone.
+[[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts);
+/// Ticks by the clock, with threads.
+[[nodiscard]] Outcome run_in_real_time(DaemonParts& parts);
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,45 @@
+#pragma once
+// The panel and its thread, from opening the lines to giving them back.
+
+#include <memory>
+#include <optional>
+
+#include "daemon/loop/real_time.h"
+#include "daemon/loop/thread.h"
+#include "daemon/panel/panel.h"
+#include "daemon/panel/panel_guard.h"
+#include "daemon/service/daemon.h"
+
+namespace softgrip::daemon {
+
+/// Does nothing for a rig without digital lines. All references outlive it.
+class PanelRun {
+ public:
+  PanelRun(const rig::RigFile& rig, const DaemonOptions& options, const Clock& clock, Wires& wires,
+           const LoopStatistics& loop)
+      : rig_(rig), options_(options), clock_(clock), wires_(wires), loop_(loop) {}
+  PanelRun(const PanelRun&) = delete;
+  PanelRun& operator=(const PanelRun&) = delete;
+  PanelRun(PanelRun&&) = delete;
+  PanelRun& operator=(PanelRun&&) = delete;
+  ~PanelRun() { stop(); }
+
+  /// Requests the lines. False, with ending and message in `outcome`: they cannot be had.
+  bool open(Outcome& outcome);
+  /// From now on the lines are looked at. What became of its scheduling is added to `report`.
+  void start(RealTimeReport& report);
+  /// The enable output drops, and the thread ends.
+  void stop() noexcept;
+
+ private:
+  const rig::RigFile& rig_;
+  const DaemonOptions& options_;
+  const Clock& clock_;
+  Wires& wires_;
+  const LoopStatistics& loop_;
+  std::optional<Panel> panel_;
+  std::optional<PanelGuard> guard_;
+  Thread thread_;
+};
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,347 @@
+// Real time: the threads, in the order in which they begin and end.
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <latch>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "daemon/loop/heartbeat.h"
+#include "daemon/loop/real_time.h"
+#include "daemon/loop/thread.h"
+#include "daemon/service/daemon_parts.h"
+#include "daemon/service/panel_run.h"
+#include "daemon/service/service_manager.h"
+#include "daemon/service/signals.h"
+#include "daemon/service/startup_report.h"
+#include "daemon/socket/socket_api.h"
+#include "daemon/socket/socket_server.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+/// How long the board may take to confirm the last outputs.
+constexpr std::chrono::nanoseconds leave_deadline = std::chrono::seconds(1);
+/// Beyond all deadlines: a thread that is still not done hangs.
+constexpr Nanoseconds longest_join = ns_per_s;
+/// Between two looks of this thread at everything else.
+constexpr Nanoseconds look_pause = ns_per_s / 20;
+/// How long loop and bus may stand still beyond what the rig file allows them before the service manager's
+/// watchdog starves: a machine that is busy for a moment is no hung daemon.
+constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
+/// Between two looks of the service thread when nothing listens.
+constexpr Nanoseconds service_pause = ns_per_s / 50;
+/// From the start of the threads to the first tick.
+constexpr Nanoseconds lead_time = ns_per_s / 100;
+
+/// A flag that a sleeping thread notices.
+class Stop {
+ public:
+  void set() {
+    const std::scoped_lock lock(mutex_);
+    set_ = true;
+    changed_.notify_all();
+  }
+  /// True if it was set within `timeout`.
+  bool wait(std::chrono::duration<double> timeout) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, timeout, [this] { return set_; });
+  }
+  bool is_set() { return wait(std::chrono::duration<double>(0)); }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool set_ = false;
+};
+
+class RealRun {
+ public:
+  explicit RealRun(DaemonParts& parts)
+      : parts_(parts), panel_(parts.rig, parts.options, parts.clock, parts.wires, parts.loop_statistics) {}
+
+  Outcome run();
+
+ private:
+  bool listen();
+  void start_threads();
+  void start();
+  /// An exception of this thread must not leave the others alone: it is noted, and the run ends in order.
+  void guarded(const std::function<void()>& action);
+  void prepare(int priority, const char* who, RealTimeReport& report);
+  void look_after();
+  void stop();
+  [[nodiscard]] bool stop_loop_and_bus();
+  void loop_body();
+  void bus_body();
+  void recorder_body();
+  void service_body();
+  void note_broken(const std::string& what);
+  [[nodiscard]] bool over(Nanoseconds now);
+  [[nodiscard]] Heartbeat make_heartbeat() const;
+  [[nodiscard]] std::string status_line();
+
+  DaemonParts& parts_;
+  Signals signals_;
+  PanelRun panel_;
+  ServiceManager manager_;
+  Outcome outcome_;
+
+  RealTimeReport report_;
+  RealTimeReport loop_report_;
+  RealTimeReport bus_report_;
+  std::latch ready_{2};
+  std::latch go_{1};
+  Nanoseconds start_ = 0;
+
+  std::optional<SocketServer> server_;
+  Stop stop_recorder_;
+  Stop stop_service_;
+  std::atomic<bool> loop_done_{false};
+  std::atomic<bool> bus_done_{false};
+  std::atomic<bool> errand_over_{false};
+  std::atomic<bool> broken_{false};
+  std::mutex broken_mutex_;
+  std::string broken_text_;
+
+  Thread loop_;
+  Thread bus_;
+  Thread recorder_;
+  Thread service_;
+};
+
+void RealRun::note_broken(const std::string& what) {
+  const std::scoped_lock lock(broken_mutex_);
+  if (broken_text_.empty()) broken_text_ = what;
+  parts_.tell("internal_error", Severity::error, fmt::format("An exception ended a thread: {}.", what));
+  broken_.store(true);
+}
+
+void RealRun::prepare(int priority, const char* who, RealTimeReport& report) {
+  try {
+    prepare_thread(parts_.rig.real_time, priority, who, report);
+  } catch (const std::exception& error) {
+    note_broken(fmt::format("{}: {}", who, error.what()));
+  }
+  ready_.count_down();
+  go_.wait();
+}
+
+void RealRun::loop_body() {
+  prepare(parts_.rig.real_time.priority, "the loop", loop_report_);
+  parts_.loop.run(Grid(start_, parts_.period()));
+  loop_done_.store(true);
+}
+
+void RealRun::bus_body() {
+  // One below the loop: an exchange that is late must not delay a tick.
+  const int priority = parts_.rig.real_time.priority;
+  prepare(priority > 1 ? priority - 1 : priority, "the bus", bus_report_);
+  parts_.bus.run(Grid(start_ + parts_.bus_offset(), parts_.period()), leave_deadline);
+  bus_done_.store(true);
+}
+
+void RealRun::recorder_body() {
+  const std::chrono::duration<double> pause(parts_.rig.recorder.flush_interval_s);
+  while (!stop_recorder_.wait(pause)) parts_.recorder.drain();
+  parts_.recorder.finish();
+}
+
+void RealRun::service_body() {
+  StatusSources sources{parts_.rig.settings,
+                        parts_.provenance,
+                        parts_.service,
+                        parts_.recorder,
+                        parts_.loop_statistics,
+                        parts_.bus_statistics,
+                        parts_.board_text,
+                        parts_.origin,
+                        &report_,
+                        parts_.rig.gpio ? &*parts_.rig.gpio : nullptr,
+                        &parts_.wires};
+  SocketApi api(sources, parts_.loader, parts_.events,
+                [this](ClientId client, std::string_view line, bool skippable) {
+                  if (server_) server_->send(client, line, skippable);
+                });
+  if (server_) {
+    server_->set_handlers(
+        {[&](ClientId client, std::string_view line) { api.on_line(client, line, parts_.clock.now()); },
+         [&](ClientId client) { api.on_closed(client); }});
+  }
+  while (!stop_service_.is_set()) {
+    parts_.service.pump();
+    if (parts_.errand) {
+      parts_.errand->step(parts_.service, parts_.clock.now());
+      errand_over_.store(parts_.errand->over());
+    }
+    const Nanoseconds now = parts_.clock.now();
+    const Nanoseconds next = api.on_time(now);
+    if (server_) {
+      server_->poll(now, next);
+    } else {
+      stop_service_.wait(std::chrono::duration<double>(seconds(service_pause)));
+    }
+  }
+  parts_.service.pump();
+}
+
+void RealRun::start_threads() {
+  const auto broken = [this](const char* who) {
+    return [this, who](const std::string& what) { note_broken(fmt::format("{}: {}", who, what)); };
+  };
+  bus_ = Thread(
+      {.name = "softgrip-bus"}, [this] { bus_body(); }, broken("bus thread"));
+  loop_ = Thread(
+      {.name = "softgrip-loop"}, [this] { loop_body(); }, broken("loop thread"));
+  ready_.wait();
+  report_.append(loop_report_);
+  report_.append(bus_report_);
+  panel_.start(report_);
+  recorder_ = Thread(
+      {.name = "softgrip-record"}, [this] { recorder_body(); }, broken("recorder thread"));
+  service_ = Thread(
+      {.name = "softgrip-serve"}, [this] { service_body(); }, broken("service thread"));
+}
+
+void RealRun::guarded(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const std::exception& error) {
+    note_broken(error.what());
+  }
+  if (broken_.load()) outcome_.ending = Ending::broken;
+}
+
+void RealRun::start() {
+  guarded([this] { start_threads(); });
+  guarded([this] {
+    if (parts_.options.on_start) parts_.options.on_start(startup_report(parts_.rig, *parts_.board, &report_));
+  });
+  if (parts_.rig.real_time.required && report_.degraded()) {
+    outcome_.ending = Ending::real_time_refused;
+    outcome_.message = "real_time: required, and something could not be verified";
+  }
+  // A loop that is told to leave before its first tick still sends the safe outputs.
+  if (outcome_.ending != Ending::asked) parts_.wires.leave.store(true);
+  start_ = parts_.clock.now() + lead_time;
+  go_.count_down();
+}
+
+bool RealRun::over(Nanoseconds now) {
+  if (broken_.load()) {
+    outcome_.ending = Ending::broken;
+    return true;
+  }
+  if (errand_over_.load()) return true;
+  const auto& duration = parts_.options.duration_s;
+  return duration && now - start_ >= nanoseconds(*duration);
+}
+
+std::string RealRun::status_line() {
+  const LoopStatistics& loop = parts_.loop_statistics;
+  return fmt::format("{} Hz, {} slips, {} failed exchanges", parts_.rig.settings.rate_hz,
+                     loop.slips_took_long.value() + loop.slips_woken_late.value(),
+                     parts_.bus_statistics.failures.value());
+}
+
+Heartbeat RealRun::make_heartbeat() const {
+  const Nanoseconds pause = parts_.period() + heartbeat_patience;
+  const Nanoseconds longest_bus_call = std::max<Nanoseconds>(
+      parts_.rig.reconnect.connect_deadline.count(), nanoseconds(parts_.rig.loop.exchange_deadline_s));
+  return Heartbeat({pause, pause + longest_bus_call});
+}
+
+void RealRun::look_after() {
+  Heartbeat heartbeat = make_heartbeat();
+  Nanoseconds status_due = 0;
+  while (signals_.wait(look_pause) == 0) {
+    const Nanoseconds now = parts_.clock.now();
+    parts_.deliver_events();
+    if (over(now)) return;
+    manager_.feed(now, heartbeat.beats(
+                           now, {parts_.loop_statistics.ticks.value(), parts_.bus_statistics.steps.value()}));
+    if (now >= status_due) {
+      manager_.status(status_line());
+      status_due = now + ns_per_s;
+    }
+  }
+}
+
+bool RealRun::stop_loop_and_bus() {
+  parts_.wires.leave.store(true);
+  const Nanoseconds longest = leave_deadline.count() + longest_join +
+                              std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
+                                                    nanoseconds(parts_.rig.loop.exchange_deadline_s));
+  const Nanoseconds give_up = parts_.clock.now() + longest;
+  while (!(loop_done_.load() && bus_done_.load()) && parts_.clock.now() < give_up) {
+    sleep_until(parts_.clock.now() + ns_per_s / 1000);
+  }
+  return loop_done_.load() && bus_done_.load();
+}
+
+void RealRun::stop() {
+  parts_.tell("daemon_stopping", Severity::information, "Stopping: the safe outputs are written.");
+  manager_.stopping();
+  const bool ended = stop_loop_and_bus();
+  panel_.stop();
+  stop_recorder_.set();
+  stop_service_.set();
+  recorder_.join();
+  service_.join();
+  if (!ended) {
+    // A thread that hangs cannot be joined, and without it nothing can be tidied up.
+    parts_.tell("internal_error", Severity::error,
+                "The loop or the bus thread hangs; the process ends without it.");
+    parts_.deliver_events();
+    std::_Exit(EXIT_FAILURE);
+  }
+  loop_.join();
+  bus_.join();
+}
+
+bool RealRun::listen() {
+  if (!parts_.options.listen || parts_.rig.socket.path.empty()) return true;
+  auto server = SocketServer::listen(parts_.rig.socket);
+  if (!server) {
+    outcome_.ending = Ending::socket_failed;
+    outcome_.message = server.error();
+    return false;
+  }
+  server_.emplace(std::move(*server));
+  return true;
+}
+
+Outcome RealRun::run() {
+  const ProcessorLatencyRequest latency = prepare_process(parts_.rig.real_time, report_);
+  if (!panel_.open(outcome_) || !listen()) return outcome_;
+  parts_.bus.open();
+  start();
+  if (outcome_.ending == Ending::asked) {
+    parts_.tell("daemon_started", Severity::information, "The loop begins.");
+    manager_.ready(status_line());
+    guarded([this] { look_after(); });
+  }
+  stop();
+  parts_.conclude(outcome_);
+  if (outcome_.ending == Ending::broken) outcome_.message = broken_text_;
+  outcome_.wall_s = seconds(parts_.clock.now() - start_);
+  guarded([this] { parts_.deliver_events(); });
+  return outcome_;
+}
+
+}  // namespace
+
+Outcome run_in_real_time(DaemonParts& parts) {
+  return RealRun(parts).run();
+}
+
+}  // namespace softgrip::daemon

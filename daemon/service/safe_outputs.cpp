@@ -1,0 +1,94 @@
+#include "daemon/service/safe_outputs.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "base/grid.h"
+#include "daemon/service/daemon.h"
+#include "daemon/socket/socket_server.h"
+
+namespace softgrip::daemon {
+
+using drivers::BusStatus;
+
+namespace {
+
+/// Within TimeoutStopSec= of the unit.
+constexpr std::chrono::nanoseconds unit_patience = std::chrono::seconds(8);
+constexpr int exchanges_that_confirm = 2;
+
+}  // namespace
+
+int exit_code_of(SafeOutputsEnd end) noexcept {
+  switch (end) {
+    case SafeOutputsEnd::confirmed:
+    case SafeOutputsEnd::board_holds:
+    case SafeOutputsEnd::not_needed:
+      return 0;
+    case SafeOutputsEnd::daemon_running:
+      return 5;
+    case SafeOutputsEnd::board_silent:
+      return 4;
+  }
+  return 4;
+}
+
+SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board, const Clock& clock,
+                                     std::chrono::nanoseconds patience) {
+  const std::size_t channels = std::min(board.channels(), rig.settings.channels.size());
+  std::array<double, control::max_channels> lowest_kpa{};
+  for (std::size_t i = 0; i < channels; ++i) {
+    lowest_kpa[i] = rig.settings.channels[i].limits.pressure_min_kpa;
+  }
+  std::array<model::Reading, control::max_channels> readings{};
+  const std::chrono::nanoseconds deadline(nanoseconds(rig.loop.exchange_deadline_s));
+  const Nanoseconds give_up = clock.now() + patience.count();
+  bool session = false;
+  int confirmed = 0;
+  std::string failure;
+  do {
+    BusStatus status = BusStatus::ok;
+    if (!session) status = board.connect(rig.reconnect.connect_deadline);
+    session = status == BusStatus::ok;
+    if (session) {
+      status = board.exchange(std::span(lowest_kpa).first(channels), std::span(readings).first(channels),
+                              deadline);
+    }
+    if (status == BusStatus::watchdog_tripped) {
+      return {SafeOutputsEnd::board_holds,
+              fmt::format("{}: its own watchdog holds its safe values", board.describe())};
+    }
+    if (status == BusStatus::ok) {
+      if (++confirmed == exchanges_that_confirm) {
+        return {SafeOutputsEnd::confirmed, fmt::format("{}: vented and confirmed", board.describe())};
+      }
+      continue;
+    }
+    confirmed = 0;
+    session = session && status == BusStatus::exception;
+    failure = fmt::format("{} ({})", drivers::name_of(status), board.detail());
+    sleep_until(clock.now() + rig.reconnect.first_pause.count());
+  } while (clock.now() < give_up);
+  return {
+      SafeOutputsEnd::board_silent,
+      fmt::format("{}: not confirmed: {}. Only its own watchdog can vent it now", board.describe(), failure)};
+}
+
+SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig, const std::string& service_result) {
+  if (service_result == "success") {
+    return {SafeOutputsEnd::not_needed, "softgripd ended in order; its last outputs stay"};
+  }
+  if (socket_answers(rig.socket.path)) {
+    return {SafeOutputsEnd::daemon_running,
+            fmt::format("a daemon answers on {}; use `softgrip vent`", rig.socket.path)};
+  }
+  const MonotonicClock clock;
+  const auto board = make_board(rig, clock);
+  return write_safe_outputs(rig, *board, clock, unit_patience);
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,43 @@
+#pragma once
+// Vents a board without a daemon: what the unit's ExecStopPost= does after a crash, and a hand may do before
+// work on the rig.
+
+#include <chrono>
+#include <string>
+
+#include "base/clock.h"
+#include "drivers/board/board.h"
+#include "rig/rig_file.h"
+
+namespace softgrip::daemon {
+
+/// What became of it.
+enum class SafeOutputsEnd {
+  confirmed,    ///< the board took the lowest pressure of every channel, and the next exchange confirmed it
+  board_holds,  ///< the board's own watchdog has tripped and holds its safe values
+  not_needed,   ///< the service manager says that softgripd ended in order
+  daemon_running,  ///< a daemon answers on the rig's socket; it would write something else in a moment
+  board_silent,    ///< nothing confirmed within the time
+};
+
+struct SafeOutputsReport {
+  SafeOutputsEnd end = SafeOutputsEnd::board_silent;
+  std::string text;  ///< one sentence
+};
+
+/// 0, 4 or 5: see the exit codes of the manual.
+[[nodiscard]] int exit_code_of(SafeOutputsEnd end) noexcept;
+
+/// Connects and writes pressure_min_kpa of every channel until two exchanges in a row succeeded: in the
+/// second the board repeats what the first one wrote, where its map has a read-back. Tries again until
+/// `patience` is over. Which phase the daemon was in nobody knows any more, so a part that was to be held is
+/// let go, as the board's own watchdog would.
+[[nodiscard]] SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board,
+                                                   const Clock& clock, std::chrono::nanoseconds patience);
+
+/// The same for a process: asks first whether there is anything to do. `service_result`: the environment
+/// variable SERVICE_RESULT that systemd gives to ExecStopPost=, empty without it.
+[[nodiscard]] SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig,
+                                                   const std::string& service_result);
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,187 @@
+// softgripd: the command line of the daemon.
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "base/version.h"
+#include "daemon/service/daemon.h"
+#include "daemon/service/event_printer.h"
+#include "daemon/service/safe_outputs.h"
+#include "daemon/service/startup_report.h"
+#include "rig/check.h"
+
+namespace {
+
+using namespace softgrip;
+
+// The exit codes of every program of the project.
+constexpr int failed = 1;
+constexpr int usage = 2;
+constexpr int input_refused = 3;
+constexpr int io_failed = 4;
+
+struct Arguments {
+  std::string config;
+  std::string sequence;
+  std::string record;
+  std::string histograms;
+  bool check = false;
+  bool safe_outputs = false;
+  bool virtual_time = false;
+  bool no_socket = false;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> duration_s;
+};
+
+void declare(CLI::App& program, Arguments& arguments) {
+  program.add_option("--config", arguments.config, "the rig file")->required()->type_name("RIG");
+  program.add_flag("--check", arguments.check,
+                   "say what is wrong with the rig file and the sequence, start nothing");
+  program.add_flag(
+      "--safe-outputs", arguments.safe_outputs,
+      "vent: connect to the board, write the lowest pressure of every channel until the board confirms "
+      "it, and end. For ExecStopPost= of the unit: does nothing where $SERVICE_RESULT is success");
+  program.add_flag("--virtual-time", arguments.virtual_time,
+                   "as fast as possible on a simulated board, repeatable bit by bit; ends with --sequence or "
+                   "--duration-s");
+  program.add_option("--seed", arguments.seed, "seed of a simulated board instead of the rig file's")
+      ->type_name("N");
+  program
+      .add_option("--sequence", arguments.sequence, "start this sequence when the rig is idle, end after it")
+      ->type_name("FILE");
+  program.add_option("--duration-s", arguments.duration_s, "end after so many seconds")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  program.add_option("--record", arguments.record, "record everything into this one folder")
+      ->type_name("DIR");
+  program
+      .add_option("--histograms", arguments.histograms,
+                  "write the histograms of loop and bus to this file at the end, in cyclictest's form")
+      ->type_name("FILE");
+  program.add_flag("--no-socket", arguments.no_socket, "do not listen on the rig file's socket");
+  program.set_version_flag("--version", "softgripd " + std::string(software_version()));
+  program.footer(
+      "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or sequence refused, 4 I/O, 5 the rig's state "
+      "does not\n"
+      "allow the sequence, 6 the sequence ended but failed. SIGINT, SIGTERM and SIGHUP: the safe outputs are "
+      "written\n"
+      "and confirmed, the recording is closed, then it ends. The configuration is read once; restart to "
+      "change it.");
+}
+
+/// fmt::print throws where nothing can be written, and then nothing could say why.
+void complain(const std::string& sentence) {
+  std::fputs(("softgripd: " + sentence + "\n").c_str(), stderr);
+}
+
+int refuse(const document::Problems& problems) {
+  std::fputs(problems.format().c_str(), stderr);
+  return input_refused;
+}
+
+int check(const Arguments& arguments) {
+  std::vector<std::string> files{arguments.config};
+  if (!arguments.sequence.empty()) files.push_back(arguments.sequence);
+  const rig::CheckReport report = rig::check_files(files);
+  std::fputs(report.problems.format().c_str(), stderr);
+  if (!report.accepted()) return input_refused;
+  document::Problems ignored;  // the report has them
+  const auto rig = rig::load_rig(arguments.config, ignored);
+  if (!rig) return input_refused;
+  const MonotonicClock clock;
+  fmt::print("{}{}: fit to run\n", daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr),
+             arguments.config);
+  return 0;
+}
+
+int safe_outputs(const Arguments& arguments) {
+  document::Problems problems;
+  const auto rig = rig::load_rig(arguments.config, problems);
+  if (!rig || !problems.empty()) return refuse(problems);
+  const char* result = std::getenv("SERVICE_RESULT");
+  const daemon::SafeOutputsReport report = daemon::leave_safe_outputs(*rig, result == nullptr ? "" : result);
+  fmt::print("safe outputs: {}\n", report.text);
+  return daemon::exit_code_of(report.end);
+}
+
+/// False if the file cannot be written.
+bool write_histograms(const std::string& path, const daemon::Daemon& daemon) {
+  const daemon::LoopStatistics& loop = daemon.loop_statistics();
+  const daemon::BusStatistics& bus = daemon.bus_statistics();
+  std::ofstream file(path);
+  file << loop.wake_up.cyclictest_text("loop wake-up, us") << loop.compute.cyclictest_text("loop compute, us")
+       << loop.reading_age.cyclictest_text("reading age, us")
+       << bus.wake_up.cyclictest_text("bus wake-up, us") << bus.exchange.cyclictest_text("exchange, us");
+  file << "# Ticks: " << loop.ticks.value() << "\n# Slips, woken late: " << loop.slips_woken_late.value()
+       << "\n# Slips, took long: " << loop.slips_took_long.value()
+       << "\n# Exchanges: " << bus.exchanges.value() << "\n# Failed exchanges: " << bus.failures.value()
+       << "\n";
+  return file.flush().good();
+}
+
+int run(const Arguments& arguments) {
+  document::Problems problems;
+  auto rig = rig::load_rig(arguments.config, problems);
+  if (!rig || !problems.empty()) return refuse(problems);
+  std::fputs(problems.format().c_str(), stderr);  // warnings
+  if (arguments.seed && !rig::reseed(*rig, *arguments.seed)) {
+    complain("--seed needs a simulated board");
+    return usage;
+  }
+
+  daemon::DaemonOptions options;
+  options.virtual_time = arguments.virtual_time;
+  options.duration_s = arguments.duration_s;
+  options.record_folder = arguments.record;
+  options.listen = !arguments.no_socket;
+  if (!arguments.sequence.empty()) {
+    auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(arguments.sequence);
+    if (!sequence) return refuse(sequence.error());
+    std::fputs((*sequence)->remarks.format().c_str(), stderr);
+    options.sequence = std::move(*sequence);
+  }
+  daemon::EventPrinter printer(!arguments.virtual_time);
+  options.on_event = [&printer](const daemon::EventEntry& event) { printer.print(event); };
+  options.on_start = [&printer](const std::string& report) { printer.print_report(report); };
+
+  auto daemon = daemon::Daemon::create(std::move(*rig), std::move(options));
+  if (!daemon) {
+    complain(daemon.error());
+    return usage;
+  }
+  const daemon::Outcome outcome = (*daemon)->run();
+  printer.print_end(outcome);
+  if (!arguments.histograms.empty() && !write_histograms(arguments.histograms, **daemon)) {
+    complain(fmt::format("{} cannot be written", arguments.histograms));
+    return io_failed;
+  }
+  return daemon::exit_code_of(outcome);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App program("softgripd: drives a soft gripper from a rig file", "softgripd");
+  declare(program, arguments);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : usage;
+  }
+  try {
+    if (arguments.safe_outputs) return safe_outputs(arguments);
+    return arguments.check ? check(arguments) : run(arguments);
+  } catch (const std::exception& error) {
+    complain(error.what());
+    return failed;
+  }
+}

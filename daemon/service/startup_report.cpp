@@ -1,0 +1,112 @@
+#include "daemon/service/startup_report.h"
+
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/version.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+constexpr double ms_per_s = 1e3;
+
+std::string_view name_of_feedforward(control::FeedforwardKind kind) {
+  switch (kind) {
+    case control::FeedforwardKind::none:
+      return "none";
+    case control::FeedforwardKind::bouc_wen:
+      return "bouc_wen";
+    case control::FeedforwardKind::planned:
+      return "planned";
+    case control::FeedforwardKind::full_model:
+      return "full_model";
+  }
+  return "?";
+}
+
+std::string bus_lines(const rig::RigFile& rig, const drivers::Board& board) {
+  const double period_s = 1 / rig.settings.rate_hz;
+  const drivers::Board::Budget budget = board.budget();
+  const bool fits = budget.exchange_s <= period_s;
+  std::string text =
+      fmt::format("bus: {}; configured {:g} Hz: {}\n", budget.explanation, rig.settings.rate_hz,
+                  fits ? "fits" : "DOES NOT FIT, cycles will be without an exchange");
+  const double offset_s = rig.loop.bus_offset_fraction * period_s;
+  text += fmt::format(
+      "latency: a command is written {:.3g} ms after its tick, a reading is {:.3g} ms old when used\n",
+      offset_s * ms_per_s, (period_s - offset_s) * ms_per_s);
+  return text;
+}
+
+std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board) {
+  if (board.has_watchdog())
+    return "watchdog: the board sets safe outputs by itself when softgripd falls silent\n";
+  return fmt::format("watchdog: NONE on the board; accepted in the rig file: \"{}\"\n",
+                     rig.accept_no_watchdog);
+}
+
+std::string channel_line(const control::ChannelSettings& channel, const rig::ValveFacts& valve) {
+  const bool planned = channel.feedforward.kind == control::FeedforwardKind::planned;
+  return fmt::format("channel {}: {:g} to {:g} kPa, feedforward {} accepted{}, valve {} on power loss\n",
+                     channel.name, channel.limits.pressure_min_kpa, channel.limits.pressure_max_kpa,
+                     name_of_feedforward(channel.feedforward.kind),
+                     planned ? " (a sequence is planned before it starts)" : "",
+                     valve.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
+}
+
+/// How soon an emergency stop is seen: the debounced line, the next tick, the exchange that follows it.
+std::string gpio_lines(const rig::RigFile& rig) {
+  std::string text;
+  const rig::GpioSettings& gpio = *rig.gpio;
+  for (const drivers::GpioLineSettings& line : gpio.lines) {
+    text += fmt::format("gpio: {} is {}", drivers::name_of(line.role), drivers::text_of(line));
+    if (line.role == drivers::GpioRole::enable) {
+      text += gpio.enable_drops_on_fault ? ", drops on a fault" : ", kept on a fault";
+    }
+    text += "\n";
+  }
+  if (!gpio.has(drivers::GpioRole::emergency_stop)) return text;
+  const double period_s = 1 / rig.settings.rate_hz;
+  const double latched_s = gpio.debounce_s + period_s;
+  return text + fmt::format(
+                    "emergency stop: latched {:.3g} ms after the contact (debounce {:.3g} ms, one cycle), "
+                    "written to "
+                    "the board {:.3g} ms later; acknowledge before the first start\n",
+                    latched_s * ms_per_s, gpio.debounce_s * ms_per_s,
+                    rig.loop.bus_offset_fraction * period_s * ms_per_s);
+}
+
+}  // namespace
+
+std::string startup_report(const rig::RigFile& rig, const drivers::Board& board,
+                           const RealTimeReport* real_time) {
+  std::string text =
+      fmt::format("softgripd {}\nrig: {} ({}), {} channels at {:g} Hz\nboard: {}\n", software_version(),
+                  rig.name, rig.path, rig.settings.channels.size(), rig.settings.rate_hz, board.describe());
+  text += bus_lines(rig, board);
+  text += watchdog_line(rig, board);
+  text += "safe action:";
+  for (std::size_t i = 0; i < control::phase_count; ++i) {
+    text += fmt::format("{} {} {}", i == 0 ? "" : ",", control::name_of(static_cast<control::Phase>(i)),
+                        control::name_of(rig.settings.safety.safe_action[i]));
+  }
+  text += "\n";
+  for (std::size_t i = 0; i < rig.settings.channels.size(); ++i) {
+    text += channel_line(rig.settings.channels[i], rig.valves[i]);
+  }
+  if (rig.gpio) text += gpio_lines(rig);
+  if (real_time == nullptr) return text;
+  text += fmt::format("real time: {}\n", real_time->degraded() ? "DEGRADED" : "as asked for");
+  std::string_view rest;
+  const std::string details = real_time->format();
+  for (rest = details; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    text += fmt::format("  {}\n", rest.substr(0, end));
+    rest.remove_prefix(end + 1);
+  }
+  return text;
+}
+
+}  // namespace softgrip::daemon

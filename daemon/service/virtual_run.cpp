@@ -1,0 +1,64 @@
+// Virtual time: one thread, no sleeping, the same bytes every time.
+
+#include "daemon/service/daemon_parts.h"
+#include "daemon/service/signals.h"
+#include "daemon/service/startup_report.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+/// Ticks between two looks at what is beside the loop.
+constexpr std::uint64_t ticks_per_look = 64;
+/// How long the board may take to confirm the last outputs.
+constexpr Nanoseconds leave_deadline = ns_per_s;
+
+void exchange(DaemonParts& parts, Nanoseconds due) {
+  parts.virtual_clock.set(due);
+  parts.bus.step(due);
+}
+
+void look(DaemonParts& parts, Nanoseconds now) {
+  parts.service.pump();
+  if (parts.errand) parts.errand->step(parts.service, now);
+  parts.recorder.drain();
+  parts.deliver_events();
+}
+
+}  // namespace
+
+Outcome run_in_virtual_time(DaemonParts& parts) {
+  Signals signals;
+  if (parts.options.on_start) parts.options.on_start(startup_report(parts.rig, *parts.board, nullptr));
+  const Nanoseconds began = parts.system_clock.now();
+  const Nanoseconds period = parts.period();
+  const Nanoseconds end =
+      parts.options.duration_s ? parts.origin + nanoseconds(*parts.options.duration_s) : INT64_MAX - period;
+  Nanoseconds due = parts.origin;
+  for (std::uint64_t tick = 0; due < end; ++tick, due += period) {
+    parts.virtual_clock.set(due);
+    parts.loop.tick(due);
+    exchange(parts, due + parts.bus_offset());
+    if (tick % ticks_per_look != 0) continue;
+    look(parts, due);
+    if ((parts.errand && parts.errand->over()) || signals.wait(0) != 0) {
+      due += period;  // leaving is a tick of its own: a recording has every time once
+      break;
+    }
+  }
+  parts.virtual_clock.set(due);
+  parts.loop.leave();
+  for (const Nanoseconds give_up = due + leave_deadline; due < give_up && !parts.wires.left_safely;
+       due += period) {
+    exchange(parts, due + parts.bus_offset());
+  }
+  look(parts, due);
+  parts.recorder.finish();
+  Outcome outcome;
+  parts.conclude(outcome);
+  outcome.wall_s = seconds(parts.system_clock.now() - began);
+  parts.deliver_events();
+  return outcome;
+}
+
+}  // namespace softgrip::daemon

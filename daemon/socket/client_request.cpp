@@ -1,0 +1,176 @@
+#include "daemon/socket/client_request.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace softgrip::daemon {
+
+namespace {
+
+using nlohmann::json;
+using Command = ClientRequest::Command;
+
+constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // what every JSON reader keeps exactly
+
+constexpr std::array<std::pair<std::string_view, Command>, 9> commands{{
+    {"status", Command::status},
+    {"watch", Command::watch},
+    {"unwatch", Command::unwatch},
+    {"start", Command::start},
+    {"stop", Command::stop},
+    {"vent", Command::vent},
+    {"acknowledge", Command::acknowledge},
+    {"events", Command::events},
+    {"statistics", Command::statistics},
+}};
+
+/// Parses a flat JSON object; what is wrong with it as a JSON object is left in `problem`.
+json parse_object(std::string_view line, std::string& problem) {
+  std::vector<std::string> keys;
+  const auto look = [&](int depth, json::parse_event_t event, json& parsed) {
+    const bool nested =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (nested && depth > 0) problem = "a request is one flat JSON object";
+    if (event == json::parse_event_t::key && depth == 1) {
+      const auto key = parsed.get<std::string>();
+      if (std::find(keys.begin(), keys.end(), key) != keys.end())
+        problem = "the key '" + key + "' stands twice";
+      keys.push_back(key);
+    }
+    return problem.empty();
+  };
+  json object = json::parse(line.begin(), line.end(), look, false);
+  if (problem.empty() && !object.is_object()) problem = "not a JSON object";
+  return object;
+}
+
+/// Takes keys out of the object, so that what is left is unknown.
+class Reader {
+ public:
+  explicit Reader(json& object) : object_(object) {}
+
+  void whole(const char* key, std::uint64_t lower, std::uint64_t upper, std::uint64_t& value) {
+    const json given = take(key);
+    if (given.is_null()) return;
+    if (!given.is_number_unsigned() || given.get<std::uint64_t>() < lower ||
+        given.get<std::uint64_t>() > upper) {
+      fail(fmt::format("'{}' is a whole number from {} to {}", key, lower, upper));
+      return;
+    }
+    value = given.get<std::uint64_t>();
+  }
+  void number(const char* key, double lower, double upper, double& value) {
+    const json given = take(key);
+    if (given.is_null()) return;
+    if (!given.is_number() || !(given.get<double>() >= lower) || !(given.get<double>() <= upper)) {
+      fail(fmt::format("'{}' is a number from {} to {}", key, lower, upper));
+      return;
+    }
+    value = given.get<double>();
+  }
+  void text(const char* key, std::string& value) {
+    const json given = take(key);
+    if (given.is_null()) return;
+    if (!given.is_string() || given.get_ref<const std::string&>().empty()) {
+      fail(fmt::format("'{}' is a text that is not empty", key));
+      return;
+    }
+    value = given.get<std::string>();
+  }
+  void boolean(const char* key, bool& value) {
+    const json given = take(key);
+    if (given.is_null()) return;
+    if (!given.is_boolean()) {
+      fail(fmt::format("'{}' is true or false", key));
+      return;
+    }
+    value = given.get<bool>();
+  }
+  void fail(std::string problem) {
+    if (problem_.empty()) problem_ = std::move(problem);
+  }
+  /// The first problem, unknown keys included.
+  [[nodiscard]] std::string finish(std::string_view command) {
+    for (const auto& [key, value] : object_.items()) {
+      fail(fmt::format("the command '{}' knows no key '{}'", command, key));
+    }
+    return problem_;
+  }
+
+ private:
+  /// Null when absent. A key that is null itself is an error.
+  json take(const char* key) {
+    const auto found = object_.find(key);
+    if (found == object_.end()) return nullptr;
+    json value = std::move(*found);
+    object_.erase(found);
+    if (value.is_null()) fail(fmt::format("'{}' is null", key));
+    return value;
+  }
+
+  json& object_;
+  std::string problem_;
+};
+
+void read_arguments(Reader& reader, ClientRequest& request) {
+  switch (request.command) {
+    case Command::watch:
+      reader.number("rate_hz", 0.1, 50, request.rate_hz);
+      break;
+    case Command::start:
+      reader.text("sequence", request.sequence);
+      reader.text("sequence_text", request.sequence_text);
+      if (request.sequence.empty()) reader.fail("'start' needs the key 'sequence'");
+      break;
+    case Command::events:
+      reader.whole("since", 0, largest_id, request.since);
+      reader.whole("limit", 1, 1000, request.limit);
+      break;
+    case Command::statistics:
+      reader.boolean("histograms", request.histograms);
+      break;
+    case Command::status:
+    case Command::unwatch:
+    case Command::stop:
+    case Command::vent:
+    case Command::acknowledge:
+      break;
+  }
+}
+
+}  // namespace
+
+tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view line) {
+  std::string problem;
+  json object = parse_object(line, problem);
+  if (!problem.empty()) return tl::unexpected(ClientError{std::nullopt, problem});
+
+  ClientRequest request;
+  Reader reader(object);
+  if (object.contains("id")) {
+    std::uint64_t id = 0;
+    reader.whole("id", 0, largest_id, id);
+    request.id = id;
+  }
+  std::string command;
+  reader.text("command", command);
+  const auto known = std::find_if(commands.begin(), commands.end(),
+                                  [&](const auto& entry) { return entry.first == command; });
+  if (known != commands.end()) {
+    request.command = known->second;
+    read_arguments(reader, request);
+  } else {
+    reader.fail(command.empty() ? "the key 'command' is missing" : fmt::format("no command '{}'", command));
+    object.clear();
+  }
+  problem = reader.finish(command);
+  if (!problem.empty()) return tl::unexpected(ClientError{request.id, problem});
+  return request;
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,48 @@
+#pragma once
+// One line of a client of the socket API, read into a plain value. Lines come from outside: this is the
+// parser that is fuzzed (tests/daemon/socket/client_request_fuzz.cpp). docs/reference/socket-api.md is the
+// manual.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <tl/expected.hpp>
+
+namespace softgrip::daemon {
+
+struct ClientRequest {
+  enum class Command : std::uint8_t {
+    status,
+    watch,
+    unwatch,
+    start,
+    stop,
+    vent,
+    acknowledge,
+    events,
+    statistics,
+  };
+
+  std::optional<std::uint64_t> id;  ///< the client's own, echoed in every reply
+  Command command = Command::status;
+  double rate_hz = 10;        ///< of watch: [0.1, 50]
+  std::string sequence;       ///< of start: a file in the daemon's sequence directory, or ...
+  std::string sequence_text;  ///< ... the sequence itself; then `sequence` is its name in messages
+  std::uint64_t since = 0;    ///< of events: only those with a larger id
+  std::uint64_t limit = 100;  ///< of events: [1, 1000]
+  bool histograms = false;    ///< of statistics: with the bins
+};
+
+/// Why a line was refused.
+struct ClientError {
+  std::optional<std::uint64_t> id;  ///< as far as it could be read
+  std::string message;              ///< one sentence
+};
+
+/// Reads one line without its line break. Strict: an unknown, repeated or missing key, a key of another
+/// command, a wrong type and a number out of range are errors.
+[[nodiscard]] tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view line);
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,61 @@
+#include "daemon/socket/errand.h"
+
+#include <utility>
+
+#include "base/grid.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+/// After the end: a recording closes half a second after the motion.
+constexpr Nanoseconds tail = ns_per_s;
+
+bool at_rest(control::State state) noexcept {
+  return state == control::State::idle || state == control::State::faulted;
+}
+
+}  // namespace
+
+Errand::Errand(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience)
+    : sequence_(std::move(sequence)), patience_(patience) {}
+
+void Errand::step(Service& service, Nanoseconds now) {
+  if (began_ < 0) began_ = now;
+  const control::State rig = service.snapshot().state;
+  switch (state_) {
+    case State::waiting:
+      if (rig == control::State::idle) {
+        const auto request = service.submit(control::Request::Kind::start, sequence_);
+        if (request) {
+          request_ = *request;
+          state_ = State::asked;
+        }
+      } else if (now - began_ > patience_) {
+        state_ = State::not_idle;
+      }
+      break;
+    case State::asked: {
+      const Service::Answer answer = service.take_answer(request_);
+      if (answer.kind == Service::Answer::Kind::accepted) state_ = State::running;
+      if (answer.kind == Service::Answer::Kind::refused) {
+        refusal_ = answer.refusal;
+        state_ = State::refused;
+      }
+      break;
+    }
+    case State::running:
+      if (service.last_ending().request == request_ && !end_) {
+        end_ = service.last_ending().end;
+        ended_ = now;
+      }
+      if (end_ && at_rest(rig) && now - ended_ > tail) state_ = State::ended;
+      break;
+    case State::ended:
+    case State::refused:
+    case State::not_idle:
+      break;
+  }
+}
+
+}  // namespace softgrip::daemon

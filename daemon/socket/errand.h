@@ -1,0 +1,48 @@
+#pragma once
+// One sequence from start to end without a user: `softgripd --sequence`, `softgrip run`.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "daemon/recording/sequence_shelf.h"
+#include "daemon/socket/service.h"
+
+namespace softgrip::daemon {
+
+/// Waits until the rig is idle, starts the sequence, waits until it has ended and the fingers came to rest.
+class Errand {
+ public:
+  enum class State : std::uint8_t {
+    waiting,  ///< for the rig to be idle
+    asked,    ///< the loop shall start it
+    running,
+    ended,
+    refused,   ///< by the state of the rig; see refusal()
+    not_idle,  ///< the rig did not become idle in time
+  };
+
+  /// `patience`: how long the rig may take to become idle.
+  Errand(std::shared_ptr<const LoadedSequence> sequence, Nanoseconds patience);
+
+  /// To be called now and then, by the thread that calls the service, after its pump().
+  void step(Service& service, Nanoseconds now);
+
+  [[nodiscard]] State state() const noexcept { return state_; }
+  [[nodiscard]] bool over() const noexcept { return state_ >= State::ended; }
+  [[nodiscard]] control::RefusalCode refusal() const noexcept { return refusal_; }
+  /// How it ended, once it has.
+  [[nodiscard]] std::optional<control::SequenceEnd> end() const noexcept { return end_; }
+
+ private:
+  std::shared_ptr<const LoadedSequence> sequence_;
+  Nanoseconds patience_;
+  Nanoseconds began_ = -1;
+  Nanoseconds ended_ = 0;
+  State state_ = State::waiting;
+  std::uint32_t request_ = 0;
+  control::RefusalCode refusal_ = control::RefusalCode::none;
+  std::optional<control::SequenceEnd> end_;
+};
+
+}  // namespace softgrip::daemon

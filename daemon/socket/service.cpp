@@ -1,0 +1,88 @@
+#include "daemon/socket/service.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/grid.h"
+
+namespace softgrip::daemon {
+
+using Kind = control::Event::Kind;
+
+Service::Service(std::vector<std::string> channel_names, Nanoseconds origin, Wires& wires, EventLog& log,
+                 SequenceShelf& shelf)
+    : channel_names_(std::move(channel_names)), origin_(origin), wires_(wires), log_(log), shelf_(shelf) {}
+
+std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
+                                             std::shared_ptr<const LoadedSequence> sequence) {
+  control::Request request;
+  request.kind = kind;
+  request.id = last_request_ + 1;
+  request.sequence = sequence ? &sequence->prepared : nullptr;
+  if (sequence) shelf_.put(request.id, std::move(sequence));
+  if (!wires_.requests.push(request)) return std::nullopt;
+  ++last_request_;
+  answers_[request.id] = {};
+  return request.id;
+}
+
+void Service::pump() {
+  for (BusEvent event; wires_.bus_events.pop(event);) {
+    EventEntry entry = describe(event);
+    entry.time_s = seconds(event.at - origin_);
+    log_.add(std::move(entry));
+  }
+  for (PanelEvent event; wires_.panel_events.pop(event);) {
+    EventEntry entry = describe(event);
+    entry.time_s = seconds(event.at - origin_);
+    log_.add(std::move(entry));
+  }
+  for (StampedEvent event; wires_.events.pop(event);) take(event);
+  const std::uint64_t dropped = wires_.events_dropped.load(std::memory_order_relaxed);
+  if (dropped != events_dropped_) {
+    EventEntry entry;
+    entry.kind = "events_lost";
+    entry.severity = Severity::warning;
+    entry.time_s = seconds(snapshot().at - origin_);
+    entry.text = fmt::format("{} events came too fast and were lost.", dropped - events_dropped_);
+    log_.add(std::move(entry));
+    events_dropped_ = dropped;
+  }
+}
+
+void Service::take(const StampedEvent& stamped) {
+  const control::Event& event = stamped.event;
+  if (event.kind == Kind::sequence_started) {
+    sequence_ = shelf_.find(event.request);
+    sequence_request_ = event.request;
+    shelf_.drop_before(event.request);
+  }
+  if (event.kind == Kind::sequence_finished) {
+    ending_ = {event.request, static_cast<control::SequenceEnd>(event.detail)};
+  }
+  const auto answer = answers_.find(event.request);
+  if (answer != answers_.end() && answer->second.kind == Answer::Kind::pending) {
+    const bool refused = event.kind == Kind::request_refused;
+    answer->second.kind = refused ? Answer::Kind::refused : Answer::Kind::accepted;
+    if (refused) answer->second.refusal = static_cast<control::RefusalCode>(event.detail);
+  }
+  EventEntry entry = describe(event, channel_names_, sequence_ ? &sequence_->prepared : nullptr);
+  entry.time_s = seconds(stamped.at - origin_);
+  log_.add(std::move(entry));
+}
+
+Service::Answer Service::take_answer(std::uint32_t request) {
+  const auto found = answers_.find(request);
+  if (found == answers_.end()) return {};
+  const Answer answer = found->second;
+  if (answer.kind != Answer::Kind::pending) answers_.erase(found);
+  return answer;
+}
+
+const Snapshot& Service::snapshot() noexcept {
+  wires_.snapshot.fetch();
+  return wires_.snapshot.value();
+}
+
+}  // namespace softgrip::daemon

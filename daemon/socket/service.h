@@ -1,0 +1,70 @@
+#pragma once
+// Requests into the loop and events out of it, for everything that is not real-time.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/loop/wires.h"
+#include "daemon/recording/event_log.h"
+#include "daemon/recording/sequence_shelf.h"
+
+namespace softgrip::daemon {
+
+/// All calls come from one thread. References outlive it.
+class Service {
+ public:
+  /// `origin`: time 0 of the event log.
+  Service(std::vector<std::string> channel_names, Nanoseconds origin, Wires& wires, EventLog& log,
+          SequenceShelf& shelf);
+
+  /// Hands a request to the loop; returns its id, or nothing if the loop has not taken the last ones yet.
+  std::optional<std::uint32_t> submit(control::Request::Kind kind,
+                                      std::shared_ptr<const LoadedSequence> sequence = nullptr);
+
+  /// Moves what loop and bus had to tell into the log, and notes answers.
+  void pump();
+
+  /// What the loop said to a request. Everything but `pending` is said once.
+  struct Answer {
+    enum class Kind : std::uint8_t { pending, accepted, refused };
+    Kind kind = Kind::pending;
+    control::RefusalCode refusal = control::RefusalCode::none;
+  };
+  [[nodiscard]] Answer take_answer(std::uint32_t request);
+
+  /// How the newest sequence ended that has ended, and which request had started it.
+  struct Ending {
+    std::uint32_t request = 0;  ///< 0: none so far
+    control::SequenceEnd end = control::SequenceEnd::done;
+  };
+  [[nodiscard]] const Ending& last_ending() const noexcept { return ending_; }
+
+  /// The sequence that runs or ran last; nullptr before the first.
+  [[nodiscard]] const std::shared_ptr<const LoadedSequence>& sequence() const noexcept { return sequence_; }
+  /// The request that started it, or 0.
+  [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
+
+  /// The newest state of the loop.
+  [[nodiscard]] const Snapshot& snapshot() noexcept;
+
+ private:
+  void take(const StampedEvent& event);
+
+  std::vector<std::string> channel_names_;
+  Nanoseconds origin_;
+  Wires& wires_;
+  EventLog& log_;
+  SequenceShelf& shelf_;
+  std::uint32_t last_request_ = 0;
+  std::map<std::uint32_t, Answer> answers_;  // of requests that were submitted and not taken
+  std::shared_ptr<const LoadedSequence> sequence_;
+  std::uint32_t sequence_request_ = 0;
+  Ending ending_;
+  std::uint64_t events_dropped_ = 0;  // told so far
+};
+
+}  // namespace softgrip::daemon

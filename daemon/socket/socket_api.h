@@ -1,0 +1,92 @@
+#pragma once
+// The commands of the socket API: what a client's line leads to. Knows no sockets.
+
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <map>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/socket/client_request.h"
+#include "daemon/socket/sequence_loader.h"
+#include "daemon/socket/service.h"
+#include "daemon/socket/status_json.h"
+
+namespace softgrip::daemon {
+
+/// Names a connection; never used twice.
+using ClientId = std::uint64_t;
+
+/// All calls come from one thread, the one that calls Service.
+class SocketApi {
+ public:
+  /// How lines reach a client; the line ends with a line break. `skippable`: not sent if the client has not
+  /// yet read the last ones.
+  using Send = std::function<void(ClientId client, std::string_view line, bool skippable)>;
+
+  SocketApi(StatusSources sources, const SequenceLoader& loader, const EventLog& events, Send send);
+  SocketApi(const SocketApi&) = delete;
+  SocketApi& operator=(const SocketApi&) = delete;
+  /// What is being planned is stopped and waited for.
+  ~SocketApi();
+
+  /// One line of a client, without its line break.
+  void on_line(ClientId client, std::string_view line, Nanoseconds now);
+  /// The client is gone.
+  void on_closed(ClientId client);
+  /// Sends what is due: answers of the loop, watched states. Returns when to call again at the latest.
+  Nanoseconds on_time(Nanoseconds now);
+
+ private:
+  struct Asked {  // of the loop
+    ClientId client = 0;
+    std::optional<std::uint64_t> id;
+    Nanoseconds give_up = 0;
+    document::Problems remarks;  ///< on the sequence
+  };
+  struct Watch {
+    std::optional<std::uint64_t> id;
+    Nanoseconds period = 0;
+    Nanoseconds due = 0;
+  };
+
+  struct Planned {  // being read by a thread of its own
+    ClientId client = 0;
+    std::optional<std::uint64_t> id;
+    std::future<SequenceLoader::Result> loaded;
+    std::stop_source stop;
+    bool abandoned = false;  ///< nobody waits for it any more
+  };
+
+  void start(ClientId client, const ClientRequest& request, Nanoseconds now);
+  void loaded(ClientId client, std::optional<std::uint64_t> id, SequenceLoader::Result sequence,
+              Nanoseconds now);
+  void take_planned(Nanoseconds now);
+  void abandon_planned() noexcept;
+  void refuse_planned();
+  void ask(ClientId client, std::optional<std::uint64_t> id, control::Request::Kind kind,
+           std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
+  void answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer);
+  void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
+  void tell_events(ClientId client, const ClientRequest& request);
+  void ok(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& result);
+  void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
+
+  StatusSources sources_;
+  const SequenceLoader& loader_;
+  const EventLog& events_;
+  Send send_;
+  std::map<std::uint32_t, Asked> asked_;  // by the request's id in the loop
+  std::map<ClientId, Watch> watches_;
+  std::optional<Planned> planned_;
+};
+
+/// The line that refuses a client before it could say anything, or for what cannot be parsed.
+[[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
+                                     std::string_view message);
+
+}  // namespace softgrip::daemon

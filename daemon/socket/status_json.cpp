@@ -1,0 +1,190 @@
+#include "daemon/socket/status_json.h"
+
+#include <cmath>
+#include <cstddef>
+
+#include <nlohmann/json.hpp>
+
+#include "base/grid.h"
+#include "daemon/recording/csv_row.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double us_per_ns = 1e-3;
+
+/// JSON has no NaN.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json json_of_fault(control::FaultCode code) {
+  if (code == control::FaultCode::none) return nullptr;
+  const control::FaultInfo& info = control::info_of(code);
+  return {{"code", info.id},
+          {"name", info.name},
+          {"meaning", info.meaning},
+          {"cause", info.cause},
+          {"remedy", info.remedy}};
+}
+
+Json json_of_channel(const control::ChannelSettings& settings, const control::ChannelOutput& channel) {
+  return {{"name", settings.name},
+          {"command_kpa", number(channel.command_kpa)},
+          {"pressure_kpa", number(channel.pressure_kpa)},
+          {"displacement_mm", number(channel.displacement_mm)},
+          {"reference_mm", number(channel.reference_mm)},
+          {"feedforward_kpa", number(channel.feedforward_kpa)},
+          {"feedback_kpa", number(channel.feedback_kpa)},
+          {"residual_mm", number(channel.residual_mm)},
+          {"deficit_mm", number(channel.deficit_mm)},
+          {"age_s", number(channel.age_s)},
+          {"validity", name_of(channel.validity)},
+          {"result", control::title_of(channel.result)},
+          {"evidence", control::name_of(channel.evidence)},
+          {"saturated", channel.saturated},
+          {"slewing", channel.slewing},
+          {"health", control::name_of(channel.health)},
+          {"health_rms_mm", number(channel.health_rms_mm)},
+          {"limits",
+           {{"pressure_min_kpa", settings.limits.pressure_min_kpa},
+            {"pressure_max_kpa", settings.limits.pressure_max_kpa},
+            {"displacement_min_mm", settings.limits.displacement_min_mm},
+            {"displacement_max_mm", settings.limits.displacement_max_mm}}}};
+}
+
+Json json_of_sequence(const Service& service, const Snapshot& snapshot) {
+  const auto& sequence = service.sequence();
+  if (!sequence) return nullptr;
+  const std::size_t step = snapshot.channels.front().step;
+  const auto& steps = sequence->prepared.steps;
+  Json json{{"name", sequence->prepared.name},
+            {"request", service.sequence_request()},
+            {"step", step},
+            {"step_name", step < steps.size() ? steps[step].step.name : ""},
+            {"steps", steps.size()}};
+  const bool ended = service.last_ending().request == service.sequence_request();
+  json["ended"] = ended ? Json(control::name_of(service.last_ending().end)) : Json(nullptr);
+  return json;
+}
+
+Json json_of(const RecorderStatus& recorder) {
+  return {{"active", recorder.active},
+          {"folder", recorder.folder.empty() ? Json(nullptr) : Json(recorder.folder)},
+          {"rows", recorder.rows},
+          {"dropped_rows", recorder.dropped_rows},
+          {"error", recorder.error.empty() ? Json(nullptr) : Json(recorder.error)}};
+}
+
+Json json_of(const RealTimeReport* report) {
+  if (report == nullptr) return nullptr;
+  Json steps = Json::array();
+  for (const RealTimeStep& step : report->steps()) {
+    Json json{{"name", step.name}, {"outcome", name_of(step.outcome)}, {"detail", step.detail}};
+    if (step.outcome == RealTimeStep::Outcome::failed) json["cost"] = step.cost;
+    steps.push_back(std::move(json));
+  }
+  return {{"degraded", report->degraded()}, {"steps", std::move(steps)}};
+}
+
+/// What is known of the digital lines; null for those that the rig does not have.
+Json json_of_gpio(const rig::GpioSettings* gpio, const Wires* wires) {
+  if (gpio == nullptr || wires == nullptr) return nullptr;
+  const InputLevels& inputs = wires->inputs;
+  Json json{{"emergency_stop", nullptr}, {"part_in_position", nullptr}, {"enable", nullptr}};
+  using drivers::GpioRole;
+  if (gpio->has(GpioRole::emergency_stop)) json["emergency_stop"] = inputs.emergency_stop.load();
+  if (gpio->has(GpioRole::part_in_position)) json["part_in_position"] = !inputs.interlock_open.load();
+  if (gpio->has(GpioRole::enable)) json["enable"] = wires->enable_on.load();
+  json["lost"] = inputs.lost.load();
+  return json;
+}
+
+Json json_of(const Histogram& histogram, bool with_bins) {
+  const Histogram::Summary summary = histogram.summary();
+  const auto us = [](std::int64_t ns) { return static_cast<double>(ns) * us_per_ns; };
+  Json json{{"count", summary.count},
+            {"min_us", us(summary.min_ns)},
+            {"mean_us", summary.mean_ns * us_per_ns},
+            {"p50_us", us(summary.p50_ns)},
+            {"p99_us", us(summary.p99_ns)},
+            {"p999_us", us(summary.p999_ns)},
+            {"max_us", us(summary.max_ns)}};
+  if (!with_bins) return json;
+  Json bins = Json::array();
+  for (const Histogram::Bin& bin : histogram.bins()) bins.push_back({us(bin.lower_ns), bin.count});
+  json["bins_us"] = std::move(bins);
+  return json;
+}
+
+}  // namespace
+
+Json status_json(const StatusSources& sources) {
+  const Snapshot& snapshot = sources.service.snapshot();
+  Json json{{"version", sources.provenance.software_version},
+            {"rig", sources.provenance.rig},
+            {"rate_hz", sources.provenance.rate_hz},
+            // Before the first tick there is nothing whose age could be told.
+            {"time_s", snapshot.ticks == 0 ? 0.0 : seconds(snapshot.at - sources.origin)},
+            {"state", control::name_of(snapshot.state)},
+            {"fault", json_of_fault(snapshot.first_fault)},
+            {"sequence", json_of_sequence(sources.service, snapshot)}};
+  json["channels"] = Json::array();
+  for (std::size_t i = 0; i < snapshot.channel_count; ++i) {
+    json["channels"].push_back(json_of_channel(sources.rig.channels[i], snapshot.channels[i]));
+  }
+  json["bus"] = {{"board", sources.board},
+                 {"connected", snapshot.bus.connected},
+                 {"fault", json_of_fault(snapshot.bus.fault)},
+                 {"consecutive_failures", snapshot.bus.consecutive_failures}};
+  const Histogram::Summary wake_up = sources.loop.wake_up.summary();
+  json["loop"] = {{"ticks", snapshot.ticks},
+                  {"slips", sources.loop.slips_woken_late.value() + sources.loop.slips_took_long.value()},
+                  {"wake_up_p99_us", static_cast<double>(wake_up.p99_ns) * us_per_ns},
+                  {"wake_up_max_us", static_cast<double>(wake_up.max_ns) * us_per_ns}};
+  json["recording"] = json_of(sources.recorder.status());
+  json["gpio"] = json_of_gpio(sources.gpio, sources.wires);
+  json["real_time"] = json_of(sources.real_time);
+  return json;
+}
+
+Json statistics_json(const StatusSources& sources, bool with_histograms) {
+  const LoopStatistics& loop = sources.loop;
+  const BusStatistics& bus = sources.bus;
+  return {{"loop",
+           {{"ticks", loop.ticks.value()},
+            {"slips_woken_late", loop.slips_woken_late.value()},
+            {"slips_took_long", loop.slips_took_long.value()},
+            {"wake_up", json_of(loop.wake_up, with_histograms)},
+            {"compute", json_of(loop.compute, with_histograms)},
+            {"reading_age", json_of(loop.reading_age, with_histograms)}}},
+          {"bus",
+           {{"exchanges", bus.exchanges.value()},
+            {"failures", bus.failures.value()},
+            {"sessions", bus.sessions.value()},
+            {"slips", bus.slips.value()},
+            {"wake_up", json_of(bus.wake_up, with_histograms)},
+            {"exchange", json_of(bus.exchange, with_histograms)}}}};
+}
+
+Json event_json(const EventEntry& event) {
+  Json json{{"id", event.id},
+            {"time_s", event.time_s},
+            {"kind", event.kind},
+            {"severity", name_of(event.severity)}};
+  if (!event.channel.empty()) json["channel"] = event.channel;
+  if (!event.code.empty()) json["code"] = event.code;
+  if (event.request != 0) json["request"] = event.request;
+  if (event.value != 0) json["value"] = number(event.value);
+  json["text"] = event.text;
+  return json;
+}
+
+std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,28 @@
+#pragma once
+// What was probably meant by a key that nobody knows.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "document/node.h"
+
+namespace softgrip::document {
+
+/// The known key that an unknown one probably stands for, or an empty key.
+struct KeyHint {
+  std::string key;
+  std::string hint;
+};
+
+/// @param key    the unknown key
+/// @param value  what stands under it
+/// @param known  keys that may stand in the map and do not yet
+[[nodiscard]] KeyHint hint_for_key(std::string_view key, const Node& value,
+                                   const std::vector<std::string>& known);
+
+/// "did you mean 0.13?" for a number out of range that a smaller or larger unit would explain, by the unit at
+/// the end of its key; or empty.
+[[nodiscard]] std::string hint_for_range(std::string_view key, double value, double lower, double upper);
+
+}  // namespace softgrip::document

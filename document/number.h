@@ -1,0 +1,34 @@
+#pragma once
+// Texts to numbers: plain decimal only, independent of the locale, and what to say of anything else.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "document/node.h"
+
+namespace softgrip::document {
+
+/// A number, or why the text is none. Exactly one of `value` and `message` is there.
+template <class T>
+struct Parsed {
+  std::optional<T> value;
+  std::string message;  ///< goes on after "`key` ": "must be a number, found `fast`"
+  std::string hint;
+};
+
+/// [+-]digits[.digits][e[+-]digits], at least one digit before the exponent, no leading zeros.
+[[nodiscard]] Parsed<double> parse_number(const Node& node);
+/// [+-]digits, no leading zeros.
+[[nodiscard]] Parsed<std::int64_t> parse_integer(const Node& node);
+/// `true` or `false`.
+[[nodiscard]] Parsed<bool> parse_boolean(const Node& node);
+
+/// What a node is, for "found ...": "a list", "a map", "nothing", "`text`".
+[[nodiscard]] std::string found(const Node& node);
+
+/// A number as text that reads back to it, without an exponent where that is short: for messages.
+[[nodiscard]] std::string written(double number);
+
+}  // namespace softgrip::document

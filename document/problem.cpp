@@ -1,0 +1,166 @@
+#include "document/problem.h"
+
+#include <algorithm>
+#include <map>
+
+#include "document/characters.h"
+
+namespace softgrip::document {
+
+namespace {
+
+// Beyond this many bytes a line is shown only around the column.
+constexpr std::size_t line_bytes = 100;
+
+/// The stretch of `line` to show: all of it, or a window around `column` (from 0) at character boundaries.
+struct Window {
+  std::size_t begin;
+  std::size_t end;
+};
+
+Window window_of(std::string_view line, std::size_t column) {
+  if (line.size() <= line_bytes) return {0, line.size()};
+  const auto inside_character = [&](std::size_t i) {
+    return i < line.size() && (static_cast<unsigned char>(line[i]) & 0xC0) == 0x80;
+  };
+  std::size_t begin = column < line_bytes / 2 ? 0 : std::min(column, line.size()) - line_bytes / 2;
+  begin = std::min(begin, line.size() - line_bytes);
+  std::size_t end = begin + line_bytes;
+  // At most three steps each: text that is not UTF-8 has no boundaries to find.
+  for (int i = 0; i < 3 && inside_character(begin); ++i) ++begin;
+  for (int i = 0; i < 3 && inside_character(end); ++i) ++end;
+  return {begin, end};
+}
+
+/// The line and a caret under the column.
+void append_line(std::string& out, const Problem& problem) {
+  const std::string_view line = problem.line_text;
+  const std::size_t column = static_cast<std::size_t>(std::max(problem.at.column, 1)) - 1;
+  const Window window = window_of(line, column);
+  constexpr std::string_view margin = "    ";
+  out += margin;
+  std::size_t caret = margin.size();
+  if (window.begin > 0) {
+    out += "...";
+    caret += 3;
+  }
+  std::string_view rest = line.substr(window.begin, window.end - window.begin);
+  std::size_t at = window.begin;
+  while (!rest.empty()) {
+    const std::size_t before = rest.size();
+    const std::size_t columns = append_visible(out, rest);
+    at += before - rest.size();
+    if (at <= column) caret += columns;
+  }
+  if (window.end < line.size()) out += "...";
+  out += '\n';
+  out.append(caret, ' ');
+  out += "^\n";
+}
+
+void append_problem(std::string& out, const Problem& problem, bool warning) {
+  out += shown(problem.file, 400);
+  out += ':' + std::to_string(problem.at.line) + ':' + std::to_string(problem.at.column) + ": ";
+  if (warning) out += "warning: ";
+  out += problem.message + '\n';
+  if (!problem.line_text.empty()) append_line(out, problem);
+  if (!problem.hint.empty()) out += "    hint: " + problem.hint + '\n';
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      const std::size_t change = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({change, above + 1, row[j - 1] + 1});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+void Problems::add(Problem problem) {
+  ++error_count_;
+  if (errors_.size() < most) errors_.push_back(std::move(problem));
+}
+
+void Problems::warn(Problem problem) {
+  ++warning_count_;
+  if (warnings_.size() < most) warnings_.push_back(std::move(problem));
+}
+
+Problems Problems::without_repeats() const {
+  Problems result;
+  const auto copy = [](const std::vector<Problem>& from, std::vector<Problem>& to) {
+    for (const Problem& problem : from) {
+      if (std::find(to.begin(), to.end(), problem) == to.end()) to.push_back(problem);
+    }
+  };
+  copy(errors_, result.errors_);
+  copy(warnings_, result.warnings_);
+  result.error_count_ = error_count_ - (errors_.size() - result.errors_.size());
+  result.warning_count_ = warning_count_ - (warnings_.size() - result.warnings_.size());
+  return result;
+}
+
+std::string Problems::format() const {
+  struct Item {
+    std::size_t file;
+    const Problem* problem;
+    bool warning;
+  };
+  std::map<std::string_view, std::size_t> files;
+  std::vector<Item> items;
+  for (const auto* list : {&errors_, &warnings_}) {
+    for (const Problem& problem : *list) {
+      const std::size_t file = files.try_emplace(problem.file, files.size()).first->second;
+      items.push_back({file, &problem, list == &warnings_});
+    }
+  }
+  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    if (a.file != b.file) return a.file < b.file;
+    const Location& p = a.problem->at;
+    const Location& q = b.problem->at;
+    return p.line != q.line ? p.line < q.line : p.column < q.column;
+  });
+  std::string out;
+  for (const Item& item : items) append_problem(out, *item.problem, item.warning);
+  const std::size_t left_out = error_count_ + warning_count_ - errors_.size() - warnings_.size();
+  if (left_out > 0) out += "and " + std::to_string(left_out) + " more\n";
+  return out;
+}
+
+std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  std::string best;
+  // A third of the letters may be wrong, and at least one: more is no slip of the finger.
+  std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates) {
+    const std::size_t longer = std::max(word.size(), candidate.size());
+    const std::size_t shorter = std::min(word.size(), candidate.size());
+    if (longer - shorter >= best_distance) continue;
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best_distance && distance < longer) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string shown(std::string_view text, std::size_t most) {
+  std::string out;
+  const std::size_t whole = text.size();
+  while (!text.empty()) {
+    if (whole - text.size() >= most) return out + "...";
+    append_visible(out, text);
+  }
+  return out;
+}
+
+}  // namespace softgrip::document

@@ -1,0 +1,347 @@
+#include "document/reader.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "document/characters.h"
+#include "document/key_hint.h"
+#include "document/number.h"
+
+namespace softgrip::document {
+
+namespace {
+
+std::string quoted(std::string_view word) {
+  return "`" + shown(word) + "`";
+}
+
+/// "at least 0", "at most 10", "0 to 10"
+std::string allowed(double lower, double upper, bool no_lower, bool no_upper) {
+  if (no_lower) return "at most " + written(upper);
+  if (no_upper) return "at least " + written(lower);
+  if (lower == upper) return "only " + written(lower);
+  return written(lower) + " to " + written(upper);
+}
+
+std::string allowed(Range range) {
+  return allowed(range.lower, range.upper, range.lower == Range{}.lower, range.upper == Range{}.upper);
+}
+
+double harmless(Range range) {
+  return std::clamp(0.0, range.lower, range.upper);
+}
+
+bool has_control(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = std::max<std::size_t>(character_length(text), 1);
+    if (is_control(text.substr(0, length))) return true;
+    text.remove_prefix(length);
+  }
+  return false;
+}
+
+std::string not_a_map_hint(const Node& node) {
+  if (node.kind == Node::Kind::sequence) return "remove the `- ` or `[ ]` if there is one thing only";
+  if (node.kind == Node::Kind::scalar && !node.quoted && node.scalar.find(':') != std::string::npos) {
+    return "a space is missing after the colon";
+  }
+  return {};
+}
+
+std::string listed(const std::vector<std::string>& choices) {
+  std::string out;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i > 0) out += i + 1 == choices.size() ? " or " : ", ";
+    out += quoted(choices[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+MapReader::MapReader(const Document& document, const Node& node, Problems& problems, std::string what)
+    : document_(document), node_(node), problems_(problems), what_(std::move(what)) {
+  if (node.kind == Node::Kind::map) return;
+  finished_ = true;
+  if (node.refused || (node.kind == Node::Kind::null && !document.complete)) return;
+  problems.add(document.problem(node.at, what_ + " must be a map of keys, found " + found(node),
+                                not_a_map_hint(node)));
+}
+
+MapReader::~MapReader() {
+  finish();
+}
+
+const Node::Entry* MapReader::find(std::string_view key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+  const auto entry = std::find_if(node_.entries.begin(), node_.entries.end(),
+                                  [&](const Node::Entry& e) { return e.key == key; });
+  return entry == node_.entries.end() ? nullptr : &*entry;
+}
+
+const Node* MapReader::need(std::string_view key) {
+  const Node::Entry* const entry = find(key);
+  if (entry == nullptr) missing_.emplace_back(key);
+  return entry == nullptr ? nullptr : &entry->value;
+}
+
+void MapReader::refuse(const Node& value, std::string_view key, const std::string& message,
+                       std::string hint) {
+  bad_.emplace_back(key);
+  problems_.add(document_.problem(value.at, quoted(key) + " " + message, std::move(hint)));
+}
+
+double MapReader::checked(std::string_view key, const Node* value, Range range) {
+  if (value == nullptr || value->refused) return harmless(range);
+  Parsed<double> number = parse_number(*value);
+  if (!number.value) {
+    refuse(*value, key, number.message, std::move(number.hint));
+    return harmless(range);
+  }
+  if (*number.value < range.lower || *number.value > range.upper) {
+    refuse(*value, key, "is " + written(*number.value) + ", allowed is " + allowed(range),
+           hint_for_range(key, *number.value, range.lower, range.upper));
+  }
+  return std::clamp(*number.value, range.lower, range.upper);
+}
+
+double MapReader::number(std::string_view key, Range range) {
+  return checked(key, need(key), range);
+}
+
+std::optional<double> MapReader::optional_number(std::string_view key, Range range) {
+  const Node::Entry* const entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  return checked(key, &entry->value, range);
+}
+
+std::int64_t MapReader::checked_integer(std::string_view key, const Node* value, std::int64_t lower,
+                                        std::int64_t upper) {
+  const std::int64_t zero = std::clamp<std::int64_t>(0, lower, upper);
+  if (value == nullptr || value->refused) return zero;
+  Parsed<std::int64_t> number = parse_integer(*value);
+  if (!number.value) {
+    refuse(*value, key, number.message, std::move(number.hint));
+    return zero;
+  }
+  if (*number.value < lower || *number.value > upper) {
+    using Limits = std::numeric_limits<std::int64_t>;
+    std::string range = lower == upper ? "only " + std::to_string(lower)
+                                       : std::to_string(lower) + " to " + std::to_string(upper);
+    if (lower == Limits::min()) range = "at most " + std::to_string(upper);
+    if (upper == Limits::max()) range = "at least " + std::to_string(lower);
+    refuse(*value, key, "is " + std::to_string(*number.value) + ", allowed is " + range, "");
+  }
+  return std::clamp(*number.value, lower, upper);
+}
+
+std::int64_t MapReader::integer(std::string_view key, std::int64_t lower, std::int64_t upper) {
+  return checked_integer(key, need(key), lower, upper);
+}
+
+std::optional<std::int64_t> MapReader::optional_integer(std::string_view key, std::int64_t lower,
+                                                        std::int64_t upper) {
+  const Node::Entry* const entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  return checked_integer(key, &entry->value, lower, upper);
+}
+
+bool MapReader::checked_boolean(std::string_view key, const Node* value) {
+  if (value == nullptr || value->refused) return false;
+  Parsed<bool> flag = parse_boolean(*value);
+  if (!flag.value) refuse(*value, key, flag.message, std::move(flag.hint));
+  return flag.value.value_or(false);
+}
+
+bool MapReader::boolean(std::string_view key) {
+  return checked_boolean(key, need(key));
+}
+
+std::optional<bool> MapReader::optional_boolean(std::string_view key) {
+  const Node::Entry* const entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  return checked_boolean(key, &entry->value);
+}
+
+std::string MapReader::checked_text(std::string_view key, const Node* value) {
+  if (value == nullptr || value->refused) return {};
+  if (value->kind != Node::Kind::scalar || value->scalar.empty()) {
+    refuse(*value, key, "must be a text, found " + found(*value), "");
+    return {};
+  }
+  if (has_control(value->scalar)) {
+    refuse(*value, key, "must be one line without control characters, found " + found(*value),
+           "a folded text starts with `>-`");
+    return {};
+  }
+  return value->scalar;
+}
+
+std::string MapReader::text(std::string_view key) {
+  return checked_text(key, need(key));
+}
+
+std::optional<std::string> MapReader::optional_text(std::string_view key) {
+  const Node::Entry* const entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  return checked_text(key, &entry->value);
+}
+
+std::size_t MapReader::checked_choice(std::string_view key, const Node* value,
+                                      const std::vector<std::string>& choices) {
+  if (value == nullptr || value->refused) return 0;
+  const auto choice = std::find(choices.begin(), choices.end(), value->scalar);
+  if (value->kind == Node::Kind::scalar && choice != choices.end()) {
+    return static_cast<std::size_t>(choice - choices.begin());
+  }
+  const std::string near = value->kind == Node::Kind::scalar ? nearest(value->scalar, choices) : "";
+  refuse(*value, key, "must be " + listed(choices) + ", found " + found(*value),
+         near.empty() ? "" : "did you mean " + quoted(near) + "?");
+  return 0;
+}
+
+std::size_t MapReader::choice(std::string_view key, const std::vector<std::string>& choices) {
+  return checked_choice(key, need(key), choices);
+}
+
+std::optional<std::size_t> MapReader::optional_choice(std::string_view key,
+                                                      const std::vector<std::string>& choices) {
+  const Node::Entry* const entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  return checked_choice(key, &entry->value, choices);
+}
+
+const Node* MapReader::child(std::string_view key, bool required) {
+  if (required) return need(key);
+  const Node::Entry* const entry = find(key);
+  return entry == nullptr ? nullptr : &entry->value;
+}
+
+std::vector<const Node*> MapReader::sequence(std::string_view key, bool required) {
+  std::vector<const Node*> items;
+  const Node* const value = child(key, required);
+  if (value == nullptr) return items;
+  if (value->refused) return items;
+  if (value->kind != Node::Kind::sequence) {
+    refuse(*value, key, "must be a list, found " + found(*value), "put `- ` before each item");
+    return items;
+  }
+  for (const Node& item : value->items) items.push_back(&item);
+  return items;
+}
+
+std::vector<double> MapReader::checked_numbers(std::string_view key, const Node* value, std::size_t count,
+                                               Range range) {
+  std::vector<double> result(count, harmless(range));
+  if (value == nullptr || value->refused) return result;
+  const std::string wanted = "must be a list of " + std::to_string(count) + " numbers, found ";
+  if (value->kind != Node::Kind::sequence) {
+    refuse(*value, key, wanted + found(*value), "");
+    return result;
+  }
+  if (value->items.size() != count) {
+    refuse(*value, key, wanted + std::to_string(value->items.size()), "");
+  }
+  for (std::size_t i = 0; i < std::min(count, value->items.size()); ++i) {
+    result[i] = checked(key, &value->items[i], range);
+  }
+  return result;
+}
+
+std::vector<double> MapReader::numbers(std::string_view key, std::size_t count, Range range) {
+  return checked_numbers(key, need(key), count, range);
+}
+
+std::optional<std::vector<double>> MapReader::optional_numbers(std::string_view key, std::size_t count,
+                                                               Range range) {
+  const Node::Entry* const entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  return checked_numbers(key, &entry->value, count, range);
+}
+
+bool MapReader::has(std::string_view key) const {
+  return std::any_of(node_.entries.begin(), node_.entries.end(),
+                     [&](const Node::Entry& entry) { return entry.key == key; });
+}
+
+bool MapReader::good(std::string_view key) const {
+  if (std::find(bad_.begin(), bad_.end(), key) != bad_.end()) return false;
+  return std::any_of(node_.entries.begin(), node_.entries.end(),
+                     [&](const Node::Entry& entry) { return entry.key == key && !entry.value.refused; });
+}
+
+std::vector<std::string> MapReader::keys() const {
+  std::vector<std::string> result;
+  result.reserve(node_.entries.size());
+  for (const Node::Entry& entry : node_.entries) result.push_back(entry.key);
+  return result;
+}
+
+Location MapReader::where(std::string_view key) const {
+  for (const Node::Entry& entry : node_.entries) {
+    if (entry.key == key) return entry.key_at;
+  }
+  return node_.at;
+}
+
+void MapReader::report(std::string_view key, std::string message, std::string hint) {
+  const Node::Entry* const entry = find(key);
+  bad_.emplace_back(key);
+  problems_.add(
+      document_.problem(entry == nullptr ? node_.at : entry->value.at, std::move(message), std::move(hint)));
+}
+
+void MapReader::warn(std::string_view key, std::string message, std::string hint) {
+  const Node::Entry* const entry = find(key);
+  problems_.warn(
+      document_.problem(entry == nullptr ? node_.at : entry->value.at, std::move(message), std::move(hint)));
+}
+
+void MapReader::report_unknown(const Node::Entry& entry) {
+  // A key that is already there cannot be what was meant.
+  std::vector<std::string> candidates = missing_;
+  for (const std::string& key : known_) {
+    if (!has(key) && std::find(missing_.begin(), missing_.end(), key) == missing_.end()) {
+      candidates.push_back(key);
+    }
+  }
+  KeyHint hint = hint_for_key(entry.key, entry.value, candidates);
+  // The unknown key explains the missing one: one mistake, one problem.
+  std::erase(missing_, hint.key);
+  if (hint.hint.empty() && !known_.empty() && known_.size() <= 12)
+    hint.hint = "known here: " + listed(known_);
+  problems_.add(document_.problem(entry.key_at, "unknown key " + quoted(entry.key) + " in " + what_,
+                                  std::move(hint.hint)));
+}
+
+void MapReader::finish() {
+  if (finished_) return;
+  finished_ = true;
+  for (const Node::Entry& entry : node_.entries) {
+    if (problems_.full()) return;
+    if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) report_unknown(entry);
+  }
+  if (!document_.complete) return;
+  for (const std::string& key : missing_) {
+    problems_.add(document_.problem(node_.at, what_ + " lacks the key " + quoted(key)));
+  }
+}
+
+std::optional<double> number_in(const Document& document, const Node& node, Range range, Problems& problems,
+                                std::string_view what) {
+  if (node.refused) return std::nullopt;
+  Parsed<double> number = parse_number(node);
+  if (!number.value) {
+    problems.add(document.problem(node.at, std::string(what) + " " + number.message, std::move(number.hint)));
+    return std::nullopt;
+  }
+  if (*number.value < range.lower || *number.value > range.upper) {
+    problems.add(document.problem(
+        node.at, std::string(what) + " is " + written(*number.value) + ", allowed is " + allowed(range),
+        hint_for_range(what, *number.value, range.lower, range.upper)));
+    return std::nullopt;
+  }
+  return number.value;
+}
+
+}  // namespace softgrip::document

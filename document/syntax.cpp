@@ -1,0 +1,137 @@
+#include "document/syntax.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+
+namespace softgrip::document {
+
+namespace {
+
+std::string opened(const Node* open) {
+  if (open == nullptr) return {};
+  return " that starts at " + std::to_string(open->at.line) + ":" + std::to_string(open->at.column);
+}
+
+/// True if a colon in `line` has no space after it, as in `rate_hz:200`.
+bool has_glued_colon(std::string_view line) {
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    if (line[i] != ':' || std::isspace(static_cast<unsigned char>(line[i + 1])) != 0) continue;
+    const auto before = static_cast<unsigned char>(line[i - 1]);
+    if (std::isalnum(before) != 0 || before == '_') return true;
+  }
+  return false;
+}
+
+SyntaxMessage misplaced(const Document& document, const Node* open, Location at, std::string_view what) {
+  const std::string_view line = line_of(document.text, at.line);
+  SyntaxMessage result;
+  result.message = "this does not belong to the " + std::string(what) + opened(open);
+  if (has_glued_colon(line)) {
+    result.hint = "a space is missing after the colon";
+  } else if (line.find(':') == std::string_view::npos && what == "map") {
+    result.hint = "a colon is missing after the key, or the indentation is wrong";
+  } else {
+    result.hint = "keys and items of one level start in the same column";
+  }
+  return result;
+}
+
+/// A key that starts in another column than the keys of its map, or nothing.
+std::optional<SyntaxMessage> misaligned(const Document& document, const Node* open, Location at) {
+  if (open == nullptr || open->kind != Node::Kind::map || at.line <= open->at.line) return std::nullopt;
+  const std::string_view first = line_of(document.text, open->at.line);
+  const auto start = static_cast<std::size_t>(open->at.column) - 1;
+  if (start >= first.size() || first[start] == '{') return std::nullopt;
+  const std::size_t column = line_of(document.text, at.line).find_first_not_of(' ');
+  if (column == std::string_view::npos || column == start) return std::nullopt;
+  return SyntaxMessage{"this key starts in column " + std::to_string(column + 1) +
+                           ", the keys of its map start in column " + std::to_string(open->at.column),
+                       "keys of one level start in the same column"};
+}
+
+struct Translation {
+  std::string_view said;
+  std::string_view message;
+  std::string_view hint;
+};
+
+constexpr std::array translations{
+    Translation{"illegal map value", "a second `: ` stands where the value should be",
+                "put the value in quotes if the colon belongs to it, or start a new line"},
+    Translation{"illegal map key", "a key cannot stand here", "the key goes on a line of its own"},
+    Translation{"illegal block entry", "a list item `- ` cannot stand here",
+                "an item of a list goes on a line of its own, below its key"},
+    Translation{"illegal flow end", "a closing bracket stands here without an opening one", ""},
+    Translation{"illegal EOF in scalar", "a quote is opened but never closed", ""},
+    Translation{"illegal document indicator in scalar", "a quote is not closed before the document ends", ""},
+    Translation{"unknown escape character", "an unknown escape stands in a text in double quotes",
+                "write a backslash as \\\\, or use single quotes"},
+    Translation{"bad character found while scanning hex number",
+                "an escape in a text in double quotes lacks its hexadecimal digits", ""},
+    Translation{"invalid unicode", "an escape in a text in double quotes names no character", ""},
+    Translation{"illegal tab when looking for indentation", "a tab stands in the indentation",
+                "YAML indents with spaces only"},
+    Translation{"unknown token", "this character cannot start a value",
+                "put the text in quotes if the character belongs to it"},
+    Translation{"the referenced anchor is not defined", "an alias (`*name`) is not accepted here",
+                "write the value out, or put a text that starts with `*` in quotes"},
+    Translation{"alias not found after *", "an alias (`*name`) is not accepted here",
+                "put a text that starts with `*` in quotes"},
+    Translation{"illegal character found while scanning alias", "an alias (`*name`) is not accepted here",
+                "put a text that starts with `*` in quotes"},
+    Translation{"anchor not found after &", "an anchor (`&name`) is not accepted here",
+                "put a text that starts with `&` in quotes"},
+    Translation{"illegal character found while scanning anchor", "an anchor (`&name`) is not accepted here",
+                "put a text that starts with `&` in quotes"},
+    Translation{"cannot assign multiple anchors", "an anchor (`&name`) is not accepted here", "remove it"},
+    Translation{"cannot assign multiple tags", "a tag (`!name`) is not accepted here", "remove it"},
+    Translation{"illegal character found while scanning tag", "a tag (`!name`) is not accepted here",
+                "put a text that starts with `!` in quotes"},
+    Translation{"tag handle with no suffix", "a tag (`!name`) is not accepted here",
+                "put a text that starts with `!` in quotes"},
+    Translation{"end of verbatim tag not found", "a tag (`!name`) is not accepted here",
+                "put a text that starts with `!` in quotes"},
+    Translation{"bad file", "the document is nested too deeply", ""},
+};
+
+}  // namespace
+
+SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open, Location at) {
+  if (said == "end of map not found") return misplaced(document, open, at, "map");
+  if (said == "end of sequence not found") return misplaced(document, open, at, "list");
+  if (said == "end of map flow not found") {
+    return {"the map `{...}`" + opened(open) + " is not closed here: expected `,` or `}`", ""};
+  }
+  if (said == "end of sequence flow not found") {
+    return {"the list `[...]`" + opened(open) + " is not closed here: expected `,` or `]`", ""};
+  }
+  const bool glued_above = at.line > 1 && has_glued_colon(line_of(document.text, at.line - 1));
+  if (said == "illegal map value" && glued_above) {
+    return {"this is not a key: the line above has no `: ` and goes on here",
+            "a space is missing after the colon in line " + std::to_string(at.line - 1)};
+  }
+  if (said == "illegal map value") {
+    if (auto message = misaligned(document, open, at)) return *message;
+  }
+  for (const Translation& translation : translations) {
+    if (said.substr(0, translation.said.size()) == translation.said) {
+      return {std::string(translation.message), std::string(translation.hint)};
+    }
+  }
+  return {"this is not YAML: " + shown(said), ""};
+}
+
+std::string_view line_of(std::string_view text, int line) {
+  for (int i = 1; i < line; ++i) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return {};
+    text.remove_prefix(end + 1);
+  }
+  text = text.substr(0, text.find('\n'));
+  if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace softgrip::document

@@ -1,0 +1,12 @@
+#pragma once
+// What is checked of a document's text before the YAML parser sees it.
+
+#include "document/node.h"
+
+namespace softgrip::document {
+
+/// Size, UTF-8, byte order mark, control characters, tabs in the indentation, directives. Adds problems and
+/// returns false if the text must not be parsed.
+[[nodiscard]] bool check_text(const Document& document, const Bounds& bounds, Problems& problems);
+
+}  // namespace softgrip::document

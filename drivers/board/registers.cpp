@@ -1,0 +1,81 @@
+#include "drivers/board/registers.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace softgrip::drivers {
+namespace {
+
+std::uint32_t joined(std::span<const std::uint16_t> words, WordOrder order) noexcept {
+  const std::uint32_t first = words[0];
+  const std::uint32_t second = words[1];
+  return order == WordOrder::high_first ? first << 16 | second : second << 16 | first;
+}
+
+void split(std::uint32_t value, WordOrder order, std::span<std::uint16_t> words) noexcept {
+  const auto high = static_cast<std::uint16_t>(value >> 16);
+  const auto low = static_cast<std::uint16_t>(value & 0xffffU);
+  words[0] = order == WordOrder::high_first ? high : low;
+  words[1] = order == WordOrder::high_first ? low : high;
+}
+
+template <class Whole>
+Whole saturated(double raw) noexcept {
+  if (std::isnan(raw)) return 0;
+  constexpr auto lower = static_cast<double>(std::numeric_limits<Whole>::min());
+  constexpr auto upper = static_cast<double>(std::numeric_limits<Whole>::max());
+  return static_cast<Whole>(std::clamp(std::round(raw), lower, upper));
+}
+
+}  // namespace
+
+double decode(std::span<const std::uint16_t> words, RegisterKind kind, WordOrder order) noexcept {
+  switch (kind) {
+    case RegisterKind::uint16:
+      return words[0];
+    case RegisterKind::int16:
+      return static_cast<std::int16_t>(words[0]);
+    case RegisterKind::uint32:
+      return joined(words, order);
+    case RegisterKind::int32:
+      return static_cast<std::int32_t>(joined(words, order));
+    case RegisterKind::float32:
+      return static_cast<double>(std::bit_cast<float>(joined(words, order)));
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void encode(double raw, RegisterKind kind, WordOrder order, std::span<std::uint16_t> words) noexcept {
+  switch (kind) {
+    case RegisterKind::uint16:
+      words[0] = saturated<std::uint16_t>(raw);
+      return;
+    case RegisterKind::int16:
+      words[0] = static_cast<std::uint16_t>(saturated<std::int16_t>(raw));
+      return;
+    case RegisterKind::uint32:
+      split(saturated<std::uint32_t>(raw), order, words);
+      return;
+    case RegisterKind::int32:
+      split(static_cast<std::uint32_t>(saturated<std::int32_t>(raw)), order, words);
+      return;
+    case RegisterKind::float32:
+      split(std::bit_cast<std::uint32_t>(static_cast<float>(std::isnan(raw) ? 0.0 : raw)), order, words);
+      return;
+  }
+}
+
+double quantised_raw(const TerminalBlock& terminals, double electrical) noexcept {
+  const double raw = std::clamp(terminals.scaling.x_at(electrical), terminals.raw_min, terminals.raw_max);
+  const double span = terminals.raw_max - terminals.raw_min;
+  double quantised = raw;
+  if (terminals.bits > 0 && span > 0) {
+    const double step = span / (std::exp2(terminals.bits) - 1);
+    quantised = terminals.raw_min + std::round((raw - terminals.raw_min) / step) * step;
+  }
+  return terminals.registers.kind == RegisterKind::float32 ? quantised : std::round(quantised);
+}
+
+}  // namespace softgrip::drivers

@@ -1,0 +1,74 @@
+#include "drivers/board/round_trip.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace softgrip::drivers {
+namespace {
+
+// Upper ends of what is usual: loopback 0.02-0.15 ms (measured), a switched network 1-10 ms (a common figure,
+// not measured here).
+constexpr double assumed_loopback_s = 0.15e-3;
+constexpr double assumed_network_s = 10e-3;
+
+bool is_loopback(const std::string& host) {
+  return host.rfind("127.", 0) == 0 || host == "::1";
+}
+
+}  // namespace
+
+double RoundTrip::median_s() const noexcept {
+  if (count_ == 0) return 0;
+  std::array<Nanoseconds, 32> sorted = durations_;
+  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count_));
+  return static_cast<double>(sorted[count_ / 2]) * 1e-9;
+}
+
+double RoundTrip::slowest_s() const noexcept {
+  if (count_ == 0) return 0;
+  return static_cast<double>(*std::max_element(durations_.begin(),
+                                               durations_.begin() + static_cast<std::ptrdiff_t>(count_))) *
+         1e-9;
+}
+
+std::string milliseconds(double seconds) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g ms", seconds * 1e3);
+  return text.data();
+}
+
+Board::Budget tcp_cost(std::size_t transactions, const std::string& plan, const std::string& host,
+                       const RoundTrip& measured) {
+  const bool known = measured.count() > 0;
+  const double assumed_s = is_loopback(host) ? assumed_loopback_s : assumed_network_s;
+  const double round_trip_s = known ? measured.median_s() : assumed_s;
+  const std::string source =
+      known ? "median of " + std::to_string(measured.count()) + " measured when connecting, slowest " +
+                  milliseconds(measured.slowest_s())
+            : std::string("assumed for ") + (is_loopback(host) ? "loopback" : "a network") +
+                  ", not measured: not connected yet";
+  Board::Budget cost;
+  cost.exchange_s = static_cast<double>(transactions) * round_trip_s;
+  cost.explanation = "Modbus TCP, " + std::to_string(transactions) +
+                     (transactions == 1 ? " round trip" : " round trips") + " (" + plan + ") of " +
+                     milliseconds(round_trip_s) + " (" + source + ")";
+  return cost;
+}
+
+Board::Budget sum_of(std::span<const Board::Budget> costs) {
+  Board::Budget budget;
+  for (const Board::Budget& cost : costs) {
+    budget.exchange_s += cost.exchange_s;
+    budget.explanation += (budget.explanation.empty() ? "" : "; then ") + cost.explanation;
+  }
+  budget.explanation += ": " + milliseconds(budget.exchange_s);
+  if (budget.exchange_s > 0) {
+    budget.explanation +=
+        ", at most " + std::to_string(std::lround(std::floor(1 / budget.exchange_s))) + " Hz";
+  }
+  return budget;
+}
+
+}  // namespace softgrip::drivers

@@ -1,0 +1,319 @@
+#include "drivers/iio/iio_board.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "base/clock.h"
+#include "base/errno_text.h"
+#include "drivers/board/judged_input.h"
+#include "drivers/board/round_trip.h"
+#include "drivers/iio/iio_attribute.h"
+
+namespace softgrip::drivers {
+namespace {
+
+constexpr int probes = 5;
+
+Nanoseconds now() noexcept {
+  return MonotonicClock().now();
+}
+
+/// Voltages are in millivolts, currents in milliamperes.
+double per_unit(std::string_view channel) noexcept {
+  return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
+}
+
+std::string first_word(const std::filesystem::path& file) {
+  std::string word;
+  std::ifstream(file) >> word;
+  return word;
+}
+
+/// The device's folder, or an empty path; `known` gets the names of all that are there.
+std::filesystem::path folder_of(const std::string& root, const std::string& device, std::string& known) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(root, error)) {
+    const std::string folder = entry.path().filename().string();
+    if (folder.rfind("iio:device", 0) != 0) continue;
+    const std::string name = first_word(entry.path() / "name");
+    if (device == folder || device == name) return entry.path();
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  return {};
+}
+
+std::string type_of(const std::string& channel) {
+  return channel.substr(0, channel.find_first_of("0123456789"));
+}
+
+/// A number that one channel has for itself or shares with all of its kind; `otherwise` if neither.
+double shared_number(const std::filesystem::path& folder, const std::string& direction,
+                     const std::string& channel, const std::string& what, double otherwise) {
+  for (const std::string& whose : {channel, type_of(channel)}) {
+    IioAttribute attribute;
+    if (attribute.open((folder / (direction + whose + what)).string(), false) != 0) continue;
+    if (const auto value = attribute.read()) return *value;
+  }
+  return otherwise;
+}
+
+}  // namespace
+
+std::optional<ElectricalUnit> unit_of_channel(std::string_view channel) noexcept {
+  const auto begins = [&](std::string_view word) {
+    return channel.size() > word.size() && channel.substr(0, word.size()) == word &&
+           channel[word.size()] >= '0' && channel[word.size()] <= '9';
+  };
+  const bool plain = std::all_of(channel.begin(), channel.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  });
+  if (plain && begins("voltage")) return ElectricalUnit::volt;
+  if (plain && begins("current")) return ElectricalUnit::milliampere;
+  return std::nullopt;
+}
+
+ModuleTerminals terminals_of(const IioSettings& settings) {
+  const auto terminals = [](const std::vector<IioTerminal>& from) {
+    constexpr double anything = std::numeric_limits<double>::infinity();
+    std::vector<Terminal> result;
+    for (const IioTerminal& terminal : from) {
+      result.push_back(
+          {unit_of_channel(terminal.channel).value_or(ElectricalUnit::volt), -anything, anything});
+    }
+    return result;
+  };
+  return {"iio", terminals(settings.inputs), terminals(settings.outputs)};
+}
+
+struct IioBoard::Parts {
+  /// One wired terminal: its raw number's attribute and what the number means.
+  struct Converter {
+    std::string name;  // in messages
+    IioAttribute raw;
+    double scale = 1;   // to V or mA
+    double offset = 0;  // added to the raw number
+  };
+
+  explicit Parts(const IioSettings& given)
+      : settings(given), inputs(given.inputs.size()), outputs(given.outputs.size()) {}
+
+  IioSettings settings;
+  std::vector<Converter> inputs;
+  std::vector<Converter> outputs;
+  bool open = false;
+  RoundTrip reads;
+  std::array<char, 256> detail{};
+
+  BusStatus say(BusStatus status, const std::string& what, const char* why) noexcept {
+    std::snprintf(detail.data(), detail.size(), "%s: %s", what.c_str(), why);
+    return status;
+  }
+  /// A converter that fails for another reason than the number it was given is gone.
+  BusStatus lost(const Converter& converter, int error) noexcept {
+    open = false;
+    return say(BusStatus::disconnected, converter.name, error != 0 ? text_of_errno(error) : "no number");
+  }
+
+  BusStatus attach(const IioTerminal& terminal, bool output, Converter& converter);
+  BusStatus attach_all();
+  BusStatus probe(Nanoseconds deadline) noexcept;
+  BusStatus write(std::size_t channel, double command_kpa) noexcept;
+  BusStatus read(const InputWiring& wiring, JudgedInput& input) noexcept;
+  BusStatus read_channel(std::size_t channel, Reading& reading) noexcept;
+};
+
+BusStatus IioBoard::Parts::attach(const IioTerminal& terminal, bool output, Converter& converter) {
+  std::string known;
+  const std::filesystem::path folder = folder_of(settings.root, terminal.device, known);
+  converter.name = terminal.device + " " + terminal.channel;
+  if (folder.empty()) {
+    const std::string there = known.empty() ? "no converter is there" : "there are " + known;
+    return say(BusStatus::disconnected, converter.name,
+               ("no such device under " + settings.root + ", " + there).c_str());
+  }
+  const std::string direction = output ? "out_" : "in_";
+  const std::string path = (folder / (direction + terminal.channel + "_raw")).string();
+  if (const int error = converter.raw.open(path, output); error != 0) {
+    return say(BusStatus::disconnected, path, text_of_errno(error));
+  }
+  converter.scale =
+      shared_number(folder, direction, terminal.channel, "_scale", 0) * per_unit(terminal.channel);
+  converter.offset = shared_number(folder, direction, terminal.channel, "_offset", 0);
+  if (!(std::abs(converter.scale) > 0) || !std::isfinite(converter.scale) ||
+      !std::isfinite(converter.offset)) {
+    return say(BusStatus::disconnected, converter.name, "it states no scale, so its numbers mean nothing");
+  }
+  return BusStatus::ok;
+}
+
+BusStatus IioBoard::Parts::attach_all() {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (const BusStatus status = attach(settings.outputs[i], true, outputs[i]); status != BusStatus::ok) {
+      return status;
+    }
+  }
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (const BusStatus status = attach(settings.inputs[i], false, inputs[i]); status != BusStatus::ok) {
+      return status;
+    }
+  }
+  return BusStatus::ok;
+}
+
+/// Reads every wired input a few times: what that takes is the budget.
+BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
+  reads.reset();
+  for (int i = 0; i < probes; ++i) {
+    for (const Converter& converter : inputs) {
+      const Nanoseconds before = now();
+      if (i > 0 && before > deadline) return BusStatus::ok;
+      if (!converter.raw.read().has_value()) return lost(converter, errno);
+      reads.add(now() - before);
+    }
+  }
+  return BusStatus::ok;
+}
+
+BusStatus IioBoard::Parts::write(std::size_t channel, double command_kpa) noexcept {
+  const OutputWiring& valve = settings.wiring[channel].valve;
+  const Converter& converter = outputs[valve.output];
+  const double raw = std::round(valve.scaling.x_at(command_kpa) / converter.scale - converter.offset);
+  const double taken = std::clamp(raw, 0.0, static_cast<double>(settings.outputs[valve.output].raw_max));
+  const int error = converter.raw.write(static_cast<long>(taken));
+  if (error == EINVAL || error == ERANGE) {
+    return say(BusStatus::write_refused, converter.name, text_of_errno(error));
+  }
+  if (error != 0) return lost(converter, error);
+  if (taken == raw) return BusStatus::ok;
+  std::snprintf(detail.data(), detail.size(),
+                "channel '%s': %g kPa is beyond the output's range, its end was written",
+                settings.wiring[channel].name.c_str(), command_kpa);
+  return BusStatus::write_refused;
+}
+
+BusStatus IioBoard::Parts::read(const InputWiring& wiring, JudgedInput& input) noexcept {
+  const Converter& converter = inputs[wiring.input];
+  const std::optional<double> raw = converter.raw.read();
+  if (!raw.has_value()) return lost(converter, errno);
+  input = judge(wiring, (*raw + converter.offset) * converter.scale);
+  return BusStatus::ok;
+}
+
+BusStatus IioBoard::Parts::read_channel(std::size_t channel, Reading& reading) noexcept {
+  const ChannelWiring& wiring = settings.wiring[channel];
+  reading.sampled_at = now();
+  JudgedInput displacement;
+  if (const BusStatus status = read(wiring.displacement, displacement); status != BusStatus::ok)
+    return status;
+  reading.displacement_mm = displacement.physical;
+  reading.validity = displacement.validity;
+  reading.command_readback_kpa = std::numeric_limits<double>::quiet_NaN();
+  reading.pressure_kpa = std::numeric_limits<double>::quiet_NaN();
+  if (wiring.pressure.has_value()) {
+    JudgedInput pressure;
+    if (const BusStatus status = read(*wiring.pressure, pressure); status != BusStatus::ok) return status;
+    if (pressure.validity == model::Validity::valid) reading.pressure_kpa = pressure.physical;
+  }
+  return BusStatus::ok;
+}
+
+IioBoard::IioBoard(const IioSettings& settings) : parts_(std::make_unique<Parts>(settings)) {}
+
+IioBoard::~IioBoard() = default;
+
+std::size_t IioBoard::channels() const noexcept {
+  return parts_->settings.wiring.size();
+}
+
+BusStatus IioBoard::connect(std::chrono::nanoseconds deadline) noexcept {
+  Parts& parts = *parts_;
+  parts.open = false;
+  const Nanoseconds until = now() + deadline.count();
+  try {
+    if (const BusStatus status = parts.attach_all(); status != BusStatus::ok) return status;
+  } catch (const std::exception& error) {
+    return parts.say(BusStatus::disconnected, "looking for converters", error.what());
+  }
+  const BusStatus status = parts.reads.count() == 0 ? parts.probe(until) : BusStatus::ok;
+  parts.open = status == BusStatus::ok;
+  return status;
+}
+
+BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
+                             std::chrono::nanoseconds deadline) noexcept {
+  Parts& parts = *parts_;
+  const Nanoseconds until = now() + deadline.count();
+  if (!parts.open) return BusStatus::disconnected;
+  if (commands_kpa.size() != channels() || readings.size() != channels() || channels() > most_channels) {
+    std::snprintf(parts.detail.data(), parts.detail.size(), "not one command and one reading per channel");
+    return BusStatus::write_refused;
+  }
+  for (const double command : commands_kpa) {
+    if (std::isfinite(command)) continue;
+    std::snprintf(parts.detail.data(), parts.detail.size(), "a command that is no number was not written");
+    return BusStatus::write_refused;
+  }
+  BusStatus written = BusStatus::ok;
+  for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
+    const BusStatus status = parts.write(i, commands_kpa[i]);
+    if (status == BusStatus::disconnected) return status;
+    if (status != BusStatus::ok) written = status;
+  }
+  // All readings change, or none.
+  std::array<Reading, most_channels> fresh{};
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    fresh[i] = readings[i];
+    if (const BusStatus status = parts.read_channel(i, fresh[i]); status != BusStatus::ok) return status;
+    ++fresh[i].sequence;
+    if (now() <= until) continue;
+    std::snprintf(parts.detail.data(), parts.detail.size(), "converting took longer than the deadline");
+    return BusStatus::timed_out;
+  }
+  if (written != BusStatus::ok) return written;
+  std::copy_n(fresh.begin(), readings.size(), readings.begin());
+  return BusStatus::ok;
+}
+
+const char* IioBoard::detail() const noexcept {
+  return parts_->detail.data();
+}
+
+std::string IioBoard::describe() const {
+  std::vector<std::string> devices;
+  for (const auto* terminals : {&parts_->settings.outputs, &parts_->settings.inputs}) {
+    for (const IioTerminal& terminal : *terminals) {
+      if (std::find(devices.begin(), devices.end(), terminal.device) == devices.end()) {
+        devices.push_back(terminal.device);
+      }
+    }
+  }
+  std::string text = "industrial I/O:";
+  for (const std::string& device : devices) text += " " + device;
+  return text;
+}
+
+Board::Budget IioBoard::budget() const {
+  const Parts& parts = *parts_;
+  std::size_t reads = 0;
+  for (const ChannelWiring& channel : parts.settings.wiring) reads += channel.pressure.has_value() ? 2U : 1U;
+  const std::size_t writes = parts.settings.wiring.size();
+  // A write is taken to be as long as a conversion: it cannot be measured without moving something.
+  const double each_s = parts.reads.median_s();
+  Budget cost;
+  cost.exchange_s = static_cast<double>(reads + writes) * each_s;
+  cost.explanation =
+      "industrial I/O, " + std::to_string(writes) + " writes and " + std::to_string(reads) + " conversions" +
+      (parts.reads.count() == 0
+           ? std::string(", not measured: not connected yet")
+           : " of " + milliseconds(each_s) + " (median of " + std::to_string(parts.reads.count()) +
+                 " conversions when connecting, slowest " + milliseconds(parts.reads.slowest_s()) + ")");
+  return sum_of({&cost, 1});
+}
+
+}  // namespace softgrip::drivers

@@ -1,0 +1,216 @@
+#include "drivers/modbus/exchange_plan.h"
+
+#include <modbus/modbus.h>
+
+#include <algorithm>
+#include <array>
+
+#include "drivers/modbus/modbus_request.h"
+
+namespace softgrip::drivers {
+namespace {
+
+/// Registers (or bits) [begin, end) that one function reads.
+struct Range {
+  std::uint8_t function = 0;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
+bool is_bits(std::uint8_t function) {
+  return function <= MODBUS_FC_READ_DISCRETE_INPUTS;
+}
+
+std::uint32_t most_readable(std::uint8_t function) {
+  return is_bits(function) ? max_read_bits : max_read_registers;
+}
+
+/// The smallest range of a block that holds all the numbers `indices`. What lies between belongs to the
+/// block, so the board serves it.
+Range covering(const RegisterBlock& block, const std::vector<std::size_t>& indices) {
+  const auto [first, last] = std::minmax_element(indices.begin(), indices.end());
+  return {block.function, block.address_of(*first),
+          static_cast<std::uint32_t>(block.address_of(*last) + words_of(block.kind))};
+}
+
+/// Registers of [begin, end) that no block of the map declares as readable by `function`.
+std::uint32_t undeclared(const BoardMap& map, std::uint8_t function, std::uint32_t begin, std::uint32_t end) {
+  std::vector<RegisterBlock> blocks;
+  if (map.has_inputs()) blocks.push_back(map.inputs.registers);
+  if (map.input_status.has_value()) blocks.push_back(map.input_status->registers);
+  if (map.read_back.has_value()) blocks.push_back(map.read_back->registers);
+  std::uint32_t count = 0;
+  for (std::uint32_t address = begin; address < end; ++address) {
+    const bool declared = std::any_of(blocks.begin(), blocks.end(), [&](const RegisterBlock& block) {
+      return block.function == function && address >= block.address &&
+             address < static_cast<std::uint32_t>(block.address) + block.registers();
+    });
+    if (!declared) ++count;
+  }
+  return count;
+}
+
+std::vector<ReadStep> merged(const BoardMap& map, std::vector<Range> ranges) {
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) {
+    return a.function != b.function ? a.function < b.function : a.begin < b.begin;
+  });
+  std::vector<Range> result;
+  for (const Range& range : ranges) {
+    if (!result.empty() && result.back().function == range.function) {
+      Range& last = result.back();
+      const std::uint32_t end = std::max(last.end, range.end);
+      const bool gap_allowed = range.begin <= last.end ||
+                               undeclared(map, range.function, last.end, range.begin) <= map.readable_gap;
+      if (gap_allowed && end - last.begin <= most_readable(range.function)) {
+        last.end = end;
+        continue;
+      }
+    }
+    result.push_back(range);
+  }
+  std::vector<ReadStep> steps;
+  steps.reserve(result.size());
+  for (const Range& range : result) {
+    steps.push_back({range.function, static_cast<std::uint16_t>(range.begin),
+                     static_cast<std::uint16_t>(range.end - range.begin)});
+  }
+  return steps;
+}
+
+std::vector<std::size_t> wired_inputs(const std::vector<ChannelWiring>& wiring, std::size_t module) {
+  std::vector<std::size_t> inputs;
+  for (const ChannelWiring& channel : wiring) {
+    if (channel.displacement.module == module) inputs.push_back(channel.displacement.input);
+    if (channel.pressure.has_value() && channel.pressure->module == module) {
+      inputs.push_back(channel.pressure->input);
+    }
+  }
+  return inputs;
+}
+
+std::vector<std::size_t> wired_outputs(const std::vector<ChannelWiring>& wiring, std::size_t module) {
+  std::vector<std::size_t> outputs;
+  for (const ChannelWiring& channel : wiring) {
+    if (channel.valve.module == module) outputs.push_back(channel.valve.output);
+  }
+  return outputs;
+}
+
+/// What the module is asked for: its wired inputs, and of its outputs' state what the map knows.
+std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::size_t>& inputs,
+                                 const std::vector<std::size_t>& outputs) {
+  std::vector<Range> ranges;
+  if (!inputs.empty()) {
+    ranges.push_back(covering(map.inputs.registers, inputs));
+    if (map.input_status.has_value()) ranges.push_back(covering(map.input_status->registers, inputs));
+  }
+  if (!outputs.empty()) {
+    if (map.read_back.has_value()) ranges.push_back(covering(map.read_back->registers, outputs));
+    if (map.watchdog.tripped.has_value()) {
+      const BoardWatchdog::Tripped& tripped = *map.watchdog.tripped;
+      ranges.push_back(
+          {tripped.function, tripped.address, static_cast<std::uint32_t>(tripped.address) + tripped.count});
+    }
+  }
+  return merged(map, std::move(ranges));
+}
+
+/// Runs of neighbouring outputs. Encoded outputs stand in the order of their terminals.
+void plan_writes(const BoardMap& map, const std::vector<ChannelWiring>& wiring, std::size_t module,
+                 ExchangePlan& plan) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < wiring.size(); ++i) {
+    if (wiring[i].valve.module == module) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return wiring[a].valve.output < wiring[b].valve.output; });
+  const RegisterBlock& block = map.outputs.registers;
+  const std::uint16_t words = words_of(block.kind);
+  const std::uint16_t most = map.has_fc23 ? max_fc23_write_registers : max_write_registers;
+  for (const std::size_t channel : order) {
+    const std::uint16_t address = block.address_of(wiring[channel].valve.output);
+    plan.channels[channel].output_word = plan.output_words;
+    const bool continues = !plan.writes.empty() && block.function == MODBUS_FC_WRITE_MULTIPLE_REGISTERS &&
+                           plan.writes.back().address + plan.writes.back().count == address &&
+                           plan.writes.back().count + words <= most;
+    if (continues) {
+      plan.writes.back().count = static_cast<std::uint16_t>(plan.writes.back().count + words);
+    } else {
+      plan.writes.push_back({block.function, address, words, plan.output_words});
+    }
+    plan.output_words += words;
+  }
+}
+
+Slot slot_of(const std::vector<ReadStep>& reads, std::uint8_t function, std::uint16_t address) {
+  for (std::size_t step = 0; step < reads.size(); ++step) {
+    const ReadStep& read = reads[step];
+    if (read.function == function && address >= read.address && address < read.address + read.count) {
+      return {step, static_cast<std::size_t>(address - read.address)};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>& wiring,
+                           std::size_t module) {
+  ExchangePlan plan;
+  plan.channels.resize(wiring.size());
+  if (wiring.empty()) return plan;
+  const std::vector<std::size_t> inputs = wired_inputs(wiring, module);
+  const std::vector<std::size_t> outputs = wired_outputs(wiring, module);
+  plan_writes(map, wiring, module, plan);
+  plan.reads = plan_reads(map, inputs, outputs);
+
+  const auto slot = [&](const RegisterBlock& block, std::size_t index) {
+    return slot_of(plan.reads, block.function, block.address_of(index));
+  };
+  const auto place_input = [&](const InputWiring& input, std::optional<Slot>& value,
+                               std::optional<Slot>& status) {
+    if (input.module != module) return;
+    value = slot(map.inputs.registers, input.input);
+    if (map.input_status.has_value()) status = slot(map.input_status->registers, input.input);
+  };
+  for (std::size_t i = 0; i < wiring.size(); ++i) {
+    const ChannelWiring& channel = wiring[i];
+    ChannelSlots& slots = plan.channels[i];
+    place_input(channel.displacement, slots.displacement, slots.displacement_status);
+    if (channel.pressure.has_value()) place_input(*channel.pressure, slots.pressure, slots.pressure_status);
+    if (map.read_back.has_value() && channel.valve.module == module) {
+      slots.read_back = slot(map.read_back->registers, channel.valve.output);
+    }
+  }
+  if (map.watchdog.tripped.has_value() && !outputs.empty()) {
+    plan.tripped = slot_of(plan.reads, map.watchdog.tripped->function, map.watchdog.tripped->address);
+  }
+  if (!inputs.empty()) plan.sampling_read = slot(map.inputs.registers, inputs.front()).step;
+  if (map.has_fc23 && !inputs.empty() && !outputs.empty()) plan.combined_read = plan.sampling_read;
+  return plan;
+}
+
+std::string describe(const ExchangePlan& plan) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  for (std::size_t i = 0; i < plan.writes.size(); ++i) {
+    const WriteStep& write = plan.writes[i];
+    const bool combined = i == 0 && plan.combined_read.has_value();
+    std::string part = "FC" + std::to_string(combined ? MODBUS_FC_WRITE_AND_READ_REGISTERS : write.function) +
+                       " writes " + std::to_string(write.count) + " from " + std::to_string(write.address);
+    if (combined) {
+      const ReadStep& read = plan.reads[*plan.combined_read];
+      part += " and reads " + std::to_string(read.count) + " from " + std::to_string(read.address);
+    }
+    add(part);
+  }
+  for (std::size_t i = 0; i < plan.reads.size(); ++i) {
+    if (plan.combined_read == i) continue;
+    const ReadStep& read = plan.reads[i];
+    add("FC" + std::to_string(read.function) + " reads " + std::to_string(read.count) + " from " +
+        std::to_string(read.address));
+  }
+  return text;
+}
+
+}  // namespace softgrip::drivers

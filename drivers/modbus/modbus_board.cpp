@@ -1,0 +1,242 @@
+#include "drivers/modbus/modbus_board.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "base/clock.h"
+#include "drivers/board/round_trip.h"
+
+namespace softgrip::drivers {
+namespace {
+
+Nanoseconds now() noexcept {
+  return MonotonicClock().now();
+}
+
+bool ends_a_session(BusStatus status) noexcept {
+  return status == BusStatus::disconnected || status == BusStatus::timed_out ||
+         status == BusStatus::bad_reply;
+}
+
+}  // namespace
+
+struct ModbusBoard::Parts {
+  explicit Parts(const ModbusSettings& given) : settings(given) {
+    for (const ModbusAddress& address : settings.links) links.push_back(make_link(address));
+    modules.reserve(settings.modules.size());
+    for (std::size_t i = 0; i < settings.modules.size(); ++i) {
+      const ModbusModuleSettings& module = settings.modules[i];
+      modules.emplace_back(module, i, settings.wiring, *links[module.link]);
+    }
+  }
+
+  ModbusSettings settings;
+  std::vector<std::unique_ptr<ModbusLink>> links;
+  std::vector<ModbusModule> modules;
+  bool measured = false;
+  std::array<char, 256> detail{};
+
+  void close() noexcept {
+    for (const auto& link : links) link->close();
+  }
+  [[nodiscard]] bool drives_outputs(std::size_t link) const noexcept {
+    return std::any_of(modules.begin(), modules.end(), [link](const ModbusModule& module) {
+      return module.settings().link == link && module.drives_outputs();
+    });
+  }
+  /// As far as outputs go.
+  [[nodiscard]] bool is_open() const noexcept {
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      if (drives_outputs(link) && !links[link]->is_open()) return false;
+    }
+    return true;
+  }
+  BusStatus say(BusStatus status, const char* text) noexcept {
+    std::snprintf(detail.data(), detail.size(), "%s", text);
+    return status;
+  }
+  /// What a module failed of; with several it is named. An end of one link is the end of all.
+  BusStatus failed(BusStatus status, const ModbusModule& module) noexcept {
+    if (modules.size() == 1) {
+      say(status, module.detail());
+    } else {
+      std::snprintf(detail.data(), detail.size(), "module '%s': %s", module.settings().name.c_str(),
+                    module.detail());
+    }
+    if (ends_a_session(status)) close();
+    return status;
+  }
+
+  BusStatus open(Nanoseconds deadline) noexcept;
+  BusStatus probe(Nanoseconds deadline) noexcept;
+  BusStatus encode(std::span<const double> commands_kpa) noexcept;
+  BusStatus transact(Nanoseconds deadline) noexcept;
+  void fill(std::span<Reading> readings) const noexcept;
+};
+
+/// A link that leads to no outputs may stay closed: exchanges then give the outputs what is asked, and fail
+/// when they come to read.
+BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
+  close();
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    const BusStatus status = links[link]->open(deadline);
+    if (status == BusStatus::ok) continue;
+    say(status, links[link]->detail());
+    if (drives_outputs(link)) return status;
+  }
+  for (ModbusModule& module : modules) {
+    if (!links[module.settings().link]->is_open()) continue;
+    if (const BusStatus status = module.set_up(deadline); status != BusStatus::ok) {
+      return failed(status, module);
+    }
+  }
+  return measured ? BusStatus::ok : probe(deadline);
+}
+
+/// Once. Later sessions begin with the outputs: questions that go before them would feed the board's watchdog
+/// while it still has the pressure of the moment in which the line failed.
+BusStatus ModbusBoard::Parts::probe(Nanoseconds deadline) noexcept {
+  for (const auto& link : links) link->forget_measurements();
+  const Nanoseconds start = now();
+  const Nanoseconds enough = start + (deadline - start) / 4;
+  for (int i = 0; i < settings.probes; ++i) {
+    if (i > 0 && now() > enough) break;
+    for (ModbusModule& module : modules) {
+      ModbusLink& link = *links[module.settings().link];
+      if (module.plan().reads.empty() || !link.is_open()) continue;
+      if (const BusStatus status = module.probe(deadline); status != BusStatus::ok) {
+        return failed(status, module);
+      }
+      link.keep_measurement();
+    }
+  }
+  measured = true;
+  return BusStatus::ok;
+}
+
+BusStatus ModbusBoard::Parts::encode(std::span<const double> commands_kpa) noexcept {
+  BusStatus result = BusStatus::ok;
+  for (ModbusModule& module : modules) {
+    const BusStatus status = module.encode(commands_kpa);
+    if (status != BusStatus::ok) result = failed(status, module);
+  }
+  return result;
+}
+
+BusStatus ModbusBoard::Parts::transact(Nanoseconds deadline) noexcept {
+  for (ModbusModule& module : modules) {
+    if (const BusStatus status = module.write(deadline); status != BusStatus::ok) {
+      return failed(status, module);
+    }
+  }
+  for (ModbusModule& module : modules) {
+    if (const BusStatus status = module.read(deadline); status != BusStatus::ok) {
+      return failed(status, module);
+    }
+  }
+  for (ModbusModule& module : modules) {
+    if (const BusStatus status = module.check(); status != BusStatus::ok) return failed(status, module);
+  }
+  return BusStatus::ok;
+}
+
+void ModbusBoard::Parts::fill(std::span<Reading> readings) const noexcept {
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    readings[i].pressure_kpa = std::numeric_limits<double>::quiet_NaN();
+    readings[i].command_readback_kpa = std::numeric_limits<double>::quiet_NaN();
+    for (const ModbusModule& module : modules) module.fill(i, readings[i]);
+    ++readings[i].sequence;
+  }
+}
+
+std::vector<std::string> problems_of(const ModbusSettings& settings) {
+  std::vector<ModuleTerminals> modules;
+  for (const ModbusModuleSettings& module : settings.modules) {
+    modules.push_back(terminals_of(module.map));
+    if (settings.modules.size() > 1) modules.back().name = module.name;
+  }
+  return wiring_problems(modules, settings.wiring);
+}
+
+ModbusBoard::ModbusBoard(const ModbusSettings& settings) : parts_(std::make_unique<Parts>(settings)) {}
+
+ModbusBoard::~ModbusBoard() = default;
+
+std::size_t ModbusBoard::channels() const noexcept {
+  return parts_->settings.wiring.size();
+}
+
+BusStatus ModbusBoard::connect(std::chrono::nanoseconds deadline) noexcept {
+  const BusStatus status = parts_->open(now() + deadline.count());
+  if (status != BusStatus::ok) parts_->close();
+  return status;
+}
+
+BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
+                                std::chrono::nanoseconds deadline) noexcept {
+  Parts& parts = *parts_;
+  const Nanoseconds until = now() + deadline.count();
+  if (commands_kpa.size() != channels() || readings.size() != channels()) {
+    return parts.say(BusStatus::write_refused, "not one command and one reading per channel");
+  }
+  // What ended the session stays the detail: it is the better answer to "why".
+  if (!parts.is_open()) return BusStatus::disconnected;
+  for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
+    if (std::isfinite(commands_kpa[i])) continue;
+    std::snprintf(parts.detail.data(), parts.detail.size(),
+                  "channel '%s': a command that is no number was not written",
+                  parts.settings.wiring[i].name.c_str());
+    return BusStatus::write_refused;
+  }
+  const BusStatus encoded = parts.encode(commands_kpa);
+  if (const BusStatus status = parts.transact(until); status != BusStatus::ok) return status;
+  if (encoded != BusStatus::ok) return encoded;
+  parts.fill(readings);
+  return BusStatus::ok;
+}
+
+const char* ModbusBoard::detail() const noexcept {
+  return parts_->detail.data();
+}
+
+std::string ModbusBoard::describe() const {
+  std::string text;
+  for (const ModbusModule& module : parts_->modules) {
+    const ModbusModuleSettings& settings = module.settings();
+    if (!text.empty()) text += "; ";
+    text += settings.map.name + " at " + parts_->links[settings.link]->describe() + " unit " +
+            std::to_string(settings.unit);
+  }
+  return text;
+}
+
+Board::Budget ModbusBoard::budget() const {
+  std::vector<Budget> costs;
+  for (std::size_t link = 0; link < parts_->links.size(); ++link) {
+    std::vector<TransactionSize> transactions;
+    std::string plan;
+    for (const ModbusModule& module : parts_->modules) {
+      if (module.settings().link != link) continue;
+      const std::vector<TransactionSize> more = module.transactions();
+      transactions.insert(transactions.end(), more.begin(), more.end());
+      if (!plan.empty()) plan += "; ";
+      if (parts_->modules.size() > 1) plan += module.settings().name + ": ";
+      plan += drivers::describe(module.plan());
+      if (module.drives_outputs() && module.settings().map.watchdog.feed_write.has_value()) {
+        plan += ", one write feeds the watchdog";
+      }
+    }
+    costs.push_back(parts_->links[link]->cost(transactions, plan));
+  }
+  return sum_of(costs);
+}
+
+bool ModbusBoard::has_watchdog() const noexcept {
+  return std::all_of(parts_->modules.begin(), parts_->modules.end(), [](const ModbusModule& module) {
+    return !module.drives_outputs() || module.settings().map.watchdog.kind != BoardWatchdog::Kind::none;
+  });
+}
+
+}  // namespace softgrip::drivers

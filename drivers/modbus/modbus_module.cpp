@@ -1,0 +1,280 @@
+#include "drivers/modbus/modbus_module.h"
+
+#include <modbus/modbus.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "base/clock.h"
+#include "drivers/board/registers.h"
+#include "drivers/modbus/big_endian.h"
+
+namespace softgrip::drivers {
+namespace {
+
+Nanoseconds now() noexcept {
+  return MonotonicClock().now();
+}
+
+ModbusRequest request_of(const FixedWrite& write) noexcept {
+  return {.function = write.function, .address = write.address, .values = {&write.value, 1}};
+}
+
+}  // namespace
+
+ModbusModule::ModbusModule(ModbusModuleSettings settings, std::size_t index,
+                           const std::vector<ChannelWiring>& wiring, ModbusLink& link)
+    : settings_(std::move(settings)),
+      wiring_(wiring),
+      plan_(plan_exchange(settings_.map, wiring, index)),
+      link_(link),
+      output_words_(plan_.output_words),
+      requested_raws_(wiring.size()),
+      accepted_(settings_.map.read_back.has_value() ? *settings_.map.read_back : ReadBack{}, wiring.size()) {
+  for (const ReadStep& step : plan_.reads) replies_.emplace_back(step.count);
+}
+
+BusStatus ModbusModule::fail(BusStatus status, const char* format, std::size_t channel,
+                             double value) noexcept {
+  std::snprintf(own_detail_.data(), own_detail_.size(), format, wiring_[channel].name.c_str(), value);
+  detail_ = own_detail_.data();
+  return status;
+}
+
+BusStatus ModbusModule::say(BusStatus status, const char* text) noexcept {
+  detail_ = text;
+  return status;
+}
+
+BusStatus ModbusModule::ask(const ModbusRequest& request, Nanoseconds deadline) noexcept {
+  const BusStatus status = link_.ask(settings_.unit, request, deadline);
+  if (status == BusStatus::ok) return status;
+  return say(status, link_.detail());
+}
+
+BusStatus ModbusModule::write_fixed(std::span<const FixedWrite> writes, Nanoseconds deadline) noexcept {
+  for (const FixedWrite& write : writes) {
+    if (const BusStatus status = ask(drivers::request_of(write), deadline); status != BusStatus::ok) {
+      return status;
+    }
+  }
+  return BusStatus::ok;
+}
+
+ModbusRequest ModbusModule::request_of(const ReadStep& step) const noexcept {
+  return {.function = step.function, .address = step.address, .count = step.count};
+}
+
+ModbusRequest ModbusModule::request_of(std::size_t write) const noexcept {
+  const WriteStep& step = plan_.writes[write];
+  const auto values = std::span<const std::uint16_t>(output_words_).subspan(step.first_word, step.count);
+  if (write != 0 || !plan_.combined_read.has_value()) {
+    return {.function = step.function, .address = step.address, .values = values};
+  }
+  const ReadStep& read = plan_.reads[*plan_.combined_read];
+  return {.function = MODBUS_FC_WRITE_AND_READ_REGISTERS,
+          .address = read.address,
+          .count = read.count,
+          .write_address = step.address,
+          .values = values};
+}
+
+void ModbusModule::take_reply(std::size_t step) noexcept {
+  const std::span<const std::uint8_t> data = link_.data();
+  std::vector<std::uint16_t>& words = replies_[step];
+  const bool bits = plan_.reads[step].function <= MODBUS_FC_READ_DISCRETE_INPUTS;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    words[i] = bits ? static_cast<std::uint16_t>(data[i / 8] >> (i % 8) & 1) : word_at(data, 2 * i);
+  }
+}
+
+BusStatus ModbusModule::read_step(std::size_t step, Nanoseconds deadline) noexcept {
+  const BusStatus status = ask(request_of(plan_.reads[step]), deadline);
+  if (status == BusStatus::ok) take_reply(step);
+  return status;
+}
+
+BusStatus ModbusModule::write_outputs(Nanoseconds deadline) noexcept {
+  for (std::size_t i = 0; i < plan_.writes.size(); ++i) {
+    const bool combined = i == 0 && plan_.combined_read.has_value();
+    if (combined) sampled_at_ = now();
+    if (const BusStatus status = ask(request_of(i), deadline); status != BusStatus::ok) return status;
+    if (combined) take_reply(*plan_.combined_read);
+  }
+  return BusStatus::ok;
+}
+
+/// A board may answer writes with an exception while its watchdog holds the outputs: then that is what to
+/// tell.
+BusStatus ModbusModule::name_refusal(BusStatus status, Nanoseconds deadline) noexcept {
+  if (status != BusStatus::exception || !plan_.tripped.has_value()) return status;
+  const char* const refusal = detail_;
+  if (read_step(plan_.tripped->step, deadline) == BusStatus::ok && is_tripped()) {
+    return say(BusStatus::watchdog_tripped,
+               "the board's watchdog tripped: it refuses to be written while its outputs are safe");
+  }
+  return say(status, refusal);
+}
+
+/// After a new session only: the commands of this exchange stand in the board already, so that what it
+/// returns to when the tripped state ends is, on boards that take writes while tripped, what was asked for.
+/// On those that ignore or refuse them the second write follows at once.
+BusStatus ModbusModule::first_write(Nanoseconds deadline) noexcept {
+  const BusStatus written = write_outputs(deadline);
+  if (written != BusStatus::ok && written != BusStatus::exception) return written;
+  if (plan_.tripped.has_value()) {
+    const char* const refusal = detail_;
+    const BusStatus status = read_step(plan_.tripped->step, deadline);
+    if (status != BusStatus::ok) return status;
+    if (!is_tripped()) {
+      clear_due_ = false;
+      return say(written, refusal);
+    }
+  } else if (written != BusStatus::ok) {
+    return written;
+  }
+  const BoardWatchdog& watchdog = settings_.map.watchdog;
+  if (const BusStatus status = write_fixed(watchdog.clear, deadline); status != BusStatus::ok) return status;
+  if (setup_due_) {
+    const BusStatus status = write_fixed(settings_.map.setup, deadline);
+    if (status != BusStatus::ok) return status;
+  }
+  clear_due_ = false;
+  setup_due_ = false;
+  return write_outputs(deadline);
+}
+
+BusStatus ModbusModule::set_up(Nanoseconds deadline) noexcept {
+  clear_due_ = drives_outputs() && !settings_.map.watchdog.clear.empty();
+  setup_due_ = false;
+  accepted_.forget();
+  if (settings_.map.setup.empty()) return BusStatus::ok;
+  if (clear_due_ && plan_.tripped.has_value()) {
+    // To set up a watchdog may end its tripped state, and the outputs would return to their last values.
+    const BusStatus status = read_step(plan_.tripped->step, deadline);
+    if (status != BusStatus::ok) return status;
+    setup_due_ = is_tripped();
+  }
+  return setup_due_ ? BusStatus::ok : write_fixed(settings_.map.setup, deadline);
+}
+
+BusStatus ModbusModule::probe(Nanoseconds deadline) noexcept {
+  return plan_.reads.empty() ? BusStatus::ok : read_step(plan_.sampling_read, deadline);
+}
+
+BusStatus ModbusModule::encode(std::span<const double> commands_kpa) noexcept {
+  const TerminalBlock& outputs = settings_.map.outputs;
+  const RegisterKind kind = outputs.registers.kind;
+  BusStatus status = BusStatus::ok;
+  for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
+    if (!plan_.channels[i].output_word.has_value()) continue;
+    const double electrical = wiring_[i].valve.scaling.x_at(commands_kpa[i]);
+    double raw = outputs.scaling.x_at(electrical);
+    if (kind != RegisterKind::float32) raw = std::round(raw);
+    requested_raws_[i] = std::clamp(raw, outputs.raw_min, outputs.raw_max);
+    if (requested_raws_[i] != raw) {
+      status =
+          fail(BusStatus::write_refused,
+               "channel '%s': %g kPa is beyond the output's range, its end was written", i, commands_kpa[i]);
+    }
+    drivers::encode(
+        requested_raws_[i], kind, settings_.map.word_order,
+        std::span<std::uint16_t>(output_words_).subspan(*plan_.channels[i].output_word, words_of(kind)));
+  }
+  return status;
+}
+
+BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
+  const BusStatus status = clear_due_ ? first_write(deadline) : write_outputs(deadline);
+  if (status != BusStatus::ok) return name_refusal(status, deadline);
+  if (!drives_outputs() || !settings_.map.watchdog.feed_write.has_value()) return BusStatus::ok;
+  return write_fixed({&*settings_.map.watchdog.feed_write, 1}, deadline);
+}
+
+BusStatus ModbusModule::read(Nanoseconds deadline) noexcept {
+  for (std::size_t step = 0; step < plan_.reads.size(); ++step) {
+    if (plan_.combined_read == step) continue;
+    if (step == plan_.sampling_read) sampled_at_ = now();
+    if (const BusStatus status = read_step(step, deadline); status != BusStatus::ok) return status;
+  }
+  return BusStatus::ok;
+}
+
+bool ModbusModule::is_tripped() const noexcept {
+  if (!plan_.tripped.has_value()) return false;
+  const BoardWatchdog::Tripped& tripped = *settings_.map.watchdog.tripped;
+  const auto words = std::span<const std::uint16_t>(replies_[plan_.tripped->step])
+                         .subspan(plan_.tripped->offset, tripped.count);
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::uint16_t word) { return (word & tripped.mask) != 0; });
+}
+
+double ModbusModule::raw_at(const Slot& slot, RegisterKind kind) const noexcept {
+  const auto words = std::span<const std::uint16_t>(replies_[slot.step]).subspan(slot.offset, words_of(kind));
+  return decode(words, kind, settings_.map.word_order);
+}
+
+BusStatus ModbusModule::check() noexcept {
+  if (is_tripped()) {
+    return say(BusStatus::watchdog_tripped,
+               "the board's watchdog tripped: its outputs are at their safe value");
+  }
+  if (!settings_.map.read_back.has_value() || !drives_outputs()) return BusStatus::ok;
+  accepted_.note(requested_raws_);
+  const RegisterKind kind = settings_.map.read_back->registers.kind;
+  for (std::size_t i = 0; i < requested_raws_.size(); ++i) {
+    if (!plan_.channels[i].read_back.has_value()) continue;
+    const double raw = raw_at(*plan_.channels[i].read_back, kind);
+    if (!accepted_.accepts(i, raw)) {
+      return fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
+    }
+  }
+  return BusStatus::ok;
+}
+
+JudgedInput ModbusModule::input(const InputWiring& wiring, const Slot& slot,
+                                const std::optional<Slot>& status) const noexcept {
+  std::optional<std::uint16_t> status_word;
+  if (status.has_value()) status_word = replies_[status->step][status->offset];
+  return judge(settings_.map, wiring, raw_at(slot, settings_.map.inputs.registers.kind), status_word);
+}
+
+void ModbusModule::fill(std::size_t channel, Reading& reading) const noexcept {
+  const ChannelWiring& wiring = wiring_[channel];
+  const ChannelSlots& slots = plan_.channels[channel];
+  if (slots.displacement.has_value()) {
+    const JudgedInput displacement =
+        input(wiring.displacement, *slots.displacement, slots.displacement_status);
+    // Without a value the last one stays, marked invalid: NaN in a displacement helps nobody downstream.
+    if (std::isfinite(displacement.physical)) reading.displacement_mm = displacement.physical;
+    reading.validity = displacement.validity;
+    reading.sampled_at = sampled_at_;
+  }
+  if (slots.pressure.has_value()) {
+    const JudgedInput pressure = input(*wiring.pressure, *slots.pressure, slots.pressure_status);
+    reading.pressure_kpa = pressure.validity == model::Validity::valid
+                               ? pressure.physical
+                               : std::numeric_limits<double>::quiet_NaN();
+  }
+  if (slots.read_back.has_value()) {
+    const double raw = raw_at(*slots.read_back, settings_.map.read_back->registers.kind);
+    reading.command_readback_kpa = wiring.valve.scaling.y_at(settings_.map.outputs.scaling.y_at(raw));
+  }
+}
+
+std::vector<TransactionSize> ModbusModule::transactions() const {
+  std::vector<TransactionSize> sizes;
+  for (std::size_t i = 0; i < plan_.writes.size(); ++i) sizes.push_back(size_of(request_of(i)));
+  if (drives_outputs() && settings_.map.watchdog.feed_write.has_value()) {
+    sizes.push_back(size_of(drivers::request_of(*settings_.map.watchdog.feed_write)));
+  }
+  for (std::size_t step = 0; step < plan_.reads.size(); ++step) {
+    if (plan_.combined_read != step) sizes.push_back(size_of(request_of(plan_.reads[step])));
+  }
+  return sizes;
+}
+
+}  // namespace softgrip::drivers

@@ -1,0 +1,85 @@
+#include "drivers/modbus/modbus_reply.h"
+
+#include <modbus/modbus.h>
+
+#include "drivers/modbus/big_endian.h"
+
+namespace softgrip::drivers {
+namespace {
+
+constexpr std::uint8_t exception_bit = 0x80;
+constexpr std::size_t exception_pdu_size = 2;
+
+bool reads(std::uint8_t function) noexcept {
+  return function <= MODBUS_FC_READ_INPUT_REGISTERS || function == MODBUS_FC_WRITE_AND_READ_REGISTERS;
+}
+
+/// A write is confirmed by its address and its value, or the number of its values.
+bool echoes(std::span<const std::uint8_t> pdu, const ModbusRequest& request) noexcept {
+  std::uint16_t value = 0;
+  switch (request.function) {
+    case MODBUS_FC_WRITE_SINGLE_COIL:
+      value = request.values[0] != 0 ? 0xff00 : 0;
+      break;
+    case MODBUS_FC_WRITE_SINGLE_REGISTER:
+      value = request.values[0];
+      break;
+    default:
+      value = static_cast<std::uint16_t>(request.values.size());
+      break;
+  }
+  return word_at(pdu, 1) == request.address && word_at(pdu, 3) == value;
+}
+
+}  // namespace
+
+const char* text_of(ReplyDefect defect) noexcept {
+  switch (defect) {
+    case ReplyDefect::none:
+      return "no defect";
+    case ReplyDefect::transaction:
+      return "the reply answers another question (transaction id)";
+    case ReplyDefect::protocol:
+      return "the reply is not Modbus (protocol id)";
+    case ReplyDefect::length:
+      return "the reply's header states a wrong length";
+    case ReplyDefect::unit:
+      return "another unit id answered";
+    case ReplyDefect::function:
+      return "the reply has another function code";
+    case ReplyDefect::byte_count:
+      return "the reply's byte count contradicts the question";
+    case ReplyDefect::echo:
+      return "the reply confirms another address or value than was written";
+    case ReplyDefect::trailing:
+      return "bytes follow the reply";
+    case ReplyDefect::checksum:
+      return "the reply was damaged on the way (checksum)";
+    case ReplyDefect::own_echo:
+      return "the line returns what is sent (an adapter that echoes: `echo: true` in the rig file)";
+  }
+  return "unknown";
+}
+
+std::size_t pdu_size_of(const ModbusReply& reply, const ModbusRequest& request) noexcept {
+  return reply.state == ModbusReply::State::exception ? exception_pdu_size : reply_pdu_size(request);
+}
+
+ModbusReply parse_pdu(std::span<const std::uint8_t> pdu, const ModbusRequest& request) noexcept {
+  const std::size_t size = reply_pdu_size(request);
+  if (size == 0) return defective(ReplyDefect::function);
+  if (pdu.empty()) return {};
+  const std::uint8_t function = pdu[0];
+  if (function == (request.function | exception_bit)) {
+    if (pdu.size() < exception_pdu_size) return {};
+    return {.state = ModbusReply::State::exception, .exception_code = pdu[1]};
+  }
+  if (function != request.function) return defective(ReplyDefect::function);
+  const bool has_data = reads(function);
+  if (has_data && pdu.size() > 1 && pdu[1] != size - 2) return defective(ReplyDefect::byte_count);
+  if (pdu.size() < size) return {};
+  if (!has_data && !echoes(pdu, request)) return defective(ReplyDefect::echo);
+  return {.state = ModbusReply::State::complete, .data = has_data ? pdu.subspan(2, size - 2) : pdu.first(0)};
+}
+
+}  // namespace softgrip::drivers

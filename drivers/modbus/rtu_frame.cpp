@@ -1,0 +1,60 @@
+#include "drivers/modbus/rtu_frame.h"
+
+#include <algorithm>
+
+namespace softgrip::drivers {
+namespace {
+
+constexpr std::size_t crc_size = 2;
+
+std::uint16_t crc_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
+  return static_cast<std::uint16_t>(bytes[at + 1] << 8 | bytes[at]);
+}
+
+bool begins_with(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t> begin) noexcept {
+  return bytes.size() >= begin.size() && std::equal(begin.begin(), begin.end(), bytes.begin());
+}
+
+}  // namespace
+
+std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept {
+  unsigned crc = 0xffff;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? crc >> 1U ^ 0xa001U : crc >> 1U;
+  }
+  return static_cast<std::uint16_t>(crc);
+}
+
+std::size_t build_rtu_request(const ModbusRequest& request, std::uint8_t unit, RtuFrame& frame) noexcept {
+  const std::size_t size = build_pdu(request, std::span(frame).subspan<1, max_pdu>());
+  if (size == 0) return 0;
+  frame[0] = unit;
+  const std::uint16_t crc = crc16(std::span<const std::uint8_t>(frame).first(1 + size));
+  frame[1 + size] = static_cast<std::uint8_t>(crc & 0xff);
+  frame[2 + size] = static_cast<std::uint8_t>(crc >> 8);
+  return size + rtu_overhead;
+}
+
+ModbusReply parse_rtu_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
+                            std::uint8_t unit, std::span<const std::uint8_t> asked) noexcept {
+  if (bytes.empty()) return {};
+  if (bytes[0] != unit) return defective(ReplyDefect::unit);
+  const ModbusReply reply = parse_pdu(bytes.subspan(1), request);
+  if (reply.state == ModbusReply::State::incomplete) return reply;
+  // The question itself is a wrong answer to all but 5 and 6, whose right answer it is.
+  if (reply.state == ModbusReply::State::defective) {
+    return bytes.size() > 4 && begins_with(bytes, asked.first(std::min(asked.size(), bytes.size())))
+               ? defective(ReplyDefect::own_echo)
+               : reply;
+  }
+  const std::size_t size = 1 + pdu_size_of(reply, request);
+  if (bytes.size() < size + crc_size) return {};
+  if (crc_at(bytes, size) != crc16(bytes.first(size))) {
+    return defective(begins_with(bytes, asked) ? ReplyDefect::own_echo : ReplyDefect::checksum);
+  }
+  if (bytes.size() > size + crc_size) return defective(ReplyDefect::trailing);
+  return reply;
+}
+
+}  // namespace softgrip::drivers

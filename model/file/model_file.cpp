@@ -1,0 +1,217 @@
+#include "model/file/model_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "base/text.h"
+#include "document/reader.h"
+#include "model/catalogue.h"
+
+namespace softgrip::model {
+namespace {
+
+using document::Document;
+using document::MapReader;
+using document::Node;
+using document::Problems;
+
+constexpr std::array stations{Station::valve, Station::actuator, Station::load, Station::sensor};
+
+std::vector<std::string> ids_of(Station station) {
+  std::vector<std::string> ids;
+  for (const Descriptor& descriptor : catalogue()) {
+    if (descriptor.info.station == station) ids.emplace_back(descriptor.info.id);
+  }
+  return ids;
+}
+
+// Reads one value by its declaration.
+double read_value(MapReader& map, const ParameterSpec& spec, const std::string& name) {
+  if (!std::isnan(spec.if_left_out) && !map.has(name)) return spec.if_left_out;
+  if (spec.whole) {
+    return static_cast<double>(
+        map.integer(name, static_cast<std::int64_t>(spec.lower), static_cast<std::int64_t>(spec.upper)));
+  }
+  return map.number(name, {spec.lower, spec.upper});
+}
+
+// Parts are counted by the first missing number: k1, c1, k2, c2, ...
+std::size_t count_parts(const MapReader& map, const Descriptor& descriptor) {
+  std::size_t parts = 0;
+  for (std::size_t part = 1; part <= descriptor.max_parts; ++part) {
+    BlockSpec probe{0, {}};
+    for (const ParameterSpec& spec : descriptor.repeated) {
+      std::string name(spec.name);
+      name.replace(name.find('#'), 1, std::to_string(part));
+      if (map.has(name)) parts = part;
+    }
+  }
+  return std::max(parts, descriptor.min_parts);
+}
+
+class ModelReader {
+ public:
+  ModelReader(const Document& document, Problems& problems) : document_(document), problems_(problems) {}
+
+  Model read() {
+    Model model;
+    MapReader top(document_, document_.root, problems_, "model");
+    model.name = top.text("name");
+    model.source = top.text("source");
+    for (const Station station : stations) {
+      const bool required = station == Station::actuator;
+      for (const Node* item : top.sequence(name_of(station), required)) read_block(*item, station, model);
+    }
+    top.finish();
+    if (!has_element_) {
+      top_problem("the actuator has no element that turns pressure into displacement",
+                  "bouc_wen and kelvin_voigt are such elements");
+    }
+    return model;
+  }
+
+ private:
+  void top_problem(std::string message, std::string hint) {
+    problems_.add(document_.problem(document_.root.at, std::move(message), std::move(hint)));
+  }
+
+  void read_block(const Node& item, Station station, Model& model) {
+    if (item.kind != Node::Kind::map || item.entries.size() != 1) {
+      problems_.add(document_.problem(item.at, "a block is a map with one key, its id",
+                                      "for example `- valve_lag: {time_constant_s: 0.05}`"));
+      return;
+    }
+    const Node::Entry& entry = item.entries.front();
+    const std::optional<std::size_t> type = find_block(entry.key);
+    if (!type || catalogue()[*type].info.station != station) {
+      report_unknown(entry, type, station);
+      return;
+    }
+    const Descriptor& descriptor = catalogue()[*type];
+    has_element_ = has_element_ || descriptor.info.kind == Kind::element;
+    check_place(entry, descriptor.info, station, model);
+    model.blocks.push_back(read_values(entry, *type));
+  }
+
+  void report_unknown(const Node::Entry& entry, std::optional<std::size_t> type, Station station) {
+    const std::string where(name_of(station));
+    if (type) {
+      problems_.add(document_.problem(
+          entry.key_at, entry.key + " does not belong to the station " + where,
+          "it belongs under `" + std::string(name_of(catalogue()[*type].info.station)) + ":`"));
+      return;
+    }
+    const std::string near = document::nearest(entry.key, ids_of(station));
+    std::string hint = near.empty() ? "known here:" : "did you mean " + near + "?";
+    if (near.empty()) {
+      for (const std::string& id : ids_of(station)) hint += " " + id;
+    }
+    problems_.add(
+        document_.problem(entry.key_at, "unknown block " + entry.key + " in the station " + where, hint));
+  }
+
+  // Order of kinds inside the station, and blocks that must not stand there twice.
+  void check_place(const Node::Entry& entry, const BlockInfo& info, Station station, const Model& model) {
+    for (const BlockSpec& block : model.blocks) {
+      const BlockInfo& other = catalogue()[block.type].info;
+      if (other.id == info.id && !info.repeatable) {
+        problems_.add(document_.problem(entry.key_at, entry.key + " stands in the chain twice"));
+      }
+      if (other.station == station && other.kind > info.kind) {
+        problems_.add(document_.problem(
+            entry.key_at, entry.key + " must stand before " + std::string(other.id),
+            "inside a station: pressure blocks, elements, displacement blocks, reading blocks"));
+        return;
+      }
+    }
+  }
+
+  BlockSpec read_values(const Node::Entry& entry, std::size_t type) {
+    const Descriptor& descriptor = catalogue()[type];
+    const std::size_t before = problems_.size();
+    MapReader map(document_, entry.value, problems_, entry.key);
+    const std::size_t parts = descriptor.repeated.empty() ? 0 : count_parts(map, descriptor);
+    BlockSpec block = default_block(type, parts);
+    for (std::size_t i = 0; i < block.values.size(); ++i) {
+      block.values[i] = read_value(map, descriptor.spec(i), parameter_name(block, i));
+    }
+    map.finish();
+    if (problems_.size() == before && descriptor.objection != nullptr) {
+      const std::string_view objection = descriptor.objection(block.values);
+      if (!objection.empty()) problems_.add(document_.problem(entry.key_at, std::string(objection)));
+    }
+    return block;
+  }
+
+  const Document& document_;
+  Problems& problems_;
+  bool has_element_ = false;
+};
+
+// A double-quoted YAML scalar.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (byte < 0x20 || byte == 0x7f) {
+      std::array<char, 8> code{};
+      std::snprintf(code.data(), code.size(), "\\x%02x", byte);
+      result += code.data();
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+}  // namespace
+
+std::optional<Model> read_model(const Document& document, Problems& problems) {
+  const std::size_t before = problems.size();
+  Model model = ModelReader(document, problems).read();
+  if (problems.size() != before) return std::nullopt;
+  return model;
+}
+
+std::optional<Model> load_model(const std::string& path, Problems& problems) {
+  const std::size_t before = problems.size();
+  const Document document = document::parse_file(path, problems);
+  std::optional<Model> model = read_model(document, problems);
+  return problems.size() == before ? model : std::nullopt;
+}
+
+std::string to_yaml(const Model& model) {
+  std::string text = "name: " + quoted(model.name) + "\nsource: " + quoted(model.source) + "\n";
+  for (const Station station : stations) {
+    bool any = false;
+    for (const BlockSpec& block : model.blocks) {
+      const BlockInfo& info = catalogue()[block.type].info;
+      if (info.station != station) continue;
+      if (!any) text += std::string(name_of(station)) + ":\n";
+      any = true;
+      text += "  - " + std::string(info.id) + ":\n";
+      for (std::size_t i = 0; i < block.values.size(); ++i) {
+        text += "      " + parameter_name(block, i) + ": " + to_text(block.values[i]) + "\n";
+      }
+    }
+  }
+  return text;
+}
+
+std::string model_hash(const Model& model) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : to_yaml(model)) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  }
+  std::array<char, 17> digits{};
+  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash));
+  return digits.data();
+}
+
+}  // namespace softgrip::model

@@ -1,0 +1,39 @@
+#pragma once
+// Model files: YAML to Model and back without loss.
+//
+//   name: bench_twin
+//   source: where the numbers come from, one line
+//   valve:
+//     - transport_delay: {delay_s: 0.130}
+//     - valve_lag: {time_constant_s: 0.044}
+//   actuator:
+//     - bouc_wen: {alpha_mm_per_kpa: 0.21105, ..., exponent: 1}
+//     - kelvin_voigt: {k0_kpa_per_mm: 325.9, k1_kpa_per_mm: 18.16, c1_kpa_s_per_mm: 299.8, ...}
+//
+// A station without blocks may be left out or be an empty list.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "document/node.h"
+#include "model/model.h"
+
+namespace softgrip::model {
+
+/// Reads a model out of a parsed document. All errors are added to `problems`; nothing is returned then.
+[[nodiscard]] std::optional<Model> read_model(const document::Document& document,
+                                              document::Problems& problems);
+
+/// parse_file() and read_model().
+[[nodiscard]] std::optional<Model> load_model(const std::string& path, document::Problems& problems);
+
+/// The YAML text of a model. Numbers are written with the fewest digits that read back to the same double:
+/// read_model(parse(to_yaml(m))) == m for every valid m.
+[[nodiscard]] std::string to_yaml(const Model& model);
+
+/// 16 hexadecimal digits that stand for the blocks and numbers of a model in provenance records: FNV-1a (64
+/// bit) of to_yaml(). The same on every machine; changes with any digit.
+[[nodiscard]] std::string model_hash(const Model& model);
+
+}  // namespace softgrip::model

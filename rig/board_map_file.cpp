@@ -1,0 +1,338 @@
+#include "rig/board_map_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "document/reader.h"
+#include "drivers/modbus/modbus_request.h"
+
+namespace softgrip::rig {
+namespace {
+
+using document::MapReader;
+using document::Node;
+using document::Range;
+
+constexpr int fc_write_coil = 5;
+constexpr int fc_write_register = 6;
+constexpr int fc_write_registers = 16;
+constexpr int fc_read_holding = 3;
+constexpr std::int64_t last_address = 0xffff;
+
+/// How keys end that are in this unit.
+std::string_view suffix_of(drivers::ElectricalUnit unit) {
+  switch (unit) {
+    case drivers::ElectricalUnit::volt:
+      return "_v";
+    case drivers::ElectricalUnit::milliampere:
+      return "_ma";
+    case drivers::ElectricalUnit::kilopascal:
+      return "_kpa";
+  }
+  return {};
+}
+
+Range raw_range(drivers::RegisterKind kind) {
+  switch (kind) {
+    case drivers::RegisterKind::uint16:
+      return {0, 0xffff};
+    case drivers::RegisterKind::int16:
+      return {-0x8000, 0x7fff};
+    case drivers::RegisterKind::uint32:
+      return {0, 4294967295.0};
+    case drivers::RegisterKind::int32:
+      return {-2147483648.0, 2147483647.0};
+    case drivers::RegisterKind::float32:
+      return {-static_cast<double>(std::numeric_limits<float>::max()),
+              static_cast<double>(std::numeric_limits<float>::max())};
+  }
+  return {};
+}
+
+/// Reads the parts of one board file.
+class BoardReader {
+ public:
+  BoardReader(const document::Document& document, document::Problems& problems)
+      : document_(document), problems_(problems) {}
+
+  drivers::BoardMap board() {
+    MapReader in(document_, document_.root, problems_, "the board");
+    map_.name = in.text("name");
+    map_.source = in.text("source");
+    map_.address_base = static_cast<int>(in.integer("address_base", 0, 1));
+    map_.word_order = in.choice("word_order", {"high_first", "low_first"}) == 0
+                          ? drivers::WordOrder::high_first
+                          : drivers::WordOrder::low_first;
+    map_.has_fc23 = in.boolean("fc23");
+    map_.readable_gap = static_cast<std::uint16_t>(in.optional_integer("readable_gap", 0, 120).value_or(0));
+    if (const Node* node = in.child("inputs", !in.has("outputs"))) inputs(*node);
+    if (const Node* node = in.child("outputs", !in.has("inputs"))) outputs(*node);
+    if (const Node* node = in.child("input_status", false)) input_status(*node);
+    if (const Node* node = in.child("read_back", false)) read_back(*node);
+    if (const Node* node = in.child("watchdog", true)) watchdog(*node);
+    for (const Node* node : in.sequence("setup", false)) {
+      map_.setup.push_back(fixed_write(*node, "a write of setup"));
+    }
+    check_directions(in);
+    check_fc23(in);
+    return std::move(map_);
+  }
+
+ private:
+  /// The address on the wire of what the file calls `address`.
+  std::uint16_t address(MapReader& in, std::int64_t registers) {
+    const std::int64_t base = map_.address_base;
+    const std::int64_t number = in.integer("address", base, base + last_address);
+    if (number - base + registers > last_address + 1) {
+      in.report("address", "the block ends beyond the last register");
+    }
+    return static_cast<std::uint16_t>(number - base);
+  }
+
+  std::uint8_t function(MapReader& in, const std::vector<int>& allowed, const std::string& meaning) {
+    const std::int64_t code = in.integer("function", 1, 23);
+    if (std::find(allowed.begin(), allowed.end(), code) == allowed.end()) {
+      std::string list;
+      for (const int one : allowed) list += (list.empty() ? "" : ", ") + std::to_string(one);
+      in.report("function", "`function` is " + std::to_string(code) + ", " + meaning + ": " + list);
+    }
+    return static_cast<std::uint8_t>(code);
+  }
+
+  drivers::RegisterKind kind(MapReader& in) {
+    return static_cast<drivers::RegisterKind>(
+        in.choice("kind", {"uint16", "int16", "uint32", "int32", "float32"}));
+  }
+
+  void scaling(MapReader& in, drivers::TerminalBlock& block) {
+    const std::size_t before = problems_.size();
+    const std::vector<double> raw = in.numbers("at_raw", 2, {});
+    block.unit = in.has("is_ma")    ? drivers::ElectricalUnit::milliampere
+                 : in.has("is_kpa") ? drivers::ElectricalUnit::kilopascal
+                                    : drivers::ElectricalUnit::volt;
+    const std::string key = "is" + std::string(suffix_of(block.unit));
+    const std::vector<double> electrical = in.numbers(key, 2, {-1000, 1000});
+    block.scaling = {raw[0], electrical[0], raw[1], electrical[1]};
+    // What was refused already is not complained of twice.
+    if (problems_.size() != before || !in.has("at_raw") || !in.has(key)) return;
+    if (raw[0] == raw[1]) in.report("at_raw", "the two scaling points must differ");
+    if (electrical[0] == electrical[1]) in.report(key, "the two scaling points must differ");
+  }
+
+  void converter(MapReader& in, drivers::TerminalBlock& block) {
+    const drivers::RegisterKind kind = block.registers.kind;
+    block.raw_min = in.number("raw_min", raw_range(kind));
+    block.raw_max = in.number("raw_max", raw_range(kind));
+    if (block.raw_min >= block.raw_max) in.report("raw_max", "`raw_max` must be above `raw_min`");
+    const bool is_float = kind == drivers::RegisterKind::float32;
+    block.bits = static_cast<int>(in.integer("bits", is_float ? 0 : 1, 32));
+    if (!is_float && std::exp2(block.bits) - 1 > block.raw_max - block.raw_min) {
+      in.report("bits", "so many bits do not fit between `raw_min` and `raw_max`");
+    }
+  }
+
+  void terminals(MapReader& in, drivers::TerminalBlock& block, const std::vector<int>& functions,
+                 std::int64_t most_registers) {
+    drivers::RegisterBlock& registers = block.registers;
+    registers.kind = kind(in);
+    registers.count =
+        static_cast<std::uint16_t>(in.integer("count", 1, most_registers / words_of(registers.kind)));
+    registers.function = function(in, functions, "allowed is");
+    registers.address = address(in, registers.registers());
+    scaling(in, block);
+    converter(in, block);
+  }
+
+  void inputs(const Node& node) {
+    MapReader in(document_, node, problems_, "the inputs");
+    terminals(in, map_.inputs, {3, 4}, drivers::max_read_registers);
+    for (const Node* item : in.sequence("error_raws", false)) {
+      const auto raw = document::number_in(document_, *item, raw_range(map_.inputs.registers.kind), problems_,
+                                           "an error code");
+      if (raw.has_value()) map_.inputs.error_raws.push_back(*raw);
+    }
+  }
+
+  void outputs(const Node& node) {
+    MapReader in(document_, node, problems_, "the outputs");
+    terminals(in, map_.outputs, {fc_write_register, fc_write_registers}, drivers::max_fc23_write_registers);
+    const drivers::RegisterBlock& registers = map_.outputs.registers;
+    if (registers.function == fc_write_register && words_of(registers.kind) > 1) {
+      in.report("function", "function 6 writes one register, these outputs have two each", "use 16");
+    }
+  }
+
+  std::vector<std::uint16_t> status_values(MapReader& in, std::string_view key, bool required) {
+    std::vector<std::uint16_t> values;
+    for (const Node* item : in.sequence(key, required)) {
+      const auto value = document::number_in(document_, *item, {0, 0xffff}, problems_, "a status value");
+      if (!value.has_value()) continue;
+      if (*value != std::floor(*value)) {
+        problems_.add(document_.problem(item->at, "a status value must be a whole number"));
+      }
+      values.push_back(static_cast<std::uint16_t>(*value));
+    }
+    return values;
+  }
+
+  void input_status(const Node& node) {
+    MapReader in(document_, node, problems_, "the input status");
+    drivers::StatusBlock block;
+    block.registers.count = map_.inputs.registers.count;
+    block.registers.function = function(in, {3, 4}, "allowed is");
+    block.registers.address = address(in, block.registers.registers());
+    block.ok = status_values(in, "ok", true);
+    block.over = status_values(in, "over", false);
+    block.under = status_values(in, "under", false);
+    if (in.has("ok") && block.ok.empty()) in.report("ok", "no status value means that an input is well");
+    map_.input_status = block;
+  }
+
+  void read_back(const Node& node) {
+    MapReader in(document_, node, problems_, "the read-back");
+    drivers::ReadBack block;
+    block.registers = map_.outputs.registers;
+    block.registers.function = function(in, {3, 4}, "allowed is");
+    block.registers.address = address(in, block.registers.registers());
+    block.tolerance_raw = in.number("tolerance_raw", {0, 4294967295.0});
+    block.lag_exchanges =
+        static_cast<std::uint32_t>(in.optional_integer("lag_exchanges", 0, 100).value_or(0));
+    map_.read_back = block;
+  }
+
+  drivers::FixedWrite fixed_write(const Node& node, const std::string& what) {
+    MapReader in(document_, node, problems_, what);
+    drivers::FixedWrite write;
+    write.function =
+        function(in, {fc_write_coil, fc_write_register, fc_write_registers}, "a write has one of");
+    write.address = address(in, 1);
+    write.value = value_of(in, write.function == fc_write_coil ? 1 : 0xffff);
+    return write;
+  }
+
+  /// A number, or the mask of the functions that feed the watchdog, so that it cannot disagree with them.
+  std::uint16_t value_of(MapReader& in, std::int64_t largest) {
+    const Node* const node = in.child("value", true);
+    if (node == nullptr) return 0;
+    if (largest > 1 && node->scalar == "functions_1_to_16") return functions_mask(1);
+    if (largest > 1 && node->scalar == "functions_17_to_32") return functions_mask(17);
+    return static_cast<std::uint16_t>(in.integer("value", 0, largest));
+  }
+
+  std::uint16_t functions_mask(unsigned first) const {
+    unsigned mask = 0;
+    for (const std::uint8_t code : map_.watchdog.functions) {
+      if (code >= first && code < first + 16) mask |= 1U << (code - first);
+    }
+    return static_cast<std::uint16_t>(mask);
+  }
+
+  std::vector<drivers::FixedWrite> fixed_writes(const Node& node, const std::string& what) {
+    if (node.kind != Node::Kind::sequence) return {fixed_write(node, what)};
+    std::vector<drivers::FixedWrite> writes;
+    for (const Node& item : node.items) writes.push_back(fixed_write(item, what));
+    return writes;
+  }
+
+  drivers::BoardWatchdog::Tripped tripped(const Node& node) {
+    MapReader in(document_, node, problems_, "the watchdog's tripped state");
+    drivers::BoardWatchdog::Tripped state;
+    state.function = function(in, {1, 2, 3, 4}, "a read has one of");
+    state.count =
+        static_cast<std::uint16_t>(in.optional_integer("count", 1, drivers::max_read_registers).value_or(1));
+    state.address = address(in, state.count);
+    state.mask = static_cast<std::uint16_t>(in.optional_integer("mask", 1, 0xffff).value_or(0xffff));
+    return state;
+  }
+
+  void watchdog(const Node& node) {
+    MapReader in(document_, node, problems_, "the watchdog");
+    drivers::BoardWatchdog& watchdog = map_.watchdog;
+    const std::size_t before = problems_.size();
+    if (in.choice("kind", {"communication_timeout", "none"}) == 1) return;
+    // A misspelt kind: the other keys say whether it was to be a watchdog.
+    if (problems_.size() != before && in.keys().size() <= 1) return;
+    watchdog.kind = drivers::BoardWatchdog::Kind::communication_timeout;
+    watchdog.timeout_s = in.number("timeout_s", {0.001, 3600});
+    watchdog.safe_electrical = in.numbers("safe" + std::string(suffix_of(map_.outputs.unit)),
+                                          map_.outputs.registers.count, {-1000, 1000});
+    watchdog.feed = static_cast<drivers::BoardWatchdog::Feed>(
+        in.choice("fed_by", {"any_request", "functions", "feed_write"}));
+    if (watchdog.feed == drivers::BoardWatchdog::Feed::functions) feeding_functions(in);
+    if (watchdog.feed == drivers::BoardWatchdog::Feed::feed_write) {
+      if (const Node* write = in.child("feed_write", true)) {
+        watchdog.feed_write = fixed_write(*write, "the feeding write");
+      }
+    }
+    if (const Node* state = in.child("tripped", false)) watchdog.tripped = tripped(*state);
+    if (const Node* write = in.child("clear", false)) {
+      watchdog.clear = fixed_writes(*write, "the write that clears the watchdog");
+    }
+  }
+
+  /// The daemon sends nothing but what an exchange needs: one of those functions must be there.
+  void feeding_functions(MapReader& in) {
+    std::vector<std::uint8_t>& functions = map_.watchdog.functions;
+    for (const Node* item : in.sequence("functions", true)) {
+      const auto code = document::number_in(document_, *item, {1, 127}, problems_, "a function code");
+      if (code.has_value()) functions.push_back(static_cast<std::uint8_t>(*code));
+    }
+    const std::uint8_t used = map_.has_fc23 ? std::uint8_t{23} : map_.outputs.registers.function;
+    if (used < fc_write_register) return;  // reported where it stands
+    if (std::find(functions.begin(), functions.end(), used) == functions.end()) {
+      in.report("functions",
+                "the outputs are written by function " + std::to_string(used) + ", which does not feed it");
+    }
+  }
+
+  /// What belongs to outputs or inputs needs them.
+  void check_directions(MapReader& in) {
+    const auto needs = [&](std::string_view key, const std::string& direction) {
+      if (in.has(key) && !in.has(direction)) {
+        in.report(key, "`" + std::string(key) + "` needs `" + direction + "`, which this board has not");
+      }
+    };
+    needs("input_status", "inputs");
+    needs("read_back", "outputs");
+    if (map_.watchdog.kind != drivers::BoardWatchdog::Kind::none) needs("watchdog", "outputs");
+    if (map_.has_fc23) {
+      needs("fc23", "inputs");
+      needs("fc23", "outputs");
+    }
+  }
+
+  void check_fc23(MapReader& in) {
+    if (!map_.has_fc23 || !in.has("inputs") || !in.has("outputs")) return;
+    if (map_.inputs.registers.function != fc_read_holding) {
+      in.report("fc23", "function 23 reads holding registers, but the inputs are read by function " +
+                            std::to_string(map_.inputs.registers.function));
+    }
+    if (map_.outputs.registers.function != fc_write_registers) {
+      in.report("fc23", "function 23 writes several registers: the outputs' function must be 16");
+    }
+  }
+
+  const document::Document& document_;
+  document::Problems& problems_;
+  drivers::BoardMap map_;
+};
+
+}  // namespace
+
+std::optional<drivers::BoardMap> read_board_map(const document::Document& document,
+                                                document::Problems& problems) {
+  const std::size_t before = problems.size();
+  drivers::BoardMap map = BoardReader(document, problems).board();
+  if (problems.full() || problems.size() != before) return std::nullopt;
+  return map;
+}
+
+std::optional<drivers::BoardMap> load_board_map(const std::string& path, document::Problems& problems) {
+  const std::size_t before = problems.size();
+  const document::Document document = document::parse_file(path, problems);
+  if (problems.full() || problems.size() != before) return std::nullopt;
+  return read_board_map(document, problems);
+}
+
+}  // namespace softgrip::rig

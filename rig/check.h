@@ -1,0 +1,45 @@
+#pragma once
+// Reading configuration files of any kind only to say what is wrong with them: `softgrip check FILE...`.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "document/node.h"
+
+namespace softgrip::rig {
+
+enum class FileKind : std::uint8_t { unknown, rig, board_map, model, sequence };
+/// "rig", "board map", "model", "sequence"; "unknown"
+[[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
+
+/// What a document is, by the keys at its top; misspelt ones count too, but less. A document without any is a
+/// problem.
+[[nodiscard]] FileKind kind_of(const document::Document& document, document::Problems& problems);
+
+/// One file that was checked.
+struct CheckedFile {
+  std::string path;
+  FileKind kind = FileKind::unknown;
+  std::string name;        ///< what it calls itself, or empty
+  std::size_t errors = 0;  ///< in this file, not in those that it names
+  std::size_t warnings = 0;
+};
+
+/// What check_files() found.
+struct CheckReport {
+  std::vector<CheckedFile> files;
+  /// Of all files and of those that they name, each once; format() prints them.
+  document::Problems problems;
+
+  /// No errors: exit code 0, else 3.
+  [[nodiscard]] bool accepted() const noexcept { return problems.empty(); }
+};
+
+/// Reads every file as what it is. When rigs and sequences are among them, each sequence is also fitted to
+/// each rig: names of channels, targets within limits.
+[[nodiscard]] CheckReport check_files(std::span<const std::string> paths);
+
+}  // namespace softgrip::rig

@@ -1,0 +1,116 @@
+// What only the whole rig shows.
+
+#include <algorithm>
+
+#include "document/number.h"
+#include "rig/rig_file_reader.h"
+
+namespace softgrip::rig {
+
+namespace {
+
+using document::written;
+
+/// Modbus: the safe value of each output in use is at or below the lowest pressure of its limits.
+bool vents(const Context& context, const drivers::ModbusSettings& board) {
+  for (std::size_t i = 0; i < context.wiring.size(); ++i) {
+    const drivers::OutputWiring& valve = context.wiring[i].valve;
+    if (valve.module >= board.modules.size()) return false;
+    const drivers::BoardWatchdog& watchdog = board.modules[valve.module].map.watchdog;
+    if (watchdog.kind == drivers::BoardWatchdog::Kind::none) return false;
+    if (valve.output >= watchdog.safe_electrical.size()) return false;
+    const double pressure = valve.scaling.y_at(watchdog.safe_electrical[valve.output]);
+    const control::LimitSettings& limits = context.rig.settings.channels[i].limits;
+    const double slack = 0.01 * (limits.pressure_max_kpa - limits.pressure_min_kpa);
+    if (pressure > limits.pressure_min_kpa + slack) return false;
+  }
+  return true;
+}
+
+void check_watchdog(Context& context, MapReader& top) {
+  context.rig.settings.safety.board_vents_when_silent = board_vents_when_silent(context);
+  const bool accepted = !context.rig.accept_no_watchdog.empty();
+  if (context.rig.settings.safety.board_vents_when_silent) {
+    if (accepted) top.warn("safety", "`accept_no_watchdog` is not needed: this board vents by itself");
+    return;
+  }
+  if (accepted) return;
+  top.report(
+      "board", "this board does not vent by itself when softgripd dies, and the rig does not accept that",
+      "to accept it, write under `safety`: accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
+}
+
+void check_watchdog_time(Context& context, MapReader& top) {
+  double timeout_s = 0;
+  if (const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
+    for (const drivers::ChannelWiring& channel : context.wiring) {
+      const drivers::BoardWatchdog& watchdog = modbus->modules[channel.valve.module].map.watchdog;
+      if (watchdog.kind == drivers::BoardWatchdog::Kind::none) continue;
+      timeout_s = timeout_s > 0 ? std::min(timeout_s, watchdog.timeout_s) : watchdog.timeout_s;
+    }
+  }
+  if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board)) {
+    timeout_s = simulated->watchdog_timeout_s;
+  }
+  if (timeout_s > 0 && timeout_s < 3 * context.period_s()) {
+    top.warn("board", "the board's watchdog acts after " + written(timeout_s) + " s, less than three cycles",
+             "one late exchange would vent the fingers");
+  }
+}
+
+/// The round trip of a network is an assumption until it is measured: whoever knows better says so. The time
+/// of bytes on a serial line is not: a deadline shorter than that is never met.
+void check_budget(Context& context, MapReader& top) {
+  const auto* const settings = std::get_if<drivers::ModbusSettings>(&context.rig.board);
+  if (settings == nullptr) return;
+  const drivers::Board::Budget budget = drivers::ModbusBoard(*settings).budget();
+  const bool serial = context.board_key == "modbus_rtu";
+  if (serial && budget.exchange_s > context.rig.loop.exchange_deadline_s) {
+    top.report("board", "an exchange takes longer than `exchange_deadline_s` allows: " + budget.explanation,
+               "a longer deadline, a higher `baud`, or fewer terminals");
+  }
+  if (context.rig.accept_over_budget || budget.exchange_s <= context.period_s()) return;
+  top.report(
+      "rate_hz",
+      "the bus is not fast enough for " + written(context.rig.settings.rate_hz) +
+          " exchanges a second: " + budget.explanation,
+      "lower the rate or, if you know that the bus is faster, write `accept_over_budget: true` under `" +
+          context.board_key + "`");
+}
+
+}  // namespace
+
+bool board_vents_when_silent(const Context& context) {
+  if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board)) {
+    return simulated->watchdog_timeout_s > 0;
+  }
+  const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board);
+  return modbus != nullptr && vents(context, *modbus);
+}
+
+void check_whole(Context& context, MapReader& top) {
+  context.rig.wiring = context.wiring;
+  const std::size_t before = context.problems.size();
+  if (auto* const modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
+    modbus->wiring = context.wiring;
+    for (std::string& sentence : drivers::problems_of(*modbus)) {
+      top.report("channels", std::move(sentence));
+    }
+  }
+  if (auto* const converters = std::get_if<drivers::IioSettings>(&context.rig.board)) {
+    converters->wiring = context.wiring;
+    const drivers::ModuleTerminals terminals = drivers::terminals_of(*converters);
+    for (std::string& sentence : drivers::wiring_problems({&terminals, 1}, converters->wiring)) {
+      top.report("channels", std::move(sentence));
+    }
+  }
+  if (context.problems.size() != before) return;
+  check_watchdog(context, top);
+  check_watchdog_time(context, top);
+  for (std::string& sentence : control::settings_problems(context.rig.settings)) {
+    top.report("channels", std::move(sentence));
+  }
+  check_budget(context, top);
+}
+
+}  // namespace softgrip::rig

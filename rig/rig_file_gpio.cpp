@@ -1,0 +1,106 @@
+// The digital lines of a rig file.
+
+#include <array>
+
+#include "rig/rig_file_reader.h"
+
+namespace softgrip::rig {
+
+namespace {
+
+using document::Node;
+using drivers::GpioBias;
+using drivers::GpioLineSettings;
+using drivers::GpioRole;
+
+/// The kernel's names of chips, labels and lines have room for 31 bytes.
+constexpr std::size_t longest_name = 31;
+
+std::string read_kernel_name(MapReader& reader, std::string_view key, bool required) {
+  const auto text = required ? std::optional(reader.text(key)) : reader.optional_text(key);
+  if (text && text->size() > longest_name) {
+    reader.report(key, "`" + std::string(key) + "` is longer than 31 bytes, which no name of the kernel is");
+  }
+  return text.value_or("");
+}
+
+void read_which_line(MapReader& reader, GpioLineSettings& line, const std::string& what) {
+  line.chip = read_kernel_name(reader, "chip", true);
+  line.line = read_kernel_name(reader, "line", false);
+  if (const auto offset = reader.optional_integer("offset", 0, 65535)) {
+    line.offset = static_cast<std::uint32_t>(*offset);
+  }
+  if (reader.has("line") == reader.has("offset") && !reader.keys().empty()) {
+    reader.report(reader.has("line") ? "offset" : "chip",
+                  what + " needs either `line`, its name, or `offset`, its number in the chip",
+                  "`gpioinfo` lists both");
+  }
+}
+
+/// A wire that breaks leaves the input to the chip's resistor: then it must not look as if all were well.
+void check_broken_wire(MapReader& reader, const GpioLineSettings& line) {
+  if (line.bias != GpioBias::pull_up && line.bias != GpioBias::pull_down) return;
+  const bool open_is_active = (line.bias == GpioBias::pull_up) != line.active_low;
+  const bool trips_when_active = line.role == GpioRole::emergency_stop;
+  if (open_is_active == trips_when_active) return;
+  reader.warn("bias",
+              trips_when_active ? "a broken wire would read as a released emergency stop"
+                                : "a broken wire would read as a part in position",
+              "with this `active`, use the other pull, and a contact that is closed while all is well");
+}
+
+/// Reads one line; `extra` reads the keys that only this role has.
+void read_line(Context& context, MapReader& gpio, GpioRole role) {
+  const std::string name(drivers::name_of(role));
+  const Node* const node = gpio.child(name, false);
+  if (node == nullptr) return;
+  GpioSettings& settings = *context.rig.gpio;
+  MapReader reader(context.document, *node, context.problems, name);
+  GpioLineSettings line;
+  line.role = role;
+  read_which_line(reader, line, name);
+  line.active_low = reader.choice("active", {"high", "low"}) == 1;
+  if (drivers::is_input(role)) {
+    const auto bias = reader.optional_choice("bias", {"as_is", "disabled", "pull_up", "pull_down"});
+    line.bias = static_cast<GpioBias>(bias.value_or(0));
+    if (bias && reader.good("bias")) check_broken_wire(reader, line);
+  }
+  if (role == GpioRole::enable) {
+    settings.enable_drops_on_fault = reader.choice("on_fault", {"drop", "keep"}) == 0;
+  }
+  for (std::size_t i = 0; i < settings.lines.size(); ++i) {
+    const GpioLineSettings& other = settings.lines[i];
+    if (other.chip != line.chip || other.line != line.line || other.offset != line.offset) continue;
+    reader.report(line.line.empty() ? "offset" : "line", "this line is already the `" +
+                                                             std::string(drivers::name_of(other.role)) +
+                                                             "` at " + place(settings.places[i].at));
+  }
+  settings.places.push_back(context.document.problem(node->at, ""));
+  settings.lines.push_back(std::move(line));
+}
+
+}  // namespace
+
+void read_gpio(Context& context, MapReader& top) {
+  const Node* const node = top.child("gpio", false);
+  if (node == nullptr) return;
+  GpioSettings& settings = context.rig.gpio.emplace();
+  MapReader reader(context.document, *node, context.problems, "gpio");
+  settings.debounce_s = reader.number("debounce_s", {0.0001, 0.1});
+  settings.stale_after_s = reader.number("stale_after_s", {0.01, 10});
+  if (const auto interval = reader.optional_number("look_interval_s", {0.001, 0.1})) {
+    settings.look_interval_s = *interval;
+  }
+  for (std::size_t i = 0; i < drivers::gpio_role_count; ++i)
+    read_line(context, reader, static_cast<GpioRole>(i));
+  reader.finish();
+  if (settings.lines.empty() && node->kind == Node::Kind::map) {
+    top.report("gpio", "`gpio` names no line",
+               "one of emergency_stop, part_in_position, enable, ready_lamp, fault_lamp");
+  }
+  if (settings.stale_after_s < 4 * settings.look_interval_s && reader.good("stale_after_s")) {
+    reader.report("stale_after_s", "`stale_after_s` must be at least four times `look_interval_s`");
+  }
+}
+
+}  // namespace softgrip::rig

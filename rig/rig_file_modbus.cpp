@@ -1,0 +1,188 @@
+// The board of a rig file on Modbus: modules at network hosts, or on a serial line.
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+#include <array>
+
+#include "document/number.h"
+#include "drivers/modbus/serial_port.h"
+#include "rig/board_map_file.h"
+#include "rig/rig_file_reader.h"
+
+namespace softgrip::rig {
+
+namespace {
+
+using document::Node;
+using document::written;
+using drivers::ModbusModuleSettings;
+using drivers::ModbusSettings;
+
+constexpr int largest_tcp_unit = 255;
+// 0 is the broadcast, which nobody answers; 248 to 255 are reserved (Modbus over Serial Line V1.02, 2.2).
+constexpr int largest_rtu_unit = 247;
+/// An adapter that holds answers back longer than this is told of.
+constexpr double usual_latency_s = 0.0015;
+
+/// A numeric address: names would have to be resolved, which takes as long as it takes.
+std::string read_host(MapReader& reader) {
+  std::string host = reader.text("host");
+  std::array<unsigned char, sizeof(in6_addr)> address{};
+  if (host.empty() || ::inet_pton(AF_INET, host.c_str(), address.data()) == 1 ||
+      ::inet_pton(AF_INET6, host.c_str(), address.data()) == 1) {
+    return host;
+  }
+  reader.report("host", "`host` must be a numeric address, found `" + document::shown(host) + "`",
+                host == "localhost" ? "write 127.0.0.1" : "names are not resolved");
+  return host;
+}
+
+std::optional<drivers::BoardMap> read_map(Context& context, MapReader& reader) {
+  const std::size_t before = context.problems.size();
+  const auto document = named_document(context, reader, "map", InputFile::Role::board);
+  if (!document) return std::nullopt;
+  auto map = read_board_map(*document, context.problems);
+  if (context.problems.size() != before) map.reset();
+  return map;
+}
+
+/// The modules of a board: `map` and `unit` (on a network `host` and `port` too) beside the other keys for a
+/// single one, or a list under `modules`, each with a name.
+class ModulesReader {
+ public:
+  ModulesReader(Context& context, ModbusSettings& settings, bool serial)
+      : context_(context), settings_(settings), serial_(serial) {}
+
+  void read(MapReader& board) {
+    if (!board.has("modules")) {
+      add(board, "");
+      return;
+    }
+    for (const Node* item : board.sequence("modules", true)) {
+      MapReader reader(context_.document, *item, context_.problems, "a module");
+      const std::string name = read_name(reader, "name");
+      const auto same = [&](const KnownModule& known) { return known.name == name; };
+      if (!name.empty() && std::any_of(context_.modules.begin(), context_.modules.end(), same)) {
+        reader.report("name", "another module is called `" + name + "`");
+      }
+      add(reader, name);
+    }
+    if (board.good("modules") && settings_.modules.empty()) {
+      board.report("modules", "`modules` must list at least one module");
+    }
+  }
+
+ private:
+  void add(MapReader& reader, const std::string& name) {
+    ModbusModuleSettings module;
+    const auto map = read_map(context_, reader);
+    if (map) module.map = *map;
+    module.name = name.empty() ? module.map.name : name;
+    if (!serial_) module.link = link_of(read_address(reader));
+    module.unit = static_cast<std::uint8_t>(
+        reader.integer("unit", serial_ ? 1 : 0, serial_ ? largest_rtu_unit : largest_tcp_unit));
+    const auto same = [&](const ModbusModuleSettings& other) {
+      return other.link == module.link && other.unit == module.unit;
+    };
+    if (reader.good("unit") && std::any_of(settings_.modules.begin(), settings_.modules.end(), same)) {
+      reader.report("unit", "another module has this unit id at the same place");
+    }
+    KnownModule known{module.name, std::nullopt};
+    if (map) known.terminals = drivers::terminals_of(*map);
+    if (known.terminals) known.terminals->name = module.name;
+    context_.modules.push_back(std::move(known));
+    settings_.modules.push_back(std::move(module));
+  }
+
+  static drivers::TcpAddress read_address(MapReader& reader) {
+    drivers::TcpAddress address;
+    address.host = read_host(reader);
+    address.port = static_cast<std::uint16_t>(reader.integer("port", 1, 65535));
+    return address;
+  }
+
+  /// Modules behind one address share a session.
+  std::size_t link_of(const drivers::TcpAddress& address) {
+    auto& links = settings_.links;
+    const auto found = std::find(links.begin(), links.end(), drivers::ModbusAddress(address));
+    if (found != links.end()) return static_cast<std::size_t>(found - links.begin());
+    links.emplace_back(address);
+    return links.size() - 1;
+  }
+
+  Context& context_;
+  ModbusSettings& settings_;
+  bool serial_;
+};
+
+constexpr std::array<std::uint32_t, 12> baud_rates{1200,  2400,   4800,   9600,   19200,  38400,
+                                                   57600, 115200, 230400, 460800, 921600, 1000000};
+
+void read_format(MapReader& reader, drivers::SerialLine& line) {
+  const auto known = drivers::formats();
+  const std::vector<std::string> texts(known.begin(), known.end());
+  (void)drivers::set_format(texts[reader.choice("format", texts)], line);
+}
+
+/// Names that the kernel gives in the order of plugging in.
+void advise_on_name(MapReader& reader, const std::string& device) {
+  if (device.rfind("/dev/ttyUSB", 0) != 0 && device.rfind("/dev/ttyACM", 0) != 0) return;
+  reader.warn("device", "`" + document::shown(device) + "` may be another adapter after the next start",
+              "use the adapter's own name, see: ls -l /dev/serial/by-id");
+}
+
+/// What the file says, else what the kernel says of the adapter that is plugged in now.
+void read_adapter_latency(MapReader& reader, drivers::SerialLine& line) {
+  const auto stated = reader.optional_number("adapter_latency_s", {0, 1});
+  const auto found = drivers::adapter_latency(line.device);
+  line.adapter_latency_s = stated.value_or(found ? found->seconds : 0);
+  if (!found || found->seconds <= usual_latency_s) return;
+  reader.warn("device",
+              "the adapter holds every answer back for up to " + written(found->seconds * 1e3) +
+                  " ms (its latency timer)",
+              "echo 1 > " + found->path + " (for good: a udev rule, ATTR{device/latency_timer}=\"1\")");
+}
+
+drivers::SerialLine read_line(MapReader& reader) {
+  drivers::SerialLine line;
+  line.device = reader.text("device");
+  if (reader.good("device") && line.device.front() != '/') {
+    reader.report("device",
+                  "`device` must be an absolute path, found `" + document::shown(line.device) + "`");
+  }
+  line.baud = static_cast<std::uint32_t>(reader.integer("baud", baud_rates.front(), baud_rates.back()));
+  if (reader.good("baud") && std::find(baud_rates.begin(), baud_rates.end(), line.baud) == baud_rates.end()) {
+    std::string list;
+    for (const std::uint32_t rate : baud_rates) list += (list.empty() ? "" : ", ") + std::to_string(rate);
+    reader.report("baud", "`baud` is none of the usual rates", list);
+  }
+  read_format(reader, line);
+  line.silence_s = reader.optional_number("silence_s", {1e-5, 1});
+  line.turnaround_s = reader.number("turnaround_s", {0, 1});
+  read_adapter_latency(reader, line);
+  line.echo = reader.optional_boolean("echo").value_or(false);
+  advise_on_name(reader, line.device);
+  return line;
+}
+
+}  // namespace
+
+void read_modbus_tcp(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "modbus_tcp");
+  ModbusSettings settings;
+  ModulesReader(context, settings, false).read(reader);
+  read_timing(context, reader);
+  context.rig.board = std::move(settings);
+}
+
+void read_modbus_rtu(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "modbus_rtu");
+  ModbusSettings settings;
+  settings.links.emplace_back(read_line(reader));
+  ModulesReader(context, settings, true).read(reader);
+  read_timing(context, reader);
+  context.rig.board = std::move(settings);
+}
+
+}  // namespace softgrip::rig

@@ -1,0 +1,97 @@
+#pragma once
+// The parts that read_rig() is made of; each reads one map of a rig file. Internal to rig_file*.cpp.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "document/reader.h"
+#include "rig/rig_file.h"
+
+namespace softgrip::rig {
+
+using document::MapReader;
+
+/// A module of the board, as far as it could be read.
+struct KnownModule {
+  std::string name;
+  std::optional<drivers::ModuleTerminals> terminals;
+};
+/// A terminal of a module.
+using UsedTerminals = std::map<std::pair<std::size_t, std::size_t>, document::Location>;
+
+/// What is carried along while a rig file is read.
+struct Context {
+  const document::Document& document;
+  document::Problems& problems;
+  RigFile& rig;
+  std::string board_key;                            ///< which kind of board it is
+  std::vector<KnownModule> modules;                 ///< of a board with terminals
+  std::vector<drivers::ChannelWiring> wiring;       ///< one per channel
+  std::map<std::string, document::Location> names;  ///< of channels, and where each stands
+  UsedTerminals inputs;
+  UsedTerminals outputs;
+  std::map<std::string, std::optional<model::Model>> models;  ///< by path: each file is read once
+
+  bool rate_known = false;  ///< rate_hz was good: what is compared with a cycle can be
+
+  [[nodiscard]] double period_s() const { return 1 / rig.settings.rate_hz; }
+};
+
+/// A path of the rig file as seen from the working directory.
+[[nodiscard]] std::string resolved(const Context& context, const std::string& path);
+/// The document in the file that `key` names; a file that cannot be read is reported at the key.
+[[nodiscard]] std::optional<document::Document> named_document(Context& context, MapReader& reader,
+                                                               std::string_view key, InputFile::Role role);
+/// The model in the file that `key` names.
+[[nodiscard]] std::optional<model::Model> named_model(Context& context, MapReader& reader,
+                                                      std::string_view key, InputFile::Role role);
+
+/// A name that is good for folders, metrics and messages: letters, digits, `-` and `_`.
+[[nodiscard]] std::string read_name(MapReader& reader, std::string_view key);
+/// "12:5"
+[[nodiscard]] std::string place(document::Location at);
+/// "`key` is already ... at 12:5"
+void report_repeated(MapReader& reader, std::string_view key, const std::string& what,
+                     document::Location first);
+
+/// The maps at the top of the file.
+void read_modbus_tcp(Context& context, const document::Node& node);
+void read_modbus_rtu(Context& context, const document::Node& node);
+void read_iio(Context& context, const document::Node& node);
+/// Of a board that takes its time: how long exchanges may take, how a lost session is made anew.
+void read_timing(Context& context, MapReader& board);
+void read_channels(Context& context, MapReader& top);
+void read_simulated_board(Context& context, const document::Node& node);
+void read_safety(Context& context, MapReader& top);
+void read_faults(Context& context, MapReader& top);
+void read_detection(Context& context, MapReader& top);
+void read_rest(Context& context, MapReader& top);
+void read_loop(Context& context, MapReader& top);
+void read_real_time(Context& context, MapReader& top);
+void read_recorder(Context& context, MapReader& top);
+void read_socket(Context& context, MapReader& top);
+void read_gpio(Context& context, MapReader& top);
+
+/// Maps that may stand at the top, for all channels, or in a channel, for itself.
+[[nodiscard]] control::PlausibilitySettings read_plausibility(Context& context, const document::Node& node);
+[[nodiscard]] control::ModelHealthSettings read_model_health(Context& context, const document::Node& node);
+
+/// How a channel is wired.
+[[nodiscard]] drivers::OutputWiring read_valve(Context& context, const document::Node& node,
+                                               const std::string& who, const control::LimitSettings& limits,
+                                               ValveFacts& facts);
+[[nodiscard]] drivers::InputWiring read_sensor(Context& context, const document::Node& node,
+                                               const std::string& who, const control::LimitSettings& limits);
+[[nodiscard]] drivers::InputWiring read_pressure_monitor(Context& context, const document::Node& node,
+                                                         const std::string& who);
+
+/// What only the whole rig shows: the bus budget, the watchdog, what control makes of the settings. Called
+/// when everything could be read.
+void check_whole(Context& context, MapReader& top);
+/// Whether the board puts every channel to its lowest pressure by itself.
+[[nodiscard]] bool board_vents_when_silent(const Context& context);
+
+}  // namespace softgrip::rig

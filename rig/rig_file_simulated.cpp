@@ -1,0 +1,156 @@
+// The board of a rig file that is simulated in process.
+
+#include <algorithm>
+#include <array>
+
+#include "rig/rig_file_reader.h"
+
+namespace softgrip::rig {
+
+namespace {
+
+using document::Node;
+
+/// An object between the fingers: a map, or `none` where it is pulled out.
+std::optional<simulation::PlantObject> read_object(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "object");
+  simulation::PlantObject object;
+  object.position_mm = reader.number("position_mm", {-1000, 1000});
+  object.yielding = reader.number("yielding", {0, 1});
+  return object;
+}
+
+/// Distinct seeds per channel from one number, by a step of SplitMix64 (Steele, Lea, Flood 2014).
+std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
+  std::uint64_t z = seed + (channel + 1) * 0x9E3779B97F4A7C15U;
+  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+  return z ^ (z >> 31U);
+}
+
+simulation::PlantSettings read_plant(Context& context, const Node& node, const std::string& name) {
+  MapReader reader(context.document, node, context.problems, "the plant of `" + name + "`");
+  simulation::PlantSettings plant;
+  if (const auto model = named_model(context, reader, "model", InputFile::Role::plant)) plant.model = *model;
+  plant.displacement_noise_mm = reader.number("displacement_noise_mm", {0, 100});
+  plant.pressure_noise_kpa = reader.number("pressure_noise_kpa", {0, 100});
+  if (const Node* object = reader.child("object", false)) plant.object = read_object(context, *object);
+  plant.sample_time_s = context.period_s();
+  return plant;
+}
+
+simulation::SimulatedChannel simulated_channel(const Context& context, std::size_t index) {
+  const drivers::ChannelWiring& wiring = context.wiring[index];
+  simulation::SimulatedChannel channel;
+  channel.name = wiring.name;
+  channel.measures_pressure = wiring.pressure.has_value();
+  channel.valve_max_kpa = context.rig.valves[index].range_max_kpa;
+  const drivers::InputWiring& sensor = wiring.displacement;
+  const double a = sensor.scaling.y_at(sensor.valid_min);
+  const double b = sensor.scaling.y_at(sensor.valid_max);
+  channel.sensor_min_mm = std::min(a, b);
+  channel.sensor_max_mm = std::max(a, b);
+  return channel;
+}
+
+using Event = simulation::SimulatedEvent;
+
+void read_line_fault(MapReader& reader, Event& event) {
+  event.kind = Event::Kind::line_fault;
+  using Kind = simulation::LineFault::Kind;
+  event.line.kind = static_cast<Kind>(reader.choice("line", {"free", "blocked", "leaking"}));
+  if (event.line.kind == Kind::leaking) event.line.share = reader.number("share", {0, 1});
+}
+
+void read_sensor_fault(MapReader& reader, Event& event) {
+  event.kind = Event::Kind::sensor_fault;
+  using Kind = simulation::SensorFault::Kind;
+  event.sensor.kind = static_cast<Kind>(reader.choice("sensor", {"good", "stuck", "offset", "out_of_range"}));
+  if (event.sensor.kind == Kind::offset) event.sensor.value_mm = reader.number("value_mm", {-1000, 1000});
+}
+
+void read_object_event(Context& context, MapReader& reader, Event& event) {
+  event.kind = Event::Kind::object;
+  const Node* const node = reader.child("object", true);
+  if (node == nullptr) return;
+  if (node->kind == Node::Kind::scalar && node->scalar == "none") return;
+  event.object = read_object(context, *node);
+}
+
+/// One of these keys says what happens.
+constexpr std::array<std::string_view, 5> happenings{"object", "line", "sensor", "bus", "writes"};
+
+Event read_event(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "an event");
+  Event event;
+  event.at_s = reader.number("at_s", {0, 1e7});
+  const auto count = std::count_if(happenings.begin(), happenings.end(),
+                                   [&](std::string_view key) { return reader.has(key); });
+  if (count != 1 && node.kind == Node::Kind::map) {
+    context.problems.add(context.document.problem(
+        node.at, "an event must have exactly one of `object`, `line`, `sensor`, `bus` and `writes`"));
+  }
+  if (reader.has("object")) read_object_event(context, reader, event);
+  if (reader.has("line")) read_line_fault(reader, event);
+  if (reader.has("sensor")) read_sensor_fault(reader, event);
+  if (reader.has("bus")) {
+    const std::size_t choice = reader.choice("bus", {"lost", "silent", "restored"});
+    event.kind = choice == 2 ? Event::Kind::bus_restored : Event::Kind::bus_lost;
+    event.status = choice == 1 ? drivers::BusStatus::timed_out : drivers::BusStatus::disconnected;
+  }
+  if (reader.has("writes")) {
+    event.kind = reader.choice("writes", {"refused", "taken"}) == 0 ? Event::Kind::write_refused
+                                                                    : Event::Kind::write_taken;
+  }
+  if (reader.has("channel")) {
+    std::vector<std::string> names;
+    for (const drivers::ChannelWiring& wiring : context.wiring) names.push_back(wiring.name);
+    event.channel = reader.choice("channel", names);
+  }
+  return event;
+}
+
+}  // namespace
+
+void read_simulated_board(Context& context, const Node& node) {
+  MapReader reader(context.document, node, context.problems, "simulated");
+  simulation::SimulatedBoardSettings settings;
+  const auto seed =
+      static_cast<std::uint64_t>(reader.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
+  context.rig.seed = seed;
+  settings.watchdog_timeout_s = reader.number("watchdog_timeout_s", {0, 60});
+  const int output_bits = static_cast<int>(reader.integer("output_bits", 0, 24));
+  const int input_bits = static_cast<int>(reader.integer("input_bits", 0, 24));
+  if (const Node* plants = reader.child("plants", true)) {
+    MapReader plant_reader(context.document, *plants, context.problems, "plants");
+    for (std::size_t i = 0; i < context.wiring.size(); ++i) {
+      simulation::SimulatedChannel channel = simulated_channel(context, i);
+      channel.output_bits = output_bits;
+      channel.input_bits = input_bits;
+      const Node* const plant = channel.name.empty() ? nullptr : plant_reader.child(channel.name, true);
+      if (plant != nullptr) channel.plant = read_plant(context, *plant, channel.name);
+      channel.plant.seed = seed_of(seed, i);
+      settings.channels.push_back(std::move(channel));
+    }
+  }
+  for (const Node* event : reader.sequence("events", false)) {
+    settings.events.push_back(read_event(context, *event));
+  }
+  context.rig.board = std::move(settings);
+}
+
+}  // namespace softgrip::rig
+
+namespace softgrip::rig {
+
+bool reseed(RigFile& rig, std::uint64_t seed) {
+  auto* const board = std::get_if<simulation::SimulatedBoardSettings>(&rig.board);
+  if (board == nullptr) return false;
+  rig.seed = seed;
+  for (std::size_t i = 0; i < board->channels.size(); ++i) {
+    board->channels[i].plant.seed = seed_of(seed, i);
+  }
+  return true;
+}
+
+}  // namespace softgrip::rig

@@ -1,0 +1,253 @@
+// How a channel of a rig file is wired: valve, sensor, pressure monitor.
+
+#include <algorithm>
+#include <array>
+
+#include "document/number.h"
+#include "rig/rig_file_reader.h"
+
+namespace softgrip::rig {
+
+namespace {
+
+using document::Node;
+using document::written;
+using drivers::ElectricalUnit;
+
+/// V and mA of any board there is; tighter limits come from the board map.
+constexpr document::Range electrical{-100, 100};
+
+/// Which of `stem_v` and `stem_ma` stands in the map decides the unit.
+struct ElectricalKey {
+  std::string name;
+  ElectricalUnit unit = ElectricalUnit::volt;
+};
+
+constexpr std::array<std::pair<std::string_view, ElectricalUnit>, 3> electrical_suffixes{
+    {{"_v", ElectricalUnit::volt},
+     {"_ma", ElectricalUnit::milliampere},
+     {"_kpa", ElectricalUnit::kilopascal}}};
+
+std::string_view suffix_of(ElectricalUnit unit) {
+  for (const auto& [suffix, of] : electrical_suffixes) {
+    if (of == unit) return suffix;
+  }
+  return {};
+}
+
+ElectricalKey electrical_key(MapReader& reader, const std::string& stem) {
+  std::optional<ElectricalKey> found;
+  for (const auto& [suffix, unit] : electrical_suffixes) {
+    const std::string name = stem + std::string(suffix);
+    if (!reader.has(name)) continue;
+    if (!found) {
+      found = ElectricalKey{name, unit};
+      continue;
+    }
+    reader.report(name, "`" + found->name + "` and `" + name + "` exclude each other");
+    reader.optional_numbers(name, 2, electrical);
+  }
+  return found.value_or(ElectricalKey{stem + "_v", ElectricalUnit::volt});
+}
+
+/// `at_v: [0, 10], is_kpa: [0, 100]`
+drivers::TwoPoints read_scaling(MapReader& reader, const std::string& at_key, std::string_view is_key,
+                                document::Range is_range) {
+  const auto at = reader.numbers(at_key, 2, electrical);
+  const auto is = reader.numbers(is_key, 2, is_range);
+  const auto distinct = [&](std::string_view key, const std::vector<double>& pair) {
+    if (reader.good(key) && pair[0] == pair[1]) {
+      reader.report(key, "the two points of `" + std::string(key) + "` must differ",
+                    "a straight line goes through two points");
+      return false;
+    }
+    return true;
+  };
+  const bool at_good = distinct(at_key, at);
+  const bool is_good = distinct(is_key, is);
+  if (!at_good || !is_good || !reader.good(at_key) || !reader.good(is_key)) return {};
+  return {at[0], is[0], at[1], is[1]};
+}
+
+/// Which module of the board a terminal belongs to: said by `module`, or the only one that has such
+/// terminals.
+std::size_t read_module(const Context& context, MapReader& reader, std::string_view key) {
+  if (context.modules.size() <= 1) return 0;
+  std::vector<std::string> names;
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < context.modules.size(); ++i) {
+    const KnownModule& module = context.modules[i];
+    names.push_back(module.name);
+    if (!module.terminals) continue;
+    const auto& terminals = key == "output" ? module.terminals->outputs : module.terminals->inputs;
+    if (!terminals.empty()) candidates.push_back(i);
+  }
+  if (candidates.size() == 1 && !reader.has("module")) return candidates.front();
+  const std::size_t chosen = reader.choice("module", names);
+  return reader.good("module") ? chosen : context.modules.size();
+}
+
+/// The terminal in the module's words, if the module could be read and has it.
+const drivers::Terminal* terminal_of(const Context& context, std::string_view key, std::size_t module,
+                                     std::size_t index) {
+  if (module >= context.modules.size() || !context.modules[module].terminals) return nullptr;
+  const drivers::ModuleTerminals& known = *context.modules[module].terminals;
+  const auto& terminals = key == "output" ? known.outputs : known.inputs;
+  return index < terminals.size() ? &terminals[index] : nullptr;
+}
+
+/// A terminal of the board, used once, and there.
+std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key, std::size_t module,
+                          UsedTerminals& used) {
+  const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
+  const bool unknown_module = !context.modules.empty() && module >= context.modules.size();
+  if (!reader.good(key) || unknown_module) return terminal;
+  const auto [first, fresh] = used.try_emplace({module, terminal}, reader.where(key));
+  if (!fresh) {
+    report_repeated(reader, key, "the " + std::string(key) + " " + std::to_string(terminal), first->second);
+  }
+  const bool known = module < context.modules.size() && context.modules[module].terminals.has_value();
+  if (!known || terminal_of(context, key, module, terminal) != nullptr) return terminal;
+  const drivers::ModuleTerminals& there = *context.modules[module].terminals;
+  const std::size_t count = key == "output" ? there.outputs.size() : there.inputs.size();
+  const std::string who = context.modules.size() > 1 ? "the module `" + there.name + "`" : "the board";
+  reader.report(key, who + " has no " + std::string(key) + " " + std::to_string(terminal),
+                count == 0 ? "it has none at all" : "they count from 0 to " + std::to_string(count - 1));
+  return terminal;
+}
+
+void check_unit(MapReader& reader, const ElectricalKey& key, const drivers::Terminal* terminal) {
+  if (terminal == nullptr || !reader.has(key.name) || terminal->unit == key.unit) return;
+  reader.report(key.name, "the board's terminals are in " + std::string(drivers::name_of(terminal->unit)) +
+                              " but `" + key.name + "` is in " + std::string(drivers::name_of(key.unit)));
+}
+
+/// What of the electrical range counts as a reading.
+void read_validity(MapReader& reader, const std::string& valid_key, drivers::InputWiring& wiring) {
+  const auto valid = reader.numbers(valid_key, 2, electrical);
+  if (reader.good(valid_key) && valid[0] >= valid[1]) {
+    reader.report(valid_key, "the first number of `" + valid_key + "` must be the smaller one");
+  }
+  wiring.valid_min = valid[0];
+  wiring.valid_max = valid[1];
+}
+
+/// `error_codes: [{at_ma: 3.75, tolerance_ma: 0.05}]`
+void read_error_codes(Context& context, MapReader& reader, const std::string& who,
+                      drivers::InputWiring& wiring) {
+  const std::string suffix(suffix_of(wiring.unit));
+  for (const Node* item : reader.sequence("error_codes", false)) {
+    MapReader code(context.document, *item, context.problems, "an error code of the " + who);
+    const double at = code.number("at" + suffix, electrical);
+    const double tolerance = code.number("tolerance" + suffix, {0, 100});
+    wiring.error_codes.push_back({at, tolerance});
+  }
+}
+
+drivers::InputWiring read_input(Context& context, MapReader& reader, const std::string& who,
+                                std::string_view is_key, document::Range is_range) {
+  drivers::InputWiring wiring;
+  wiring.module = read_module(context, reader, "input");
+  wiring.input = read_terminal(context, reader, "input", wiring.module, context.inputs);
+  const ElectricalKey at = electrical_key(reader, "at");
+  wiring.unit = at.unit;
+  wiring.scaling = read_scaling(reader, at.name, is_key, is_range);
+  check_unit(reader, at, terminal_of(context, "input", wiring.module, wiring.input));
+  read_validity(reader, "valid" + std::string(suffix_of(at.unit)), wiring);
+  read_error_codes(context, reader, who, wiring);
+  return wiring;
+}
+
+/// Whether the limits can be commanded and what they use of the valve.
+void check_valve(Context& context, MapReader& reader, const ElectricalKey& at,
+                 const drivers::OutputWiring& wiring, const control::LimitSettings& limits,
+                 const ValveFacts& facts) {
+  const std::string range = written(facts.range_min_kpa) + " to " + written(facts.range_max_kpa) + " kPa";
+  const std::string used =
+      written(limits.pressure_min_kpa) + " to " + written(limits.pressure_max_kpa) + " kPa";
+  if (limits.pressure_min_kpa < facts.range_min_kpa || limits.pressure_max_kpa > facts.range_max_kpa) {
+    reader.report("range_kpa", "the limits allow " + used + ", the valve controls " + range,
+                  "narrow pressure_min_kpa and pressure_max_kpa");
+    return;
+  }
+  const double share =
+      (limits.pressure_max_kpa - limits.pressure_min_kpa) / (facts.range_max_kpa - facts.range_min_kpa);
+  if (share < 0.2) {
+    reader.warn("range_kpa",
+                "the limits use less than a fifth of the valve's range (" + used + " of " + range +
+                    "): resolution and linearity suffer",
+                "a valve with a smaller range resolves the finger better");
+  }
+  const drivers::Terminal* const terminal = terminal_of(context, "output", wiring.module, wiring.output);
+  if (terminal == nullptr) return;
+  // Full scale is often one count beyond the largest raw number.
+  const double slack = (terminal->highest - terminal->lowest) * 1e-3;
+  for (const double pressure : {limits.pressure_min_kpa, limits.pressure_max_kpa}) {
+    const double needed = wiring.scaling.x_at(pressure);
+    if (needed >= terminal->lowest - slack && needed <= terminal->highest + slack) continue;
+    const std::string unit(drivers::name_of(terminal->unit));
+    reader.report(at.name,
+                  written(pressure) + " kPa needs " + written(needed) + " " + unit +
+                      ", the board's outputs go from " + written(terminal->lowest) + " to " +
+                      written(terminal->highest) + " " + unit,
+                  "check the two points, or narrow the limits");
+  }
+}
+
+void check_sensor(MapReader& reader, const drivers::InputWiring& wiring,
+                  const control::LimitSettings& limits) {
+  const double a = wiring.scaling.y_at(wiring.valid_min);
+  const double b = wiring.scaling.y_at(wiring.valid_max);
+  if (limits.displacement_min_mm >= std::min(a, b) && limits.displacement_max_mm <= std::max(a, b)) return;
+  reader.warn("valid" + std::string(suffix_of(wiring.unit)),
+              "the limits allow " + written(limits.displacement_min_mm) + " to " +
+                  written(limits.displacement_max_mm) + " mm, the valid range of the sensor is " +
+                  written(std::min(a, b)) + " to " + written(std::max(a, b)) + " mm",
+              "beyond it a reading is invalid, which becomes a fault");
+}
+
+}  // namespace
+
+drivers::OutputWiring read_valve(Context& context, const Node& node, const std::string& who,
+                                 const control::LimitSettings& limits, ValveFacts& facts) {
+  const std::size_t before = context.problems.size();
+  MapReader reader(context.document, node, context.problems, "the valve of " + who);
+  drivers::OutputWiring wiring;
+  wiring.module = read_module(context, reader, "output");
+  wiring.output = read_terminal(context, reader, "output", wiring.module, context.outputs);
+  const ElectricalKey at = electrical_key(reader, "at");
+  wiring.unit = at.unit;
+  wiring.scaling = read_scaling(reader, at.name, "is_kpa", {-200, 10'000});
+  check_unit(reader, at, terminal_of(context, "output", wiring.module, wiring.output));
+  const auto range = reader.numbers("range_kpa", 2, {-200, 10'000});
+  facts.range_min_kpa = range[0];
+  facts.range_max_kpa = range[1];
+  if (reader.good("range_kpa") && range[0] >= range[1]) {
+    reader.report("range_kpa", "the first number of `range_kpa` must be the smaller one");
+  }
+  facts.on_power_loss = static_cast<PowerLoss>(reader.choice("on_power_loss", {"vents", "holds"}));
+  reader.finish();
+  const bool limits_known = limits.pressure_max_kpa > limits.pressure_min_kpa;
+  if (context.problems.size() == before && limits_known) {
+    check_valve(context, reader, at, wiring, limits, facts);
+  }
+  return wiring;
+}
+
+drivers::InputWiring read_sensor(Context& context, const Node& node, const std::string& who,
+                                 const control::LimitSettings& limits) {
+  const std::size_t before = context.problems.size();
+  MapReader reader(context.document, node, context.problems, "the sensor of " + who);
+  drivers::InputWiring wiring = read_input(context, reader, "sensor of " + who, "is_mm", {-10'000, 10'000});
+  reader.finish();
+  const bool limits_known = limits.displacement_max_mm > limits.displacement_min_mm;
+  if (context.problems.size() == before && limits_known) check_sensor(reader, wiring, limits);
+  return wiring;
+}
+
+drivers::InputWiring read_pressure_monitor(Context& context, const Node& node, const std::string& who) {
+  MapReader reader(context.document, node, context.problems, "the pressure monitor of " + who);
+  return read_input(context, reader, "pressure monitor of " + who, "is_kpa", {-200, 10'000});
+}
+
+}  // namespace softgrip::rig

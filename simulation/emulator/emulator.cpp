@@ -1,0 +1,193 @@
+#include "simulation/emulator/emulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simulation/emulator/wire_fault.h"
+
+namespace softgrip::simulation {
+namespace {
+
+constexpr double seconds_per_nanosecond = 1e-9;
+
+std::vector<FaultSpec> with_object_out(std::vector<FaultSpec> faults) {
+  const bool there = std::any_of(faults.begin(), faults.end(),
+                                 [](const FaultSpec& fault) { return fault.name == Emulator::object_out; });
+  if (!there) {
+    FaultSpec fault;
+    fault.name = Emulator::object_out;
+    fault.kind = FaultKind::object_removed;
+    faults.push_back(fault);
+  }
+  return faults;
+}
+
+Nanoseconds interval_of(const FaultSpec& fault) {
+  return std::max<Nanoseconds>(1, std::llround(fault.interval_s * 1e9));
+}
+
+/// A jumping sensor is off in the first, third, ... interval.
+bool is_off(const FaultSpec& fault, Nanoseconds since, Nanoseconds now) {
+  return (now - since) / interval_of(fault) % 2 == 0;
+}
+
+}  // namespace
+
+Emulator::Emulator(EmulatorSettings settings)
+    : wire_(settings.wire), faults_(with_object_out(std::move(settings.faults))) {
+  for (const EmulatedModule& module : settings.modules) {
+    boards_.emplace_back(module.map);
+    places_.push_back({module.unit, module.link});
+  }
+  fingers_.reserve(settings.wiring.size());
+  for (std::size_t i = 0; i < settings.wiring.size(); ++i) {
+    fingers_.emplace_back(std::move(settings.wiring[i]), settings.plants[i]);
+  }
+  take_commands();
+}
+
+void Emulator::advance(Nanoseconds now) {
+  while (now_ < now) {
+    move_to(next_stop(now));
+    for (EmulatedBoard& board : boards_) {
+      const bool was_tripped = board.tripped();
+      board.advance(now_);
+      if (!board.tripped() || was_tripped) continue;
+      ++watchdog_trips_;
+      take_commands();
+    }
+    // Also between changes: a jumping sensor toggles.
+    faults_.advance(now_);
+    apply_faults();
+    if (now_ % grid == 0 && observer_) observer_();
+  }
+}
+
+EmulatedBoard* Emulator::board_at(std::size_t link, std::uint8_t unit) noexcept {
+  for (std::size_t i = 0; i < boards_.size(); ++i) {
+    if (places_[i].link == link && places_[i].unit == unit) return &boards_[i];
+  }
+  return nullptr;
+}
+
+bool Emulator::commanded() const noexcept {
+  return std::any_of(boards_.begin(), boards_.end(),
+                     [](const EmulatedBoard& board) { return board.commanded(); });
+}
+
+bool Emulator::tripped() const noexcept {
+  return std::any_of(boards_.begin(), boards_.end(),
+                     [](const EmulatedBoard& board) { return board.tripped(); });
+}
+
+Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link) {
+  advance(now);
+  EmulatedBoard* const board = board_at(link, request.unit);
+  // On a serial line everybody hears everything, and answers only what is meant for him.
+  if (board == nullptr && wire_ == Wire::rtu) return {};
+  ++requests_;
+  const auto index = wire_fault();
+  if (index) faults_.count_reply(*index);
+  Bytes pdu{request.pdu[0]};
+  if (!index || carried_out(faults_.faults()[*index].kind)) {
+    if (board == nullptr) {
+      pdu = exception_reply(request.pdu[0], Exception::gateway_target_failed);
+    } else {
+      for (const Finger& finger : fingers_) finger.show(boards_);
+      board->ignore_writes(faults_.first_active(FaultKind::ignored_write).has_value());
+      pdu = board->answer(now, request.pdu).pdu;
+      if (board->commanded()) faults_.start(now);
+      take_commands();
+    }
+  }
+  return index ? spoiled_reply(wire_, faults_.faults()[*index], request, pdu)
+               : good_reply(wire_, request, pdu);
+}
+
+bool Emulator::trigger(std::string_view name, Nanoseconds now) {
+  advance(now);
+  const bool found = faults_.trigger(name, now);
+  apply_faults();
+  return found;
+}
+
+bool Emulator::clear(std::string_view name, Nanoseconds now) {
+  advance(now);
+  const bool found = faults_.clear(name);
+  apply_faults();
+  return found;
+}
+
+void Emulator::set_object(const std::optional<simulation::PlantObject>& object) {
+  for (Finger& finger : fingers_) finger.set_object(object);
+  apply_faults();
+}
+
+Nanoseconds Emulator::next_stop(Nanoseconds now) const {
+  Nanoseconds stop = std::min(now, (now_ / grid + 1) * grid);
+  for (const EmulatedBoard& board : boards_) {
+    if (const auto due = board.watchdog_due()) stop = std::min(stop, *due);
+  }
+  if (const auto change = faults_.next_change()) stop = std::min(stop, *change);
+  return std::max(stop, now_ + 1);
+}
+
+void Emulator::move_to(Nanoseconds moment) {
+  const double duration_s = static_cast<double>(moment - now_) * seconds_per_nanosecond;
+  for (Finger& finger : fingers_) finger.advance(duration_s);
+  now_ = moment;
+}
+
+std::optional<std::size_t> Emulator::wire_fault() const {
+  for (std::size_t i = 0; i < faults_.faults().size(); ++i) {
+    if (faults_.active(i) && on_the_wire(faults_.faults()[i].kind)) return i;
+  }
+  return std::nullopt;
+}
+
+void Emulator::take_commands() {
+  for (Finger& finger : fingers_) finger.take_command(boards_);
+}
+
+void Emulator::apply_faults() {
+  for (std::size_t channel = 0; channel < fingers_.size(); ++channel) apply_faults(channel);
+}
+
+void Emulator::apply_faults(std::size_t channel) {
+  simulation::LineFault line;
+  simulation::SensorFault sensor;
+  bool object_there = true;
+  for (std::size_t i = 0; i < faults_.faults().size(); ++i) {
+    const FaultSpec& fault = faults_.faults()[i];
+    if (!faults_.active(i) || fault.channel.value_or(channel) != channel) continue;
+    switch (fault.kind) {
+      case FaultKind::sensor_stuck:
+        sensor = {simulation::SensorFault::Kind::stuck, 0};
+        break;
+      case FaultKind::sensor_jumping:
+        sensor = {};
+        if (is_off(fault, faults_.since(i), now_))
+          sensor = {simulation::SensorFault::Kind::offset, fault.by_mm};
+        break;
+      case FaultKind::sensor_out_of_range:
+        sensor = {simulation::SensorFault::Kind::out_of_range, 0};
+        break;
+      case FaultKind::line_blocked:
+        line = {simulation::LineFault::Kind::blocked, 0};
+        break;
+      case FaultKind::line_leaking:
+        line = {simulation::LineFault::Kind::leaking, fault.share};
+        break;
+      case FaultKind::object_removed:
+        object_there = false;
+        break;
+      default:
+        break;
+    }
+  }
+  fingers_[channel].set_faults(line, sensor);
+  fingers_[channel].place_object(object_there);
+}
+
+}  // namespace softgrip::simulation

@@ -1,0 +1,99 @@
+#pragma once
+// The rig in real time: board, fingers and what goes wrong with them, moved by the times at which requests
+// arrive. No sockets, no clock of its own.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "simulation/emulator/emulated_board.h"
+#include "simulation/emulator/fault_schedule.h"
+#include "simulation/emulator/finger.h"
+#include "simulation/emulator/reply.h"
+#include "simulation/emulator/wire.h"
+
+namespace softgrip::simulation {
+
+/// One module of the board, and where it answers.
+struct EmulatedModule {
+  drivers::BoardMap map;
+  std::uint8_t unit = 1;
+  std::size_t link = 0;  ///< which of the wires leads to it
+};
+
+struct EmulatorSettings {
+  /// Requests to a unit that is not on their link are answered with exception 11 on a network, and with
+  /// silence on a serial line.
+  std::vector<EmulatedModule> modules;
+  Wire wire = Wire::tcp;
+  std::vector<drivers::ChannelWiring> wiring;
+  std::vector<simulation::PlantSettings> plants;  ///< one per channel
+  std::vector<FaultSpec> faults;
+};
+
+class Emulator {
+ public:
+  /// Plants move in steps that end on this grid, at every request, and wherever something happens.
+  static constexpr Nanoseconds grid = 1'000'000;
+  /// A fault that always exists: triggered, it takes the object away.
+  static constexpr std::string_view object_out = "object_out";
+
+  /// The first moment is 0.
+  explicit Emulator(EmulatorSettings settings);
+
+  /// Moves on. Not before an earlier `now`.
+  void advance(Nanoseconds now);
+  /// A request that arrives at `now` on a link, and what becomes of it.
+  [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0);
+  /// Whether new connections are let in.
+  [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
+
+  /// Begins or ends a fault. False: there is none of that name.
+  bool trigger(std::string_view name, Nanoseconds now);
+  bool clear(std::string_view name, Nanoseconds now);
+  /// Puts an object between the fingers (all channels), or none.
+  void set_object(const std::optional<simulation::PlantObject>& object);
+
+  /// Called at every point of the grid.
+  void on_grid(std::function<void()> observer) { observer_ = std::move(observer); }
+
+  [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
+  [[nodiscard]] const std::vector<Finger>& fingers() const noexcept { return fingers_; }
+  [[nodiscard]] const std::vector<EmulatedBoard>& modules() const noexcept { return boards_; }
+  /// True once a client wrote an output.
+  [[nodiscard]] bool commanded() const noexcept;
+  /// True while the watchdog of a module holds its outputs.
+  [[nodiscard]] bool tripped() const noexcept;
+  [[nodiscard]] const FaultSchedule& faults() const noexcept { return faults_; }
+  [[nodiscard]] std::uint64_t requests() const noexcept { return requests_; }
+  [[nodiscard]] std::uint64_t watchdog_trips() const noexcept { return watchdog_trips_; }
+
+ private:
+  [[nodiscard]] Nanoseconds next_stop(Nanoseconds now) const;
+  [[nodiscard]] std::optional<std::size_t> wire_fault() const;
+  void move_to(Nanoseconds moment);
+  void take_commands();
+  void apply_faults();
+  void apply_faults(std::size_t channel);
+
+  struct Place {
+    std::uint8_t unit;
+    std::size_t link;
+  };
+  [[nodiscard]] EmulatedBoard* board_at(std::size_t link, std::uint8_t unit) noexcept;
+
+  std::vector<EmulatedBoard> boards_;
+  std::vector<Place> places_;  // of the boards
+  Wire wire_;
+  std::vector<Finger> fingers_;
+  FaultSchedule faults_;
+  std::function<void()> observer_;
+  Nanoseconds now_ = 0;
+  std::uint64_t requests_ = 0;
+  std::uint64_t watchdog_trips_ = 0;
+};
+
+}  // namespace softgrip::simulation

@@ -1,0 +1,87 @@
+#include "simulation/emulator/fault.h"
+
+#include <algorithm>
+#include <array>
+
+#include "document/reader.h"
+
+namespace softgrip::simulation {
+namespace {
+
+constexpr std::array<std::string_view, 18> kind_names{
+    "lost_request",   "no_reply",      "late_reply",        "dripped_reply",  "cut_reply",
+    "repeated_reply", "wrong_unit",    "wrong_transaction", "wrong_length",   "exception_reply",
+    "disconnect",     "ignored_write", "sensor_stuck",      "sensor_jumping", "sensor_out_of_range",
+    "line_blocked",   "line_leaking",  "object_removed"};
+
+constexpr double longest_s = 86400;
+
+document::Range up_to(double upper) {
+  return {0, upper};
+}
+
+/// The keys that only this kind has.
+void read_own_keys(FaultSpec& fault, document::MapReader& map) {
+  constexpr double shortest_interval_s = 1e-4;
+  switch (fault.kind) {
+    case FaultKind::late_reply:
+      fault.delay_s = map.number("delay_s", up_to(60));
+      break;
+    case FaultKind::dripped_reply:
+      fault.interval_s = map.number("interval_s", up_to(60));
+      break;
+    case FaultKind::exception_reply:
+      fault.code = static_cast<std::uint8_t>(map.integer("code", 1, 255));
+      break;
+    case FaultKind::sensor_jumping:
+      fault.by_mm = map.number("by_mm", {-1000, 1000});
+      fault.interval_s = map.number("interval_s", {shortest_interval_s, 60});
+      break;
+    case FaultKind::line_leaking:
+      fault.share = map.number("share", up_to(1));
+      break;
+    default:
+      break;
+  }
+}
+
+FaultSpec read_fault(const document::Document& document, const document::Node& node,
+                     const std::vector<std::string>& channels, document::Problems& problems) {
+  document::MapReader map(document, node, problems, "fault");
+  FaultSpec fault;
+  fault.name = map.text("name");
+  fault.kind = static_cast<FaultKind>(map.choice("kind", {kind_names.begin(), kind_names.end()}));
+  fault.at_s = map.optional_number("at_s", up_to(longest_s));
+  fault.for_s = map.optional_number("for_s", up_to(longest_s));
+  if (on_the_wire(fault.kind)) {
+    if (const auto replies = map.optional_integer("replies", 1, 1'000'000)) {
+      fault.replies = static_cast<std::uint32_t>(*replies);
+    }
+  }
+  if (of_a_channel(fault.kind)) fault.channel = map.optional_choice("channel", channels);
+  read_own_keys(fault, map);
+  return fault;
+}
+
+}  // namespace
+
+std::string_view name_of(FaultKind kind) noexcept {
+  return kind_names[static_cast<std::size_t>(kind)];
+}
+
+std::vector<FaultSpec> read_faults(const document::Document& document,
+                                   const std::vector<std::string>& channels, document::Problems& problems) {
+  document::MapReader map(document, document.root, problems, "faults file");
+  std::vector<FaultSpec> faults;
+  for (const document::Node* node : map.sequence("faults", true)) {
+    FaultSpec fault = read_fault(document, *node, channels, problems);
+    const bool taken = std::any_of(faults.begin(), faults.end(),
+                                   [&](const FaultSpec& other) { return other.name == fault.name; });
+    if (taken)
+      problems.add(document.problem(node->at, "fault '" + fault.name + "' stands here for the second time"));
+    faults.push_back(std::move(fault));
+  }
+  return faults;
+}
+
+}  // namespace softgrip::simulation

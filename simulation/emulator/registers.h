@@ -1,0 +1,94 @@
+#pragma once
+// The registers of a Modbus board and what it answers to a request, as a plain value without a wire.
+// Semantics: MODBUS Application Protocol Specification V1.1b3, sections 6.3, 6.4, 6.6, 6.12, 6.17 and 7.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+
+#include "simulation/emulator/mbap.h"
+
+namespace softgrip::simulation {
+
+enum class Function : std::uint8_t {
+  read_coils = 0x01,
+  read_discrete = 0x02,
+  read_holding = 0x03,
+  read_input = 0x04,
+  write_coil = 0x05,
+  write_single = 0x06,
+  write_multiple = 0x10,
+  read_write = 0x17,
+};
+
+enum class Exception : std::uint8_t {
+  illegal_function = 1,
+  illegal_address = 2,
+  illegal_value = 3,
+  device_failure = 4,
+  device_busy = 6,
+  gateway_target_failed = 11,
+};
+
+/// The reply that reports an exception.
+[[nodiscard]] Bytes exception_reply(std::uint8_t function, Exception code);
+
+/// A bank of registers. An address that was not defined is answered with an exception, never with a zero:
+/// a client that asks for the wrong address must not believe that the board is alive. Like the ADAM-6000, it
+/// reads an address that only one of the two tables has (holding, input) with either function code.
+class Registers {
+ public:
+  enum class Access : std::uint8_t { read_only, read_write };
+
+  void define_holding(std::uint16_t address, Access access, std::uint16_t value = 0);
+  void define_input(std::uint16_t address, std::uint16_t value = 0);
+  void define_coil(std::uint16_t address, bool value = false);
+  void define_discrete_input(std::uint16_t address, bool value = false);
+  /// A function code that the board knows; all others are answered with illegal_function.
+  void allow(Function function) { functions_.insert(function); }
+
+  [[nodiscard]] std::uint16_t holding(std::uint16_t address) const { return holding_.at(address).value; }
+  [[nodiscard]] std::uint16_t input(std::uint16_t address) const { return input_.at(address); }
+  [[nodiscard]] bool has_holding(std::uint16_t address) const { return holding_.contains(address); }
+  [[nodiscard]] bool has_input(std::uint16_t address) const { return input_.contains(address); }
+  [[nodiscard]] bool coil(std::uint16_t address) const { return coils_.at(address); }
+  void set_holding(std::uint16_t address, std::uint16_t value) { holding_.at(address).value = value; }
+  void set_input(std::uint16_t address, std::uint16_t value) { input_.at(address) = value; }
+  void set_coil(std::uint16_t address, bool value) { coils_.at(address) = value; }
+  void set_discrete_input(std::uint16_t address, bool value) { discrete_inputs_.at(address) = value; }
+
+  struct Answer {
+    Bytes pdu;
+    bool wrote = false;  ///< the request changed registers or wrote the same values again
+  };
+  /// The answer to one request PDU (at least one byte). A request is carried out whole or not at all.
+  Answer answer(std::span<const std::uint8_t> pdu);
+
+ private:
+  struct Holding {
+    std::uint16_t value = 0;
+    Access access = Access::read_only;
+  };
+
+  Answer read_registers(std::span<const std::uint8_t> pdu, bool holding) const;
+  static Answer read_bits(std::span<const std::uint8_t> pdu, const std::map<std::uint16_t, bool>& bits);
+  Answer write_coil(std::span<const std::uint8_t> pdu);
+  Answer write_single(std::span<const std::uint8_t> pdu);
+  Answer write_multiple(std::span<const std::uint8_t> pdu);
+  Answer read_write(std::span<const std::uint8_t> pdu);
+  [[nodiscard]] std::optional<std::uint16_t> value_of(std::size_t address, bool holding) const;
+  [[nodiscard]] bool writable(std::uint16_t first, std::size_t count) const;
+  /// Appends values; false if one of the addresses is not there.
+  bool append_values(Bytes& pdu, std::uint16_t first, std::size_t count, bool holding) const;
+  void store(std::uint16_t first, std::span<const std::uint8_t> data);
+
+  std::map<std::uint16_t, Holding> holding_;
+  std::map<std::uint16_t, std::uint16_t> input_;
+  std::map<std::uint16_t, bool> coils_;
+  std::map<std::uint16_t, bool> discrete_inputs_;
+  std::set<Function> functions_;
+};
+
+}  // namespace softgrip::simulation

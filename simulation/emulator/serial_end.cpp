@@ -1,0 +1,98 @@
+#include "simulation/emulator/serial_end.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include "drivers/modbus/serial_port.h"
+
+namespace softgrip::simulation {
+namespace {
+
+tl::unexpected<std::string> failure(const std::string& what, int error) {
+  return tl::unexpected{what + ": " + std::strerror(error)};
+}
+
+std::chrono::nanoseconds nanoseconds(double seconds) {
+  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
+}
+
+bool is_pseudo_terminal(const std::string& device) {
+  std::array<char, 4096> real{};
+  return ::realpath(device.c_str(), real.data()) != nullptr && std::strncmp(real.data(), "/dev/pts/", 9) == 0;
+}
+
+}  // namespace
+
+SerialEnd::SerialEnd(SerialEnd&& other) noexcept
+    : line_(std::move(other.line_)),
+      end_(std::move(other.end_)),
+      kept_(std::move(other.kept_)),
+      link_(std::exchange(other.link_, {})),
+      pseudo_(other.pseudo_) {}
+
+SerialEnd& SerialEnd::operator=(SerialEnd&& other) noexcept {
+  std::swap(line_, other.line_);
+  end_ = std::move(other.end_);
+  kept_ = std::move(other.kept_);
+  std::swap(link_, other.link_);
+  pseudo_ = other.pseudo_;
+  return *this;
+}
+
+SerialEnd::~SerialEnd() {
+  if (!link_.empty()) ::unlink(link_.c_str());
+}
+
+tl::expected<void, std::string> SerialEnd::make_pseudo() {
+  end_ = Descriptor{::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)};
+  std::array<char, 128> name{};
+  if (!end_ || ::grantpt(end_.get()) != 0 || ::unlockpt(end_.get()) != 0 ||
+      ::ptsname_r(end_.get(), name.data(), name.size()) != 0) {
+    return failure("a pseudo-terminal", errno);
+  }
+  kept_ = Descriptor{::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC)};
+  termios raw{};
+  if (!kept_ || ::tcgetattr(kept_.get(), &raw) != 0) return failure(name.data(), errno);
+  ::cfmakeraw(&raw);
+  if (::tcsetattr(kept_.get(), TCSANOW, &raw) != 0) return failure(name.data(), errno);
+  if (::symlink(name.data(), line_.device.c_str()) != 0) return failure(line_.device, errno);
+  link_ = line_.device;
+  pseudo_ = true;
+  return {};
+}
+
+tl::expected<SerialEnd, std::string> SerialEnd::open(const drivers::SerialLine& line) {
+  SerialEnd end(line);
+  struct stat about {};
+  if (::stat(line.device.c_str(), &about) != 0 && errno == ENOENT) {
+    // A link that an emulator left behind when it was killed leads nowhere.
+    if (::lstat(line.device.c_str(), &about) == 0 && S_ISLNK(about.st_mode)) ::unlink(line.device.c_str());
+    if (auto made = end.make_pseudo(); !made) return tl::unexpected{made.error()};
+    return end;
+  }
+  const drivers::SerialPort port = drivers::open_serial(line);
+  if (port.descriptor < 0) return failure(std::string(port.what) + " " + line.device, port.error);
+  end.end_ = Descriptor{port.descriptor};
+  end.pseudo_ = is_pseudo_terminal(line.device);
+  return end;
+}
+
+WireTime SerialEnd::wire_time() const noexcept {
+  WireTime time;
+  time.turnaround = nanoseconds(line_.turnaround_s);
+  if (!pseudo_) return time;
+  time.character = nanoseconds(drivers::character_s(line_));
+  time.silence = nanoseconds(drivers::silence_s(line_));
+  return time;
+}
+
+}  // namespace softgrip::simulation

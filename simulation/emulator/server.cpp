@@ -1,0 +1,165 @@
+#include "simulation/emulator/server.h"
+
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <ctime>
+#include <vector>
+
+#include "simulation/emulator/control.h"
+#include "simulation/emulator/listener.h"
+
+namespace softgrip::simulation {
+namespace {
+
+constexpr std::size_t max_modbus_clients = 32;
+constexpr std::size_t max_control_clients = 8;
+constexpr std::size_t max_control_line = 1024;
+// Nothing waits longer for the truth log and for faults that begin by the clock.
+constexpr std::chrono::milliseconds longest_wait{20};
+
+}  // namespace
+
+int Server::ControlClient::input() const noexcept {
+  return socket ? socket.get() : STDIN_FILENO;
+}
+
+Server::Server(Emulator& emulator, ServerSockets sockets)
+    : emulator_(emulator), sockets_(std::move(sockets)) {
+  if (sockets_.standard_input) control_clients_.emplace_back();
+}
+
+void Server::run(const std::function<void()>& idle) {
+  std::vector<pollfd> watched;
+  while (!quit_) {
+    plug_line();
+    watched.clear();
+    watched.push_back({sockets_.signals.get(), POLLIN, 0});
+    watched.push_back({sockets_.control.get(), POLLIN, 0});  // poll() skips an empty one: it is -1
+    for (const Descriptor& modbus : sockets_.modbus) watched.push_back({modbus.get(), POLLIN, 0});
+    for (const ControlClient& client : control_clients_) watched.push_back({client.input(), POLLIN, 0});
+    for (const Client& client : clients_) {
+      const int events = client.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
+      watched.push_back({client.connection.descriptor(), static_cast<short>(events), 0});
+    }
+    const std::chrono::nanoseconds wait = timeout();
+    const timespec limit{.tv_sec = wait.count() / 1'000'000'000, .tv_nsec = wait.count() % 1'000'000'000};
+    if (::ppoll(watched.data(), watched.size(), &limit, nullptr) < 0 && errno != EINTR) return;
+
+    emulator_.advance(now());
+    auto watch = watched.begin() + 2 + static_cast<std::ptrdiff_t>(sockets_.modbus.size());
+    for (ControlClient& client : control_clients_) {
+      if ((watch++)->revents != 0) read_control(client);
+    }
+    std::erase_if(control_clients_, [](const ControlClient& client) { return !client.open; });
+    std::erase_if(clients_, [&](Client& client) {
+      bool open = true;
+      serve(client, (watch++)->revents, open);
+      return !open;
+    });
+    if (watched[0].revents != 0) take_signal();
+    if (watched[1].revents != 0) accept_control();
+    for (std::size_t link = 0; link < sockets_.modbus.size(); ++link) {
+      if (watched[2 + link].revents != 0) accept_modbus(link);
+    }
+    idle();
+  }
+}
+
+/// The line is pulled out while the cable is cut, its name goes with it, and it comes back under the same
+/// name.
+void Server::plug_line() {
+  if (!sockets_.line || !clients_.empty()) return;
+  if (sockets_.end && sockets_.end->taken()) sockets_.end.reset();
+  if (!emulator_.reachable()) return;
+  if (!sockets_.end) {
+    auto end = SerialEnd::open(*sockets_.line);
+    if (!end) return;
+    sockets_.end = std::move(*end);
+  }
+  const WireTime wire_time = sockets_.end->wire_time();
+  clients_.push_back({Connection(sockets_.end->take(), wire_time), 0});
+}
+
+Nanoseconds Server::now() const {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start_).count();
+}
+
+std::chrono::nanoseconds Server::timeout() const {
+  const Clock::time_point now = Clock::now();
+  Clock::time_point wake = now + longest_wait;
+  for (const Client& client : clients_) {
+    const auto due = client.connection.next_due();
+    if (due && !client.connection.blocked()) wake = std::min(wake, *due);
+  }
+  return std::max(std::chrono::nanoseconds{0}, std::chrono::nanoseconds(wake - now));
+}
+
+void Server::serve(Client& client, short events, bool& open) {
+  if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
+    open = client.connection.receive(
+        [&](const Request& request) { return emulator_.serve(now(), request, client.link); });
+  }
+  open = open && client.connection.send_due(Clock::now()) && emulator_.reachable();
+}
+
+void Server::accept_modbus(std::size_t link) {
+  Descriptor client = accept_client(sockets_.modbus[link]);
+  // While the cable is cut, and beyond what poll() should watch, a client is let in and shown out.
+  if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
+    clients_.push_back({Connection(std::move(client)), link});
+  }
+}
+
+void Server::accept_control() {
+  Descriptor client = accept_client(sockets_.control);
+  if (client && control_clients_.size() < max_control_clients) {
+    control_clients_.push_back({std::move(client), {}, true});
+  }
+}
+
+void Server::take_signal() {
+  signalfd_siginfo info{};
+  if (::read(sockets_.signals.get(), &info, sizeof info) != static_cast<ssize_t>(sizeof info)) return;
+  if (info.ssi_signo == SIGUSR1) {
+    emulator_.trigger(Emulator::object_out, now());
+  } else {
+    quit_ = true;
+  }
+}
+
+void Server::read_control(ControlClient& client) {
+  std::array<char, 512> buffer;
+  const ssize_t count = ::read(client.input(), buffer.data(), buffer.size());
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (count <= 0) {
+    client.open = false;
+    return;
+  }
+  client.pending.append(buffer.data(), static_cast<std::size_t>(count));
+  std::size_t end = 0;
+  while ((end = client.pending.find('\n')) != std::string::npos) {
+    answer_control(client, std::string_view(client.pending).substr(0, end));
+    client.pending.erase(0, end + 1);
+  }
+  if (client.pending.size() > max_control_line) client.open = false;
+}
+
+void Server::answer_control(const ControlClient& client, std::string_view line) {
+  const ControlAnswer answer = control(emulator_, now(), line);
+  quit_ = quit_ || answer.quit;
+  const std::string text = answer.line + "\n";
+  // An answer is shorter than a socket's buffer; one who does not read loses it.
+  if (client.socket) {
+    ::send(client.socket.get(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  } else if (::write(STDOUT_FILENO, text.data(), text.size()) < 0) {
+    quit_ = errno == EPIPE;
+  }
+}
+
+}  // namespace softgrip::simulation

@@ -1,0 +1,88 @@
+#include "simulation/emulator/wire_fault.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "simulation/emulator/registers.h"
+
+namespace softgrip::simulation {
+namespace {
+
+std::chrono::nanoseconds nanoseconds(double seconds) {
+  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
+}
+
+Reply at_once(Bytes bytes) {
+  return {{{std::chrono::nanoseconds{0}, std::move(bytes)}}, false};
+}
+
+Reply dripped(const Bytes& whole, double interval_s) {
+  Reply reply;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    reply.pieces.push_back({nanoseconds(interval_s) * static_cast<std::int64_t>(i), Bytes{whole[i]}});
+  }
+  return reply;
+}
+
+Reply longer_than_it_is(Wire wire, const Request& request, const Bytes& pdu) {
+  Bytes whole = frame_on(wire, request.transaction, request.unit, pdu);
+  if (wire == Wire::rtu) {
+    whole.push_back(0);
+    return at_once(std::move(whole));
+  }
+  const auto length = static_cast<std::uint16_t>(word_at(whole, 4) + 1);
+  whole[4] = static_cast<std::uint8_t>(length >> 8U);
+  whole[5] = static_cast<std::uint8_t>(length & 0xffU);
+  return at_once(std::move(whole));
+}
+
+/// Of another question, as far as the wire can tell: its transaction id, or its checksum.
+Reply of_another_question(Wire wire, const Request& request, const Bytes& pdu) {
+  const auto next_transaction = static_cast<std::uint16_t>(request.transaction + 1);
+  Bytes whole = frame_on(wire, next_transaction, request.unit, pdu);
+  if (wire == Wire::rtu) whole.back() = static_cast<std::uint8_t>(whole.back() + 1);
+  return at_once(std::move(whole));
+}
+
+}  // namespace
+
+Reply good_reply(Wire wire, const Request& request, const Bytes& pdu) {
+  return at_once(frame_on(wire, request.transaction, request.unit, pdu));
+}
+
+bool carried_out(FaultKind kind) noexcept {
+  return kind != FaultKind::lost_request && kind != FaultKind::exception_reply &&
+         kind != FaultKind::disconnect;
+}
+
+Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request, const Bytes& pdu) {
+  const Bytes whole = frame_on(wire, request.transaction, request.unit, pdu);
+  const auto next_unit = static_cast<std::uint8_t>(request.unit + 1);
+  switch (fault.kind) {
+    case FaultKind::lost_request:
+    case FaultKind::no_reply:
+      return {};
+    case FaultKind::late_reply:
+      return {{{nanoseconds(fault.delay_s), whole}}, false};
+    case FaultKind::dripped_reply:
+      return dripped(whole, fault.interval_s);
+    case FaultKind::cut_reply:
+      return at_once(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(whole.size() / 2)));
+    case FaultKind::repeated_reply:
+      return {{{{}, whole}, {{}, whole}}, false};
+    case FaultKind::wrong_unit:
+      return at_once(frame_on(wire, request.transaction, next_unit, pdu));
+    case FaultKind::wrong_transaction:
+      return of_another_question(wire, request, pdu);
+    case FaultKind::wrong_length:
+      return longer_than_it_is(wire, request, pdu);
+    case FaultKind::exception_reply:
+      return good_reply(wire, request, exception_reply(request.pdu[0], static_cast<Exception>(fault.code)));
+    case FaultKind::disconnect:
+      return {{}, true};
+    default:
+      return good_reply(wire, request, pdu);
+  }
+}
+
+}  // namespace softgrip::simulation

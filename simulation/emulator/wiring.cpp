@@ -1,0 +1,125 @@
+#include "simulation/emulator/wiring.h"
+
+#include <algorithm>
+#include <string>
+
+namespace softgrip::simulation {
+namespace {
+
+constexpr double pressure_span_kpa = 100;
+constexpr double nearest_mm = -5;
+constexpr double farthest_mm = 45;
+
+/// Both ends of the usual signal, whatever the converter can do beyond.
+struct Span {
+  double low;
+  double high;
+};
+Span span_of(const drivers::Terminal& terminal) {
+  switch (terminal.unit) {
+    case drivers::ElectricalUnit::volt:
+      return {0, 10};
+    case drivers::ElectricalUnit::milliampere:
+      return {4, 20};
+    case drivers::ElectricalUnit::kilopascal:
+      break;
+  }
+  return {0, terminal.highest};
+}
+
+/// A terminal and the module that has it.
+struct Place {
+  std::size_t module;
+  std::size_t index;
+  drivers::Terminal terminal;
+};
+
+struct Places {
+  std::vector<Place> outputs;
+  std::vector<Place> signals;    // inputs for sensors
+  std::vector<Place> pressures;  // inputs that measure the pressure themselves
+};
+
+Places places_of(std::span<const drivers::BoardMap> modules) {
+  Places places;
+  for (std::size_t module = 0; module < modules.size(); ++module) {
+    const drivers::ModuleTerminals terminals = drivers::terminals_of(modules[module]);
+    for (std::size_t i = 0; i < terminals.outputs.size(); ++i) {
+      places.outputs.push_back({module, i, terminals.outputs[i]});
+    }
+    for (std::size_t i = 0; i < terminals.inputs.size(); ++i) {
+      const bool pressure = terminals.inputs[i].unit == drivers::ElectricalUnit::kilopascal;
+      (pressure ? places.pressures : places.signals).push_back({module, i, terminals.inputs[i]});
+    }
+  }
+  return places;
+}
+
+std::string channel_name(std::size_t index) {
+  if (index == 0) return "left";
+  if (index == 1) return "right";
+  return "finger_" + std::to_string(index + 1);
+}
+
+drivers::InputWiring input_at(const Place& place, double low, double high) {
+  const Span span = span_of(place.terminal);
+  drivers::InputWiring wiring;
+  wiring.module = place.module;
+  wiring.input = place.index;
+  wiring.unit = place.terminal.unit;
+  wiring.scaling = {span.low, low, span.high, high};
+  wiring.valid_min = span.low;
+  wiring.valid_max = span.high;
+  return wiring;
+}
+
+drivers::OutputWiring output_at(const Place& place) {
+  const Span span = span_of(place.terminal);
+  drivers::OutputWiring wiring;
+  wiring.module = place.module;
+  wiring.output = place.index;
+  wiring.unit = place.terminal.unit;
+  const bool pressure = wiring.unit == drivers::ElectricalUnit::kilopascal;
+  wiring.scaling = {span.low, 0, span.high, pressure ? span.high : pressure_span_kpa};
+  return wiring;
+}
+
+/// A pressure monitor shows what it measures as it is; one on an electrical input as the valves are scaled.
+drivers::InputWiring monitor_at(const Place& place, const drivers::OutputWiring& valve) {
+  if (place.terminal.unit != drivers::ElectricalUnit::kilopascal) {
+    return input_at(place, valve.scaling.y0, valve.scaling.y1);
+  }
+  drivers::InputWiring wiring = input_at(place, 0, place.terminal.highest);
+  wiring.valid_min = place.terminal.lowest;
+  return wiring;
+}
+
+}  // namespace
+
+tl::expected<std::vector<drivers::ChannelWiring>, std::string> default_wiring(
+    std::span<const drivers::BoardMap> modules, std::size_t channels) {
+  const Places places = places_of(modules);
+  if (channels < 1 || channels > std::min(places.signals.size(), places.outputs.size())) {
+    std::string names;
+    for (const drivers::BoardMap& map : modules) names += (names.empty() ? "" : " and ") + map.name;
+    return tl::unexpected{names + (modules.size() == 1 ? " has " : " have ") +
+                          std::to_string(places.outputs.size()) + " outputs and " +
+                          std::to_string(places.signals.size()) +
+                          " inputs for sensors: " + (modules.size() == 1 ? "it" : "they") + " cannot serve " +
+                          std::to_string(channels) + " channels"};
+  }
+  std::vector<drivers::ChannelWiring> wiring(channels);
+  for (std::size_t i = 0; i < channels; ++i) {
+    wiring[i].name = channel_name(i);
+    wiring[i].valve = output_at(places.outputs[i]);
+    wiring[i].displacement = input_at(places.signals[i], nearest_mm, farthest_mm);
+    if (places.pressures.size() >= channels) {
+      wiring[i].pressure = monitor_at(places.pressures[i], wiring[i].valve);
+    } else if (2 * channels <= places.signals.size()) {
+      wiring[i].pressure = monitor_at(places.signals[places.signals.size() - channels + i], wiring[i].valve);
+    }
+  }
+  return wiring;
+}
+
+}  // namespace softgrip::simulation

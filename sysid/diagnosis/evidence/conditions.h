@@ -1,0 +1,68 @@
+#pragma once
+// Conditions: what was going on at a sample, by which an error may differ.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// What the pressure does at a sample.
+enum class Branch : std::uint8_t { rest, loading, hold, unloading };
+[[nodiscard]] const char* name_of(Branch branch);
+
+/// What a record's drive has been through, by sample.
+struct DriveHistory {
+  std::vector<double> rate_kpa_per_s;  ///< slope over a tenth of a second, 0 where the pressure stands
+  std::vector<Branch> branch;
+  std::vector<bool> falling;          ///< the last motion was downwards
+  std::vector<double> dwell_s;        ///< since the pressure stopped; NaN while it moves
+  std::vector<double> since_turn_s;   ///< since it last turned, started or stopped
+  std::vector<double> turn_kpa;       ///< pressure at that moment
+  std::vector<double> amplitude_kpa;  ///< peak of the present excursion from rest, at rest of the last one
+  std::vector<double> largest_kpa;    ///< so far, in the whole campaign
+  std::vector<std::size_t> cycle;     ///< 0, 1, ...; see cycle_starts()
+};
+[[nodiscard]] DriveHistory history_of(const Record& record);
+
+/// Samples of all records that have a reading, every so many of each, one after the other.
+struct Samples {
+  std::vector<std::size_t> record;
+  std::vector<std::size_t> index;  ///< in its record
+  std::vector<double> campaign_s;
+
+  [[nodiscard]] std::size_t size() const noexcept { return record.size(); }
+};
+/// About `most` samples. Those where any of `residual_mm` is NaN are left out.
+[[nodiscard]] Samples pooled_samples(const std::vector<Record>& records,
+                                     const std::vector<std::vector<double>>& residual_mm, std::size_t most);
+/// The values of `by_record` at the samples.
+[[nodiscard]] std::vector<double> pooled(const Samples& samples,
+                                         const std::vector<std::vector<double>>& by_record);
+
+/// One condition at all samples.
+struct Condition {
+  std::string id;             ///< "rate"
+  std::string axis;           ///< "rate of the pressure [kPa/s]"
+  std::string phrase;         ///< completes "the error depends on ..."
+  std::vector<double> value;  ///< by sample; NaN: does not apply
+  bool logarithmic = false;
+  std::vector<std::string> categories;  ///< names of the values 0, 1, ...; empty: a number
+  /// Which of `groups` a sample belongs to: their curves are told apart (loading, unloading).
+  std::vector<std::uint8_t> group;
+  std::vector<std::string> groups;
+  std::string why_not;  ///< why nothing can be said, or empty
+};
+
+/// branch, cycle, amplitude, rate, dwell, history, position, loop (position by the direction of the last
+/// motion), campaign_time, temperature, supply; in this order.
+/// @param prediction_mm  by record: the position is the model's, for the reading shares its error with the
+///                       residual.
+[[nodiscard]] std::vector<Condition> conditions_of(const std::vector<Record>& records,
+                                                   const std::vector<std::vector<double>>& prediction_mm,
+                                                   const Samples& samples);
+
+}  // namespace softgrip::sysid

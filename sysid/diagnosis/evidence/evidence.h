@@ -1,0 +1,100 @@
+#pragma once
+// Where a model is wrong: what is left of the readings, by condition, with tests that stay honest when
+// neighbouring errors resemble each other.
+//
+// The samples are cut into blocks longer than the residual's memory. A conditional mean's interval is that of
+// a mean of clusters (Liang and Zeger 1986). Whether conditional means differ is tested by giving whole
+// blocks random signs (the wild bootstrap, Liu 1988, on blocks): if the error does not depend on the
+// condition, a block's error might as well have had the other sign; correlation inside a block and unequal
+// spread stay as they were. The share of the structure that a condition explains is judged on blocks whose
+// own samples are not in the means.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+#include "sysid/diagnosis/evidence/conditions.h"
+#include "sysid/diagnosis/search/fit.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// The residual where a condition has about one value.
+struct ConditionBin {
+  double value = 0;  ///< mean of the condition
+  std::string label;
+  std::size_t group = 0;
+  std::size_t samples = 0;
+  double mean_mm = 0;
+  double lower_mm = 0;  ///< 95 % interval of the mean; NaN where all lie in one block
+  double upper_mm = 0;
+  double rms_mm = 0;
+};
+
+/// What a condition has to do with a residual.
+struct ConditionEvidence {
+  Condition condition;  ///< without its samples
+  std::vector<ConditionBin> bins;
+  double share_percent = 0;  ///< of the structural variance, on blocks outside the means; 0 if negative
+  double p_value = 1;        ///< that means differ so much by chance
+  double p_adjusted = 1;     ///< for looking at all conditions (Holm 1979)
+  bool clear = false;        ///< p_adjusted below 0.02
+};
+
+/// The residual by frequency.
+struct SpectrumEvidence {
+  std::vector<double> frequency_hz;
+  std::vector<double> density_mm2_per_hz;
+  double peak_hz = 0;  ///< of the line that stands out most against its neighbourhood
+  double peak_amplitude_mm = 0;
+  double share_percent = 0;  ///< of the structural variance in that line
+  double p_value = 1;        ///< that a smooth spectrum shows such a line anywhere (Bonferroni)
+  std::string why_not;
+};
+
+/// All about one model's residual.
+struct ResidualEvidence {
+  double rms_mm = 0;
+  double structure_mm = 0;  ///< root of the variance beyond the noise
+  double memory_s = 0;      ///< integral of the autocorrelation of what is not white
+  double block_s = 0;
+  std::size_t blocks = 0;
+  std::vector<ConditionEvidence> conditions;  ///< those that explain most first, those not judged last
+  SpectrumEvidence spectrum;
+};
+
+/// @param residual_mm  reading minus prediction by record; NaN without reading.
+/// @param conditions  of conditions_of() for the same samples.
+[[nodiscard]] ResidualEvidence examine_residual(const std::vector<Record>& records,
+                                                const std::vector<std::vector<double>>& residual_mm,
+                                                const Samples& samples,
+                                                const std::vector<Condition>& conditions, double noise_mm,
+                                                std::uint64_t seed);
+
+/// A sign that recalibration bent the model to swallow something that is not in its structure.
+struct UnphysicalSign {
+  std::string id;  ///< "wrong_way_first", "stiffness_near_zero", "creep_beyond_data", "at_bound"
+  std::string sentence;
+  double value = 0;
+  double limit = 0;
+};
+[[nodiscard]] std::vector<UnphysicalSign> unphysical_signs(const model::Model& model,
+                                                           const std::vector<Record>& records);
+
+/// The model as given, recalibrated and extended.
+struct Evidence {
+  ResidualEvidence as_given;
+  ResidualEvidence recalibrated;
+  ResidualEvidence extended;               ///< equal to recalibrated when nothing was added
+  std::vector<UnphysicalSign> unphysical;  ///< of the recalibrated model
+};
+[[nodiscard]] Evidence examine_fits(const std::vector<Record>& records, const StructureFit& as_given,
+                                    const StructureFit& recalibrated, const StructureFit& extended,
+                                    double noise_mm, std::uint64_t seed);
+
+/// "the error depends on how fast the pressure changes (41 %) and ...", or that no condition is clear.
+[[nodiscard]] std::string dependence_sentence(const ResidualEvidence& evidence);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,289 @@
+#include "sysid/diagnosis/experiments/experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "sysid/diagnosis/causes/twins.h"
+#include "sysid/diagnosis/experiments/experiment_advice.h"
+#include "sysid/diagnosis/experiments/separation.h"
+#include "sysid/diagnosis/gauge/gauge_verdict.h"
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/search/search.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Beyond this a separation is as good as certain, and more of it is worth nothing.
+constexpr double certain_sigma = 40;
+/// Rivals that are followed for each cause.
+constexpr std::size_t most_rivals = 4;
+/// Waveforms whose separation is confirmed by true fits.
+constexpr std::size_t confirmed = 2;
+constexpr double usual_slew_kpa_per_s = 300;
+/// What a rig needs before it starts: to find rest.
+constexpr double rest_before_s = 10;
+
+/// The causes that could stand in one place.
+struct Contest {
+  std::vector<Hypothesis> hypotheses;  ///< what is named first
+  std::vector<std::string> ids;
+};
+
+struct Pair {
+  std::size_t contest = 0;
+  std::size_t one = 0;
+  std::size_t other = 0;
+  bool twins = false;
+};
+
+std::vector<Cause> next_best(const NamedCause& named) {
+  std::vector<Cause> causes;
+  for (const CandidateScore& score : named.candidates) {
+    if (score.cause.type == named.cause.type || !std::isfinite(score.heldout_rmse_mm)) continue;
+    causes.push_back(score.cause);
+    if (causes.size() == 2) break;
+  }
+  return causes;
+}
+
+class Designer {
+ public:
+  Designer(const Diagnosis& diagnosis, const ExperimentOptions& options) : d_(diagnosis), options_(options) {}
+
+  NextExperiment run() {
+    if (d_.verdict != Verdict::ambiguous && !options_.always) return {};
+    prepare();
+    if (pairs_.empty()) {
+      result_.advice.emplace_back("there are no two explanations to tell apart");
+      return std::move(result_);
+    }
+    judge();
+    choose();
+    advise();
+    return std::move(result_);
+  }
+
+ private:
+  void prepare() {
+    std::vector<std::span<const double>> series;
+    for (const auto& r : d_.extended.residual_mm) series.emplace_back(r);
+    noise_ = fit_noise(autocovariance_of(series));
+    noise_.innovation_mm = std::max(noise_.innovation_mm, 1e-6);
+    data_ = make_search_data(d_.records, d_.as_given.point.model);
+    data_.threads = options_.threads;
+    data_.scales.residual_lines = spectrum_peaks(data_.records, d_.recalibrated.residual_mm, 3);
+    limits_ = options_.limits.value_or(RigLimits{data_.scales.largest_kpa, usual_slew_kpa_per_s});
+    for (const NamedCause& named : d_.causes) add_contest(named);
+    if (d_.causes.empty()) add_contest_of_rejected();
+    for (std::size_t c = 0; c < contests_.size(); ++c) {
+      const std::size_t count = contests_[c].ids.size();
+      for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = i + 1; j < count; ++j) pairs_.push_back({c, i, j, are_twins(c, i, j)});
+      }
+    }
+  }
+
+  [[nodiscard]] bool are_twins(std::size_t contest, std::size_t i, std::size_t j) const {
+    const auto one = find_cause(contests_[contest].ids[i]);
+    const auto other = find_cause(contests_[contest].ids[j]);
+    return one && other && sysid::are_twins(*one, *other, d_.extended.point.model);
+  }
+
+  void add_contest(const NamedCause& named) {
+    std::vector<Cause> rivals = named.rivals;
+    if (rivals.empty() && options_.always) rivals = next_best(named);
+    if (rivals.size() > most_rivals) rivals.resize(most_rivals);
+    const bool stands = std::any_of(d_.extended.causes.begin(), d_.extended.causes.end(),
+                                    [&](const Cause& c) { return c.type == named.cause.type; });
+    if (rivals.empty() || !stands) return;
+    const StructureFit rest = d_.extended.causes.size() > 1
+                                  ? fit_without_cause(data_.records, d_.extended, named.cause)
+                                  : d_.recalibrated;
+    add_contest(rest, rivals, std::string(named.cause.id), d_.extended);
+  }
+
+  /// Nothing was named: the model as it is, against the best of what was not worth naming.
+  void add_contest_of_rejected() {
+    std::vector<Cause> rivals;
+    for (const CandidateScore& score : d_.rejected) {
+      if (std::isfinite(score.heldout_rmse_mm) && rivals.size() < 2) rivals.push_back(score.cause);
+    }
+    if (!rivals.empty()) add_contest(d_.recalibrated, rivals, "none", d_.recalibrated);
+  }
+
+  void add_contest(const StructureFit& rest, const std::vector<Cause>& rivals, const std::string& first_id,
+                   const StructureFit& first) {
+    Contest contest;
+    contest.ids.push_back(first_id);
+    contest.hypotheses.emplace_back(d_.records, first, noise_);
+    for (Candidate& candidate : fit_candidates(data_, rest, rivals)) {
+      if (!candidate.fit) continue;
+      contest.ids.emplace_back(candidate.cause.id);
+      contest.hypotheses.emplace_back(d_.records, std::move(*candidate.fit), noise_);
+    }
+    contests_.push_back(std::move(contest));
+  }
+
+  /// The waveform as a record that follows the campaign, in the surroundings of its end.
+  [[nodiscard]] Record record_of(const Waveform& waveform) const {
+    const Record& last = d_.records.back();
+    Record record;
+    record.name = waveform.name;
+    const double interval_s = std::round(1e6 * data_.scales.sample_s) / 1e6;
+    record.drive_kpa = sampled_kpa(waveform, interval_s);
+    const std::size_t count = record.drive_kpa.size();
+    for (std::size_t i = 0; i < count; ++i) record.time_s.push_back(static_cast<double>(i) * interval_s);
+    record.duration_s.assign(count, interval_s);
+    record.duration_s[0] = 0;
+    record.reading_mm.assign(count, std::numeric_limits<double>::quiet_NaN());
+    if (!last.temperature_c.empty()) record.temperature_c.assign(count, last.temperature_c.back());
+    if (!last.supply_kpa.empty()) record.supply_kpa.assign(count, last.supply_kpa.back());
+    record.sample_time_s = interval_s;
+    record.campaign_time_s = last.campaign_time_s + last.time_s.back();
+    record.span_mm = data_.scales.span_mm;
+    record.largest_kpa = limits_.pressure_max_kpa;
+    record.largest_before_kpa = std::max(last.largest_before_kpa, last.largest_kpa);
+    record.held = last.held;
+    record.offset_free = d_.records.front().offset_free;
+    return record;
+  }
+
+  enum class Way { linear, refitted };
+
+  [[nodiscard]] double distance(const Record& record, const Pair& pair, Way way) const {
+    const Contest& contest = contests_[pair.contest];
+    if (pair.twins) return 0;  // what parts them is the form that each happens to have in the catalogue
+    const auto from = [&](std::size_t truth, std::size_t rival) {
+      const std::vector<double> truth_mm = contest.hypotheses[truth].prediction(record);
+      const bool finite =
+          std::all_of(truth_mm.begin(), truth_mm.end(), [](double y) { return std::isfinite(y); });
+      if (!finite) return 0.0;
+      return way == Way::linear ? contest.hypotheses[rival].linear_distance(record, truth_mm)
+                                : contest.hypotheses[rival].refitted_distance(record, truth_mm);
+    };
+    return std::min(from(pair.one, pair.other), from(pair.other, pair.one));
+  }
+
+  void judge() {
+    for (Waveform& waveform : experiment_menu(limits_)) {
+      const double minutes = (waveform.duration_s() + rest_before_s) / 60;
+      const bool done =
+          std::find(options_.done.begin(), options_.done.end(), waveform.name) != options_.done.end();
+      if (minutes > options_.most_minutes || done) continue;
+      result_.menu.push_back({std::move(waveform), minutes, {}, 0});
+    }
+    for (JudgedWaveform& judged : result_.menu) {
+      judged.separations.resize(pairs_.size());
+      for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const Contest& contest = contests_[pairs_[p].contest];
+        judged.separations[p] = {contest.ids[pairs_[p].one], contest.ids[pairs_[p].other], 0};
+      }
+    }
+    separate(result_.menu.size(), Way::linear);
+    rank();
+    separate(std::min(confirmed, result_.menu.size()), Way::refitted);
+    rank();
+  }
+
+  /// Separations of the first `count` entries; a later, truer way can only lower them.
+  void separate(std::size_t count, Way way) {
+    parallel_for(count * pairs_.size(), options_.threads, [&](std::size_t job) {
+      JudgedWaveform& judged = result_.menu[job / pairs_.size()];
+      Separation& separation = judged.separations[job % pairs_.size()];
+      const double sigma = distance(record_of(judged.waveform), pairs_[job % pairs_.size()], way);
+      separation.sigma = way == Way::linear ? sigma : std::min(separation.sigma, sigma);
+    });
+  }
+
+  /// Separations add up as squares when an experiment is repeated, so a square per minute is what counts.
+  void rank() {
+    for (JudgedWaveform& judged : result_.menu) {
+      double learnt = 0;
+      for (const Separation& s : judged.separations) {
+        const double useful = std::min(s.sigma, certain_sigma);
+        learnt += s.sigma < separation_needed_sigma ? 0 : useful * useful;
+      }
+      judged.merit = learnt / judged.minutes;
+    }
+    std::stable_sort(result_.menu.begin(), result_.menu.end(),
+                     [](const JudgedWaveform& a, const JudgedWaveform& b) { return a.merit > b.merit; });
+  }
+
+  void choose() {
+    if (result_.menu.empty() || result_.menu.front().merit <= 0) return;
+    result_.best = result_.menu.front();
+    double least = std::numeric_limits<double>::infinity();
+    std::vector<std::string>& ids = result_.separates;
+    for (const Separation& s : result_.best->separations) {
+      if (s.sigma < separation_needed_sigma) continue;
+      least = std::min(least, s.sigma);
+      for (const std::string& id : {s.one, s.other}) {
+        if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+      }
+    }
+    result_.predicted_separation_sigma = least;
+  }
+
+  /// Whether a gauge would tell what no waveform does.
+  [[nodiscard]] bool asks_for_gauge(const Pair& pair, const AdviceFacts& facts) const {
+    const auto one = find_cause(contests_[pair.contest].ids[pair.one]);
+    const auto other = find_cause(contests_[pair.contest].ids[pair.other]);
+    return !facts.separable && one && other && gauge_tells_apart(*one, *other);
+  }
+
+  void propose_gauge_check(std::vector<std::string> separates) {
+    const GaugeScales scales = gauge_scales(d_.records, d_.noise_mm);
+    ProposedGaugeCheck check;
+    check.positions_mm =
+        planned_positions(scales.highest_mm > -scales.lowest_mm ? scales.highest_mm : scales.lowest_mm);
+    if (check.positions_mm.empty()) return;
+    check.separates = std::move(separates);
+    check.minutes = minutes_for(check.positions_mm.size());
+    result_.advice.push_back(gauge_advice(check.positions_mm, check.separates));
+    result_.gauge_check = std::move(check);
+  }
+
+  void advise() {
+    std::vector<std::string> by_gauge;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      double furthest = 0;
+      for (const JudgedWaveform& judged : result_.menu)
+        furthest = std::max(furthest, judged.separations[p].sigma);
+      const Contest& contest = contests_[pairs_[p].contest];
+      const AdviceFacts facts{options_.pressure_recorded, data_.scales.has_temperature,
+                              furthest >= separation_needed_sigma, d_.gauge.has_value()};
+      if (asks_for_gauge(pairs_[p], facts) && !facts.gauge_made) {
+        for (const std::string& id : {contest.ids[pairs_[p].one], contest.ids[pairs_[p].other]}) {
+          if (std::find(by_gauge.begin(), by_gauge.end(), id) == by_gauge.end()) by_gauge.push_back(id);
+        }
+        continue;
+      }
+      for (std::string& sentence :
+           advice_for(contest.ids[pairs_[p].one], contest.ids[pairs_[p].other], facts)) {
+        if (std::find(result_.advice.begin(), result_.advice.end(), sentence) == result_.advice.end())
+          result_.advice.push_back(std::move(sentence));
+      }
+    }
+    if (!by_gauge.empty()) propose_gauge_check(std::move(by_gauge));
+  }
+
+  const Diagnosis& d_;
+  const ExperimentOptions& options_;
+  NoiseModel noise_;
+  SearchData data_;
+  RigLimits limits_;
+  std::vector<Contest> contests_;
+  std::vector<Pair> pairs_;
+  NextExperiment result_;
+};
+
+}  // namespace
+
+NextExperiment design_experiment(const Diagnosis& diagnosis, const ExperimentOptions& options) {
+  return Designer(diagnosis, options).run();
+}
+
+}  // namespace softgrip::sysid

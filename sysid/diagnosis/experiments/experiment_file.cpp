@@ -1,0 +1,73 @@
+#include <nlohmann/json.hpp>
+
+#include "base/numbers.h"
+#include "sysid/diagnosis/experiments/experiment.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string list_of(const std::vector<std::string>& ids) {
+  std::string text;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (i > 0) text += i + 1 == ids.size() ? " and " : ", ";
+    text += ids[i];
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel) {
+  const JudgedWaveform& best = experiment.best.value();
+  std::string yaml = "# Proposed by softgrip diagnose: tells " + list_of(experiment.separates) +
+                     " apart, by " + significant(experiment.predicted_separation_sigma, 3) +
+                     " standard deviations as predicted, in " + significant(best.minutes, 3) +
+                     " minutes on the rig.\n";
+  yaml += "name: " + best.waveform.name + "\n";
+  yaml += "about: \"" + best.waveform.about + "\"\n";
+  if (!channel.empty()) yaml += "channels: [" + channel + "]\n";
+  yaml += "steps:\n  - pressure:\n      points:\n";
+  for (const Corner& corner : best.waveform.corners) {
+    yaml += "        - {time_s: " + shortest(corner.time_s) +
+            ", pressure_kpa: " + shortest(corner.pressure_kpa) + "}\n";
+  }
+  return yaml;
+}
+
+std::string with_experiment(const std::string& diagnosis_json, const NextExperiment& experiment,
+                            const std::string& file) {
+  Json json = Json::parse(diagnosis_json);
+  json["next_experiment"] = nullptr;
+  if (experiment.best) {
+    const JudgedWaveform& best = *experiment.best;
+    Json separations = Json::array();
+    for (const Separation& s : best.separations)
+      separations.push_back({{"pair", {s.one, s.other}}, {"sigma", s.sigma}});
+    json["next_experiment"] = {{"file", file},
+                               {"separates", experiment.separates},
+                               {"predicted_separation_sigma", experiment.predicted_separation_sigma},
+                               {"minutes", best.minutes},
+                               {"waveform", best.waveform.name},
+                               {"separations", std::move(separations)}};
+  }
+  json["gauge_check"] = nullptr;
+  if (const auto& check = experiment.gauge_check) {
+    json["gauge_check"] = {{"file", gauge_positions_file},
+                           {"separates", check->separates},
+                           {"readings", check->positions_mm.size()},
+                           {"minutes", check->minutes}};
+  }
+  Json menu = Json::array();
+  for (const JudgedWaveform& judged : experiment.menu) {
+    double least = judged.separations.empty() ? 0 : judged.separations.front().sigma;
+    for (const Separation& s : judged.separations) least = std::min(least, s.sigma);
+    menu.push_back({{"waveform", judged.waveform.name}, {"minutes", judged.minutes}, {"least_sigma", least}});
+  }
+  json["experiments_judged"] = std::move(menu);
+  json["experiment_advice"] = experiment.advice;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace softgrip::sysid

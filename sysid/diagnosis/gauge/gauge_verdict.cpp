@@ -1,0 +1,390 @@
+#include "sysid/diagnosis/gauge/gauge_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "base/numbers.h"
+#include "model/catalogue.h"
+#include "sysid/diagnosis/causes/twins.h"
+#include "sysid/diagnosis/residual/leftover.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// A bend of which no log could tell is not worth a warning: as a share of the logs' noise.
+constexpr double worth_telling = 0.5;
+
+/// A cause that may stand in one place of the selection.
+struct Standing {
+  Cause cause;
+  StructureFit fit;
+  bool implied = false;  ///< no rival of the logs' verdict: only the gauge may bring it in
+};
+
+/// One explanation of the logs: of every place one cause.
+struct Explanation {
+  std::vector<std::size_t> standing;  ///< by place, index among those that may stand there
+  std::size_t shape = 0;
+};
+
+std::string in_words(const SensorShape& shape) {
+  std::string text;
+  for (const model::BlockSpec& block : shape.blocks) {
+    const bool bends = model::catalogue()[block.type].info.id == "sensor_nonlinearity";
+    text += (text.empty() ? "" : " with ") + std::string(bends ? "a bent scale" : "an end of the sensor");
+  }
+  return text.empty() ? "a straight sensor" : text;
+}
+
+std::string mm(double value) {
+  return significant(value, 2) + " mm";
+}
+
+double mean_offset_mm(const FitPoint& point) {
+  double sum = 0;
+  for (const StartState& start : point.starts) sum += start.offset_mm;
+  return point.starts.empty() ? 0 : sum / static_cast<double>(point.starts.size());
+}
+
+class Weighing {
+ public:
+  Weighing(const GaugeQuestion& question, const SearchData& data, const Division& division,
+           Selection& selection, std::vector<std::string>& warnings)
+      : question_(question), data_(data), division_(division), selection_(selection), warnings_(warnings) {}
+
+  GaugeEvidence run() {
+    evidence_.file = question_.file;
+    for (std::size_t place = 0; place < selection_.chosen.size(); ++place) add_place(place);
+    asked_ = is_asked();
+    const GaugeScales scales = gauge_scales(data_.records, question_.noise_mm);
+    explain(false);
+    evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
+    // What the logs have ruled out comes back only where nothing that they left fits.
+    const std::size_t left_by_logs = shapes_.size();
+    if (evidence_.check.outcome == GaugeOutcome::unexplained) explain(true);
+    if (shapes_.size() > left_by_logs)
+      evidence_.check = check_gauge(question_.file.readings, shapes_, scales);
+    if (evidence_.check.outcome != GaugeOutcome::uncovered) settle();
+    speak();
+    return std::move(evidence_);
+  }
+
+ private:
+  void add_place(std::size_t place) {
+    const ChosenCause& chosen = selection_.chosen[place];
+    std::vector<Standing> standing{{chosen.cause, selection_.extended, false}};
+    std::vector<Cause> others = chosen.rivals;
+    const std::size_t rivals = others.size();
+    for (const Cause& cause : sensor_counterparts(chosen.cause)) {
+      const auto same = [&](const Cause& c) { return c.type == cause.type; };
+      if (std::none_of(others.begin(), others.end(), same)) others.push_back(cause);
+    }
+    // Where no sensor that is bent or ends is among them, a gauge has nothing to say.
+    std::vector<Cause> all = others;
+    all.push_back(chosen.cause);
+    const bool matters =
+        std::any_of(all.begin(), all.end(), [](const Cause& c) { return is_static_sensor(c.type); });
+    const bool fitted = model::position_of(selection_.extended.point.model, chosen.cause.type).has_value();
+    if (matters && fitted && question_.may_replace) {
+      for (Candidate& candidate : fit_candidates(data_, without(place), others)) {
+        if (!candidate.fit) continue;
+        const auto at = std::find_if(others.begin(), others.end(),
+                                     [&](const Cause& c) { return c.type == candidate.cause.type; });
+        const bool implied = static_cast<std::size_t>(at - others.begin()) >= rivals;
+        standing.push_back({candidate.cause, std::move(*candidate.fit), implied});
+      }
+    }
+    places_.push_back(std::move(standing));
+  }
+
+  [[nodiscard]] StructureFit without(std::size_t place) const {
+    if (selection_.extended.causes.size() == 1) return selection_.base;
+    return fit_without_cause(data_.records, selection_.extended, selection_.chosen[place].cause);
+  }
+
+  /// Every combination of what may stand, with the sensor that it makes; those with implied causes besides.
+  void explain(bool with_implied) {
+    std::vector<std::size_t> at(places_.size(), 0);
+    explanations_.clear();
+    while (true) {
+      bool implied = false;
+      for (std::size_t place = 0; place < at.size(); ++place) implied |= places_[place][at[place]].implied;
+      if (!implied || with_implied) {
+        if (auto shape = shape_of(at)) explanations_.push_back({at, number_of(std::move(*shape))});
+      }
+      std::size_t place = 0;
+      while (place < at.size() && ++at[place] == places_[place].size()) at[place++] = 0;
+      if (place == at.size()) return;
+    }
+  }
+
+  [[nodiscard]] std::optional<SensorShape> shape_of(const std::vector<std::size_t>& at) const {
+    const StructureFit& extended = selection_.extended;
+    model::Model sensor;
+    sensor.blocks = static_sensor_blocks(extended.point.model);
+    for (const ChosenCause& chosen : selection_.chosen)
+      sensor = model::without_block(std::move(sensor), chosen.cause.type);
+    double offset_mm = mean_offset_mm(extended.point);
+    for (std::size_t place = 0; place < at.size(); ++place) {
+      const Standing& standing = places_[place][at[place]];
+      if (!is_static_sensor(standing.cause.type)) continue;
+      const auto position = model::position_of(standing.fit.point.model, standing.cause.type);
+      if (!position || model::position_of(sensor, standing.cause.type)) return std::nullopt;
+      sensor = model::with_block(std::move(sensor), standing.fit.point.model.blocks[*position]);
+      offset_mm = mean_offset_mm(standing.fit.point);
+    }
+    return SensorShape{std::move(sensor.blocks), offset_mm};
+  }
+
+  std::size_t number_of(SensorShape shape) {
+    const auto known = std::find_if(shapes_.begin(), shapes_.end(),
+                                    [&](const SensorShape& s) { return s.id() == shape.id(); });
+    if (known != shapes_.end()) return static_cast<std::size_t>(known - shapes_.begin());
+    shapes_.push_back(std::move(shape));
+    return shapes_.size() - 1;
+  }
+
+  /// Whether some explanation that the gauge leaves has this in its place.
+  [[nodiscard]] bool survives(std::size_t place, std::size_t standing) const {
+    return std::any_of(explanations_.begin(), explanations_.end(), [&](const Explanation& e) {
+      return e.standing[place] == standing && !evidence_.check.fits[e.shape].ruled_out;
+    });
+  }
+
+  void settle() {
+    const std::vector<GaugeFit>& fits = evidence_.check.fits;
+    if (std::none_of(fits.begin(), fits.end(), [](const GaugeFit& fit) { return fit.ruled_out; })) return;
+    std::vector<std::size_t> now(places_.size(), 0);
+    std::vector<bool> brought_in(places_.size(), false);
+    for (std::size_t place = 0; place < places_.size(); ++place) {
+      const std::vector<Standing>& standing = places_[place];
+      std::vector<std::size_t> left;
+      for (std::size_t i = 0; i < standing.size(); ++i) {
+        if (survives(place, i)) {
+          if (!standing[i].implied) left.push_back(i);
+        } else if (!standing[i].implied) {
+          evidence_.ruled_out.emplace_back(standing[i].cause.id);
+        }
+      }
+      for (std::size_t i = 0; left.empty() && i < standing.size(); ++i) {
+        if (!survives(place, i)) continue;
+        left.push_back(i);
+        brought_in[place] = true;
+      }
+      if (left.empty()) return;
+      now[place] = left.front();
+      keep(place, left, brought_in[place]);
+    }
+    replace(now);
+  }
+
+  /// The rivals of a place are those that are left beside the first; of one that only the gauge brought in,
+  /// it is what the logs had named.
+  void keep(std::size_t place, const std::vector<std::size_t>& left, bool brought_in) {
+    ChosenCause& chosen = selection_.chosen[place];
+    const std::vector<Standing>& standing = places_[place];
+    std::vector<Cause> rivals;
+    for (const Cause& rival : chosen.rivals) {
+      const auto fitted = std::find_if(standing.begin(), standing.end(),
+                                       [&](const Standing& s) { return s.cause.type == rival.type; });
+      // One that has no fit could not be weighed.
+      const bool stays = fitted == standing.end() ||
+                         std::find(left.begin() + 1, left.end(),
+                                   static_cast<std::size_t>(fitted - standing.begin())) != left.end();
+      if (stays) rivals.push_back(rival);
+    }
+    if (brought_in) {
+      rivals.push_back(chosen.cause);
+      warnings_.push_back("the logs name " + std::string(chosen.cause.id) +
+                          " and the gauge contradicts it: by the gauge it is " +
+                          std::string(standing[left.front()].cause.id) +
+                          ", which explains these logs less well; check that nothing was changed between "
+                          "the logs and the gauge");
+    }
+    chosen.rivals = std::move(rivals);
+  }
+
+  void replace(const std::vector<std::size_t>& now) {
+    std::vector<std::size_t> changed;
+    for (std::size_t place = 0; place < now.size(); ++place) {
+      if (now[place] != 0) changed.push_back(place);
+    }
+    if (changed.empty()) return;
+    const bool left_too_much =
+        leaves_too_much(selection_.left, selection_.base_structure, question_.noise_mm);
+    if (changed.size() == 1) {
+      selection_.extended = places_[changed.front()][now[changed.front()]].fit;
+    } else {
+      selection_.extended = joined(changed, now);
+    }
+    for (const std::size_t place : changed) selection_.chosen[place].cause = places_[place][now[place]].cause;
+    selection_.extended_losses = held_out_losses(data_.records, division_, selection_.extended);
+    selection_.left = structure_of(selection_.extended.residual_mm, question_.noise_mm);
+    for (std::size_t place = 0; place < now.size(); ++place) {
+      const StructureFit rest = without(place);
+      selection_.chosen[place].gain_percent = gain_percent(held_out_losses(data_.records, division_, rest),
+                                                           selection_.extended_losses, question_.seed);
+    }
+    evidence_.replaced = true;
+    if (!left_too_much && leaves_too_much(selection_.left, selection_.base_structure, question_.noise_mm)) {
+      warnings_.push_back("where the bend is, the gauge has told; the catalogue's form of it leaves " +
+                          mm(selection_.left.excess_mm) + " of structure");
+    }
+  }
+
+  [[nodiscard]] StructureFit joined(const std::vector<std::size_t>& changed,
+                                    const std::vector<std::size_t>& now) const {
+    FitPoint point = selection_.extended.point;
+    std::vector<Cause> causes = selection_.extended.causes;
+    for (const std::size_t place : changed) {
+      const Standing& standing = places_[place][now[place]];
+      const std::size_t old = selection_.chosen[place].cause.type;
+      const model::Model& from = standing.fit.point.model;
+      point.model = model::with_block(model::without_block(point.model, old),
+                                      from.blocks[*model::position_of(from, standing.cause.type)]);
+      for (Cause& cause : causes) {
+        if (cause.type == old) cause = standing.cause;
+      }
+    }
+    return fit_structure(data_.records, std::move(causes), point);
+  }
+
+  [[nodiscard]] std::string covered() const {
+    const std::vector<double> positions = distinct_positions(question_.file.readings);
+    return "over " + significant(positions.front(), 3) + " to " + significant(positions.back(), 3) + " mm";
+  }
+
+  /// How a sensor that is no straight line departs from one.
+  [[nodiscard]] std::string bend_in_words() const {
+    const GaugeCheck::Departure departure = evidence_.check.departure();
+    if (!departure.clips) return "bent by up to " + mm(departure.largest_mm);
+    const GaugeFit& end = evidence_.check.free_end;
+    return "at its end at " + significant(end.shape.at(1e6), 3) + " mm";
+  }
+
+  /// Whether the logs' own verdict leaves open what the sensor is.
+  [[nodiscard]] bool is_asked() const {
+    return std::any_of(places_.begin(), places_.end(), [](const std::vector<Standing>& standing) {
+      return std::any_of(standing.begin(), standing.end(), [&](const Standing& s) {
+        return !s.implied && gauge_tells_apart(s.cause, standing.front().cause);
+      });
+    });
+  }
+
+  [[nodiscard]] std::string sentence_decided() const {
+    const GaugeFit& best = evidence_.check.fits[evidence_.check.best];
+    if (best.shape.blocks.empty()) {
+      return "The gauge shows a straight sensor " + covered() + ", to " + mm(best.rms_mm) +
+             ": what bends these readings is the finger or what it meets, not the sensor.";
+    }
+    return "The gauge shows the sensor " + bend_in_words() + ", as these logs ask for, to " +
+           mm(best.rms_mm) + ": the sensor is to blame, not the finger.";
+  }
+
+  /// Where more than one shape is left.
+  [[nodiscard]] std::string sentence_open(bool bent) const {
+    const GaugeCheck& check = evidence_.check;
+    std::string left, out;
+    for (const GaugeFit& fit : check.fits) {
+      std::string& list = fit.ruled_out ? out : left;
+      list += (list.empty() ? "" : ", ") + in_words(fit.shape);
+    }
+    const std::string besides = out.empty() ? "" : " It rules out: " + out + ".";
+    if (check.outcome != GaugeOutcome::unexplained) {
+      return "The gauge does not tell: its readings fit alike " + left + " (" + mm(check.noise_mm) +
+             " of noise). Read up to the largest reading of the logs and beyond it, more often, or with a "
+             "better gauge." +
+             besides;
+    }
+    return "The gauge shows a sensor that is neither straight nor as these logs ask for" +
+           (bent ? ": it is " + bend_in_words() + ". A bend, but not this one." : std::string(".")) + besides;
+  }
+
+  void speak() {
+    const GaugeCheck& check = evidence_.check;
+    if (check.outcome == GaugeOutcome::uncovered) {
+      evidence_.sentence = "The gauge says nothing: its readings cover only " +
+                           significant(100 * check.covered_share, 2) +
+                           " % of what these logs have read. Does the sensor follow its target?";
+      warnings_.push_back(evidence_.sentence);
+      return;
+    }
+    const GaugeCheck::Departure departure = check.departure();
+    const bool bent = departure.clear && departure.rms_mm > worth_telling * question_.noise_mm;
+    const auto left = std::count_if(check.fits.begin(), check.fits.end(),
+                                    [](const GaugeFit& fit) { return !fit.ruled_out; });
+    const bool settled = left == 1 && check.fits.size() > 1;
+    if (settled) {
+      evidence_.sentence = sentence_decided();
+    } else if (asked_) {
+      evidence_.sentence = sentence_open(bent);
+    } else {
+      evidence_.sentence = bent ? "The gauge shows the sensor " + bend_in_words() + "."
+                                : "The gauge shows a straight sensor " + covered() + ".";
+    }
+    if (!settled && bent) doubt();
+    if (bent && check.fits[check.best].shape.blocks.empty()) tell_of_bend();
+    if (asked_ && !settled && check.outcome == GaugeOutcome::unexplained) {
+      warnings_.push_back("the gauge readings fit no explanation of these logs (" +
+                          mm(check.fits[check.best].rms_mm) + " are left at best, their noise is " +
+                          mm(check.noise_mm) + "): the verdict stays open");
+    }
+  }
+
+  /// A sensor that is bent, and nothing that is named says so: what names a bend elsewhere does not stand
+  /// alone.
+  void doubt() {
+    for (ChosenCause& chosen : selection_.chosen) {
+      if (!chosen.rivals.empty() || is_static_sensor(chosen.cause.type)) continue;
+      chosen.rivals = sensor_counterparts(chosen.cause);
+    }
+  }
+
+  void tell_of_bend() {
+    warnings_.push_back("by the gauge the displacement sensor is " + bend_in_words() +
+                        ", and no cause that is named says so: every displacement in these logs has that in "
+                        "it; calibrate the sensor before anything else");
+  }
+
+  const GaugeQuestion& question_;
+  const SearchData& data_;
+  const Division& division_;
+  Selection& selection_;
+  std::vector<std::string>& warnings_;
+  std::vector<std::vector<Standing>> places_;
+  std::vector<SensorShape> shapes_;
+  std::vector<Explanation> explanations_;
+  bool asked_ = false;
+  GaugeEvidence evidence_;
+};
+
+}  // namespace
+
+bool gauge_tells_apart(const Cause& one, const Cause& other) {
+  const bool first = is_static_sensor(one.type);
+  const bool second = is_static_sensor(other.type);
+  return first != second || (first && one.type != other.type);
+}
+
+GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm) {
+  GaugeScales scales{noise_mm, std::numeric_limits<double>::infinity(),
+                     -std::numeric_limits<double>::infinity()};
+  for (const Record& record : records) {
+    for (const double y : record.reading_mm) {
+      if (std::isnan(y)) continue;
+      scales.lowest_mm = std::min(scales.lowest_mm, y);
+      scales.highest_mm = std::max(scales.highest_mm, y);
+    }
+  }
+  return scales;
+}
+
+GaugeEvidence weigh_gauge(const GaugeQuestion& question, const SearchData& data, const Division& division,
+                          Selection& selection, std::vector<std::string>& warnings) {
+  return Weighing(question, data, division, selection, warnings).run();
+}
+
+}  // namespace softgrip::sysid

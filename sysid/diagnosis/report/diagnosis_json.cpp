@@ -1,0 +1,221 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "model/catalogue.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json spread(const Spread& s) {
+  return {{"value", s.value}, {"ci95", {s.lower, s.upper}}};
+}
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json cause_json(const NamedCause& named) {
+  Json parameters = Json::object();
+  for (const CauseParameter& p : named.parameters) {
+    Json one{{"value", p.value}};
+    one["ci95"] = p.has_interval ? Json{p.ci95.lower, p.ci95.upper} : Json(nullptr);
+    parameters[p.name] = std::move(one);
+  }
+  return {{"id", named.cause.id},
+          {"station", model::name_of(named.cause.station)},
+          {"parameters", std::move(parameters)},
+          {"heldout_gain_percent", spread(named.heldout_gain_percent)}};
+}
+
+Json candidates_json(const std::vector<CandidateScore>& candidates) {
+  Json list = Json::array();
+  for (const CandidateScore& c : candidates) {
+    Json one{{"id", c.cause.id}};
+    if (!c.why_not.empty()) {
+      one["not_fitted"] = c.why_not;
+    } else {
+      one["rmse_mm"] = number(c.rmse_mm);
+      one["heldout_rmse_mm"] = number(c.heldout_rmse_mm);
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+Json bins_json(const ConditionEvidence& e) {
+  Json list = Json::array();
+  for (const ConditionBin& bin : e.bins) {
+    Json one;
+    if (!e.condition.groups.empty()) one["group"] = e.condition.groups[bin.group];
+    one["value"] = bin.label.empty() ? Json(bin.value) : Json(bin.label);
+    one["samples"] = bin.samples;
+    one["mean_mm"] = bin.mean_mm;
+    one["ci95"] = {number(bin.lower_mm), number(bin.upper_mm)};
+    one["rms_mm"] = bin.rms_mm;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+Json residual_json(const ResidualEvidence& r, bool with_bins) {
+  Json json{{"rms_mm", r.rms_mm},
+            {"structure_mm", r.structure_mm},
+            {"memory_s", r.memory_s},
+            {"block_s", r.block_s},
+            {"blocks", r.blocks}};
+  Json conditions = Json::array();
+  for (const ConditionEvidence& e : r.conditions) {
+    Json one{{"id", e.condition.id}};
+    if (e.condition.why_not.empty()) {
+      one["share_percent"] = e.share_percent;
+      one["p_value"] = e.p_value;
+      one["p_adjusted"] = e.p_adjusted;
+      one["clear"] = e.clear;
+      if (with_bins) one["bins"] = bins_json(e);
+    } else {
+      one["not_judged"] = e.condition.why_not;
+    }
+    conditions.push_back(std::move(one));
+  }
+  json["conditions"] = std::move(conditions);
+  if (r.spectrum.why_not.empty()) {
+    json["line"] = {{"frequency_hz", r.spectrum.peak_hz},
+                    {"amplitude_mm", r.spectrum.peak_amplitude_mm},
+                    {"share_percent", r.spectrum.share_percent},
+                    {"p_value", r.spectrum.p_value}};
+  } else {
+    json["line"] = nullptr;
+  }
+  return json;
+}
+
+Json evidence_json(const Evidence& evidence) {
+  Json unphysical = Json::array();
+  for (const UnphysicalSign& sign : evidence.unphysical) {
+    unphysical.push_back(
+        {{"id", sign.id}, {"value", sign.value}, {"limit", sign.limit}, {"sentence", sign.sentence}});
+  }
+  return {{"as_given", residual_json(evidence.as_given, false)},
+          {"recalibrated", residual_json(evidence.recalibrated, true)},
+          {"extended", residual_json(evidence.extended, false)},
+          {"unphysical_recalibration", std::move(unphysical)}};
+}
+
+Json reference_json(const Reference& r) {
+  Json json{{"structure_mm", r.structural_mm}, {"rmse_before_mm", r.rmse_before_mm}};
+  json["explained_percent"] = r.present ? spread(r.explained_percent) : Json(nullptr);
+  if (!r.present) return json;
+  json["linear_percent"] = r.linear_percent;
+  json["heldout_rmse_mm"] = r.rmse_after_mm;
+  Json groups = Json::object();
+  for (const FeatureGroup& group : r.groups) groups[group.id] = group.importance_percent;
+  json["importance_percent"] = std::move(groups);
+  return json;
+}
+
+Json gauge_json(const GaugeEvidence& gauge) {
+  const GaugeCheck& check = gauge.check;
+  Json json{{"file", gauge.file.path},
+            {"sha256", gauge.file.sha256},
+            {"outcome", name_of(check.outcome)},
+            {"sentence", gauge.sentence},
+            {"ruled_out", gauge.ruled_out},
+            {"covered_percent", 100 * check.covered_share},
+            {"noise_mm", check.noise_mm},
+            {"repeat_noise_mm", check.repeat_noise_mm},
+            {"log_likelihood_ratio", check.log_likelihood_ratio}};
+  json["hypotheses"] = Json::array();
+  for (const GaugeFit& fit : check.fits) {
+    json["hypotheses"].push_back({{"id", fit.shape.id()},
+                                  {"rms_mm", fit.rms_mm},
+                                  {"tolerance_mm", fit.tolerance_mm},
+                                  {"explains", fit.explains},
+                                  {"behind", fit.behind},
+                                  {"ruled_out", fit.ruled_out},
+                                  {"zero_mm", fit.zero_mm},
+                                  {"scale", fit.scale}});
+  }
+  // Without the logs: how the sensor is bent by the gauge alone.
+  const GaugeCheck::Departure departure = check.departure();
+  json["sensor_alone"] = {{"straight_rms_mm", check.straight.rms_mm},
+                          {"bent_rms_mm", check.free_bend.rms_mm},
+                          {"ending_rms_mm", check.free_end.rms_mm},
+                          {"departure_rms_mm", departure.rms_mm},
+                          {"clear", departure.clear}};
+  json["positions_mm"] = distinct_positions(gauge.file.readings);
+  json["readings"] = Json::array();
+  for (const GaugeReading& r : gauge.file.readings) {
+    json["readings"].push_back(
+        {{"gauge_mm", r.position_mm}, {"displacement_mm", r.reading_mm}, {"samples", r.samples}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const Diagnosis& d) {
+  Json json;
+  json["schema"] = 1;
+  json["verdict"] = name_of(d.verdict);
+  json["causes"] = Json::array();
+  json["alternatives"] = Json::array();
+  for (const NamedCause& named : d.causes) {
+    json["causes"].push_back(cause_json(named));
+    Json ids = Json::array();
+    for (const Cause& rival : named.rivals) ids.push_back(rival.id);
+    json["alternatives"].push_back(std::move(ids));
+  }
+  json["noise_mm"] = d.noise_mm;
+  json["heldout_rmse_mm"] = {{"as_given", number(d.as_given_rmse_mm)},
+                             {"recalibrated", number(d.recalibrated_rmse_mm)},
+                             {"extended", number(d.extended_rmse_mm)}};
+  if (d.recalibrated_other_logs_rmse_mm) {
+    json["heldout_logs_rmse_mm"] = {
+        {"recalibrated", number(*d.recalibrated_other_logs_rmse_mm)},
+        {"extended", number(d.extended_other_logs_rmse_mm.value_or(*d.recalibrated_other_logs_rmse_mm))}};
+  }
+  json["gain_percent"] = spread(d.gain);
+  json["unexplained_percent"] = d.unexplained_percent;
+  json["next_experiment"] = nullptr;
+  json["null_calibration"] = nullptr;
+  if (const auto& nulls = d.null_calibration) {
+    json["null_calibration"] = {{"campaigns", nulls->campaigns},
+                                {"named", nulls->named},
+                                {"largest_gain_percent", nulls->largest_gain_percent},
+                                {"p_value", nulls->p_value}};
+  }
+  json["staircase"] = nullptr;
+  if (const auto& staircase = d.staircase) {
+    json["staircase"] = {{"jumps", staircase->jumps},
+                         {"scatter_percent", 100 * staircase->scatter},
+                         {"heldout_rmse_mm", staircase->heldout_rmse_mm},
+                         {"gain_percent", spread(staircase->gain_percent)}};
+  }
+  json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
+  json["partial_causes"] = Json::array();
+  for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named));
+  json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},
+                          {"left", d.structure_left.excess_mm}};
+  Json candidates = Json::object();
+  for (const auto* list : {&d.causes, &d.partial}) {
+    for (const NamedCause& named : *list) {
+      candidates[std::string(named.cause.id)] = candidates_json(named.candidates);
+    }
+  }
+  if (!d.rejected.empty()) candidates["none"] = candidates_json(d.rejected);
+  json["candidates"] = std::move(candidates);
+  if (d.evidence) json["evidence"] = evidence_json(*d.evidence);
+  if (d.reference) json["reference"] = reference_json(*d.reference);
+  if (d.reference_left) json["reference_left"] = reference_json(*d.reference_left);
+  json["warnings"] = d.warnings;
+  json["wall_s"] = d.wall_s;
+  Json stages = Json::object();
+  for (const auto& [stage, took_s] : d.stages_s) stages[stage] = took_s;
+  json["stages_s"] = std::move(stages);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,90 @@
+#include "sysid/diagnosis/report/report_gauge.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+namespace {
+
+std::string title_of(const GaugeFit& fit) {
+  return fit.shape.blocks.empty() ? "straight sensor" : fit.shape.id() + " as the logs ask for";
+}
+
+Colour colour_of(std::size_t hypothesis) {
+  constexpr Colour colours[]{Colour::model, Colour::error, Colour::other, Colour::faint};
+  return colours[std::min<std::size_t>(hypothesis, 3)];
+}
+
+Table hypotheses_table(const GaugeCheck& check) {
+  Table table;
+  table.header = {"the sensor is", "leaves [mm]", "log likelihood behind the best", ""};
+  table.numeric = {false, true, true, false};
+  for (const GaugeFit& fit : check.fits) {
+    table.rows.push_back({title_of(fit), significant(fit.rms_mm, 3), significant(fit.behind, 3),
+                          fit.ruled_out  ? "ruled out"
+                          : fit.explains ? "explains the readings"
+                                         : "does not explain the readings"});
+  }
+  return table;
+}
+
+}  // namespace
+
+Chart gauge_chart(const GaugeEvidence& gauge) {
+  const GaugeCheck& check = gauge.check;
+  const std::vector<GaugeReading>& readings = gauge.file.readings;
+  std::vector<std::size_t> order(readings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return readings[a].position_mm < readings[b].position_mm;
+  });
+  const auto beside = [&](const std::vector<double>& values_mm) {
+    Series series;
+    for (const std::size_t i : order) {
+      series.x.push_back(readings[i].position_mm);
+      series.y.push_back(values_mm[i] - check.straight.predicted_mm[i]);
+    }
+    return series;
+  };
+  Chart chart;
+  chart.x.label = "position by the gauge [mm]";
+  chart.y.label = "reading minus straight line [mm]";
+  for (std::size_t h = 0; h < check.fits.size(); ++h) {
+    Series curve = beside(check.fits[h].predicted_mm);
+    curve.label = title_of(check.fits[h]);
+    curve.colour = colour_of(h);
+    curve.dashed = check.fits[h].ruled_out;
+    chart.series.push_back(std::move(curve));
+  }
+  Series points = beside(check.cut_mm);
+  points.label = "read";
+  points.style = Series::Style::points;
+  points.width = 2.5;
+  chart.series.push_back(std::move(points));
+  return chart;
+}
+
+void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
+  const GaugeCheck& check = gauge.check;
+  page.section("The sensor on the gauge");
+  page.paragraph(gauge.sentence);
+  page.figure(gauge_chart(gauge),
+              "What the sensor read at known positions (" + gauge.file.path +
+                  "), beside the straight line that fits best; dashed: ruled out. Readings are "
+                  "cut a little beyond what the logs have read.");
+  page.table(hypotheses_table(check));
+  page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
+                 significant(check.noise_mm, 2) + " mm (readings at one position differ by " +
+                 significant(check.repeat_noise_mm, 2) +
+                 "); a fifth of what two hypotheses differ by is allowed beside it where they are compared. "
+                 "Ruled out is "
+                 "what is a thousand times less likely than the most likely hypothesis, if that explains the "
+                 "readings (" +
+                 significant(gauge_log_likelihood_needed, 2) + " in log likelihood).");
+}
+
+}  // namespace softgrip::sysid

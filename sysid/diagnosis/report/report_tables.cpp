@@ -1,0 +1,161 @@
+#include "sysid/diagnosis/report/report_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers.h"
+#include "model/catalogue.h"
+#include "sysid/identification/log_figures.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr const char* dash = "\xe2\x80\x93";
+
+std::string percent_range(const Spread& s) {
+  return fixed(s.value, 1) + " (" + fixed(s.lower, 1) + " to " + fixed(s.upper, 1) + ")";
+}
+
+std::string p_text(double p) {
+  return p < 0.001 ? "< 0.001" : fixed(p, 3);
+}
+
+const ConditionEvidence* find(const ResidualEvidence& evidence, const std::string& id) {
+  for (const ConditionEvidence& e : evidence.conditions) {
+    if (e.condition.id == id && e.condition.why_not.empty()) return &e;
+  }
+  return nullptr;
+}
+
+std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double chosen_rmse_mm) {
+  if (chosen != nullptr) {
+    if (c.cause.type == chosen->cause.type) return "named";
+    const bool rival = std::any_of(chosen->rivals.begin(), chosen->rivals.end(),
+                                   [&](const Cause& r) { return r.type == c.cause.type; });
+    if (rival) return "explains as much, or is the same to every command";
+  }
+  if (!c.why_not.empty()) return c.why_not;
+  if (std::isnan(c.heldout_rmse_mm)) return "behind when fitted";
+  if (c.gain_percent.lower <= 0) return "no gain that excludes chance";
+  if (chosen == nullptr) return "gain too small to be worth a block";
+  return "explains less: " + significant(c.heldout_rmse_mm, 3) + " against " +
+         significant(chosen_rmse_mm, 3) + " mm";
+}
+
+std::string value_at(const model::Model& model, const std::string& path) {
+  const auto index = model::find_path(model, path);
+  return index ? significant(model::flat_values(model)[*index], 4) : dash;
+}
+
+}  // namespace
+
+Table rmse_table(const Diagnosis& d) {
+  Table table;
+  table.caption = "Error of the models (noise of the readings " + significant(d.noise_mm, 3) + " mm)";
+  table.header = {"model", "fitted, RMSE [mm]", "stretches held out [mm]", "whole logs held out [mm]",
+                  "structure left [mm]"};
+  table.numeric = {false, true, true, true, true};
+  const auto fitted = [](const StructureFit& fit) { return or_dash(std::sqrt(fit.mean_square_mm2), 3); };
+  const auto excess = [&](const StructureFit& fit) {
+    return or_dash(std::sqrt(std::max(0.0, fit.mean_square_mm2 - d.noise_mm * d.noise_mm)), 3);
+  };
+  const auto other = [](const std::optional<double>& value) {
+    return value ? or_dash(*value, 3) : std::string(dash);
+  };
+  table.rows.push_back({"as given (not fitted)", fitted(d.as_given), or_dash(d.as_given_rmse_mm, 3),
+                        d.records.size() > 1 ? or_dash(d.as_given_rmse_mm, 3) : dash, excess(d.as_given)});
+  table.rows.push_back({"recalibrated", fitted(d.recalibrated), or_dash(d.recalibrated_rmse_mm, 3),
+                        other(d.recalibrated_other_logs_rmse_mm), excess(d.recalibrated)});
+  if (!d.extended.causes.empty()) {
+    table.rows.push_back({"extended", fitted(d.extended), or_dash(d.extended_rmse_mm, 3),
+                          other(d.extended_other_logs_rmse_mm), excess(d.extended)});
+  }
+  return table;
+}
+
+Table condition_table(const Evidence& evidence, bool extended) {
+  Table table;
+  table.caption =
+      "Share of the error's structure that goes with a condition, and the probability of such "
+      "differences by chance (adjusted for looking at all)";
+  table.header = {"condition", "as given [%]", "recalibrated [%]", "p", "extended [%]", "p", "note"};
+  table.numeric = {false, true, true, true, true, true, false};
+  for (const ConditionEvidence& e : evidence.recalibrated.conditions) {
+    std::string name = e.condition.id;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (!e.condition.why_not.empty()) {
+      table.rows.push_back({name, dash, dash, dash, dash, dash, e.condition.why_not});
+      continue;
+    }
+    const ConditionEvidence* before = find(evidence.as_given, e.condition.id);
+    const ConditionEvidence* after = find(evidence.extended, e.condition.id);
+    table.rows.push_back({name, before != nullptr ? fixed(before->share_percent, 1) : dash,
+                          fixed(e.share_percent, 1), p_text(e.p_adjusted),
+                          after != nullptr ? fixed(after->share_percent, 1) : dash,
+                          after != nullptr ? p_text(after->p_adjusted) : dash, e.clear ? "clear" : ""});
+  }
+  if (extended) return table;
+  constexpr long first = 4, count = 2;  // the extended model's columns
+  table.header.erase(table.header.begin() + first, table.header.begin() + first + count);
+  table.numeric.erase(table.numeric.begin() + first, table.numeric.begin() + first + count);
+  for (auto& row : table.rows) row.erase(row.begin() + first, row.begin() + first + count);
+  return table;
+}
+
+Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
+                      double chosen_rmse_mm, std::string caption) {
+  Table table;
+  table.caption = std::move(caption);
+  table.header = {"cause", "station", "fitted [mm]", "held out [mm]", "held-out gain [%]", "outcome"};
+  table.numeric = {false, false, true, true, true, false};
+  for (const CandidateScore& c : candidates) {
+    const bool judged = std::isfinite(c.heldout_rmse_mm) && c.heldout_rmse_mm > 0;
+    table.rows.push_back(
+        {std::string(c.cause.id), std::string(model::name_of(c.cause.station)),
+         c.rmse_mm > 0 ? or_dash(c.rmse_mm, 3) : dash, judged ? or_dash(c.heldout_rmse_mm, 3) : dash,
+         judged ? percent_range(c.gain_percent) : dash, outcome_of(c, chosen, chosen_rmse_mm)});
+  }
+  return table;
+}
+
+Table cause_parameter_table(const NamedCause& named) {
+  Table table;
+  table.header = {"parameter", "value", "95 % interval", "unit"};
+  table.numeric = {false, true, true, false};
+  for (const CauseParameter& p : named.parameters) {
+    table.rows.push_back(
+        {p.name, significant(p.value, 4),
+         p.has_interval ? significant(p.ci95.lower, 4) + " to " + significant(p.ci95.upper, 4) : "not fitted",
+         p.unit});
+  }
+  return table;
+}
+
+Table moved_table(const Diagnosis& d, const model::Model& given) {
+  const bool extended = !d.extended.causes.empty();
+  Table table;
+  table.header = {"parameter", "unit", "as given", "recalibrated"};
+  table.numeric = {false, false, true, true};
+  if (extended) {
+    table.header.insert(table.header.end(), {"extended", "moved against given"});
+    table.numeric.insert(table.numeric.end(), {true, true});
+  } else {
+    table.header.emplace_back("moved");
+    table.numeric.push_back(true);
+  }
+  const std::vector<double> values = model::flat_values(d.extended_model);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string path = model::parameter_path(d.extended_model, i);
+    const auto before = model::find_path(given, path);
+    const double old = before ? model::flat_values(given)[*before] : 0;
+    const std::string moved = old != 0 ? fixed(100 * (values[i] / old - 1), 1) + " %" : dash;
+    std::vector<std::string> row{path, std::string(model::parameter_spec(d.extended_model, i).unit),
+                                 value_at(given, path), value_at(d.recalibrated_model, path)};
+    if (extended) row.push_back(significant(values[i], 4));
+    row.push_back(moved);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace softgrip::sysid

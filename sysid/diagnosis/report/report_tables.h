@@ -1,0 +1,25 @@
+#pragma once
+// The tables of a diagnosis.
+
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
+#include "sysid/pages/page.h"
+
+namespace softgrip::sysid {
+
+/// Errors of the three models: all readings, blocks held out, logs held out.
+[[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
+/// Share and p-value of every condition, for the models that there are.
+[[nodiscard]] Table condition_table(const Evidence& evidence, bool extended);
+/// What was tried, how well it did, and why it was not kept.
+/// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
+[[nodiscard]] Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
+                                    double chosen_rmse_mm, std::string caption);
+[[nodiscard]] Table cause_parameter_table(const NamedCause& named);
+/// Parameters as given, recalibrated and extended.
+[[nodiscard]] Table moved_table(const Diagnosis& diagnosis, const model::Model& given);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,29 @@
+#include "sysid/diagnosis/residual/leftover.h"
+
+#include <array>
+
+namespace softgrip::sysid {
+namespace {
+
+/// Share of the recalibrated model's excess, as a mean square.
+constexpr double may_be_left = 0.15;
+/// Less may be left where it stands clearly above the noise: then the data could have shown the cause whole,
+/// and did not. What is smaller than these may have to do with the form of an equation alone.
+struct Leftover {
+  double noises;  ///< above so many times the noise
+  double share;   ///< so much may be left
+};
+constexpr std::array clear_leftovers{Leftover{3, 0.05}, Leftover{5, 0.02}};
+
+}  // namespace
+
+bool leaves_too_much(const Structure& left, const Structure& before, double noise_mm) {
+  if (!left.present) return false;
+  double may_stay = may_be_left;
+  for (const Leftover& clear : clear_leftovers) {
+    if (left.excess_mm > clear.noises * noise_mm) may_stay = clear.share;
+  }
+  return left.excess_mm * left.excess_mm > may_stay * before.excess_mm * before.excess_mm;
+}
+
+}  // namespace softgrip::sysid

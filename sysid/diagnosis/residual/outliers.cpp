@@ -1,0 +1,154 @@
+#include "sysid/diagnosis/residual/outliers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace softgrip::sysid {
+namespace {
+
+/// A reading against the median of its four neighbours has a deviation of about 1.15 of the noise; beyond
+/// this many a normal one falls less than once in ten million.
+constexpr double beyond = 6.0;
+/// What adds less than this share of the noise is not worth a name: a few corners of a motion may pass.
+constexpr double worth = 0.25;
+/// Fewer than that many could be anything.
+constexpr std::size_t fewest = 5;
+
+double neighbours_median(const std::vector<double>& y, std::size_t i) {
+  std::array<double, 4> near{y[i - 2], y[i - 1], y[i + 1], y[i + 2]};
+  std::sort(near.begin(), near.end());
+  return 0.5 * (near[1] + near[2]);
+}
+
+/// Motion over the neighbourhood, so that a fast move is no outlier.
+double motion(const std::vector<double>& y, std::size_t i) {
+  return std::abs(0.5 * (y[i + 1] + y[i + 2]) - 0.5 * (y[i - 1] + y[i - 2]));
+}
+
+/// Neighbours are looked at this far to either side; so many must be there on each.
+constexpr std::size_t reach = 3;
+constexpr std::size_t fewest_neighbours = 2;
+/// What stands alone is so many times as far off as its neighbours are among each other.
+constexpr double alone = 4.0;
+/// No clock, latency or corner is known better than to so many samples.
+constexpr double timing_samples = 1.5;
+
+/// Median of the neighbours (readings or residuals), and how far they lie from it: the second largest
+/// distance, for one of them may be an outlier itself.
+struct Neighbourhood {
+  double median_mm = 0;
+  double spread_mm = 0;
+  bool known = false;
+};
+
+Neighbourhood neighbourhood(const std::vector<double>& r, std::size_t i) {
+  std::array<double, 2 * reach> near{};
+  std::size_t count = 0, before = 0;
+  for (std::size_t j = i < reach ? 0 : i - reach; j <= std::min(i + reach, r.size() - 1); ++j) {
+    if (j == i || !std::isfinite(r[j])) continue;
+    near[count++] = r[j];
+    before += j < i ? 1 : 0;
+  }
+  Neighbourhood n;
+  if (before < fewest_neighbours || count - before < fewest_neighbours) return n;
+  const auto end = near.begin() + static_cast<long>(count);
+  std::sort(near.begin(), end);
+  n.median_mm = 0.5 * (near[(count - 1) / 2] + near[count / 2]);
+  for (auto at = near.begin(); at != end; ++at) *at = std::abs(*at - n.median_mm);
+  std::sort(near.begin(), end);
+  n.spread_mm = near[count - 2];
+  n.known = true;
+  return n;
+}
+
+bool is_outlier(const std::vector<double>& y, std::size_t i, double noise_mm, double& size) {
+  size = y[i] - neighbours_median(y, i);
+  if (!std::isfinite(size) || std::abs(size) <= beyond * noise_mm || std::abs(size) <= 3 * motion(y, i))
+    return false;
+  const Neighbourhood near = neighbourhood(y, i);
+  return near.known && std::abs(size) > alone * near.spread_mm;
+}
+
+/// The largest change of the prediction from one sample to the next near sample i.
+double largest_step(const std::vector<double>& y, const std::vector<double>& r, std::size_t i) {
+  double largest = 0;
+  for (std::size_t j = i < reach ? 1 : i - reach + 1; j <= std::min(i + reach, r.size() - 1); ++j) {
+    const double step = std::abs((y[j] - r[j]) - (y[j - 1] - r[j - 1]));
+    if (std::isfinite(step)) largest = std::max(largest, step);
+  }
+  return largest;
+}
+
+void weigh(OutlierEvidence& evidence, double noise_mm) {
+  evidence.count = evidence.sizes_mm.size();
+  if (evidence.count == 0) return;
+  double square = 0, fourth = 0;
+  for (const double size : evidence.sizes_mm) {
+    square += size * size;
+    fourth += size * size * size * size;
+  }
+  const auto count = static_cast<double>(evidence.count);
+  const auto all = static_cast<double>(evidence.readings);
+  evidence.share = count / all;
+  evidence.size_mm = std::sqrt(square / count);
+  evidence.excess_mm = std::sqrt(square / all);
+  const double z = 1.96;
+  const double middle = (evidence.share + z * z / (2 * all)) / (1 + z * z / all);
+  const double half = z / (1 + z * z / all) *
+                      std::sqrt(evidence.share * (1 - evidence.share) / all + z * z / (4 * all * all));
+  evidence.share_low = middle - half;
+  evidence.share_high = middle + half;
+  const double deviation = std::sqrt(std::max(0.0, fourth / count - square / count * square / count) / count);
+  evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
+  evidence.size_high_mm = std::sqrt(square / count + z * deviation);
+  // At six deviations noise gives none; a handful may be a knock on the table.
+  evidence.present = evidence.count >= fewest && evidence.excess_mm > worth * noise_mm;
+}
+
+}  // namespace
+
+OutlierEvidence hide_outliers(std::vector<Record>& records, double noise_mm) {
+  OutlierEvidence evidence;
+  for (Record& record : records) {
+    const std::vector<double> y = record.reading_mm;
+    evidence.readings += record.readings;
+    for (std::size_t i = 2; i + 2 < y.size(); ++i) {
+      double size = 0;
+      if (!is_outlier(y, i, noise_mm, size)) continue;
+      record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+      --record.readings;
+      evidence.sizes_mm.push_back(size);
+    }
+  }
+  weigh(evidence, noise_mm);
+  return evidence;
+}
+
+std::size_t hide_outliers_beside(std::vector<Record>& records,
+                                 const std::vector<std::vector<double>>& residual_mm, double noise_mm,
+                                 OutlierEvidence& evidence) {
+  std::size_t hidden = 0;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    const std::vector<double>& r = residual_mm[k];
+    const std::vector<double> y = records[k].reading_mm;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      if (!std::isfinite(r[i]) || !std::isfinite(y[i])) continue;
+      const Neighbourhood near = neighbourhood(r, i);
+      const double size = r[i] - near.median_mm;
+      if (!near.known || std::abs(size) <= beyond * noise_mm || std::abs(size) <= alone * near.spread_mm ||
+          std::abs(size) <= timing_samples * largest_step(y, r, i)) {
+        continue;
+      }
+      records[k].reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+      --records[k].readings;
+      evidence.sizes_mm.push_back(size);
+      ++hidden;
+    }
+  }
+  if (hidden > 0) weigh(evidence, noise_mm);
+  return hidden;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,94 @@
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "sysid/diagnosis/residual/fourier.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Bins on either side that make a peak's neighbourhood.
+constexpr std::size_t around = 60;
+constexpr double highest_looked_at_hz = 25;
+
+/// The residuals of all records on one grid of campaign time. A sample between two grid points counts at
+/// both, by its distance: enough to know where to begin.
+std::vector<Complex> on_one_grid(const std::vector<Record>& records,
+                                 const std::vector<std::vector<double>>& residual_mm, double interval_s,
+                                 std::size_t size) {
+  std::vector<Complex> x(size);
+  const double began_s = records.front().campaign_time_s + records.front().time_s.front();
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    for (std::size_t i = 0; i < records[k].size(); ++i) {
+      if (std::isnan(residual_mm[k][i])) continue;
+      const double place = (records[k].campaign_time_s + records[k].time_s[i] - began_s) / interval_s;
+      const auto below = static_cast<std::size_t>(std::max(0.0, place));
+      const double share = place - static_cast<double>(below);
+      if (below + 1 >= size) continue;
+      x[below] += (1 - share) * residual_mm[k][i];
+      x[below + 1] += share * residual_mm[k][i];
+    }
+  }
+  return x;
+}
+
+/// (how far above the median of its neighbourhood, bin) of every local maximum, the clearest first. A line
+/// stands out against its neighbourhood, not against the slow structure of a misfit.
+std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& power, std::size_t lowest) {
+  std::vector<std::pair<double, std::size_t>> peaks;
+  std::vector<double> near;
+  for (std::size_t b = std::max<std::size_t>(2, lowest); b + 1 < power.size(); ++b) {
+    if (power[b] < power[b - 1] || power[b] < power[b + 1]) continue;
+    const std::size_t first = b > around ? b - around : 1;
+    const std::size_t last = std::min(power.size(), b + around);
+    near.assign(power.begin() + static_cast<long>(first), power.begin() + static_cast<long>(last));
+    std::nth_element(near.begin(), near.begin() + static_cast<long>(near.size() / 2), near.end());
+    peaks.emplace_back(power[b] / (near[near.size() / 2] + 1e-300), b);
+  }
+  std::sort(peaks.rbegin(), peaks.rend());
+  return peaks;
+}
+
+}  // namespace
+
+std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
+                                 const std::vector<std::vector<double>>& residual_mm, std::size_t count) {
+  double length_s = 0, interval_s = std::numeric_limits<double>::infinity();
+  for (const Record& record : records) {
+    length_s += record.length_s();
+    interval_s = std::min(interval_s, record.mean_interval_s());
+  }
+  const double campaign_s = records.back().campaign_time_s + records.back().time_s.back() -
+                            records.front().campaign_time_s - records.front().time_s.front();
+  // Twice the length: the grid of frequencies is finer than what the campaign resolves.
+  const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(campaign_s / interval_s) + 4);
+  std::vector<Complex> x = on_one_grid(records, residual_mm, interval_s, size);
+  fourier_transform(x);
+  const double step_hz = 1 / (interval_s * static_cast<double>(size));
+  const double highest_hz = std::min(0.45 / interval_s, highest_looked_at_hz);
+  const double lowest_hz = slowest_oscillation_hz(length_s);
+  std::vector<double> power(std::min(size / 2, static_cast<std::size_t>(highest_hz / step_hz)));
+  for (std::size_t b = 0; b < power.size(); ++b) power[b] = std::norm(x[b]);
+  const auto peaks = peaks_of(power, static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));
+  double readings = 0;
+  for (const auto& r : residual_mm) {
+    for (const double value : r) readings += std::isnan(value) ? 0 : 1;
+  }
+  const double began_s = records.front().campaign_time_s + records.front().time_s.front();
+  std::vector<Line> lines;
+  for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) {
+    const double frequency_hz = step_hz * static_cast<double>(peaks[i].second);
+    // The transform's time begins with the first sample, the line's with the campaign.
+    const Complex amplitude =
+        2 / readings * x[peaks[i].second] * std::polar(1.0, -2 * std::numbers::pi * frequency_hz * began_s);
+    lines.push_back({frequency_hz, -amplitude.imag(), amplitude.real()});
+  }
+  return lines;
+}
+
+}  // namespace softgrip::sysid

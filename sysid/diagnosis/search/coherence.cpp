@@ -1,0 +1,102 @@
+#include "sysid/diagnosis/search/coherence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/numbers.h"
+#include "model/model.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr FitEffort alone{.most_iterations = 40, .tolerance = 1e-6};
+constexpr double least_explained_share = 0.2;
+constexpr double apart_share = 0.1;
+
+/// Of the readings' variance about the mean of all; below 0 where the mean alone would be nearer.
+double explained_share(const std::vector<Record>& records, const StructureFit& fit) {
+  double sum = 0, squares = 0, count = 0;
+  for (const Record& record : records) {
+    for (const double y : record.reading_mm) {
+      if (!std::isfinite(y)) continue;
+      sum += y;
+      squares += y * y;
+      count += 1;
+    }
+  }
+  if (count == 0) return 0;
+  const double variance = squares / count - (sum / count) * (sum / count);
+  return variance > 0 ? 1 - fit.mean_square_mm2 / variance : 0;
+}
+
+/// How much larger one log's motion is than what a model predicts of it.
+double relative_gain(const Record& record, const std::vector<double>& prediction_mm) {
+  double count = 0, p = 0, y = 0, pp = 0, py = 0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!std::isfinite(record.reading_mm[i])) continue;
+    count += 1;
+    p += prediction_mm[i];
+    y += record.reading_mm[i];
+    pp += prediction_mm[i] * prediction_mm[i];
+    py += prediction_mm[i] * record.reading_mm[i];
+  }
+  const double spread = pp - p * p / count;
+  const double gain = spread > 0 ? (py - p * y / count) / spread : 1;
+  return gain > 0.1 ? gain : 1;
+}
+
+/// The model of an actuator that moves so many times as far.
+model::Model amplified(model::Model model, double gain) {
+  if (const auto at = model::position_of(model, "bouc_wen")) {
+    model.blocks[*at].values[0] *= gain;
+    model.blocks[*at].values[1] *= gain;
+  }
+  if (const auto at = model::position_of(model, "kelvin_voigt")) {
+    for (double& stiffness_or_damping : model.blocks[*at].values) stiffness_or_damping /= gain;
+  }
+  return model;
+}
+
+/// RMSE if every log had numbers of its own: the structure fitted to each alone, from where it stands.
+double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit) {
+  double squares = 0, count = 0;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    std::vector<Record> one{records[k]};
+    // A rig of its own has a zero of its own.
+    one.front().offset_free = true;
+    const double gain = relative_gain(records[k], predict(fit.point.model, records[k], fit.point.starts[k]));
+    const FitPoint from{fit.point.model, {fit.point.starts[k]}};
+    const FitPoint scaled{amplified(fit.point.model, gain), {fit.point.starts[k]}};
+    const double own = std::min(fit_structure(one, fit.causes, from, alone).mean_square_mm2,
+                                fit_structure(one, fit.causes, scaled, alone).mean_square_mm2);
+    squares += own * static_cast<double>(records[k].readings);
+    count += static_cast<double>(records[k].readings);
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+}  // namespace
+
+std::optional<std::string> strangers_among(const std::vector<Record>& records,
+                                           const StructureFit& recalibrated) {
+  if (records.size() < 2) return std::nullopt;
+  const double together_mm = std::sqrt(recalibrated.mean_square_mm2);
+  const double apart_mm = rmse_apart_mm(records, recalibrated);
+  if (!(apart_mm * apart_mm < apart_share * together_mm * together_mm)) return std::nullopt;
+  return "recalibrated on each log alone the model's error is " + significant(apart_mm, 2) +
+         " mm, on all together " + significant(together_mm, 2) +
+         " mm: are these logs of one rig, and was nothing changed between them?";
+}
+
+std::optional<std::string> why_not_about(const std::vector<Record>& records,
+                                         const StructureFit& recalibrated) {
+  const double share = explained_share(records, recalibrated);
+  if (share >= least_explained_share) return std::nullopt;
+  if (auto strangers = strangers_among(records, recalibrated)) return strangers;
+  return "the readings do not follow the command: fitted to them, the model explains " +
+         fixed(100 * std::max(0.0, share), 0) + " % of their variance (sensor, its sign, channel, units?)";
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,101 @@
+#include "sysid/diagnosis/search/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/catalogue.h"
+#include "sysid/fitting/minimise.h"
+#include "sysid/fitting/residuals.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+bool moves(const model::Model& model, const std::vector<Cause>& causes, std::size_t flat_index) {
+  if (model::parameter_spec(model, flat_index).whole) return false;
+  const model::ParameterPlace place = model::place_of(model, flat_index);
+  const model::BlockSpec& block = model.blocks[place.block];
+  for (const Cause& cause : causes) {
+    if (cause.type == block.type) return is_fitted(cause, block, place.value);
+  }
+  // alpha and 1/k0 enter only as their sum.
+  const bool is_k0 = model::catalogue()[block.type].info.id == "kelvin_voigt" && place.value == 0;
+  return !(is_k0 && model::position_of(model, "bouc_wen"));
+}
+
+}  // namespace
+
+std::vector<std::size_t> fitted_indices(const model::Model& model, const std::vector<Cause>& causes) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
+    if (moves(model, causes, i)) indices.push_back(i);
+  }
+  return indices;
+}
+
+FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
+                         const std::vector<Cause>& causes) {
+  FitSpace space(model, records, fitted_indices(model, causes));
+  const Scales scales = scales_of(records);
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const FreeParameter& free = space.free()[i];
+    if (free.kind != FreeParameter::Kind::model) continue;
+    const model::ParameterPlace place = model::place_of(model, free.flat_index);
+    for (const Cause& cause : causes) {
+      if (cause.type != model.blocks[place.block].type) continue;
+      const Range range = fit_range(cause, place.value, model, scales);
+      space.bound(i, range.lower, range.upper);
+    }
+  }
+  return space;
+}
+
+StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
+                                const FitPoint& point) {
+  StructureFit fit;
+  fit.causes = std::move(causes);
+  fit.point = point;
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    fit.residual_mm.push_back(residual(records[k], predict(point.model, records[k], point.starts[k])));
+    for (const double r : fit.residual_mm.back()) {
+      if (std::isnan(r)) continue;
+      sum += r * r;
+      ++count;
+    }
+  }
+  fit.mean_square_mm2 = count == 0 || !std::isfinite(sum) ? std::numeric_limits<double>::infinity()
+                                                          : sum / static_cast<double>(count);
+  return fit;
+}
+
+StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
+                           const FitPoint& from, const FitEffort& effort) {
+  FitSpace space = structure_space(records, from.model, causes);
+  if (effort.hold_starts) space.hold_starts(from.starts);
+  const auto residuals = residuals_for(records, space);
+  MinimiseOptions options;
+  options.most_iterations = effort.most_iterations;
+  options.tolerance = effort.tolerance;
+  options.normal_equations = true;
+  const Minimum minimum = minimise(*residuals, space.z(from), options);
+  StructureFit fit = evaluate_structure(records, std::move(causes), space.point(minimum.z));
+  fit.free_parameters = space.size();
+  return fit;
+}
+
+StructureFit without_cause(StructureFit fit, const Cause& cause) {
+  std::erase_if(fit.causes, [&](const Cause& c) { return c.type == cause.type; });
+  fit.point.model = model::without_block(std::move(fit.point.model), cause.type);
+  return fit;
+}
+
+StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
+                               const Cause& cause) {
+  StructureFit rest = without_cause(fit, cause);
+  return fit_structure(records, std::move(rest.causes), rest.point);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,52 @@
+#pragma once
+// A structure (a base model with some causes' blocks) fitted to a campaign.
+
+#include <cstddef>
+#include <vector>
+
+#include "model/model.h"
+#include "sysid/diagnosis/causes/cause.h"
+#include "sysid/fitting/fit_space.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// A fitted structure.
+struct StructureFit {
+  std::vector<Cause> causes;  ///< in the order in which they were added; empty: the base alone
+  FitPoint point;
+  std::vector<std::vector<double>> residual_mm;  ///< reading minus prediction, by record; NaN without reading
+  double mean_square_mm2 = 0;                    ///< of the readings that were fitted
+  std::size_t free_parameters = 0;
+};
+
+struct FitEffort {
+  int most_iterations = 40;
+  double tolerance = 1e-8;
+  bool hold_starts = false;  ///< the records begin as they do at the point from which the fit starts
+};
+
+/// The flat indices that a fit of this structure moves: all of the base but exponents and k0 where alpha is
+/// there, and what is_fitted() allows of the causes.
+[[nodiscard]] std::vector<std::size_t> fitted_indices(const model::Model& model,
+                                                      const std::vector<Cause>& causes);
+
+/// What a fit of this structure moves, within the bounds of fit_range().
+[[nodiscard]] FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
+                                       const std::vector<Cause>& causes);
+
+/// Least squares from `from`, over all readings of `records`.
+[[nodiscard]] StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,
+                                         const FitPoint& from, const FitEffort& effort = {});
+
+/// The same point without fitting.
+[[nodiscard]] StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
+                                              const FitPoint& point);
+
+/// The structure without one of its causes, as it stands: its residuals are still those with the cause.
+[[nodiscard]] StructureFit without_cause(StructureFit fit, const Cause& cause);
+/// The same, fitted again from there.
+[[nodiscard]] StructureFit fit_without_cause(const std::vector<Record>& records, const StructureFit& fit,
+                                             const Cause& cause);
+
+}  // namespace softgrip::sysid

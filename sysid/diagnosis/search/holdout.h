@@ -1,0 +1,57 @@
+#pragma once
+// Held-out evidence: structures are refitted without some contiguous stretches of the readings and judged
+// there. The hidden state is always simulated from the true start, never corrected by readings.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sysid/diagnosis/search/fit.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// A contiguous stretch of one record's samples, [first, last).
+struct Block {
+  std::size_t record = 0;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  std::size_t fold = 0;  ///< it is held out together with the others of its fold
+};
+
+/// How the readings are divided. Neighbouring blocks belong to different folds.
+struct Division {
+  std::vector<Block> blocks;
+  std::size_t folds = 2;
+  double gap_s = 0;  ///< readings so near to a held-out block are not fitted either
+};
+
+/// Blocks of about `block_s`, at least eight of them; the gap is a tenth of a block.
+[[nodiscard]] Division divide(const std::vector<Record>& records, double block_s);
+/// One fold per record: whole logs are held out.
+[[nodiscard]] Division divide_by_record(const std::vector<Record>& records);
+
+/// Mean square error of every block while it was held out [mm^2].
+using BlockLosses = std::vector<double>;
+[[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
+                                          const StructureFit& fit);
+/// The same for a model that is not refitted.
+[[nodiscard]] BlockLosses losses_of(const StructureFit& fit, const Division& division);
+
+/// A number with its uncertainty.
+struct Spread {
+  double value = 0;
+  double standard_error = 0;
+  double lower = 0;  ///< of the 95 % interval
+  double upper = 0;
+};
+
+/// Mean over blocks of worse minus better, with the spread of a bootstrap that draws whole blocks, so that
+/// correlation within a block does not matter.
+[[nodiscard]] Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
+/// 100 (1 - rms(after)/rms(before)) by the same bootstrap [%].
+[[nodiscard]] Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed);
+/// Root of the mean over blocks [mm].
+[[nodiscard]] double rmse_mm(const BlockLosses& losses);
+
+}  // namespace softgrip::sysid

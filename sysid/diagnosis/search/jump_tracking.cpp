@@ -1,0 +1,181 @@
+#include "sysid/diagnosis/search/jump_tracking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "model/chain.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/fitting/trajectory_walk.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::size_t most_tracks = 40;
+constexpr std::size_t most_landings = 24;
+/// A course that is behind by so much of squared error [in squares of what the resolution makes] is given up.
+constexpr double hopeless = 4000;
+/// Samples without a jump after which courses are compared again.
+constexpr std::size_t look_again = 32;
+/// A jump is resolved well where the command moves by less than this share of the band during its sample.
+constexpr double slow_share = 0.2;
+
+constexpr std::size_t no_jump = std::numeric_limits<std::size_t>::max();
+
+struct Jump {
+  std::size_t sample = 0;
+  double held_kpa = 0;
+  double distance_kpa = 0;
+  bool resolved = false;
+  std::size_t before = no_jump;  ///< index of the jump before it
+};
+
+struct Track {
+  model::Chain<double> chain;
+  double held_kpa = 0;
+  double cost_mm2 = 0;
+  std::size_t last = no_jump;
+};
+
+class JumpTracker {
+ public:
+  JumpTracker(const Record& record, const FitPoint& point, const StartState& start, double band_kpa,
+              double resolution_kpa)
+      : record_(record), band_kpa_(band_kpa), resolution_kpa_(resolution_kpa) {
+    Track first{model::Chain<double>(point.model, {}, record.sample_time_s), record.drive_kpa.front(), 0,
+                no_jump};
+    sysid::start(first.chain, record, start.peak_before_kpa);
+    start_mm_.resize(record.size());
+    add_start(point.model, record, start, start_mm_);
+    const double gain = record.largest_kpa > 0 ? record.span_mm / record.largest_kpa : 1;
+    give_up_mm2_ = hopeless * resolution_kpa * resolution_kpa * gain * gain;
+    tracks_.push_back(std::move(first));
+  }
+
+  ValveCourse run() {
+    for (std::size_t i = 1; i < record_.size(); ++i) step(i);
+    return course();
+  }
+
+ private:
+  void step(std::size_t i) {
+    around_ = surroundings_at(record_, i);
+    const double to = drive_at_end(record_, i);
+    const double from = record_.held ? to : record_.drive_kpa[i - 1];
+    next_.clear();
+    bool any_jump = false;
+    for (Track& track : tracks_) {
+      const std::vector<double>& landings = landings_of(track.held_kpa, from, to);
+      any_jump |= !landings.empty();
+      for (const double held : landings) {
+        Track child = track;
+        child.last = jumps_.size();
+        jumps_.push_back({i, held, std::abs(held - track.held_kpa),
+                          !record_.held && std::abs(to - from) < slow_share * band_kpa_ && to != from,
+                          track.last});
+        advance(child, i, held);
+        next_.push_back(std::move(child));
+      }
+      if (std::abs(to - track.held_kpa) <= breaks_loose_by * band_kpa_ || landings.empty()) {
+        advance(track, i, track.held_kpa);
+        next_.push_back(std::move(track));
+      }
+    }
+    if (any_jump || i % look_again == 0 || i + 1 == record_.size()) {
+      prune();
+    } else {
+      std::swap(tracks_, next_);
+    }
+  }
+
+  void advance(Track& track, std::size_t i, double held_kpa) {
+    track.held_kpa = held_kpa;
+    const double y = track.chain.step(record_.duration_s[i], held_kpa, around_) + start_mm_[i];
+    const double error = record_.reading_mm[i] - y;
+    if (!std::isnan(error)) track.cost_mm2 += error * error;
+  }
+
+  /// Where a valve that stands at `held` may stand after the command went from `from` to `to`, if it jumped.
+  const std::vector<double>& landings_of(double held, double from, double to) {
+    landings_.clear();
+    if (from == to) {
+      if (std::abs(to - held) > breaks_loose_from * band_kpa_) landings_.push_back(to);
+      return landings_;
+    }
+    const double way = to > from ? 1 : -1;
+    const double loose = std::max(way * from, way * held + breaks_loose_from * band_kpa_);
+    const double first = std::max(loose, way * to - breaks_loose_by * band_kpa_);
+    const double length = way * to - first;
+    if (length < 0) return landings_;
+    const auto parts = std::clamp<std::size_t>(static_cast<std::size_t>(std::ceil(length / resolution_kpa_)),
+                                               1, most_landings);
+    for (std::size_t k = 0; k < parts; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(parts);
+      landings_.push_back(way * (first + share * length));
+    }
+    return landings_;
+  }
+
+  /// Keeps the best, of those that stand in the same place one.
+  void prune() {
+    order_.resize(next_.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::sort(order_.begin(), order_.end(),
+              [&](std::size_t a, std::size_t b) { return next_[a].cost_mm2 < next_[b].cost_mm2; });
+    const double most_mm2 = next_[order_.front()].cost_mm2 + give_up_mm2_;
+    tracks_.clear();
+    for (const std::size_t at : order_) {
+      Track& track = next_[at];
+      if (tracks_.size() >= most_tracks || track.cost_mm2 > most_mm2) break;
+      const bool twin = std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& kept) {
+        return std::abs(kept.held_kpa - track.held_kpa) < 0.25 * resolution_kpa_;
+      });
+      if (!twin) tracks_.push_back(std::move(track));
+    }
+  }
+
+  [[nodiscard]] ValveCourse course() const {
+    ValveCourse found;
+    found.held_kpa.assign(record_.size(), record_.drive_kpa.front());
+    found.sum_of_squares_mm2 = tracks_.front().cost_mm2;
+    std::size_t end = record_.size();
+    for (std::size_t at = tracks_.front().last; at != no_jump; at = jumps_[at].before) {
+      const Jump& jump = jumps_[at];
+      std::fill(found.held_kpa.begin() + static_cast<long>(jump.sample),
+                found.held_kpa.begin() + static_cast<long>(end), jump.held_kpa);
+      end = jump.sample;
+      if (jump.resolved) found.distances_kpa.push_back(jump.distance_kpa);
+    }
+    std::reverse(found.distances_kpa.begin(), found.distances_kpa.end());
+    return found;
+  }
+
+  const Record& record_;
+  double band_kpa_, resolution_kpa_;
+  double give_up_mm2_ = 0;
+  std::vector<double> start_mm_;
+  model::Surroundings around_;
+  std::vector<Track> tracks_, next_;
+  std::vector<Jump> jumps_;
+  std::vector<double> landings_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace
+
+ValveCourse track_jumps(const Record& record, std::size_t index, const FitPoint& point, double band_kpa,
+                        double resolution_kpa) {
+  return JumpTracker(record, point, point.starts[index], band_kpa, resolution_kpa).run();
+}
+
+Record driven_by(const Record& record, const ValveCourse& course) {
+  Record driven = record;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    driven.drive_kpa[record.held ? i - 1 : i] = course.held_kpa[i];
+  }
+  return driven;
+}
+
+}  // namespace softgrip::sysid

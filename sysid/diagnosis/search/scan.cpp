@@ -1,0 +1,119 @@
+#include "sysid/diagnosis/search/scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "model/catalogue.h"
+#include "sysid/fitting/residuals.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Of the diagonal of the normal matrix; along directions that the data hardly show, no step is worth having.
+constexpr double damping = 1e-3;
+constexpr double least_size = 0.7;
+constexpr double largest_size = 1.4;
+
+/// Which values of a block a fit moves.
+using Form = std::vector<bool>;
+
+Form form_of(const Cause& cause, const model::BlockSpec& block) {
+  Form form(block.values.size());
+  for (std::size_t i = 0; i < form.size(); ++i) form[i] = is_fitted(cause, block, i);
+  return form;
+}
+
+/// A start at one of the places.
+struct Judged {
+  double mean_square_mm2 = 0;
+  const Scan* place = nullptr;
+  const model::BlockSpec* block = nullptr;
+};
+
+}  // namespace
+
+Scan::Scan(const std::vector<Record>& records, const std::vector<Cause>& causes, FitPoint place)
+    : records_(records), place_(std::move(place)) {
+  const FitSpace space = structure_space(records_, place_.model, causes);
+  const auto residuals = residuals_for(records_, space);
+  const auto rows = static_cast<Eigen::Index>(residuals->count());
+  const auto columns = static_cast<Eigen::Index>(space.size());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
+  residual_.resize(rows);
+  usable_ = residuals->evaluate(space.z(place_), {residual_.data(), residuals->count()},
+                                {jacobian.data(), residuals->count() * space.size()});
+  if (!usable_) return;
+  jacobian_ = jacobian;
+  Eigen::MatrixXd normal = jacobian_.transpose() * jacobian_;
+  normal.diagonal() *= 1 + damping;
+  normal.diagonal().array() += 1e-12;
+  normal_.compute(normal);
+  left_ = left_of(residual_);
+}
+
+Eigen::VectorXd Scan::left_of(const Eigen::VectorXd& v) const {
+  return v - jacobian_ * normal_.solve(jacobian_.transpose() * v);
+}
+
+Eigen::VectorXd Scan::residual_at(const model::Model& model) const {
+  Eigen::VectorXd r(residual_.size());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    const std::vector<double> prediction = predict(model, records_[k], place_.starts[k]);
+    for (std::size_t i = 0; i < prediction.size(); ++i) {
+      if (std::isfinite(records_[k].reading_mm[i])) r[row++] = prediction[i] - records_[k].reading_mm[i];
+    }
+  }
+  return r;
+}
+
+double Scan::mean_square_with(const model::BlockSpec& block) const {
+  const model::Model model = model::with_block(place_.model, block);
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  if (!usable_ || !model::validate(model).empty()) return unknown;
+  const Eigen::VectorXd effect = left_of(residual_at(model) - residual_);
+  const double own = effect.squaredNorm();
+  if (!std::isfinite(own)) return unknown;
+  const double size = own > 0 ? std::clamp(-left_.dot(effect) / own, least_size, largest_size) : 1;
+  return (left_ + size * effect).squaredNorm() / static_cast<double>(residual_.size());
+}
+
+std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause, const Scales& scales,
+                                  std::size_t fewest) {
+  const std::vector<CauseStart> starts = cause_starts(cause, scales);
+  std::vector<Judged> judged;
+  for (const Scan& scan : scans) {
+    for (const CauseStart& start : starts) {
+      if (has_free_form(cause, start.block)) continue;
+      const double square = scan.mean_square_with(start.block);
+      if (std::isfinite(square)) judged.push_back({square, &scan, &start.block});
+    }
+  }
+  std::stable_sort(judged.begin(), judged.end(),
+                   [](const Judged& a, const Judged& b) { return a.mean_square_mm2 < b.mean_square_mm2; });
+  std::set<Form> forms;
+  std::set<const Scan*> places;
+  std::vector<Judged> chosen, others;
+  for (const Judged& one : judged) {
+    const bool new_form = forms.insert(form_of(cause, *one.block)).second;
+    const bool new_place = places.insert(one.place).second;
+    (new_form || new_place ? chosen : others).push_back(one);
+  }
+  for (std::size_t i = 0; i < others.size() && chosen.size() < fewest; ++i) chosen.push_back(others[i]);
+  for (const CauseStart& start : starts) {
+    if (has_free_form(cause, start.block) && !scans.empty() && scans.front().usable())
+      chosen.push_back({0, &scans.front(), &start.block});
+  }
+  std::vector<FitPoint> points;
+  for (const Judged& one : chosen) {
+    points.push_back(one.place->place());
+    points.back().model = model::with_block(points.back().model, *one.block);
+  }
+  return points;
+}
+
+}  // namespace softgrip::sysid

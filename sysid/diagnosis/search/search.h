@@ -1,0 +1,39 @@
+#pragma once
+// Searching for causes: every candidate fitted together with the base, from several starts.
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "sysid/diagnosis/causes/cause.h"
+#include "sysid/diagnosis/search/fit.h"
+
+namespace softgrip::sysid {
+
+/// A campaign as the search sees it.
+struct SearchData {
+  std::vector<Record> records;
+  std::vector<Record> thinned;  ///< for the first look at many starts
+  Scales scales;
+  unsigned threads = 0;       ///< 0: as many as there are cores
+  FitPoint given;             ///< the model as it was given: a second place to start from
+  bool given_is_base = true;  ///< it has the structure of the base
+};
+
+/// Prepares records for the search: thinned copies, scales.
+[[nodiscard]] SearchData make_search_data(std::vector<Record> records, const model::Model& given);
+
+/// One candidate, fitted. `why_not` says why there is no fit.
+struct Candidate {
+  Cause cause;
+  std::optional<StructureFit> fit;
+  std::string why_not;
+};
+
+/// Fits `current` plus each cause that it does not have yet. In the order of all_causes().
+/// @param only  fits these alone; empty: all.
+[[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
+                                                    const std::vector<Cause>& only,
+                                                    const std::function<void(const Cause&)>& done = {});
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,56 @@
+#pragma once
+// Choosing causes: stepwise, on held-out blocks, with swaps, keeping every rival that explains as much.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sysid/diagnosis/residual/noise.h"
+#include "sysid/diagnosis/search/holdout.h"
+#include "sysid/diagnosis/search/search.h"
+
+namespace softgrip::sysid {
+
+/// How one candidate did, for the report.
+struct CandidateScore {
+  Cause cause;
+  std::string why_not;         ///< it could not be fitted, or why it was not kept
+  double rmse_mm = 0;          ///< fitted, all readings
+  double heldout_rmse_mm = 0;  ///< NaN where it was too far behind to be refitted
+  Spread gain_percent;         ///< held out, over the structure without it
+};
+
+/// One cause of the selected set.
+struct ChosenCause {
+  Cause cause;
+  std::vector<Cause> rivals;               ///< each explains as much in its place, or is its twin
+  Spread gain_percent;                     ///< held out, of the whole set over the set without it
+  std::vector<CandidateScore> candidates;  ///< those tried in its place, best first
+};
+
+/// The selected structure.
+struct Selection {
+  StructureFit base;
+  StructureFit extended;  ///< equal to base when nothing was chosen
+  std::vector<ChosenCause> chosen;
+  std::vector<CandidateScore> last_candidates;  ///< of the search that found nothing more
+  BlockLosses base_losses;
+  BlockLosses extended_losses;
+  Structure base_structure;
+  Structure left;  ///< in the extended structure's residual
+};
+
+struct SelectionOptions {
+  /// Three at once meet almost any curve, named or not: what two leave is said to be unexplained. The
+  /// extended model can be diagnosed again.
+  std::size_t most_causes = 2;
+  std::uint64_t seed = 1;
+  std::function<void(const std::string&)> progress;
+};
+
+/// @param base  the base structure fitted to data.records.
+[[nodiscard]] Selection select_causes(const SearchData& data, StructureFit base, double noise_mm,
+                                      const Division& division, const SelectionOptions& options);
+
+}  // namespace softgrip::sysid

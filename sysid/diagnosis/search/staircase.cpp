@@ -1,0 +1,109 @@
+#include "sysid/diagnosis/search/staircase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/parallel.h"
+#include "sysid/diagnosis/causes/cause.h"
+#include "sysid/diagnosis/search/jump_tracking.h"
+#include "sysid/identification/uncertainty.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Bands that are tried stand so far apart; the tracker allows for more.
+constexpr double next_band = 1.3;
+/// As shares of the largest pressure.
+constexpr double narrowest = 0.004, widest = 0.25;
+/// The band and what stands behind the valve are estimated in turns, until the band stays.
+constexpr int most_rounds = 12;
+constexpr double stays = 5e-4;
+
+struct Courses {
+  std::vector<ValveCourse> by_record;
+  double sum_of_squares_mm2 = 0;
+};
+
+Courses track_all(const std::vector<Record>& records, const FitPoint& point, double band_kpa,
+                  double resolution_kpa) {
+  Courses all;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    all.by_record.push_back(track_jumps(records[k], k, point, band_kpa, resolution_kpa));
+    all.sum_of_squares_mm2 += all.by_record.back().sum_of_squares_mm2;
+  }
+  return all;
+}
+
+/// The bands whose jumps the readings can show.
+std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
+  std::vector<double> bands;
+  double band = std::max(narrowest * scales.largest_kpa, 4 * resolution_kpa);
+  while (band < widest * scales.largest_kpa) {
+    bands.push_back(band);
+    band *= next_band;
+  }
+  return bands;
+}
+
+/// Mean, spread and interval of the distances over which the valve jumped, without the tenth that lies
+/// outermost: a jump that was seen a sample late makes a wrong one of its own.
+void measure_band(const Courses& courses, Staircase& found) {
+  std::vector<double> distances;
+  for (const ValveCourse& course : courses.by_record)
+    distances.insert(distances.end(), course.distances_kpa.begin(), course.distances_kpa.end());
+  found.jumps = distances.size();
+  if (distances.size() < fewest_jumps) return;
+  std::sort(distances.begin(), distances.end());
+  const std::size_t cut = distances.size() / 20;
+  const std::vector<double> kept(distances.begin() + static_cast<long>(cut),
+                                 distances.end() - static_cast<long>(cut));
+  const auto count = static_cast<double>(kept.size());
+  found.band_kpa = std::accumulate(kept.begin(), kept.end(), 0.0) / count;
+  double variance = 0;
+  for (const double d : kept) variance += (d - found.band_kpa) * (d - found.band_kpa) / (count - 1);
+  const double deviation = std::sqrt(variance);
+  found.scatter = deviation / found.band_kpa;
+  const double half = t_quantile(count - 1) * deviation / std::sqrt(count);
+  found.band_ci95 = {found.band_kpa - half, found.band_kpa + half};
+}
+
+std::vector<Record> driven(const std::vector<Record>& records, const Courses& courses) {
+  std::vector<Record> all;
+  for (std::size_t k = 0; k < records.size(); ++k) all.push_back(driven_by(records[k], courses.by_record[k]));
+  return all;
+}
+
+}  // namespace
+
+std::optional<Staircase> find_staircase(const std::vector<Record>& records, const StructureFit& behind,
+                                        double noise_mm, unsigned threads) {
+  const Scales scales = scales_of(records);
+  if (scales.largest_kpa <= 0 || scales.span_mm <= 0) return std::nullopt;
+  // Half the noise, in pressure.
+  const double resolution_kpa = 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
+  const std::vector<double> bands = bands_of(scales, resolution_kpa);
+  std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
+  parallel_for(bands.size(), threads, [&](std::size_t i) {
+    left[i] = track_all(records, behind.point, bands[i], resolution_kpa).sum_of_squares_mm2;
+  });
+  if (left.empty()) return std::nullopt;
+  Staircase found;
+  found.band_kpa = bands[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
+  found.fit = behind;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double before_kpa = found.band_kpa;
+    const Courses courses = track_all(records, found.fit.point, found.band_kpa, resolution_kpa);
+    measure_band(courses, found);
+    if (found.jumps < fewest_jumps) return std::nullopt;
+    found.records = driven(records, courses);
+    found.fit = fit_structure(found.records, behind.causes, found.fit.point);
+    if (std::abs(found.band_kpa - before_kpa) < stays * before_kpa) break;
+  }
+  if (found.scatter > most_scatter || !(found.fit.mean_square_mm2 < behind.mean_square_mm2))
+    return std::nullopt;
+  return found;
+}
+
+}  // namespace softgrip::sysid

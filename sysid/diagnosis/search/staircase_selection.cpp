@@ -1,0 +1,109 @@
+#include "sysid/diagnosis/search/staircase_selection.h"
+
+#include <utility>
+
+#include "sysid/diagnosis/residual/leftover.h"
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/search/staircase.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// What stands behind the valve, as far as a dead band that is simulated from the command can show it: a
+/// model without one has swallowed the valve's mean lag.
+std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& selected,
+                                             const Cause& dead_band) {
+  if (model::position_of(selected.point.model, dead_band.type)) return without_cause(selected, dead_band);
+  std::vector<Candidate> fits = fit_candidates(data, selected, {dead_band});
+  if (fits.empty() || !fits.front().fit) return std::nullopt;
+  return without_cause(*fits.front().fit, dead_band);
+}
+
+/// The staircase in front of the base, or of all that was selected: whichever leaves less. A cause that was
+/// selected without one may be a second effect, or stand in for the staircase itself.
+std::optional<Staircase> staircase_before(const SearchData& data, const Selection& plain,
+                                          const Cause& dead_band, double noise_mm) {
+  std::optional<Staircase> best;
+  std::vector<const StructureFit*> selected{&plain.base};
+  if (!plain.chosen.empty()) selected.push_back(&plain.extended);
+  for (const StructureFit* structure : selected) {
+    const auto behind = behind_the_valve(data, *structure, dead_band);
+    if (!behind) continue;
+    auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
+    if (!found || (best && found->fit.mean_square_mm2 > best->fit.mean_square_mm2)) continue;
+    best = std::move(found);
+    if (!structure_of(best->fit.residual_mm, noise_mm).present) break;
+  }
+  return best;
+}
+
+/// The base alone, fitted to records whose drive is where the valve stood.
+StructureFit base_behind(const Staircase& found) {
+  StructureFit base = found.fit;
+  for (const Cause& cause : found.fit.causes) base = without_cause(base, cause);
+  return found.fit.causes.empty() ? base : fit_structure(found.records, {}, base.point);
+}
+
+/// With the valve in front again.
+FitPoint with_valve(const FitPoint& behind, const Cause& dead_band, double band_kpa, double form) {
+  FitPoint point = behind;
+  model::BlockSpec block = model::neutral_block(dead_band.type);
+  block.values[*model::find_parameter(block, "band_kpa")] = band_kpa;
+  block.values[*model::find_parameter(block, "form")] = form;
+  point.model = model::with_block(point.model, block);
+  return point;
+}
+
+/// What can be foretold from the command alone: the staircase as long as it is in step, or else its mean.
+void extend(Selection& selection, const SearchData& data, const StructureFit& behind, const Cause& dead_band,
+            double band_kpa, const Division& division) {
+  std::vector<Cause> causes{dead_band};
+  causes.insert(causes.end(), behind.causes.begin(), behind.causes.end());
+  StructureFit staircase =
+      evaluate_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, 1));
+  StructureFit mean = fit_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, 0));
+  staircase.free_parameters = mean.free_parameters;
+  BlockLosses staircase_losses = held_out_losses(data.records, division, staircase);
+  BlockLosses mean_losses = held_out_losses(data.records, division, mean);
+  const bool in_step = rmse_mm(staircase_losses) < rmse_mm(mean_losses);
+  selection.extended = in_step ? std::move(staircase) : std::move(mean);
+  selection.extended_losses = in_step ? std::move(staircase_losses) : std::move(mean_losses);
+}
+
+}  // namespace
+
+std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data, const Selection& plain,
+                                                          double noise_mm, const Division& division,
+                                                          const SelectionOptions& options) {
+  const Cause dead_band = *find_cause("valve_deadband");
+  if (model::position_of(data.given.model, dead_band.type)) return std::nullopt;
+  const auto found = staircase_before(data, plain, dead_band, noise_mm);
+  if (!found) return std::nullopt;
+
+  SearchData driven = make_search_data(found->records, data.given.model);
+  driven.threads = data.threads;
+  StructureFit base = base_behind(*found);
+  driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm, 3);
+  // What a course that is a jump off here and there leaves is no second cause.
+  SelectionOptions behind = options;
+  if (!leaves_too_much(structure_of(base.residual_mm, noise_mm), plain.base_structure, noise_mm))
+    behind.most_causes = 0;
+  Selection beyond = select_causes(driven, std::move(base), noise_mm, division, behind);
+
+  StaircaseSelection result;
+  result.evidence = {found->band_kpa,
+                     found->band_ci95,
+                     found->jumps,
+                     found->scatter,
+                     rmse_mm(beyond.extended_losses),
+                     gain_percent(plain.base_losses, beyond.extended_losses, options.seed)};
+  result.selection = plain;
+  result.selection.chosen = {
+      {dead_band, {}, gain_percent(plain.base_losses, beyond.base_losses, options.seed), {}}};
+  for (ChosenCause& more : beyond.chosen) result.selection.chosen.push_back(std::move(more));
+  result.selection.left = beyond.left;
+  extend(result.selection, data, beyond.extended, dead_band, found->band_kpa, division);
+  return result;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,125 @@
+#pragma once
+// The diagnosis: what a model gets wrong, the cause, the extension, the gain.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "model/model.h"
+#include "sysid/diagnosis/evidence/evidence.h"
+#include "sysid/diagnosis/evidence/reference.h"
+#include "sysid/diagnosis/gauge/gauge_verdict.h"
+#include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/diagnosis/search/null_calibration.h"
+#include "sysid/diagnosis/search/selection.h"
+#include "sysid/diagnosis/search/staircase_selection.h"
+#include "sysid/identification/identify.h"
+#include "sysid/logs/log.h"
+
+namespace softgrip::sysid {
+
+enum class Verdict { adequate, recalibrate, cause_found, ambiguous, unexplained };
+[[nodiscard]] const char* name_of(Verdict verdict);
+
+/// A parameter of a named cause.
+struct CauseParameter {
+  std::string name;
+  std::string unit;
+  double value = 0;
+  Interval ci95;
+  bool has_interval = false;
+};
+
+/// A cause as the verdict names it.
+struct NamedCause {
+  Cause cause;
+  std::vector<CauseParameter> parameters;
+  Spread heldout_gain_percent;
+  std::vector<Cause> rivals;
+  std::vector<CandidateScore> candidates;
+};
+
+struct DiagnosisOptions {
+  RecordOptions record;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  /// Null campaigns on which the whole search is calibrated when it names something; 0: none.
+  std::size_t null_campaigns = 0;
+  /// What the sensor reads at known positions, where somebody has looked.
+  std::optional<GaugeFile> gauge;
+  std::function<void(const std::string&)> progress;
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::unexplained;
+  std::vector<NamedCause> causes;   ///< of cause_found and ambiguous
+  std::vector<NamedCause> partial;  ///< of unexplained: what explains part of it
+  std::vector<CandidateScore> rejected;
+  double noise_mm = 0;
+  Spread gain;  ///< extended against recalibrated, held out [%]
+  double as_given_rmse_mm = 0;
+  double recalibrated_rmse_mm = 0;  ///< held out
+  double extended_rmse_mm = 0;      ///< held out
+  /// The same with whole logs held out; empty with a single log.
+  std::optional<double> recalibrated_other_logs_rmse_mm;
+  std::optional<double> extended_other_logs_rmse_mm;
+  double unexplained_percent = 0;
+  std::optional<NullCalibration> null_calibration;  ///< where it was asked for and something was to be named
+  OutlierEvidence outliers;
+  std::optional<StaircaseEvidence> staircase;  ///< where the named dead band is one
+  std::optional<GaugeEvidence> gauge;          ///< where gauge readings were given
+  Structure structure_recalibrated;
+  Structure structure_left;
+  StructureFit as_given;
+  StructureFit recalibrated;
+  StructureFit extended;
+  model::Model extended_model;  ///< ready for the daemon: the given name, extended
+  model::Model recalibrated_model;
+  std::vector<Record> records;
+  std::vector<std::string> warnings;
+  std::optional<Evidence> evidence;         ///< where the models are wrong; see examine()
+  std::optional<Reference> reference;       ///< of the recalibrated model's residual
+  std::optional<Reference> reference_left;  ///< of the extended model's residual, where it is another
+  double wall_s = 0;
+  std::vector<std::pair<std::string, double>> stages_s;  ///< what the wall time went into
+};
+
+/// Takes the time of a diagnosis' stages, one after the other.
+class StageClock {
+ public:
+  explicit StageClock(Diagnosis& diagnosis) : diagnosis_(diagnosis) {}
+  /// What has run since construction or the last call was this stage.
+  void ended(std::string stage) {
+    const auto now = std::chrono::steady_clock::now();
+    const double took_s = std::chrono::duration<double>(now - began_).count();
+    diagnosis_.stages_s.emplace_back(std::move(stage), took_s);
+    diagnosis_.wall_s += took_s;
+    began_ = now;
+  }
+
+ private:
+  Diagnosis& diagnosis_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+/// Fails with a sentence where the logs cannot be judged at all.
+[[nodiscard]] tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs,
+                                                            const model::Model& given,
+                                                            const DiagnosisOptions& options = {});
+
+/// Adds the evidence and the references to a diagnosis.
+void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
+
+/// The verdict in one sentence that a technician understands.
+[[nodiscard]] std::string verdict_sentence(const Diagnosis& diagnosis);
+
+/// The contract's JSON. `next_experiment` is null here; the command that designs one fills it in.
+[[nodiscard]] std::string to_json(const Diagnosis& diagnosis);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,87 @@
+#include <string>
+
+#include "base/numbers.h"
+#include "model/catalogue.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
+
+namespace softgrip::sysid {
+namespace {
+
+std::string title(const Cause& cause) {
+  std::string text(model::catalogue()[cause.type].info.title);
+  if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+std::string listed(const std::vector<NamedCause>& causes) {
+  std::string text;
+  for (std::size_t i = 0; i < causes.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == causes.size() ? " and " : ", ") + title(causes[i].cause);
+    for (const Cause& rival : causes[i].rivals) text += " or " + title(rival);
+  }
+  return text;
+}
+
+/// Nothing but wrong samples was found.
+std::string outlier_sentence(const Diagnosis& d) {
+  return "Isolated wrong samples stand among the readings (" + significant(100 * d.outliers.share, 2) +
+         " %, about " + significant(d.outliers.size_mm, 2) +
+         " mm off); on the others the recalibrated model's error is " +
+         significant(d.recalibrated_rmse_mm, 2) + " mm.";
+}
+
+/// The command does not tell where in its staircase a valve stands; the readings do.
+std::string staircase_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
+  return "The model lacks " + listed(d.causes) +
+         ": the valve sticks and jumps. When it jumps the command alone does not tell, and with it the "
+         "held-out error "
+         "falls from " +
+         before + " to " + after + " only; with the moment of every jump taken from the readings, to " +
+         significant(d.staircase->heldout_rmse_mm, 2) + " mm.";
+}
+
+std::string unexplained_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
+  if (d.partial.empty()) return "Something is wrong that no known cause explains.";
+  if (d.null_calibration && d.null_calibration->reach_the_gain()) {
+    return "Something is wrong, and it cannot be named: " + listed(d.partial) +
+           " would lower the held-out error from " + before + " to " + after +
+           ", but the search gains as much where nothing is (p = " +
+           significant(d.null_calibration->p_value, 2) + ").";
+  }
+  return "Something is wrong that no known cause explains in full: with " + listed(d.partial) +
+         " the held-out error falls from " + before + " to " + after + ", and " +
+         significant(d.structure_left.excess_mm, 2) + " mm of structure stays, " +
+         significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
+}
+
+std::string sentence_of_logs(const Diagnosis& d) {
+  const std::string before = significant(d.recalibrated_rmse_mm, 2) + " mm";
+  const std::string after = significant(d.extended_rmse_mm, 2) + " mm";
+  switch (d.verdict) {
+    case Verdict::adequate:
+      return "The model explains these logs to the noise (" + significant(d.noise_mm, 2) +
+             " mm): nothing to change.";
+    case Verdict::recalibrate:
+      return "The structure is right and its numbers are not: recalibrated, the error falls from " +
+             significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
+    case Verdict::cause_found:
+      if (d.extended.causes.empty()) return outlier_sentence(d);
+      if (d.staircase) return staircase_sentence(d, before, after);
+      return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
+             " to " + after + ".";
+    case Verdict::ambiguous:
+      return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) +
+             "): with it the held-out error falls from " + before + " to " + after + ".";
+    case Verdict::unexplained:
+      return unexplained_sentence(d, before, after);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string verdict_sentence(const Diagnosis& d) {
+  return sentence_of_logs(d) + (d.gauge ? " " + d.gauge->sentence : std::string());
+}
+
+}  // namespace softgrip::sysid

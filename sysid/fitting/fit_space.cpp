@@ -1,0 +1,148 @@
+#include "sysid/fitting/fit_space.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/parameter.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Positive by nature and spread over decades: what does nothing when it is huge (stiffness, damping).
+bool is_logarithmic(const model::ParameterSpec& spec) {
+  return spec.lower >= 0 && spec.neutral >= 1e6;
+}
+
+FreeParameter model_parameter(const model::Model& model, std::size_t flat_index) {
+  const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
+  FreeParameter p;
+  p.flat_index = flat_index;
+  p.name = model::parameter_path(model, flat_index);
+  p.unit = spec.unit;
+  p.logarithmic = is_logarithmic(spec);
+  p.scale = p.logarithmic ? 1 : spec.scale;
+  p.lower = p.logarithmic ? std::max(spec.lower, 1e-9) : spec.lower;
+  // At its neutral 0 a block may be skipped, and with it the derivative: a fit stays off it by a hair.
+  if (spec.lower == 0 && spec.neutral == 0) p.lower = 1e-6 * spec.scale;
+  p.upper = spec.upper;
+  return p;
+}
+
+}  // namespace
+
+double FreeParameter::to_z(double value) const {
+  return logarithmic ? std::log(std::max(value, 1e-300)) : value / scale;
+}
+double FreeParameter::to_value(double z) const {
+  return logarithmic ? std::exp(z) : z * scale;
+}
+double FreeParameter::slope(double z) const {
+  return logarithmic ? std::exp(z) : scale;
+}
+
+FitSpace::FitSpace(const model::Model& model, const std::vector<Record>& records,
+                   const std::vector<std::size_t>& free_flat)
+    : base_(model), base_starts_(rest_starts(model, records)) {
+  for (const std::size_t index : free_flat) free_.push_back(model_parameter(model, index));
+  const std::size_t branches = branch_time_constants_s(model).size();
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    const auto add = [&](FreeParameter::Kind kind, std::size_t branch, const std::string& name,
+                         std::string unit, double scale, double lower, double upper) {
+      FreeParameter p;
+      p.kind = kind;
+      p.record = r;
+      p.branch = branch;
+      p.name = record.name + ": " + name;
+      p.unit = std::move(unit);
+      p.scale = scale;
+      p.lower = lower;
+      p.upper = upper;
+      free_.push_back(std::move(p));
+    };
+    const double scale_mm = std::max(record.span_mm, 1e-3);
+    if (record.offset_free) add(FreeParameter::Kind::offset, 0, "offset_mm", "mm", scale_mm, -1e6, 1e6);
+    if (!record.start_unknown) continue;
+    const double first = record.drive_kpa.front() + 1e-6;
+    add(FreeParameter::Kind::peak_before, 0, "peak_before_kpa", "kPa", record.largest_kpa, first,
+        std::max(first + 1e-6, 1.5 * record.largest_kpa));
+    for (std::size_t b = 0; b < branches; ++b) {
+      add(FreeParameter::Kind::unsettled, b, "unsettled" + std::to_string(b + 1) + "_mm", "mm", scale_mm,
+          -2 * scale_mm, 2 * scale_mm);
+    }
+  }
+}
+
+void FitSpace::hold_starts(const std::vector<StartState>& starts) {
+  std::erase_if(free_, [](const FreeParameter& p) { return p.kind != FreeParameter::Kind::model; });
+  base_starts_ = starts;
+}
+
+void FitSpace::bound(std::size_t index, double lower, double upper) {
+  free_[index].lower = std::max(free_[index].lower, lower);
+  free_[index].upper = std::min(free_[index].upper, upper);
+}
+
+FitPoint FitSpace::point(std::span<const double> z) const {
+  FitPoint point{base_, base_starts_};
+  std::vector<double> values = model::flat_values(base_);
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const FreeParameter& p = free_[i];
+    const double value = std::clamp(p.to_value(z[i]), p.lower, p.upper);
+    switch (p.kind) {
+      case FreeParameter::Kind::model:
+        values[p.flat_index] = value;
+        break;
+      case FreeParameter::Kind::offset:
+        point.starts[p.record].offset_mm = value;
+        break;
+      case FreeParameter::Kind::peak_before:
+        point.starts[p.record].peak_before_kpa = value;
+        break;
+      case FreeParameter::Kind::unsettled:
+        point.starts[p.record].unsettled_mm[p.branch] = value;
+        break;
+    }
+  }
+  point.model = model::with_values(std::move(point.model), values);
+  return point;
+}
+
+std::vector<double> FitSpace::z(const FitPoint& point) const {
+  std::vector<double> z(free_.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    z[i] = free_[i].to_z(std::clamp(value(point, i), free_[i].lower, free_[i].upper));
+  }
+  return z;
+}
+
+double FitSpace::value(const FitPoint& point, std::size_t index) const {
+  const FreeParameter& p = free_[index];
+  switch (p.kind) {
+    case FreeParameter::Kind::offset:
+      return point.starts[p.record].offset_mm;
+    case FreeParameter::Kind::peak_before:
+      return point.starts[p.record].peak_before_kpa;
+    case FreeParameter::Kind::unsettled:
+      return point.starts[p.record].unsettled_mm[p.branch];
+    case FreeParameter::Kind::model:
+      break;
+  }
+  const model::ParameterPlace place = model::place_of(point.model, p.flat_index);
+  return point.model.blocks[place.block].values[place.value];
+}
+
+std::vector<StartState> rest_starts(const model::Model& model, const std::vector<Record>& records) {
+  std::vector<StartState> starts(records.size());
+  const std::size_t branches = branch_time_constants_s(model).size();
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const double first = records[r].drive_kpa.front();
+    // Half way to the peak where nothing is known: at the first pressure itself the fit would see no slope.
+    starts[r].peak_before_kpa = records[r].start_unknown ? (first + records[r].largest_kpa) / 2 : first;
+    starts[r].unsettled_mm.assign(branches, 0);
+  }
+  return starts;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,93 @@
+#include "sysid/fitting/score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "sysid/fitting/minimise.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// One rise from rest and return to it.
+struct Excursion {
+  std::size_t begin;
+  double peak_kpa;
+  double duration_s;
+};
+
+std::vector<Excursion> excursions_of(const Record& record) {
+  const auto [low, high] = std::minmax_element(record.drive_kpa.begin(), record.drive_kpa.end());
+  const double threshold = *low + 0.03 * (*high - *low);
+  std::vector<Excursion> excursions;
+  bool out = false;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double p = record.drive_kpa[i];
+    if (p > threshold && !out) excursions.push_back({i, p, 0});
+    out = p > threshold;
+    if (excursions.empty()) continue;
+    Excursion& last = excursions.back();
+    if (out) last.peak_kpa = std::max(last.peak_kpa, p);
+    if (out) last.duration_s = record.time_s[i] - record.time_s[last.begin];
+  }
+  return excursions;
+}
+
+bool alike(const Excursion& a, const Excursion& b) {
+  return std::abs(a.peak_kpa - b.peak_kpa) < 0.03 * std::max(a.peak_kpa, b.peak_kpa) &&
+         std::abs(a.duration_s - b.duration_s) < 0.05 * std::max(a.duration_s, b.duration_s) + 0.1;
+}
+
+}  // namespace
+
+std::vector<std::size_t> cycle_starts(const Record& record) {
+  const std::vector<Excursion> excursions = excursions_of(record);
+  std::size_t period = 1;
+  for (std::size_t m = 1; 2 * m <= excursions.size(); ++m) {
+    bool repeats = true;
+    for (std::size_t i = 0; i + m < excursions.size() && repeats; ++i)
+      repeats = alike(excursions[i], excursions[i + m]);
+    if (!repeats) continue;
+    period = m;
+    break;
+  }
+  std::vector<std::size_t> starts{0};
+  for (std::size_t i = period; i < excursions.size(); i += period) starts.push_back(excursions[i].begin);
+  return starts;
+}
+
+Score score_of(const model::Model& model, const Record& record, const StartState& start,
+               const std::vector<double>& readings) {
+  Score score;
+  score.name = record.name;
+  score.start = start;
+  score.prediction_mm = predict(model, record, start);
+  score.error_mm.resize(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    score.error_mm[i] = readings[i] - score.prediction_mm[i];
+    if (std::isfinite(score.error_mm[i])) {
+      score.largest_error_mm = std::max(score.largest_error_mm, std::abs(score.error_mm[i]));
+    }
+  }
+  score.rmse_mm = rms(score.error_mm);
+  score.rmse_percent_of_span = record.span_mm > 0 ? 100 * score.rmse_mm / record.span_mm : none;
+  const std::vector<std::size_t> cycles = cycle_starts(record);
+  const std::span<const double> errors(score.error_mm);
+  score.first_cycle_rmse_mm = cycles.size() > 1 ? rms(errors.first(cycles[1])) : none;
+  score.settled_rmse_mm = cycles.size() > 1 ? rms(errors.subspan(cycles[1])) : none;
+  return score;
+}
+
+std::vector<StartState> estimate_starts(const model::Model& model, const std::vector<Record>& records) {
+  const FitSpace space(model, records, {});
+  FitPoint point{model, rest_starts(model, records)};
+  if (space.size() == 0) return point.starts;
+  const auto residuals = residuals_for(records, space);
+  return space.point(minimise(*residuals, space.z(point)).z).starts;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,38 @@
+#pragma once
+// How well a model predicts a log.
+
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// A prediction and its errors. Errors are reading minus prediction.
+struct Score {
+  std::string name;
+  std::vector<double> prediction_mm;
+  std::vector<double> error_mm;  ///< NaN without reading
+  double rmse_mm = 0;
+  double rmse_percent_of_span = 0;
+  double largest_error_mm = 0;
+  double first_cycle_rmse_mm = 0;  ///< NaN where the command does not repeat
+  double settled_rmse_mm = 0;      ///< of the cycles after the first; NaN where there are none
+  StartState start;
+};
+
+/// Simulates from `start` and compares with `readings` (those of the record, or others of the same samples).
+[[nodiscard]] Score score_of(const model::Model& model, const Record& record, const StartState& start,
+                             const std::vector<double>& readings);
+
+/// Where the cycles of a command begin: indices of samples, the first 0. A cycle is the shortest sequence of
+/// excursions from rest that repeats; a command that never repeats has one excursion per cycle.
+[[nodiscard]] std::vector<std::size_t> cycle_starts(const Record& record);
+
+/// What the model leaves open about how records begin (offset, hysteresis, unsettled creep), estimated with
+/// the model kept as it is.
+[[nodiscard]] std::vector<StartState> estimate_starts(const model::Model& model,
+                                                      const std::vector<Record>& records);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,105 @@
+#pragma once
+// The base chain in closed form: Bouc-Wen with exponent 1 and Kelvin-Voigt branches behind at most one
+// transport delay and one valve lag, with the sensitivities of everything.
+//
+// With h = beta g the hysteresis obeys g' = p' - gamma p' |g| - eta |p'| g, free of beta. So the displacement
+//
+//   y = A p - beta g + sum_b a_b w_b + offset + sum_b u_b exp(-r_b t),   w_b' = p - r_b w_b,
+//
+// is linear in A = alpha + 1/k0, beta, a_b = 1/c_b and the start's offset and unsettled creep u_b, once the
+// few others are given: gamma + eta ("growing"), gamma - eta ("shrinking"), the rates r_b = k_b/c_b, delay,
+// lag and the peak before a record's start. A search needs to walk those alone (variable projection).
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "model/model.h"
+#include "sysid/fitting/fit_space.h"
+#include "sysid/fitting/separable_pressure.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// Where the parts of a separable chain stand in its model.
+struct SeparableShape {
+  std::optional<std::size_t> delay;  ///< index in Model::blocks
+  std::optional<std::size_t> lag;
+  std::size_t bouc_wen = 0;
+  std::size_t kelvin_voigt = 0;
+  std::size_t branches = 0;
+};
+
+/// The shape, if the model has it.
+[[nodiscard]] std::optional<SeparableShape> separable_shape(const model::Model& model);
+
+/// The coordinates in which the chain is simple.
+struct SeparablePoint {
+  double growing_per_kpa = 0;
+  double shrinking_per_kpa = 0;
+  double delay_s = 0;
+  double lag_s = 0;
+  std::vector<double> rate_hz;     ///< k/c, by branch [1/s]
+  double instantaneous = 0;        ///< alpha + 1/k0 [mm/kPa]
+  double beta = 0;                 ///< [mm/kPa]
+  std::vector<double> amplitude;   ///< 1/c, by branch [mm/(kPa s)]
+  std::vector<StartState> starts;  ///< by record
+};
+
+[[nodiscard]] SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point);
+
+/// The columns of one record's block of rows. Linear ones first: they are also the values of the terms.
+struct SeparableColumns {
+  std::size_t branches = 0;
+  bool has_start = false;  ///< columns for unsettled creep and peak are there
+
+  [[nodiscard]] static constexpr Eigen::Index pressure() { return 0; }
+  [[nodiscard]] static constexpr Eigen::Index hysteresis() { return 1; }  ///< -g
+  [[nodiscard]] Eigen::Index branch(std::size_t b) const { return 2 + static_cast<Eigen::Index>(b); }
+  [[nodiscard]] Eigen::Index offset() const { return branch(branches); }
+  [[nodiscard]] Eigen::Index unsettled(std::size_t b) const {
+    return offset() + 1 + static_cast<Eigen::Index>(b);
+  }
+  [[nodiscard]] Eigen::Index linear() const { return has_start ? unsettled(branches) : offset() + 1; }
+  // Sensitivities of y, at the linear parameters given.
+  [[nodiscard]] Eigen::Index growing() const { return linear(); }
+  [[nodiscard]] Eigen::Index shrinking() const { return linear() + 1; }
+  [[nodiscard]] Eigen::Index rate(std::size_t b) const { return linear() + 2 + static_cast<Eigen::Index>(b); }
+  [[nodiscard]] Eigen::Index delay() const { return rate(branches); }
+  [[nodiscard]] Eigen::Index lag() const { return delay() + 1; }
+  [[nodiscard]] Eigen::Index peak() const { return delay() + 2; }
+  [[nodiscard]] Eigen::Index all() const { return delay() + (has_start ? 3 : 2); }
+};
+
+/// A record, arranged for many evaluations.
+class SeparableRecord {
+ public:
+  SeparableRecord(const Record& record, const SeparableShape& shape);
+
+  [[nodiscard]] const Record& record() const noexcept { return record_; }
+  [[nodiscard]] const SeparableColumns& columns() const noexcept { return columns_; }
+
+  /// Receives up to `block_rows` consecutive rows with a reading. Columns as above (linear() or all() of
+  /// them), then one more: the reading, or, with sensitivities, prediction minus reading.
+  class Sink {
+   public:
+    virtual ~Sink() = default;
+    virtual void block(const Eigen::Ref<const Eigen::MatrixXd>& rows) = 0;
+  };
+  static constexpr Eigen::Index block_rows = 128;
+
+  /// The linear columns and the readings, at the nonlinear parameters of `point`.
+  void linear(const SeparablePoint& point, std::size_t index, Sink& sink) const;
+  /// All columns and the residual. @param index  of the record in point.starts.
+  void full(const SeparablePoint& point, std::size_t index, Sink& sink) const;
+
+ private:
+  const Record& record_;
+  SeparableShape shape_;
+  SeparableColumns columns_;
+  PressureWalk still_;  ///< of a valve without delay and lag: always the same
+};
+
+}  // namespace softgrip::sysid

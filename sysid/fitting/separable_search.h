@@ -1,0 +1,93 @@
+#pragma once
+// Searching a separable chain's parameters from bad starts: variable projection (Golub and Pereyra 1973, with
+// Kaufman's simplification 1975) and Levenberg's and Marquardt's damping.
+//
+// For given nonlinear parameters the linear ones follow from normal equations with bounds. One walk over the
+// data gives the Gram matrix of all columns, from which cost, gradient and Gauss-Newton matrix of the reduced
+// problem follow; nothing of the size of the data is kept.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sysid/fitting/fit_space.h"
+#include "sysid/fitting/separable.h"
+
+namespace softgrip::sysid {
+
+/// Where one search ended.
+struct SearchResult {
+  FitPoint point;
+  double rmse_mm = 0;
+  int iterations = 0;
+  bool converged = false;
+};
+
+/// Prepared for many starts; searching is thread-safe.
+class SeparableSearch {
+ public:
+  /// nullopt unless the chain is separable, all its linear parameters are free in `space` (alpha or k0, beta,
+  /// every k with its c) and gamma and eta are both free or both fixed.
+  /// @param records  must outlive the search.
+  [[nodiscard]] static std::optional<SeparableSearch> make(const std::vector<Record>& records,
+                                                           const FitSpace& space);
+
+  /// From the nonlinear parameters of `start`; its linear ones do not matter.
+  /// @param damping  at first: small goes straight for the nearest minimum of a parabola, large creeps
+  /// downhill.
+  [[nodiscard]] SearchResult run(const FitPoint& start, int most_iterations, double damping = 1e-3) const;
+
+ private:
+  /// A nonlinear parameter of the search and its bounds, in the search's own scale: growing and eta, delay,
+  /// lag and peak by a typical size, rates as logarithms.
+  struct Coordinate {
+    enum class Kind { growing, eta, rate, delay, lag, peak };
+    Kind kind;
+    std::size_t index = 0;  ///< branch or record
+    double scale = 1;
+    double lower = 0;
+    double upper = 0;
+  };
+  /// The best linear parameters at a point.
+  struct Linear {
+    Eigen::VectorXd values;
+    std::vector<bool> at_bound;
+    double cost = 0;  ///< sum of squares [mm^2]
+  };
+  /// Of the reduced problem.
+  struct Normal {
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd curvature;
+  };
+  struct FreeParts;
+
+  SeparableSearch(const std::vector<Record>& records, const FitSpace& space, const SeparableShape& shape,
+                  const FreeParts& parts);
+
+  void add_coordinates(const FreeParts& parts);
+  void add_linear(const FreeParts& parts);
+  [[nodiscard]] Eigen::VectorXd coordinates_of(const SeparablePoint& point) const;
+  [[nodiscard]] SeparablePoint moved(SeparablePoint point, const Eigen::VectorXd& q) const;
+  void set_linear(SeparablePoint& point, const Eigen::VectorXd& values) const;
+  [[nodiscard]] Linear project(const SeparablePoint& point) const;
+  [[nodiscard]] Normal normal(const SeparablePoint& point, const Linear& linear) const;
+  [[nodiscard]] Eigen::MatrixXd coordinate_map(const SeparablePoint& point, std::size_t record) const;
+  [[nodiscard]] FitPoint to_fit_point(FitPoint start, const SeparablePoint& point) const;
+  /// Where the linear columns of a record stand among all linear parameters; -1: fixed.
+  [[nodiscard]] std::vector<Eigen::Index> places(std::size_t record) const;
+
+  std::shared_ptr<const FitSpace> space_;
+  SeparableShape shape_;
+  std::vector<SeparableRecord> records_;
+  std::vector<Coordinate> coordinates_;
+  std::vector<Eigen::Index> first_own_;  ///< by record: where its own linear parameters begin
+  std::vector<bool> offset_free_;        ///< by record
+  std::vector<double> lower_;            ///< of the linear parameters
+  std::vector<double> upper_;
+  bool alpha_free_ = false;
+  std::size_t residual_count_ = 0;
+};
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,57 @@
+#include "sysid/fitting/trajectory.h"
+
+#include <cmath>
+#include <limits>
+
+#include "model/catalogue.h"
+#include "sysid/fitting/trajectory_walk.h"
+
+namespace softgrip::sysid {
+
+void add_start(const model::Model& model, const Record& record, const StartState& start,
+               std::vector<double>& series_mm) {
+  for (double& y : series_mm) y += start.offset_mm;
+  const std::vector<double> time_constants = branch_time_constants_s(model);
+  for (std::size_t b = 0; b < std::min(time_constants.size(), start.unsettled_mm.size()); ++b) {
+    if (start.unsettled_mm[b] == 0) continue;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      series_mm[i] +=
+          start.unsettled_mm[b] * std::exp(-(record.time_s[i] - record.time_s[0]) / time_constants[b]);
+    }
+  }
+}
+
+std::vector<double> predict(const model::Model& model, const Record& record, const StartState& start) {
+  std::vector<double> prediction(record.size());
+  walk<double>(model, {}, record, start.peak_before_kpa, [&](std::size_t i, double y) { prediction[i] = y; });
+  add_start(model, record, start, prediction);
+  return prediction;
+}
+
+std::vector<double> residual(const Record& record, const std::vector<double>& prediction) {
+  std::vector<double> difference(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) difference[i] = record.reading_mm[i] - prediction[i];
+  return difference;
+}
+
+double rms(std::span<const double> values) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value * value;
+    ++count;
+  }
+  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
+}
+
+std::vector<double> branch_time_constants_s(const model::Model& model) {
+  std::vector<double> time_constants;
+  const auto position = model::position_of(model, "kelvin_voigt");
+  if (!position) return time_constants;
+  const std::vector<double>& values = model.blocks[*position].values;
+  for (std::size_t i = 1; i + 1 < values.size(); i += 2) time_constants.push_back(values[i + 1] / values[i]);
+  return time_constants;
+}
+
+}  // namespace softgrip::sysid

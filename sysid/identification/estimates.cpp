@@ -1,0 +1,130 @@
+#include "sysid/identification/estimates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sysid/identification/combinations.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Narrower than this share of the value, or of a typical change, counts as identified.
+constexpr double narrow_share = 0.5;
+
+Estimate estimate_of(const FittedPoint& fit, std::size_t index) {
+  const FreeParameter& p = fit.residuals.space().free()[index];
+  const Uncertainty& u = fit.uncertainty;
+  Estimate e;
+  e.name = p.name;
+  e.unit = p.unit;
+  e.free = true;
+  e.value = std::clamp(p.to_value(fit.z[index]), p.lower, p.upper);
+  if (u.without_effect[index]) {
+    e.note = "no effect on these logs";
+    return e;
+  }
+  if (u.at_bound[index]) {
+    e.note = "at the bound of its range";
+    return e;
+  }
+  const auto i = static_cast<Eigen::Index>(index);
+  const double half_z = u.quantile * std::sqrt(std::max(u.covariance(i, i), 0.0));
+  const double lower = p.to_value(fit.z[index] - half_z);
+  const double upper = p.to_value(fit.z[index] + half_z);
+  e.ci95 = Interval{std::max(lower, p.lower), std::min(upper, p.upper)};
+  const double half = (upper - lower) / 2;
+  e.identifiable = half <= narrow_share * std::max(std::abs(e.value), p.logarithmic ? 0 : p.scale);
+  return e;
+}
+
+}  // namespace
+
+std::vector<Estimate> parameter_estimates(const FittedPoint& fit) {
+  const FitSpace& space = fit.residuals.space();
+  const model::Model model = space.point(fit.z).model;
+  const std::vector<double> values = model::flat_values(model);
+  std::vector<Estimate> estimates;
+  for (std::size_t flat = 0; flat < values.size(); ++flat) {
+    const auto found = std::find_if(space.free().begin(), space.free().end(), [flat](const FreeParameter& p) {
+      return p.kind == FreeParameter::Kind::model && p.flat_index == flat;
+    });
+    if (found != space.free().end()) {
+      estimates.push_back(estimate_of(fit, static_cast<std::size_t>(found - space.free().begin())));
+      continue;
+    }
+    Estimate kept;
+    kept.name = model::parameter_path(model, flat);
+    kept.unit = model::parameter_spec(model, flat).unit;
+    kept.value = values[flat];
+    kept.note = "kept at the start's value";
+    estimates.push_back(std::move(kept));
+  }
+  return estimates;
+}
+
+void name_the_sum(std::vector<Estimate>& parameters) {
+  for (Estimate& e : parameters) {
+    const bool alpha = e.name == "bouc_wen.alpha_mm_per_kpa";
+    if (!alpha && e.name != "kelvin_voigt.k0_kpa_per_mm") continue;
+    e.ci95.reset();
+    e.profile95.reset();
+    e.identifiable = false;
+    e.note = alpha ? "only alpha + 1/k0 is identifiable; holds for the k0 that was kept"
+                   : "kept at the start's value: only alpha + 1/k0 is identifiable";
+  }
+}
+
+std::vector<Estimate> start_estimates(const FittedPoint& fit) {
+  std::vector<Estimate> estimates;
+  const auto& free = fit.residuals.space().free();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (free[i].kind != FreeParameter::Kind::model) estimates.push_back(estimate_of(fit, i));
+  }
+  return estimates;
+}
+
+std::vector<Estimate> combination_estimates(const FittedPoint& fit) {
+  const FitSpace& space = fit.residuals.space();
+  const Uncertainty& u = fit.uncertainty;
+  const auto n = static_cast<Eigen::Index>(fit.z.size());
+  std::vector<Estimate> estimates;
+  for (const Combination& combination : combinations_of(space.point(fit.z).model)) {
+    const auto value_at = [&](const std::vector<double>& z) {
+      return combination.value(space.point(z).model);
+    };
+    Estimate e;
+    e.name = combination.name;
+    e.unit = combination.unit;
+    e.formula = combination.formula;
+    e.value = value_at(fit.z);
+    const bool positive = e.value > 0 && combination.scale == 0;
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    bool moves = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (u.covariance(i, i) <= 0) continue;
+      std::vector<double> z = fit.z;
+      const double step = 1e-4 * std::max(1.0, std::abs(z[at]));
+      z[at] = fit.z[at] + step;
+      const double above = value_at(z);
+      z[at] = fit.z[at] - step;
+      const double below = value_at(z);
+      gradient(i) = (positive ? std::log(above / below) : above - below) / (2 * step);
+      moves = moves || gradient(i) != 0;
+    }
+    e.free = moves;
+    if (moves && std::isfinite(gradient.sum())) {
+      const double half = u.quantile * std::sqrt(std::max(gradient.dot(u.covariance * gradient), 0.0));
+      e.ci95 = positive ? Interval{e.value * std::exp(-half), e.value * std::exp(half)}
+                        : Interval{e.value - half, e.value + half};
+      e.identifiable = (e.ci95->upper - e.ci95->lower) / 2 <=
+                       narrow_share * std::max(std::abs(e.value), combination.scale);
+    } else {
+      e.note = "follows from parameters that were kept or stand at a bound";
+    }
+    estimates.push_back(std::move(e));
+  }
+  return estimates;
+}
+
+}  // namespace softgrip::sysid

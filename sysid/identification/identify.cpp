@@ -1,0 +1,259 @@
+#include "sysid/identification/identify.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/numbers.h"
+#include "model/catalogue.h"
+#include "sysid/fitting/minimise.h"
+#include "sysid/fitting/search.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/identification/estimates.h"
+#include "sysid/identification/profile.h"
+#include "sysid/identification/start_points.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+/// A search that ends within this of the best RMSE has reached it.
+constexpr double reached_share = 1e-3;
+
+/// Hides the readings after the fitted share of a record.
+void hold_out(Record& record, double fit_share) {
+  const auto last = static_cast<std::size_t>(fit_share * static_cast<double>(record.size()));
+  record.readings = 0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (i >= last) record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+    if (std::isfinite(record.reading_mm[i])) ++record.readings;
+  }
+}
+
+/// Which values of the model are free, by flat index.
+struct FreeIndices {
+  std::vector<std::size_t> flat;
+  bool k0_kept = false;  ///< although it was not asked for: alpha and 1/k0 enter as their sum
+};
+
+tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
+                                                    const IdentifyOptions& options) {
+  for (const auto* list : {&options.fixed, &options.free}) {
+    for (const std::string& path : *list) {
+      if (!model::find_path(model, path)) return Failure("the model has no parameter '" + path + "'");
+    }
+  }
+  const auto listed = [](const std::vector<std::string>& list, const std::string& path) {
+    return std::find(list.begin(), list.end(), path) != list.end();
+  };
+  const std::string alpha = "bouc_wen.alpha_mm_per_kpa";
+  const bool alpha_free = model::find_path(model, alpha) && !listed(options.fixed, alpha) &&
+                          (options.free.empty() || listed(options.free, alpha));
+  FreeIndices free;
+  for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
+    const std::string path = model::parameter_path(model, i);
+    if (model::parameter_spec(model, i).whole || listed(options.fixed, path)) continue;
+    if (!options.free.empty() && !listed(options.free, path)) continue;
+    if (path == "kelvin_voigt.k0_kpa_per_mm" && alpha_free) {
+      free.k0_kept = true;
+      continue;
+    }
+    free.flat.push_back(i);
+  }
+  return free;
+}
+
+/// 2.5 standard deviations of what the residuals are without their tails.
+double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) {
+  std::vector<double> r(residuals.count());
+  if (!residuals.evaluate(z, r, {}) || r.empty()) return std::numeric_limits<double>::infinity();
+  for (double& value : r) value = std::abs(value);
+  const auto middle = r.begin() + static_cast<long>(r.size() / 2);
+  std::nth_element(r.begin(), middle, r.end());
+  return std::max(2.5 * *middle / 0.6745, 1e-9);
+}
+
+/// The work of one exponent.
+class Run {
+ public:
+  Run(std::vector<Record> records, model::Model start, const IdentifyOptions& options)
+      : options_(options), start_(std::move(start)) {
+    result_.records = std::move(records);
+  }
+
+  tl::expected<Identification, std::string> go() {
+    const auto free = free_indices(start_, options_);
+    if (!free) return Failure(free.error());
+    const FitSpace space(start_, result_.records, free->flat);
+    const FitPoint given{start_, rest_starts(start_, result_.records)};
+    std::vector<FitPoint> starts;
+    for (const model::Model& point : options_.start_points) starts.push_back({point, given.starts});
+    if (starts.empty())
+      starts = draw_starts(space, given, result_.records, std::max<std::size_t>(1, options_.starts),
+                           options_.seed);
+    std::vector<SearchResult> found =
+        search(space, result_.records, starts, options_.threads, options_.progress);
+    const auto best =
+        std::min_element(found.begin(), found.end(),
+                         [](const SearchResult& a, const SearchResult& b) { return a.rmse_mm < b.rmse_mm; });
+    if (!std::isfinite(best->rmse_mm)) return Failure("the model's answer is not finite from any start");
+    for (const SearchResult& each : found) result_.multistart.rmse_mm.push_back(each.rmse_mm);
+    order_branches(branch_time_constants_s(start_), best->point);
+    polish(best->point, *free);
+    return std::move(result_);
+  }
+
+ private:
+  void polish(const FitPoint& from, const FreeIndices& free) {
+    const auto residuals = residuals_for(result_.records, FitSpace(from.model, result_.records, free.flat));
+    std::vector<double> z = residuals->space().z(from);
+    MinimiseOptions options;
+    options.normal_equations = true;
+    Minimum minimum = minimise(*residuals, z, options);
+    // The scale of the tails and the fit depend on each other: twice settles it.
+    for (int pass = 0; pass < 2 && options_.robust; ++pass) {
+      options.huber_mm = result_.huber_mm = huber_width_mm(*residuals, minimum.z);
+      minimum = minimise(*residuals, minimum.z, options);
+    }
+    const FitPoint point = residuals->space().point(minimum.z);
+    result_.fitted = point.model;
+    result_.rmse_mm = minimum.rmse_mm;
+    result_.iterations = minimum.iterations;
+    result_.converged = minimum.converged;
+    const Uncertainty uncertainty = uncertainty_at(*residuals, minimum.z, options.huber_mm);
+    const FittedPoint fit{*residuals, minimum.z, uncertainty};
+    result_.parameters = parameter_estimates(fit);
+    result_.starts = start_estimates(fit);
+    result_.combinations = combination_estimates(fit);
+    result_.loose = uncertainty.loose;
+    result_.noise = uncertainty.noise;
+    if (options_.profile) {
+      add_profiles(*residuals, minimum.z, uncertainty, options.huber_mm, options_.threads,
+                   result_.parameters);
+    }
+    if (free.k0_kept) name_the_sum(result_.parameters);
+    for (std::size_t k = 0; k < result_.records.size(); ++k) {
+      const Record& record = result_.records[k];
+      result_.scores.push_back(score_of(result_.fitted, record, point.starts[k], record.reading_mm));
+    }
+    MultiStart& multistart = result_.multistart;
+    multistart.starts = multistart.rmse_mm.size();
+    const double lowest = *std::min_element(multistart.rmse_mm.begin(), multistart.rmse_mm.end());
+    const auto reached =
+        std::count_if(multistart.rmse_mm.begin(), multistart.rmse_mm.end(),
+                      [&](double rmse_mm) { return rmse_mm <= lowest * (1 + reached_share) + 1e-6; });
+    multistart.share_at_best = static_cast<double>(reached) / static_cast<double>(multistart.starts);
+  }
+
+  const IdentifyOptions& options_;
+  model::Model start_;
+  Identification result_;
+};
+
+/// Another exponent with a hysteresis of about the same size: gamma and eta act on h^n instead of h.
+model::Model with_exponent(model::Model model, int exponent) {
+  const auto position = model::position_of(model, "bouc_wen");
+  if (!position) return model;
+  std::vector<double>& v = model.blocks[*position].values;
+  const double limit_mm = std::max(v[1], 1e-6) / std::max(v[2] + v[3], 1e-6);
+  const double change = std::pow(limit_mm, v[4] - exponent);
+  v[2] *= change;
+  v[3] *= change;
+  v[4] = exponent;
+  return model;
+}
+
+/// The whole model again: the fitted blocks with their new numbers, the others as they were.
+model::Model put_back(const model::Model& start, const model::Model& fitted) {
+  model::Model whole = start;
+  std::size_t next = 0;  // the fitted blocks are some of the start's, in order
+  for (model::BlockSpec& block : whole.blocks) {
+    if (next < fitted.blocks.size() && fitted.blocks[next].type == block.type) {
+      block.values = fitted.blocks[next++].values;
+    }
+  }
+  return whole;
+}
+
+void add_warnings(Identification& result) {
+  if (!result.converged) result.warnings.emplace_back("the last minimisation stopped before it converged");
+  for (const Estimate& e : result.combinations) {
+    if (e.name == "beta_over_instantaneous_gain" && e.value > 1) {
+      result.warnings.push_back("beta / (alpha + 1/k0) = " + significant(e.value, 3) +
+                                " is above 1: the model moves the wrong way first and cannot be inverted; a "
+                                "latency in the data is the "
+                                "usual cause, run softgrip diagnose");
+    }
+  }
+  for (const Record& record : result.records) {
+    if (record.start_unknown) {
+      result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");
+    } else if (record.offset_free) {
+      result.warnings.push_back(record.name +
+                                " does not read 0 at its start: an offset of the sensor was estimated");
+    }
+  }
+  if (result.noise.lag1_correlation > 0.5) {
+    result.warnings.push_back("the residuals are correlated (" +
+                              significant(result.noise.lag1_correlation, 3) +
+                              " from sample to sample): " + fixed(result.noise.effective_samples, 0) +
+                              " independent samples' worth of data");
+  }
+  if (result.multistart.starts >= 5 && result.multistart.share_at_best < 0.2) {
+    result.warnings.push_back(
+        "only " + fixed(100 * result.multistart.share_at_best, 0) +
+        " % of the starts reached the best fit: there may be a better one, try --starts");
+  }
+}
+
+}  // namespace
+
+tl::expected<Identification, std::string> identify(const std::vector<Log>& logs, const model::Model& start,
+                                                   const IdentifyOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  if (logs.empty()) return Failure("no logs to identify from");
+  for (const Log& log : logs) {
+    if (options.record.drive == Drive::measured && log.pressure_kpa.empty()) {
+      return Failure(log.name + " has no measured pressure");
+    }
+  }
+  std::vector<Record> whole = make_records(logs, options.record);
+  std::vector<Record> records = whole;
+  if (options.fit_share < 1) {
+    for (Record& record : records) hold_out(record, options.fit_share);
+  }
+  const model::Model fitted_part = deterministic_part(start, options.record.drive);
+  if (const auto wrong = model::validate(fitted_part); !wrong.empty()) return Failure(wrong.front());
+
+  std::vector<int> exponents = options.exponents;
+  if (exponents.empty()) exponents.push_back(0);
+  std::optional<Identification> best;
+  std::vector<std::pair<int, double>> tried;
+  for (const int exponent : exponents) {
+    const model::Model& from = best ? best->fitted : fitted_part;
+    auto result = Run(records, exponent == 0 ? from : with_exponent(from, exponent), options).go();
+    if (!result) return Failure(result.error());
+    if (exponent != 0) tried.emplace_back(exponent, result->rmse_mm);
+    // A sharper exponent must earn its place.
+    constexpr double worth = 0.99;
+    if (!best || result->rmse_mm < worth * best->rmse_mm) best = std::move(*result);
+  }
+  best->exponent_rmse_mm = std::move(tried);
+  best->model = put_back(start, best->fitted);
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    best->fast_noise_mm = std::max(best->fast_noise_mm, fast_noise_mm(whole[k]));
+    if (options.fit_share >= 1) continue;
+    std::vector<double> rest = whole[k].reading_mm;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      if (std::isfinite(best->records[k].reading_mm[i])) rest[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    best->held_out.push_back(score_of(best->fitted, whole[k], best->scores[k].start, rest));
+  }
+  add_warnings(*best);
+  best->wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return std::move(*best);
+}
+
+}  // namespace softgrip::sysid

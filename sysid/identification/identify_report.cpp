@@ -1,0 +1,253 @@
+#include "sysid/identification/identify_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers.h"
+#include "model/file/model_file.h"
+#include "sysid/identification/log_figures.h"
+#include "sysid/pages/page.h"
+#include "sysid/pages/provenance.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Residuals no larger than this many times the sample-to-sample noise, or hardly correlated, are noise.
+constexpr double noise_factor = 1.3;
+constexpr double hardly_correlated = 0.3;
+/// Above this share of the span a fit is bad whatever the noise.
+constexpr double bad_percent = 10;
+
+const Estimate* find(const std::vector<Estimate>& list, std::string_view name) {
+  const auto found =
+      std::find_if(list.begin(), list.end(), [name](const Estimate& e) { return e.name == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+double largest_percent(const Identification& r) {
+  double largest = 0;
+  for (const Score& s : r.scores) largest = std::max(largest, s.rmse_percent_of_span);
+  return largest;
+}
+
+bool is_noise(const Identification& r) {
+  return r.rmse_mm <= noise_factor * r.fast_noise_mm ||
+         std::abs(r.noise.lag1_correlation) < hardly_correlated;
+}
+
+bool moves_the_wrong_way(const Identification& r) {
+  const Estimate* ratio = find(r.combinations, "beta_over_instantaneous_gain");
+  return ratio != nullptr && ratio->value > 1;
+}
+
+Tone tone_of(const Identification& r) {
+  if (largest_percent(r) > bad_percent) return Tone::bad;
+  return is_noise(r) && !moves_the_wrong_way(r) && r.converged ? Tone::good : Tone::doubtful;
+}
+
+std::string logs_in_words(const Identification& r) {
+  return r.scores.size() == 1 ? r.scores.front().name : std::to_string(r.scores.size()) + " logs";
+}
+
+std::string range(const std::optional<Interval>& interval, int digits) {
+  if (!interval) return "";
+  return significant(interval->lower, digits) + " to " + significant(interval->upper, digits);
+}
+
+Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
+  const bool profiled =
+      std::any_of(list.begin(), list.end(), [](const Estimate& e) { return e.profile95.has_value(); });
+  const bool formulas =
+      std::any_of(list.begin(), list.end(), [](const Estimate& e) { return !e.formula.empty(); });
+  Table table;
+  table.caption = std::move(caption);
+  table.header = {"name", "value", "95 % interval"};
+  table.numeric = {false, true, true};
+  if (profiled) {
+    table.header.emplace_back("95 % by profile");
+    table.numeric.push_back(true);
+  }
+  table.header.insert(table.header.end(), {"unit", "identified", formulas ? "what it is" : "note"});
+  for (const Estimate& e : list) {
+    std::vector<std::string> row{e.name, significant(e.value, 5), range(e.ci95, 4)};
+    if (profiled) row.push_back(range(e.profile95, 4));
+    const std::string identified = e.identifiable ? "yes" : e.free || !e.formula.empty() ? "no" : "";
+    row.insert(row.end(), {e.unit, identified, formulas && e.note.empty() ? e.formula : e.note});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// The correlation of the errors over lags of up to a tenth of the log, pooled over logs.
+Chart correlation_chart(const Identification& r) {
+  Chart chart;
+  chart.width = 380;
+  chart.height = 240;
+  chart.title = "correlation of the errors";
+  chart.x.label = "lag [s]";
+  chart.y.lower = -1;
+  chart.y.upper = 1;
+  Series series;
+  series.style = Series::Style::line;
+  series.colour = Colour::error;
+  const Score& s = r.scores.front();
+  const Record& record = r.records.front();
+  const std::size_t reach = std::max<std::size_t>(2, s.error_mm.size() / 10);
+  const double interval_s = record.mean_interval_s();
+  for (std::size_t lag = 0; lag < reach; lag += std::max<std::size_t>(1, reach / 200)) {
+    double product = 0;
+    double square = 0;
+    for (std::size_t i = lag; i < s.error_mm.size(); ++i) {
+      if (!std::isfinite(s.error_mm[i]) || !std::isfinite(s.error_mm[i - lag])) continue;
+      product += s.error_mm[i] * s.error_mm[i - lag];
+      square += s.error_mm[i] * s.error_mm[i];
+    }
+    series.x.push_back(static_cast<double>(lag) * interval_s);
+    series.y.push_back(square > 0 ? product / square : 0);
+  }
+  chart.series = {series};
+  return chart;
+}
+
+Chart multistart_chart(const Identification& r) {
+  Chart chart;
+  chart.width = 380;
+  chart.height = 240;
+  chart.title = "where the starts ended";
+  chart.x.label = "start, best first";
+  chart.y.label = "RMSE [mm]";
+  std::vector<double> sorted = r.multistart.rmse_mm;
+  std::sort(sorted.begin(), sorted.end());
+  Series series;
+  series.style = Series::Style::points;
+  series.width = 3;
+  series.colour = Colour::model;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    series.x.push_back(static_cast<double>(i + 1));
+    series.y.push_back(sorted[i]);
+  }
+  chart.y.logarithmic = sorted.front() > 0;
+  chart.series = {series};
+  return chart;
+}
+
+void add_limits(Page& page, const Identification& r) {
+  page.section("What these data cannot tell");
+  std::vector<std::string> items;
+  for (const Estimate& e : r.parameters) {
+    const bool kept = !e.free && e.note.find("alpha") == std::string::npos;
+    if (!e.identifiable && !kept)
+      items.push_back(e.name + (e.note.empty() ? ": its interval is wide" : ": " + e.note));
+  }
+  for (const LooseDirection& loose : r.loose) {
+    std::string text = "Together, ";
+    for (std::size_t i = 0; i < loose.names.size(); ++i) {
+      text += (i == 0 ? "" : ", ") + loose.names[i] + " (" + significant(loose.weights[i], 2) + ")";
+    }
+    items.push_back(
+        text + " may move by " + significant(loose.deviation, 2) +
+        " in the fit's scale (logarithms of stiffnesses and dampings) without the fit getting worse.");
+  }
+  if (items.empty()) {
+    page.paragraph("Every free parameter is identified by these logs.");
+  } else {
+    page.list(items);
+  }
+}
+
+void add_residuals(Page& page, const Identification& r) {
+  page.section("Errors and search");
+  page.paragraph("Sample-to-sample noise of the readings " + significant(r.fast_noise_mm, 3) + " mm; RMSE " +
+                 significant(r.rmse_mm, 3) + " mm; correlation of the errors from one sample to the next " +
+                 significant(r.noise.lag1_correlation, 3) + ". For the intervals the samples count as " +
+                 fixed(r.noise.effective_samples, 0) + " independent ones (autoregressive model of order " +
+                 std::to_string(r.noise.coefficients.size()) + ").");
+  if (r.huber_mm > 0) {
+    page.paragraph("Robust fit: errors beyond " + significant(r.huber_mm, 3) + " mm count linearly.");
+  }
+  page.figure_row({correlation_chart(r), multistart_chart(r)},
+                  fixed(100 * r.multistart.share_at_best, 0) + " % of " +
+                      std::to_string(r.multistart.starts) + " starts reached the best fit.");
+  if (r.exponent_rmse_mm.size() > 1) {
+    Table table{"Exponents of the hysteresis that were tried", {"exponent", "RMSE [mm]"}, {true, true}, {}};
+    for (const auto& [exponent, rmse_mm] : r.exponent_rmse_mm) {
+      table.rows.push_back({std::to_string(exponent), significant(rmse_mm, 4)});
+    }
+    page.table(table);
+  }
+}
+
+void add_notes(Page& page, const std::vector<Log>& logs) {
+  std::vector<std::string> items;
+  for (const Log& log : logs) {
+    for (const LogNote& note : log.notes) {
+      items.push_back(log.name + (note.line > 0 ? ", line " + std::to_string(note.line) : "") + ": " +
+                      note.text);
+    }
+  }
+  if (items.empty()) return;
+  page.section("Notes on the logs");
+  page.list(items);
+}
+
+}  // namespace
+
+std::string verdict_of(const Identification& r) {
+  const std::string logs = logs_in_words(r);
+  const std::string size =
+      "RMSE of " + significant(r.rmse_mm, 3) + " mm, " +
+      (r.scores.size() == 1 ? significant(largest_percent(r), 2) + " % of its span"
+                            : "at most " + significant(largest_percent(r), 2) + " % of a log's span");
+  if (largest_percent(r) > bad_percent) {
+    return "The model does not explain " + logs + ": " + size + ".";
+  }
+  std::string text =
+      is_noise(r) ? "The model explains " + logs + " to the noise: " + size + "."
+                  : "The model follows " + logs + " with an " + size +
+                        ", but structure is left that is not noise; softgrip diagnose looks for its cause.";
+  if (moves_the_wrong_way(r)) text += " It moves the wrong way first and cannot be inverted.";
+  if (!r.converged) text += " The search stopped before it converged.";
+  return text;
+}
+
+std::string identify_html(const IdentifyReport& report) {
+  const Identification& r = report.result;
+  Page page("Identification: " + r.model.name + " from " + logs_in_words(r), verdict_of(r), tone_of(r));
+  auto provenance = provenance_of(report.logs, {{"start", &report.start}, {"identified model", &r.model}});
+  provenance.emplace_back("seed of the starts", std::to_string(report.seed));
+  page.provenance(std::move(provenance));
+  if (!r.warnings.empty()) {
+    page.section("Warnings");
+    page.list(r.warnings);
+  }
+  page.section("Fit");
+  page.table(score_table(r.records, r.scores));
+  if (!r.held_out.empty()) {
+    Table table = score_table(r.records, r.held_out);
+    table.caption = "Held out: the rest of each log, predicted from its start";
+    page.table(table);
+  }
+  for (std::size_t i = 0; i < r.scores.size(); ++i) add_log_figures(page, r.records[i], r.scores[i]);
+  if (!report.validation.empty()) {
+    page.section("Validation");
+    page.paragraph("Logs that were not fitted.");
+    page.table(score_table(report.validation_records, report.validation));
+    for (std::size_t i = 0; i < report.validation.size(); ++i) {
+      add_log_figures(page, report.validation_records[i], report.validation[i]);
+    }
+  }
+  page.section("Parameters");
+  page.table(estimate_table(r.parameters, ""));
+  if (!r.starts.empty()) page.table(estimate_table(r.starts, "How the logs begin"));
+  page.section("What the finger shows");
+  page.paragraph("Sums and ratios of parameters: gains, time constants and limits that the data speak of.");
+  page.table(estimate_table(r.combinations, ""));
+  add_limits(page, r);
+  add_residuals(page, r);
+  add_notes(page, report.logs);
+  page.section("Model file");
+  page.code(model::to_yaml(r.model));
+  return page.to_html();
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,117 @@
+#include "sysid/identification/log_figures.h"
+
+#include <cmath>
+
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Pages stay below 1.5 MB: from here on figures give way to a sentence.
+constexpr std::size_t large_page_bytes = 1'250'000;
+
+Series line(std::string label, const std::vector<double>& x, const std::vector<double>& y, Colour colour) {
+  Series series;
+  series.label = std::move(label);
+  series.x = x;
+  series.y = y;
+  series.colour = colour;
+  return series;
+}
+
+}  // namespace
+
+std::vector<Chart> overlay(const Record& record, const Score& score) {
+  Chart values;
+  values.title = record.name;
+  values.y.label = "displacement [mm]";
+  values.height = 260;
+  Series measured = line("measured", record.time_s, record.reading_mm, Colour::measured);
+  measured.width = 2.2;
+  values.series = {measured, line("model", record.time_s, score.prediction_mm, Colour::model)};
+  Chart error;
+  error.y.label = "error [mm]";
+  error.x.label = "time [s]";
+  error.height = 170;
+  Series difference = line("", record.time_s, score.error_mm, Colour::error);
+  difference.width = 1;
+  error.series = {difference};
+  const std::vector<std::size_t> cycles = cycle_starts(record);
+  if (cycles.size() > 1)
+    error.marks.push_back({Mark::Direction::vertical, record.time_s[cycles[1]], "settled"});
+  return {values, error};
+}
+
+Chart loops(const Record& record, const Score& score) {
+  Chart chart;
+  chart.width = 380;
+  chart.height = 300;
+  chart.x.label = "pressure [kPa]";
+  chart.y.label = "displacement [mm]";
+  Series measured = line("measured", record.drive_kpa, record.reading_mm, Colour::measured);
+  measured.width = 2.2;
+  Series model = line("model", record.drive_kpa, score.prediction_mm, Colour::model);
+  model.width = 1;
+  chart.series = {measured, model};
+  return chart;
+}
+
+Chart error_by_pressure(const Record& record, const Score& score) {
+  Chart chart;
+  chart.width = 380;
+  chart.height = 300;
+  chart.x.label = "pressure [kPa]";
+  chart.y.label = "error [mm]";
+  Series loading;
+  loading.style = Series::Style::points;
+  loading.width = 0.7;
+  Series unloading = loading;
+  loading.label = "loading";
+  loading.colour = Colour::model;
+  unloading.label = "unloading";
+  unloading.colour = Colour::error;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double change = record.drive_kpa[i] - record.drive_kpa[i - 1];
+    if (change == 0) continue;
+    Series& series = change > 0 ? loading : unloading;
+    series.x.push_back(record.drive_kpa[i]);
+    series.y.push_back(score.error_mm[i]);
+  }
+  chart.series = {loading, unloading};
+  return chart;
+}
+
+void add_log_figures(Page& page, const Record& record, const Score& score) {
+  if (page.size() > large_page_bytes) {
+    page.paragraph("The figures of " + record.name + " are left out to keep this page small.");
+    return;
+  }
+  const std::string& pressure = record.name;
+  page.figure(overlay(record, score), pressure + ": measured against model over time, and their difference.");
+  page.figure_row({loops(record, score), error_by_pressure(record, score)},
+                  pressure + ": hysteresis loops, and the error over the pressure.");
+}
+
+std::string or_dash(double value, int digits) {
+  return std::isfinite(value) ? significant(value, digits) : "\xe2\x80\x93";
+}
+
+Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores) {
+  Table table;
+  table.header = {"log",         "samples",      "span [mm]",         "RMSE [mm]", "RMSE [% of span]",
+                  "first cycle", "settled [mm]", "largest error [mm]"};
+  table.numeric = {false, true, true, true, true, true, true, true};
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const Score& s = scores[i];
+    std::size_t samples = 0;
+    for (const double e : s.error_mm) {
+      if (std::isfinite(e)) ++samples;
+    }
+    table.rows.push_back({s.name, std::to_string(samples), or_dash(records[i].span_mm), or_dash(s.rmse_mm),
+                          or_dash(s.rmse_percent_of_span), or_dash(s.first_cycle_rmse_mm),
+                          or_dash(s.settled_rmse_mm), or_dash(s.largest_error_mm)});
+  }
+  return table;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,142 @@
+#include "sysid/identification/start_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "model/catalogue.h"
+#include "sysid/identification/identify.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// What the data say about sizes.
+struct DataScale {
+  double largest_kpa = 1;
+  double span_mm = 1;
+  double longest_s = 1;
+};
+
+DataScale scale_of(const std::vector<Record>& records) {
+  DataScale scale{0, 0, 0};
+  for (const Record& record : records) {
+    scale.largest_kpa = std::max(scale.largest_kpa, record.largest_kpa);
+    scale.span_mm = std::max(scale.span_mm, record.span_mm);
+    scale.longest_s = std::max(scale.longest_s, record.length_s());
+  }
+  return scale;
+}
+
+std::size_t type_of(std::string_view id) {
+  return *model::find_block(id);
+}
+
+class Drawer {
+ public:
+  Drawer(const FitSpace& space, const std::vector<Record>& records, std::uint64_t seed)
+      : space_(space), scale_(scale_of(records)), random_(seed) {}
+
+  /// Factors of about two on what is positive by nature, half a typical change or value on the rest.
+  FitPoint around(const FitPoint& given) {
+    std::vector<double> z = space_.z(given);
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      const FreeParameter& p = space_.free()[i];
+      if (p.kind == FreeParameter::Kind::peak_before) z[i] = uniform(p.lower_z(), p.upper_z());
+      if (p.kind != FreeParameter::Kind::model) continue;
+      z[i] += 0.7 * normal_(random_) * (p.logarithmic ? 1 : std::max(std::abs(z[i]), 0.5));
+      z[i] = std::clamp(z[i], p.lower_z(), p.upper_z());
+    }
+    return valid(space_.point(z), given);
+  }
+
+  /// Bouc-Wen, Kelvin-Voigt, delay and lag from nothing but sizes; other blocks as in around().
+  FitPoint from_scale(const FitPoint& given) {
+    FitPoint point = around(given);
+    const double gain = scale_.span_mm / scale_.largest_kpa;
+    for (model::BlockSpec& block : point.model.blocks) {
+      std::vector<double>& v = block.values;
+      if (block.type == type_of("bouc_wen")) {
+        const double growing = between(0.5, 8) / scale_.largest_kpa;
+        const double eta = growing * uniform(0.2, 0.9);
+        v[0] = gain * uniform(0.2, 1);
+        v[1] = v[0] * uniform(0.2, 1);
+        v[2] = growing - eta;
+        v[3] = eta;
+      } else if (block.type == type_of("kelvin_voigt")) {
+        branches(gain, v);
+      } else if (block.type == type_of("transport_delay") || block.type == type_of("valve_lag")) {
+        v[0] = uniform(0.005, 0.3);
+      }
+    }
+    // Back through the fit's coordinates: only what is free has moved.
+    return valid(space_.point(space_.z(point)), given);
+  }
+
+ private:
+  double uniform(double lower, double upper) {
+    return std::uniform_real_distribution<double>(lower, upper)(random_);
+  }
+  double between(double lower, double upper) { return std::exp(uniform(std::log(lower), std::log(upper))); }
+
+  /// Time constants spread over the log's length, in the order in which the given ones stood.
+  void branches(double gain, std::vector<double>& v) {
+    const std::size_t count = (v.size() - 1) / 2;
+    std::vector<double> time_constants;
+    for (std::size_t b = 0; b < count; ++b) time_constants.push_back(between(0.05, scale_.longest_s / 2));
+    std::sort(time_constants.begin(), time_constants.end(), std::greater<>());
+    const bool rising = count > 1 && v[2] / v[1] < v[4] / v[3];
+    if (rising) std::reverse(time_constants.begin(), time_constants.end());
+    for (std::size_t b = 0; b < count; ++b) {
+      v[1 + 2 * b] = static_cast<double>(count) / (gain * uniform(0.1, 1));
+      v[2 + 2 * b] = v[1 + 2 * b] * time_constants[b];
+    }
+  }
+
+  static FitPoint valid(const FitPoint& point, const FitPoint& given) {
+    return model::validate(point.model).empty() ? point : given;
+  }
+
+  const FitSpace& space_;
+  DataScale scale_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+};
+
+}  // namespace
+
+std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
+                                  const std::vector<Record>& records, std::size_t count, std::uint64_t seed) {
+  std::vector<FitPoint> starts{given};
+  for (std::size_t i = 1; i < count; ++i) {
+    // Every start has a seed of its own: the first ten of twenty are the same as ten of ten.
+    std::seed_seq sequence{seed, static_cast<std::uint64_t>(i)};
+    std::vector<std::uint64_t> derived(1);
+    sequence.generate(derived.begin(), derived.end());
+    Drawer drawer(space, records, derived.front());
+    starts.push_back(i % 2 == 1 ? drawer.from_scale(given) : drawer.around(given));
+  }
+  return starts;
+}
+
+model::Model base_model(const std::vector<Log>& logs, std::size_t branches) {
+  const DataScale scale = scale_of(make_records(logs, {}));
+  const double gain = scale.span_mm / std::max(scale.largest_kpa, 1e-6);
+  model::Model model;
+  model.name = "identified";
+  model.source = "starting values from the data's scale";
+  const double levelling = 1 / std::max(scale.largest_kpa, 1e-6);
+  model = model::with_block(std::move(model),
+                            {type_of("bouc_wen"), {0.6 * gain, 0.3 * gain, levelling, levelling, 1}});
+  // A rigid k0: alpha alone is the instantaneous gain, of which the data see only alpha + 1/k0.
+  std::vector<double> creep{1e9};
+  const double slowest = std::max(scale.longest_s / 4, 1.0);
+  for (std::size_t b = 0; b < branches; ++b) {
+    const double share = branches > 1 ? static_cast<double>(b) / static_cast<double>(branches - 1) : 0.5;
+    const double time_constant = slowest * std::pow(0.4 / slowest, share);
+    const double stiffness = static_cast<double>(branches) / (0.4 * gain);
+    creep.insert(creep.end(), {stiffness, stiffness * time_constant});
+  }
+  return model::with_block(std::move(model), {type_of("kelvin_voigt"), std::move(creep)});
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,100 @@
+#include "sysid/identification/validate.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <nlohmann/json.hpp>
+
+#include "base/numbers.h"
+#include "model/file/model_file.h"
+#include "sysid/identification/log_figures.h"
+#include "sysid/identification/score_json.h"
+#include "sysid/pages/page.h"
+#include "sysid/pages/provenance.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Below this share of the span a prediction is good, above the other it is bad.
+constexpr double good_percent = 2;
+constexpr double bad_percent = 10;
+
+double largest_percent(const Validation& v) {
+  double largest = 0;
+  for (const Score& s : v.scores) largest = std::max(largest, s.rmse_percent_of_span);
+  return largest;
+}
+
+std::string offset_text(const Record& record, const Score& score) {
+  if (record.start_unknown) return "estimated (it does not start from rest)";
+  return record.offset_free ? "offset " + significant(score.start.offset_mm, 3) + " mm estimated"
+                            : "at rest, at 0";
+}
+
+}  // namespace
+
+Validation validate_logs(const model::Model& model, const std::vector<Log>& logs,
+                         const RecordOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  Validation v;
+  v.model = model;
+  v.records = make_records(logs, options);
+  const model::Model part = deterministic_part(model, options.drive);
+  const std::vector<StartState> starts = estimate_starts(part, v.records);
+  for (std::size_t i = 0; i < v.records.size(); ++i) {
+    v.scores.push_back(score_of(part, v.records[i], starts[i], v.records[i].reading_mm));
+  }
+  v.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return v;
+}
+
+std::string verdict_of(const Validation& v) {
+  double lowest = v.scores.front().rmse_mm;
+  double highest = lowest;
+  for (const Score& s : v.scores) {
+    lowest = std::min(lowest, s.rmse_mm);
+    highest = std::max(highest, s.rmse_mm);
+  }
+  const std::string logs =
+      v.scores.size() == 1 ? v.scores.front().name : std::to_string(v.scores.size()) + " logs";
+  const std::string size = v.scores.size() == 1
+                               ? significant(highest, 3) + " mm"
+                               : significant(lowest, 3) + " to " + significant(highest, 3) + " mm";
+  return v.model.name + " predicts " + logs + " with an RMSE of " + size + ", at most " +
+         significant(largest_percent(v), 2) + " % of a log's span.";
+}
+
+std::string validate_html(const Validation& v, const std::vector<Log>& logs) {
+  const double percent = largest_percent(v);
+  Page page("Validation of " + v.model.name, verdict_of(v),
+            percent < good_percent  ? Tone::good
+            : percent < bad_percent ? Tone::doubtful
+                                    : Tone::bad);
+  page.provenance(provenance_of(logs, {{"model", &v.model}}));
+  page.section("Prediction");
+  page.table(score_table(v.records, v.scores));
+  std::vector<std::string> starts;
+  for (std::size_t i = 0; i < v.scores.size(); ++i) {
+    starts.push_back(v.scores[i].name + ": start " + offset_text(v.records[i], v.scores[i]));
+  }
+  page.list(starts);
+  for (std::size_t i = 0; i < v.scores.size(); ++i) add_log_figures(page, v.records[i], v.scores[i]);
+  page.section("Model file");
+  page.code(model::to_yaml(v.model));
+  return page.to_html();
+}
+
+std::string validate_json(const Validation& v, const std::vector<Log>& logs) {
+  nlohmann::ordered_json json{
+      {"schema", 1}, {"software", software_and_version()}, {"verdict", verdict_of(v)}};
+  json["model"] = {{"name", v.model.name}, {"hash", model::model_hash(v.model)}};
+  json["logs"] = logs_json(logs);
+  add_scores(json, v.scores);
+  for (std::size_t i = 0; i < v.scores.size(); ++i) {
+    json["offset_mm"][v.scores[i].name] = v.scores[i].start.offset_mm;
+  }
+  json["wall_s"] = v.wall_s;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace softgrip::sysid

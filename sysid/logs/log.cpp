@@ -1,0 +1,129 @@
+#include "sysid/logs/log.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "base/files.h"
+#include "base/numbers.h"
+#include "sysid/logs/csv_text.h"
+#include "sysid/logs/log_columns.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Reports and JSON speak of logs by name: the second of a name becomes "run (2)".
+void make_names_unique(std::vector<Log>& logs) {
+  std::map<std::string, int> seen;
+  for (Log& log : logs) {
+    if (const int count = ++seen[log.name]; count > 1) log.name += " (" + std::to_string(count) + ")";
+  }
+}
+
+}  // namespace
+
+Campaign read_campaign(const std::vector<std::string>& paths, document::Problems& problems,
+                       const LogOptions& options) {
+  namespace fs = std::filesystem;
+  Campaign campaign;
+  for (const std::string& given : paths) {
+    std::error_code error;
+    const bool folder = fs::is_directory(given, error);
+    const std::string path = folder ? (fs::path(given) / "run.csv").string() : given;
+    const auto text = read_file(path, options.bytes);
+    if (!text) {
+      problems.add({path, {1, 1}, {}, text.error(), {}});
+      campaign.unreadable = true;
+      continue;
+    }
+    auto log = parse_log(path, *text, problems, options);
+    if (!log) continue;
+    if (folder) {
+      const fs::path run = fs::path(given).lexically_normal();
+      log->name = (run.has_filename() ? run.filename() : run.parent_path().filename()).string() +
+                  (log->channel.empty() ? "" : "/" + log->channel);
+    }
+    campaign.logs.push_back(std::move(*log));
+  }
+  make_names_unique(campaign.logs);
+  return campaign;
+}
+
+std::string format_log(const Log& log) {
+  std::string text;
+  std::vector<const KnownColumn*> present;
+  for (const KnownColumn& known : known_columns) {
+    if (!(log.*known.values).empty() || known.required) present.push_back(&known);
+  }
+  for (const KnownColumn* known : present) text += (text.empty() ? "" : ",") + std::string(known->name);
+  if (!log.channel.empty()) text += ',' + std::string(channel_column);
+  for (const OtherColumn& other : log.others) text += ',' + as_cell(other.name);
+  text += '\n';
+  text.reserve(log.size() * present.size() * 20);
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    bool first = true;
+    for (const KnownColumn* known : present) {
+      const double value = (log.*known->values)[i];
+      if (!first) text += ',';
+      if (std::isfinite(value)) text += shortest(value);
+      first = false;
+    }
+    if (!log.channel.empty()) text += ',' + as_cell(log.channel);
+    for (const OtherColumn& other : log.others) text += ',' + as_cell(other.cells[i]);
+    text += '\n';
+  }
+  return text;
+}
+
+Sampling sampling_of(const Log& log) {
+  Sampling sampling;
+  std::vector<double> intervals(log.size());
+  std::adjacent_difference(log.time_s.begin(), log.time_s.end(), intervals.begin());
+  intervals.erase(intervals.begin());
+  if (intervals.empty()) return sampling;
+  auto sorted = intervals;
+  std::sort(sorted.begin(), sorted.end());
+  sampling.median_interval_s = sorted[sorted.size() / 2];
+  sampling.shortest_interval_s = sorted.front();
+  sampling.longest_interval_s = sorted.back();
+  for (const double interval : intervals)
+    sampling.jitter_s += std::abs(interval - sampling.median_interval_s);
+  sampling.jitter_s /= static_cast<double>(intervals.size());
+  const double tolerance = 1e-3 * sampling.median_interval_s;
+  sampling.regular = sampling.longest_interval_s - sampling.shortest_interval_s <= 2 * tolerance;
+  return sampling;
+}
+
+double span_mm(const Log& log) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const double value : log.displacement_mm) {
+    if (!std::isfinite(value)) continue;
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+  return highest < lowest ? 0 : highest - lowest;
+}
+
+Log slice(const Log& log, std::size_t first, std::size_t last) {
+  const auto cut = [&](const auto& values) {
+    using Values = std::decay_t<decltype(values)>;
+    if (values.empty()) return Values{};
+    return Values(values.begin() + static_cast<long>(first), values.begin() + static_cast<long>(last));
+  };
+  Log part;
+  part.path = log.path;
+  part.name = log.name;
+  part.channel = log.channel;
+  part.sha256 = log.sha256;
+  for (const KnownColumn& known : known_columns) part.*known.values = cut(log.*known.values);
+  for (const OtherColumn& other : log.others) part.others.push_back({other.name, cut(other.cells)});
+  for (double& time : part.time_s) time -= log.time_s[first];
+  return part;
+}
+
+}  // namespace softgrip::sysid

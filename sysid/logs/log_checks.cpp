@@ -1,0 +1,260 @@
+#include "sysid/logs/log_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using document::Problem;
+using document::Problems;
+
+/// A log of fewer samples says nothing about a model with ten parameters.
+constexpr std::size_t fewest_samples = 50;
+constexpr std::size_t fewest_command_samples = 2;
+/// Above these a unit was certainly mistaken: a soft finger moves at 20-60 kPa by some 10 mm.
+constexpr double largest_pressure_kpa = 5000;
+constexpr double largest_displacement_mm = 5000;
+constexpr double longest_median_interval_s = 5;
+/// Below these it probably was.
+constexpr double small_pressure_kpa = 2;
+constexpr double small_displacement_mm = 0.1;
+/// A hole: longer than this, and than this many usual intervals, while the command changed unseen.
+constexpr double hole_s = 0.5;
+constexpr double hole_intervals = 20;
+constexpr double gap_intervals = 5;
+/// Shares of all samples.
+constexpr double missing_share_refused = 0.2;
+
+struct Extent {
+  double lowest = 0;
+  double highest = 0;
+  [[nodiscard]] double width() const { return highest - lowest; }
+};
+
+Extent extent_of(const std::vector<double>& values) {
+  Extent extent{1e300, -1e300};
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    extent.lowest = std::min(extent.lowest, value);
+    extent.highest = std::max(extent.highest, value);
+  }
+  return extent.highest < extent.lowest ? Extent{} : extent;
+}
+
+std::string percent(double share) {
+  return fixed(100 * share, 1) + " %";
+}
+
+/// The checks of one log, sharing its source and its problems.
+class Check {
+ public:
+  Check(Log& log, const LogSource& source, Problems& problems)
+      : log_(log), source_(source), problems_(problems), command_(extent_of(log.pressure_command_kpa)) {}
+
+  void run(const LogOptions& options) {
+    const std::size_t fewest = options.need_readings ? fewest_samples : fewest_command_samples;
+    if (log_.size() < fewest) {
+      refuse(log_.size(), 1, std::to_string(log_.size()) + " samples",
+             "a log has at least " + std::to_string(fewest));
+      return;
+    }
+    if (!time_increases()) return;
+    sampling_ = sampling_of(log_);
+    time_plausible();
+    magnitudes();
+    if (!options.need_readings) return;
+    intervals();
+    missing_readings();
+    if (options.require_motion) excitation();
+    clipping(options.clipped_share_refused);
+  }
+
+ private:
+  /// A problem at the line of `sample` (one past the end: the last line).
+  void refuse(std::size_t sample, int column, std::string message, std::string hint = {}) {
+    Problem problem{source_.file, {1, column}, {}, std::move(message), std::move(hint)};
+    if (!source_.line.empty()) {
+      const std::size_t at = std::min(sample, source_.line.size() - 1);
+      problem.at.line = source_.line[at];
+      problem.line_text = std::string(source_.line_text[at].substr(0, 200));
+    }
+    problems_.add(std::move(problem));
+  }
+  void note(std::size_t sample, std::string text) {
+    log_.notes.push_back({sample < source_.line.size() ? source_.line[sample] : 0, std::move(text)});
+  }
+
+  bool time_increases() {
+    int found = 0;
+    for (std::size_t i = 1; i < log_.size(); ++i) {
+      const double step = log_.time_s[i] - log_.time_s[i - 1];
+      if (step > 0) continue;
+      if (++found <= 3) {
+        const std::string hint =
+            i > 1 && log_.time_s[i] == 0 ? "two runs in one file? Give them as two logs" : std::string();
+        refuse(i, source_.time_column,
+               step == 0 ? "the time " + shortest(log_.time_s[i]) + " s stands twice"
+                         : "the time goes back from " + shortest(log_.time_s[i - 1]) + " s to " +
+                               shortest(log_.time_s[i]) + " s",
+               hint);
+      }
+    }
+    if (found > 3) refuse(log_.size(), source_.time_column, std::to_string(found - 3) + " more of these");
+    return found == 0;
+  }
+
+  void time_plausible() {
+    const double start = log_.time_s.front();
+    if (std::abs(start) > 1.5 * sampling_.median_interval_s) {
+      refuse(0, source_.time_column, "the time starts at " + significant(start, 6) + " s",
+             "times count from 0: subtract the first one");
+    }
+    if (sampling_.median_interval_s > longest_median_interval_s) {
+      refuse(0, source_.time_column, "samples are " + significant(sampling_.median_interval_s) + " s apart",
+             "is the time in milliseconds? Divide by 1000");
+    }
+  }
+
+  void intervals() {
+    std::size_t gaps = 0;
+    std::size_t longest = 0;
+    double longest_s = 0;
+    for (std::size_t i = 1; i < log_.size(); ++i) {
+      const double interval = log_.time_s[i] - log_.time_s[i - 1];
+      if (interval <= gap_intervals * sampling_.median_interval_s) continue;
+      ++gaps;
+      if (interval > longest_s) {
+        longest = i;
+        longest_s = interval;
+      }
+      const double change = std::abs(log_.pressure_command_kpa[i] - log_.pressure_command_kpa[i - 1]);
+      if (interval > hole_s && interval > hole_intervals * sampling_.median_interval_s &&
+          change > 0.02 * command_.width()) {
+        refuse(i, source_.time_column,
+               "a hole of " + significant(interval) + " s, in which the command changed by " +
+                   significant(change) + " kPa unseen",
+               "cut the log there and give the parts as two logs");
+      }
+    }
+    if (gaps > 0) {
+      note(longest, std::to_string(gaps) + " gaps in the sampling, the longest of " + significant(longest_s) +
+                        " s; the command is taken to go straight across them");
+    }
+    if (sampling_.jitter_s > 0.01 * sampling_.median_interval_s) {
+      note(log_.size(), "irregular sampling: " + significant(1e3 * sampling_.median_interval_s) + " ms +- " +
+                            significant(1e3 * sampling_.jitter_s) + " ms; used as it is, not resampled");
+    }
+  }
+
+  void magnitudes() {
+    const auto largest = [](const std::vector<double>& values) {
+      return static_cast<std::size_t>(std::max_element(values.begin(), values.end(),
+                                                       [](double a, double b) {
+                                                         return (std::isfinite(a) ? std::abs(a) : -1) <
+                                                                (std::isfinite(b) ? std::abs(b) : -1);
+                                                       }) -
+                                      values.begin());
+    };
+    const std::size_t p = largest(log_.pressure_command_kpa);
+    const std::size_t y = largest(log_.displacement_mm);
+    if (std::abs(log_.pressure_command_kpa[p]) > largest_pressure_kpa) {
+      refuse(p, source_.command_column, "a command of " + significant(log_.pressure_command_kpa[p]) + " kPa",
+             "is the column in Pa? Divide by 1000");
+    } else if (command_.width() > 0 && command_.highest < small_pressure_kpa) {
+      note(p, "the command stays below " + significant(small_pressure_kpa) + " kPa: is the column in bar?");
+    }
+    if (std::abs(log_.displacement_mm[y]) > largest_displacement_mm) {
+      refuse(y, source_.displacement_column,
+             "a displacement of " + significant(log_.displacement_mm[y]) + " mm",
+             "is the column in micrometres? Divide by 1000");
+    } else if (const double span = span_mm(log_); span > 0 && span < small_displacement_mm) {
+      note(y, "the displacement spans " + significant(span) + " mm: is the column in metres?");
+    }
+  }
+
+  void missing_readings() {
+    const auto missing = [](double value) { return !std::isfinite(value); };
+    const auto& readings = log_.displacement_mm;
+    const auto first = std::find_if(readings.begin(), readings.end(), missing);
+    if (first == readings.end()) return;
+    const auto count = static_cast<double>(std::count_if(readings.begin(), readings.end(), missing));
+    const double share = count / static_cast<double>(readings.size());
+    const auto at = static_cast<std::size_t>(first - readings.begin());
+    const std::string message = percent(share) + " of the samples have no reading";
+    if (share > missing_share_refused) {
+      refuse(at, source_.displacement_column, message, "at most " + percent(missing_share_refused));
+    } else {
+      note(at, message + "; they are simulated but not compared");
+    }
+  }
+
+  void excitation() {
+    if (command_.width() <= 0) {
+      refuse(0, source_.command_column,
+             "the command is " + significant(command_.lowest) + " kPa from start to end",
+             "a model can only be identified from motion");
+      return;
+    }
+    if (span_mm(log_) <= 0) {
+      refuse(0, source_.displacement_column, "the displacement never changes while the command does",
+             "is the sensor connected?");
+    }
+  }
+
+  /// Readings that stay on the extreme value while the command moves on: the sensor or the board clips.
+  void clipping(double share_refused) {
+    const Extent reading = extent_of(log_.displacement_mm);
+    if (reading.width() <= 0) return;
+    std::size_t clipped = 0;
+    std::size_t first = log_.size();
+    double value = 0;
+    for (std::size_t begin = 0; begin < log_.size();) {
+      const double here = log_.displacement_mm[begin];
+      std::size_t end = begin + 1;
+      while (end < log_.size() && log_.displacement_mm[end] == here) ++end;
+      const bool extreme = here == reading.highest || here == reading.lowest;
+      constexpr std::size_t shortest_run = 5;
+      if (extreme && end - begin >= shortest_run && command_moves(begin, end)) {
+        clipped += end - begin;
+        if (first == log_.size()) {
+          first = begin;
+          value = here;
+        }
+      }
+      begin = end;
+    }
+    if (clipped == 0) return;
+    const double share = static_cast<double>(clipped) / static_cast<double>(log_.size());
+    const std::string message = percent(share) + " of the readings stay on the extreme value " +
+                                significant(value, 6) + " mm while the command moves";
+    if (share > share_refused) {
+      refuse(first, source_.displacement_column, message,
+             "the sensor clips: move it, or cut these stretches out of the readings");
+    } else {
+      note(first, message);
+    }
+  }
+  [[nodiscard]] bool command_moves(std::size_t begin, std::size_t end) const {
+    const auto [low, high] = std::minmax_element(log_.pressure_command_kpa.begin() + static_cast<long>(begin),
+                                                 log_.pressure_command_kpa.begin() + static_cast<long>(end));
+    return *high - *low > 0.03 * command_.width();
+  }
+
+  Log& log_;
+  const LogSource& source_;
+  Problems& problems_;
+  Extent command_;
+  Sampling sampling_;
+};
+
+}  // namespace
+
+void check_log(Log& log, const LogSource& source, const LogOptions& options, Problems& problems) {
+  Check(log, source, problems).run(options);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,93 @@
+#include "sysid/logs/log_header.h"
+
+#include <algorithm>
+
+#include "base/numbers.h"
+#include "sysid/logs/csv_text.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Says which column of the contract a foreign name was probably meant to be.
+void report_near_miss(const Cell& cell, std::string_view name, std::string_view line, LogReporter& report) {
+  for (const KnownColumn& known : known_columns) {
+    const std::string_view unit = known.name.substr(known.quantity.size() + 1);
+    const bool bare = name == known.quantity;
+    const bool other_unit = name.size() > known.quantity.size() + 1 && name.starts_with(known.quantity) &&
+                            name[known.quantity.size()] == '_' &&
+                            !conversion(name.substr(known.quantity.size() + 1)).empty();
+    if (!bare && !other_unit) continue;
+    const std::string expected = "expected '" + std::string(known.name) + "'";
+    if (bare) {
+      report.add("unit", {1, cell.column}, line, "column '" + std::string(name) + "' says no unit",
+                 expected + ", in " + std::string(unit));
+    } else {
+      report.add("unit", {1, cell.column}, line, "column '" + std::string(name) + "' has the wrong unit",
+                 expected + conversion(name.substr(known.quantity.size() + 1)));
+    }
+    return;
+  }
+}
+
+/// Checks what the header's line says before its names are looked at.
+bool header_is_plausible(std::string_view line, const std::vector<Cell>& cells, LogReporter& report) {
+  if (cells.size() == 1 && line.find(';') != std::string_view::npos) {
+    report.add("separator", {1, static_cast<int>(line.find(';')) + 1}, line,
+               "the columns are separated by ';'", "a log is separated by ',' with '.' in numbers");
+    return false;
+  }
+  if (cells.size() == 1 && line.find('\t') != std::string_view::npos) {
+    report.add("separator", {1, static_cast<int>(line.find('\t')) + 1}, line,
+               "the columns are separated by tabs", "a log is separated by ','");
+    return false;
+  }
+  if (std::all_of(cells.begin(), cells.end(), [](const Cell& c) { return to_number(c.text).has_value(); })) {
+    report.add("header", {1, 1}, line, "the first line holds numbers instead of column names",
+               "write 'time_s,pressure_command_kpa,displacement_mm' above it");
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+LogHeader read_header(std::string_view line, const LogOptions& options, LogReporter& report) {
+  LogHeader header;
+  header.index.fill(-1);
+  header.column.fill(1);
+  std::vector<Cell> cells;
+  if (!split(line, cells)) {
+    report.add("header", {1, 1}, line, "a quotation mark is not closed", {});
+    return header;
+  }
+  if (!header_is_plausible(line, cells, report)) return header;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string name = cell_text(cells[i].text);
+    const auto known = std::find_if(known_columns.begin(), known_columns.end(),
+                                    [&](const KnownColumn& k) { return k.name == name; });
+    const bool repeated =
+        !name.empty() && std::find(header.names.begin(), header.names.end(), name) != header.names.end();
+    if (repeated) {
+      report.add("duplicate", {1, cells[i].column}, line, "column '" + name + "' stands twice", {});
+    } else if (known != known_columns.end()) {
+      const auto k = static_cast<std::size_t>(known - known_columns.begin());
+      header.index[k] = static_cast<int>(i);
+      header.column[k] = cells[i].column;
+    } else if (name == channel_column) {
+      header.channel = static_cast<int>(i);
+    } else {
+      report_near_miss(cells[i], name, line, report);
+    }
+    header.names.push_back(name);
+  }
+  for (std::size_t k = 0; k < known_columns.size(); ++k) {
+    if (!known_columns[k].required || header.index[k] >= 0) continue;
+    if (k == column_displacement && !options.need_readings) continue;
+    const std::string near = document::nearest(known_columns[k].name, header.names);
+    report.add("missing", {1, 1}, line, "column '" + std::string(known_columns[k].name) + "' is missing",
+               near.empty() ? std::string() : "is it '" + near + "'?");
+  }
+  return header;
+}
+
+}  // namespace softgrip::sysid

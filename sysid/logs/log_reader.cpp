@@ -1,0 +1,219 @@
+// Reading a log: parse_log() and channels_of() of sysid/logs/log.h.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "base/numbers.h"
+#include "base/sha256.h"
+#include "sysid/logs/csv_text.h"
+#include "sysid/logs/log.h"
+#include "sysid/logs/log_checks.h"
+#include "sysid/logs/log_header.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double no_reading = std::numeric_limits<double>::quiet_NaN();
+
+/// One number of a row, reported where it is none.
+double read_cell(const KnownColumn& known, const Cell& cell, int line_number, std::string_view line,
+                 LogReporter& report) {
+  const std::string_view text = unquoted(cell.text);
+  const document::Location at{line_number, cell.column};
+  const std::string column = "'" + std::string(known.name) + "'";
+  if (text.empty()) {
+    if (known.may_be_empty) return no_reading;
+    report.add("empty cell", at, line, "no number in column " + column);
+    return no_reading;
+  }
+  const auto value = to_number(text);
+  if (!value) {
+    report.add("not a number", at, line,
+               "'" + std::string(text.substr(0, 40)) + "' in column " + column + " is not a number");
+    return no_reading;
+  }
+  if (!std::isfinite(*value)) {
+    report.add("not finite", at, line, "'" + std::string(text) + "' in column " + column,
+               known.may_be_empty ? "leave the cell empty where there was no reading" : "");
+    return no_reading;
+  }
+  return *value;
+}
+
+/// The rows of one channel, read into a log.
+class RowReader {
+ public:
+  RowReader(const LogHeader& header, const LogOptions& options, Log& log, LogSource& source,
+            LogReporter& report)
+      : header_(header), options_(options), log_(log), source_(source), report_(report) {
+    for (std::size_t i = 0; i < header.names.size(); ++i) {
+      const bool is_known =
+          std::find(header.index.begin(), header.index.end(), static_cast<int>(i)) != header.index.end() ||
+          static_cast<int>(i) == header.channel;
+      if (is_known) continue;
+      other_index_.push_back(i);
+      log_.others.push_back({header.names[i], {}});
+    }
+  }
+
+  void read(std::string_view line, int line_number, bool is_last) {
+    const bool closed = split(line, cells_);
+    if (cells_.size() != header_.names.size()) {
+      if (is_last && cells_.size() < header_.names.size()) {
+        log_.notes.push_back({line_number, "the last row is incomplete and was left out"});
+        return;
+      }
+      report_.add("row", {line_number, 1}, line,
+                  std::to_string(cells_.size()) + " cells where the header has " +
+                      std::to_string(header_.names.size()),
+                  cells_.size() == 2 * header_.names.size() ? "numbers with a decimal comma?" : "");
+      return;
+    }
+    if (!closed) {
+      if (is_last) {
+        log_.notes.push_back({line_number, "the last row is incomplete and was left out"});
+        return;
+      }
+      report_.add("row", {line_number, 1}, line, "a quotation mark is not closed");
+      return;
+    }
+    if (!belongs()) return;
+    for (std::size_t k = 0; k < known_columns.size(); ++k) {
+      if (header_.index[k] < 0) continue;
+      const Cell& cell = cells_[static_cast<std::size_t>(header_.index[k])];
+      (log_.*known_columns[k].values)
+          .push_back(read_cell(known_columns[k], cell, line_number, line, report_));
+    }
+    for (std::size_t i = 0; i < other_index_.size(); ++i) {
+      log_.others[i].cells.push_back(cell_text(cells_[other_index_[i]].text));
+    }
+    source_.line.push_back(line_number);
+    source_.line_text.push_back(line);
+  }
+
+  [[nodiscard]] const std::vector<std::string>& channels() const { return channels_; }
+
+ private:
+  bool belongs() {
+    if (header_.channel < 0) return true;
+    const std::string channel = cell_text(cells_[static_cast<std::size_t>(header_.channel)].text);
+    if (std::find(channels_.begin(), channels_.end(), channel) == channels_.end()) {
+      channels_.push_back(channel);
+    }
+    return options_.channel.empty() ? channel == channels_.front() : channel == options_.channel;
+  }
+
+  const LogHeader& header_;
+  const LogOptions& options_;
+  Log& log_;
+  LogSource& source_;
+  LogReporter& report_;
+  std::vector<Cell> cells_;
+  std::vector<std::size_t> other_index_;
+  std::vector<std::string> channels_;
+};
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "'" : ", '") + word + "'";
+  return list;
+}
+
+/// A log with several channels needs a choice, and the choice must exist.
+void check_channel(const RowReader& rows, const LogHeader& header, const LogOptions& options,
+                   std::string_view header_line, LogReporter& report, Log& log) {
+  const document::Location at{1, 1};
+  if (header.channel < 0) {
+    if (!options.channel.empty()) {
+      report.add("channel", at, header_line,
+                 "channel '" + options.channel + "' was asked for, and the log has no channel column");
+    }
+    return;
+  }
+  const auto& channels = rows.channels();
+  if (options.channel.empty() && channels.size() > 1) {
+    report.add("channel", at, header_line,
+               "the log holds " + std::to_string(channels.size()) + " channels: " + listed(channels),
+               "say which one with --channel");
+  } else if (!options.channel.empty() &&
+             std::find(channels.begin(), channels.end(), options.channel) == channels.end()) {
+    report.add("channel", at, header_line,
+               "no channel '" + options.channel + "' in the log, which has " + listed(channels));
+  }
+  log.channel = options.channel.empty() && !channels.empty() ? channels.front() : options.channel;
+}
+
+bool is_text(std::string_view text, LogReporter& report) {
+  const std::size_t zero = text.find('\0');
+  if (zero == std::string_view::npos) return true;
+  const auto line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n'));
+  const bool wide = text.size() > 1 && (text[0] == '\xff' || text[0] == '\xfe');
+  report.add("binary", {line + 1, 1}, {}, "a byte 0: this is not a CSV text",
+             wide ? "it looks like UTF-16: save it as UTF-8" : "");
+  return false;
+}
+
+}  // namespace
+
+std::optional<Log> parse_log(const std::string& file, std::string_view text, document::Problems& problems,
+                             const LogOptions& options) {
+  LogReporter report(file, problems);
+  Log log;
+  log.path = file;
+  log.sha256 = sha256(text);
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  if (!is_text(text, report)) return std::nullopt;
+  const std::vector<std::string_view> lines = lines_of(text);
+  if (lines.empty()) {
+    report.add("empty", {1, 1}, {}, "the log is empty");
+    return std::nullopt;
+  }
+  const LogHeader header = read_header(lines.front(), options, report);
+  if (report.any()) {
+    report.finish();
+    return std::nullopt;
+  }
+  LogSource source{file,
+                   {},
+                   {},
+                   header.column[column_time],
+                   header.column[column_command],
+                   header.column[column_displacement]};
+  RowReader rows(header, options, log, source, report);
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    rows.read(lines[i], static_cast<int>(i) + 1, i + 1 == lines.size());
+  }
+  if (header.index[column_displacement] < 0) log.displacement_mm.assign(log.size(), no_reading);
+  check_channel(rows, header, options, lines.front(), report, log);
+  log.name = std::filesystem::path(file).stem().string();
+  if (!log.channel.empty()) log.name += "/" + log.channel;
+  report.finish();
+  if (report.any()) return std::nullopt;
+  const std::size_t before = problems.size();
+  check_log(log, source, options, problems);
+  if (problems.size() != before) return std::nullopt;
+  return log;
+}
+
+std::vector<std::string> channels_of(std::string_view text) {
+  std::vector<std::string> channels;
+  std::vector<Cell> cells;
+  std::optional<std::size_t> place;
+  for (const std::string_view line : lines_of(text)) {
+    split(line, cells);
+    if (!place) {
+      const auto found = std::find_if(cells.begin(), cells.end(),
+                                      [](const Cell& cell) { return unquoted(cell.text) == channel_column; });
+      if (found == cells.end()) break;
+      place = static_cast<std::size_t>(found - cells.begin());
+    } else if (*place < cells.size()) {
+      const std::string channel = cell_text(cells[*place].text);
+      if (std::find(channels.begin(), channels.end(), channel) == channels.end()) channels.push_back(channel);
+    }
+  }
+  return channels;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,141 @@
+#include "sysid/logs/record.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/catalogue.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Durations on a grid of a picosecond: what differs by less is rounding of the written times, and equal
+/// durations share their coefficients.
+double on_grid(double duration_s) {
+  return std::round(duration_s * 1e12) * 1e-12;
+}
+
+void fill_missing(std::vector<double>& values) {
+  std::size_t last = values.size();  // the last one that is there
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    const std::size_t from = last == values.size() ? 0 : last + 1;
+    for (std::size_t j = from; j < i; ++j) {
+      const double share =
+          last == values.size() ? 1 : static_cast<double>(j - last) / static_cast<double>(i - last);
+      values[j] = last == values.size() ? values[i] : values[last] + share * (values[i] - values[last]);
+    }
+    last = i;
+  }
+  for (std::size_t j = last + 1; j < values.size() && last < values.size(); ++j) values[j] = values[last];
+}
+
+Record make_record(const Log& log, const RecordOptions& options, double campaign_time_s) {
+  Record record;
+  record.name = log.name;
+  record.time_s = log.time_s;
+  record.drive_kpa = options.drive == Drive::measured ? log.pressure_kpa : log.pressure_command_kpa;
+  record.reading_mm = log.displacement_mm;
+  record.temperature_c = log.temperature_c;
+  record.supply_kpa = log.supply_kpa;
+  record.campaign_time_s = campaign_time_s;
+  record.held = options.held;
+  record.span_mm = span_mm(log);
+  for (auto* column : {&record.drive_kpa, &record.temperature_c, &record.supply_kpa}) fill_missing(*column);
+  record.duration_s.resize(record.size());
+  for (std::size_t i = 1; i < record.size(); ++i)
+    record.duration_s[i] = on_grid(log.time_s[i] - log.time_s[i - 1]);
+  const Sampling sampling = sampling_of(log);
+  const double nominal = on_grid(sampling.median_interval_s);
+  const double worst =
+      std::max(sampling.longest_interval_s - nominal, nominal - sampling.shortest_interval_s);
+  if (worst < 1e-9 * nominal + 2e-12) record.sample_time_s = nominal;
+  for (const double p : record.drive_kpa) record.largest_kpa = std::max(record.largest_kpa, std::abs(p));
+  for (const double y : record.reading_mm) {
+    if (std::isfinite(y)) ++record.readings;
+  }
+
+  constexpr double next_to_nothing = 0.01;
+  const bool pressurised = std::abs(record.drive_kpa.front()) > next_to_nothing * record.largest_kpa;
+  record.start_unknown =
+      options.start == Start::unknown || (options.start == Start::automatic && pressurised);
+  const auto first = std::find_if(record.reading_mm.begin(), record.reading_mm.end(),
+                                  [](double y) { return std::isfinite(y); });
+  const bool at_zero = first != record.reading_mm.end() &&
+                       std::abs(*first) < std::max(4 * fast_noise_mm(record), 1e-3 * record.span_mm);
+  record.offset_free = record.start_unknown || pressurised || !at_zero;
+  return record;
+}
+
+}  // namespace
+
+std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options) {
+  std::vector<Record> records;
+  double campaign_time_s = 0;
+  double largest_kpa = 0;
+  for (const Log& log : logs) {
+    records.push_back(make_record(log, options, campaign_time_s));
+    records.back().largest_before_kpa = largest_kpa;
+    largest_kpa = std::max(largest_kpa, records.back().largest_kpa);
+    campaign_time_s += log.time_s.back();
+  }
+  return records;
+}
+
+Record thinned_to(const Record& record, double interval_s) {
+  const auto stride =
+      static_cast<std::size_t>(std::max(1.0, std::floor(interval_s / record.mean_interval_s())));
+  return stride > 1 ? thinned_record(record, stride) : record;
+}
+
+Record thinned_record(const Record& record, std::size_t stride) {
+  Record thin = record;
+  thin.readings = 0;
+  std::size_t to = 0;
+  double last_s = 0;
+  for (std::size_t i = 0; i < record.size(); i += stride) {
+    // A held command is that of the step's begin: the thinned step takes the first of its steps for all.
+    thin.time_s[to] = record.time_s[i];
+    thin.duration_s[to] = to == 0 ? 0 : on_grid(record.time_s[i] - last_s);
+    thin.drive_kpa[to] = record.drive_kpa[i];
+    thin.reading_mm[to] = record.reading_mm[i];
+    if (!record.temperature_c.empty()) thin.temperature_c[to] = record.temperature_c[i];
+    if (!record.supply_kpa.empty()) thin.supply_kpa[to] = record.supply_kpa[i];
+    if (std::isfinite(record.reading_mm[i])) ++thin.readings;
+    last_s = record.time_s[i];
+    ++to;
+  }
+  for (auto* column : {&thin.time_s, &thin.duration_s, &thin.drive_kpa, &thin.reading_mm}) column->resize(to);
+  for (auto* column : {&thin.temperature_c, &thin.supply_kpa}) {
+    if (!column->empty()) column->resize(to);
+  }
+  thin.sample_time_s = record.sample_time_s * static_cast<double>(stride);
+  return thin;
+}
+
+double fast_noise_mm(const Record& record) {
+  std::vector<double> differences;
+  const auto& y = record.reading_mm;
+  for (std::size_t i = 2; i < y.size(); ++i) {
+    const double second = y[i] - 2 * y[i - 1] + y[i - 2];
+    if (std::isfinite(second)) differences.push_back(std::abs(second));
+  }
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  // The median of |N(0, 6 sigma^2)| is 0.6745 sqrt(6) sigma.
+  return *middle / (0.6745 * std::sqrt(6.0));
+}
+
+model::Model deterministic_part(const model::Model& model, Drive drive) {
+  constexpr std::array<std::string_view, 2> noise{"sensor_noise", "quantisation"};
+  model::Model part = model;
+  std::erase_if(part.blocks, [&](const model::BlockSpec& block) {
+    const model::BlockInfo& info = model::catalogue()[block.type].info;
+    return std::find(noise.begin(), noise.end(), info.id) != noise.end() ||
+           (drive == Drive::measured && info.station == model::Station::valve);
+  });
+  return part;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,17 @@
+#pragma once
+// Where a result comes from: software, logs, models.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/model.h"
+#include "sysid/logs/log.h"
+
+namespace softgrip::sysid {
+
+/// Entries for Page::provenance(): the software, each log with its hash, each named model with its hash.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> provenance_of(
+    const std::vector<Log>& logs, const std::vector<std::pair<std::string, const model::Model*>>& models);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,86 @@
+#include "control/elements/limits.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace softgrip::control {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr LimitSettings typical{0, 60, 200, 400, 0, 25, 0.5};
+
+TEST(Limits, PassesWhatIsInside) {
+  const LimitedCommand command = limit(typical, 20.5, 20, 0.005);
+  EXPECT_EQ(command.command_kpa, 20.5);
+  EXPECT_FALSE(command.saturated || command.slewing || command.invalid);
+}
+
+TEST(Limits, SlewIsAsymmetric) {
+  EXPECT_DOUBLE_EQ(limit(typical, 60, 20, 0.005).command_kpa, 21);
+  EXPECT_DOUBLE_EQ(limit(typical, 0, 20, 0.005).command_kpa, 18);
+  EXPECT_TRUE(limit(typical, 0, 20, 0.005).slewing);
+}
+
+TEST(Limits, TellsRangeFromSlew) {
+  const LimitedCommand range = limit(typical, 61, 60, 0.005);
+  EXPECT_EQ(range.command_kpa, 60);
+  EXPECT_TRUE(range.saturated);
+  EXPECT_FALSE(range.slewing);
+  const LimitedCommand both = limit(typical, -10, 20, 0.005);
+  EXPECT_TRUE(both.saturated);
+  EXPECT_TRUE(both.slewing);
+}
+
+TEST(Limits, WhatIsNoNumberHoldsTheLastCommand) {
+  const LimitedCommand command = limit(typical, nan, 33, 0.005);
+  EXPECT_EQ(command.command_kpa, 33);
+  EXPECT_TRUE(command.invalid);
+  EXPECT_EQ(limit(typical, 10, nan, 0.005).command_kpa, 1);
+  EXPECT_DOUBLE_EQ(limit(typical, infinity, 33, 0.005).command_kpa, 34);
+  EXPECT_TRUE(limit(typical, infinity, 33, 0.005).saturated);
+}
+
+TEST(Limits, ReferenceAndReading) {
+  EXPECT_EQ(limit_reference(typical, 26).reference_mm, 25);
+  EXPECT_TRUE(limit_reference(typical, 26).clamped);
+  EXPECT_FALSE(limit_reference(typical, 25).clamped);
+  EXPECT_FALSE(displacement_beyond(typical, 25.4));
+  EXPECT_TRUE(displacement_beyond(typical, 25.6));
+  EXPECT_TRUE(displacement_beyond(typical, -0.6));
+  EXPECT_TRUE(displacement_beyond(typical, nan));
+}
+
+// Neither range nor slew is ever exceeded, whatever is asked for.
+TEST(Limits, NeverExceededUnderRandomRequests) {
+  const unsigned seed = 4711;
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> anything(-200, 300);
+  const double wild[] = {nan, infinity, -infinity, 1e300, -1e300, 0, -0.0, 60};
+  for (int rig = 0; rig < 50; ++rig) {
+    std::uniform_real_distribution<double> low(0, 10), span(1, 100), slew(1, 2000);
+    LimitSettings limits = typical;
+    limits.pressure_min_kpa = low(random);
+    limits.pressure_max_kpa = limits.pressure_min_kpa + span(random);
+    limits.slew_up_kpa_per_s = slew(random);
+    limits.slew_down_kpa_per_s = slew(random);
+    double last = limits.pressure_min_kpa;
+    for (int i = 0; i < 2000; ++i) {
+      const double elapsed = 0.001 + 0.01 * static_cast<double>(random() % 10);
+      const double wanted = random() % 10 == 0 ? wild[random() % 8] : anything(random);
+      const double now = limit(limits, wanted, last, elapsed).command_kpa;
+      ASSERT_GE(now, limits.pressure_min_kpa);
+      ASSERT_LE(now, limits.pressure_max_kpa);
+      ASSERT_LE(now - last, limits.slew_up_kpa_per_s * elapsed * (1 + 1e-12) + 1e-12);
+      ASSERT_LE(last - now, limits.slew_down_kpa_per_s * elapsed * (1 + 1e-12) + 1e-12);
+      last = now;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::control

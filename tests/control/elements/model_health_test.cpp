@@ -1,0 +1,189 @@
+#include "control/elements/model_health.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace softgrip::control {
+namespace {
+
+constexpr double tick_s = 0.005;
+
+// Fixed here, so that the arithmetic of the tests does not move with the defaults.
+ModelHealthSettings short_intervals() {
+  ModelHealthSettings settings;
+  settings.model_error_mm = 0.2;
+  settings.correlation_time_s = 1;
+  settings.interval_s = 0.5;
+  settings.unfit_mm = 3;
+  return settings;
+}
+
+// The residual that the settings call healthy, sample by sample.
+class HealthyResidual {
+ public:
+  HealthyResidual(const ModelHealthSettings& settings, unsigned seed)
+      : random_(seed),
+        keep_(std::exp(-tick_s / settings.correlation_time_s)),
+        drive_mm_(settings.model_error_mm * std::sqrt(1 - keep_ * keep_)),
+        noise_mm_(settings.noise_mm),
+        slow_mm_(settings.model_error_mm * normal_(random_)) {}
+  double next() {
+    slow_mm_ = keep_ * slow_mm_ + drive_mm_ * normal_(random_);
+    return slow_mm_ + noise_mm_ * normal_(random_);
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  double keep_, drive_mm_, noise_mm_, slow_mm_;
+};
+
+// Mean run length of a two-sided CUSUM of standard normal values by simulation.
+double simulated_run_length(double allowance, double threshold, int runs, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  double total = 0;
+  for (int run = 0; run < runs; ++run) {
+    double up = 0, down = 0;
+    while (std::max(up, down) < threshold) {
+      const double z = normal(random);
+      up = std::max(0.0, up + z - allowance);
+      down = std::max(0.0, down - z - allowance);
+      ++total;
+    }
+  }
+  return total / runs;
+}
+
+TEST(ModelHealth, RunLengthFormulaAgreesWithTheTablesAndWithSimulation) {
+  // Montgomery, Introduction to Statistical Quality Control: allowance 0.5, thresholds 4 and 5: 168 and 465.
+  EXPECT_NEAR(cusum_run_length(0.5, 4), 168, 0.02 * 168);
+  EXPECT_NEAR(cusum_run_length(0.5, 5), 465, 0.02 * 465);
+  const unsigned seed = 11;
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  std::mt19937_64 random(seed);
+  for (const double threshold : {3.0, 5.0, 6.0}) {
+    const double stated = cusum_run_length(0.5, threshold);
+    // 2000 runs: the mean of a nearly geometric length is known to 2.2 % (one standard error).
+    EXPECT_NEAR(simulated_run_length(0.5, threshold, 2000, random), stated, 0.08 * stated);
+  }
+}
+
+TEST(ModelHealth, ThresholdIsTheInverseOfTheRunLength) {
+  for (const double length : {50.0, 1e3, 1e6, 7.2e6}) {
+    EXPECT_NEAR(cusum_run_length(0.5, cusum_threshold(0.5, length)) / length, 1, 1e-9);
+  }
+}
+
+TEST(ModelHealth, WhitenerGivesIndependentStandardNormalInnovations) {
+  for (const double correlation_s : {0.2, 1.0, 5.0}) {
+    ModelHealthSettings settings = short_intervals();
+    settings.correlation_time_s = correlation_s;
+    HealthyResidual residual(settings, 3);
+    ResidualWhitener whitener(settings);
+    std::vector<double> z;
+    for (int i = 0; i < 20000; ++i) {
+      double sum = 0;
+      for (int k = 0; k < 100; ++k) sum += residual.next();
+      z.push_back(whitener.next(sum / 100, 100));
+    }
+    double mean = 0, square = 0;
+    for (const double value : z) mean += value / 20000, square += value * value / 20000;
+    EXPECT_NEAR(mean, 0, 0.06) << correlation_s;
+    EXPECT_NEAR(square, 1, 0.04) << correlation_s;
+    for (const std::size_t lag : {1U, 2U, 5U}) {
+      double product = 0;
+      for (std::size_t i = lag; i < z.size(); ++i) product += z[i] * z[i - lag] / 20000;
+      EXPECT_NEAR(product, 0, 0.03) << "lag " << lag << ", correlation time " << correlation_s;
+    }
+  }
+}
+
+// The rate that is stated is the rate that comes, on a residual that is autocorrelated sample by sample.
+TEST(ModelHealth, FalseAlarmsComeAtTheStatedRate) {
+  ModelHealthSettings settings = short_intervals();
+  settings.false_alarm_interval_s = 100;  // 200 intervals: short, so that alarms can be counted
+  settings.unfit_mm = 1e9;
+  double seconds = 0;
+  constexpr int runs = 1000;
+  for (unsigned seed = 1; seed <= runs; ++seed) {
+    HealthyResidual residual(settings, seed);
+    ModelHealth health(settings, tick_s);
+    while (health.state() != HealthState::suspect) {
+      health.observe(residual.next());
+      seconds += tick_s;
+    }
+  }
+  // One standard error of the mean of 1000 nearly exponential times is 3.2 %.
+  EXPECT_NEAR(seconds / runs, settings.false_alarm_interval_s, 0.1 * settings.false_alarm_interval_s)
+      << "seeds 1 to " << runs;
+}
+
+// Without the whitening the same threshold would cry wolf: why it is there.
+TEST(ModelHealth, ACusumOfThePlainResidualWouldAlarmFarMoreOften) {
+  ModelHealthSettings settings = short_intervals();
+  settings.correlation_time_s = 5;
+  const double threshold = cusum_threshold(0.5, 2000);
+  double intervals = 0;
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    HealthyResidual residual(settings, seed);
+    double up = 0, down = 0;
+    while (std::max(up, down) < threshold) {
+      double sum = 0;
+      for (int k = 0; k < 100; ++k) sum += residual.next();
+      const double z = sum / 100 / settings.model_error_mm;
+      up = std::max(0.0, up + z - 0.5);
+      down = std::max(0.0, down - z - 0.5);
+      ++intervals;
+    }
+  }
+  EXPECT_LT(intervals / 100, 200) << "2000 would be stated";
+}
+
+TEST(ModelHealth, FindsAnAgeingFinger) {
+  const ModelHealthSettings settings = short_intervals();  // one false alarm in 1000 h
+  HealthyResidual residual(settings, 5);
+  ModelHealth health(settings, tick_s);
+  for (int i = 0; i < 12000; ++i) health.observe(residual.next());
+  EXPECT_EQ(health.state(), HealthState::healthy);
+  int ticks = 0;
+  while (health.state() == HealthState::healthy && ticks < 100000) {
+    health.observe(residual.next() + 1.0);
+    ++ticks;
+  }
+  EXPECT_EQ(health.state(), HealthState::suspect);
+  EXPECT_LT(ticks * tick_s, 60);
+  // and is healthy again when the model fits again
+  for (int i = 0; i < 40000; ++i) health.observe(residual.next());
+  EXPECT_EQ(health.state(), HealthState::healthy);
+}
+
+TEST(ModelHealth, ALargeResidualIsUnfitAndSaysSoOnce) {
+  const ModelHealthSettings settings = short_intervals();
+  ModelHealth health(settings, tick_s);
+  int changes = 0;
+  for (int i = 0; i < 2000; ++i) changes += health.observe(4) ? 1 : 0;
+  EXPECT_EQ(health.state(), HealthState::unfit);
+  EXPECT_EQ(changes, 1);
+  EXPECT_NEAR(health.rms_mm(), 4, 1e-9);
+  for (int i = 0; i < 1000; ++i) health.observe(2.5);
+  EXPECT_EQ(health.state(), HealthState::unfit) << "fit again only below 0.7 of the bound";
+  for (int i = 0; i < 40000; ++i) health.observe(0);
+  EXPECT_EQ(health.state(), HealthState::healthy);
+}
+
+TEST(ModelHealth, GapsAreNotCounted) {
+  const ModelHealthSettings settings = short_intervals();
+  ModelHealth health(settings, tick_s);
+  for (int i = 0; i < 10000; ++i) health.skip();
+  EXPECT_EQ(health.state(), HealthState::unknown);
+  // A quarter of the readings is not enough for an interval.
+  for (int i = 0; i < 10000; ++i) i % 4 == 0 ? health.observe(50) : health.skip();
+  EXPECT_EQ(health.state(), HealthState::unknown);
+}
+
+}  // namespace
+}  // namespace softgrip::control

@@ -1,0 +1,90 @@
+#include "control/elements/plausibility.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace softgrip::control {
+namespace {
+
+using model::Reading;
+using model::Validity;
+
+constexpr Nanoseconds tick_ns = 5'000'000;
+constexpr PlausibilitySettings typical{0.03, 200, 0.5, 0.5, 0, 10};
+
+struct Channel {
+  Plausibility judge{typical};
+  Nanoseconds now = 1'000'000'000;
+  std::uint32_t sequence = 0;
+
+  Validity next(double displacement_mm, double command_kpa = 0, Nanoseconds age = tick_ns) {
+    now += tick_ns;
+    Reading reading;
+    reading.displacement_mm = displacement_mm;
+    reading.sampled_at = now - age;
+    reading.sequence = ++sequence;
+    reading.validity = Validity::valid;
+    return judge.judge(reading, now, command_kpa);
+  }
+};
+
+TEST(Plausibility, ASteadyFingerIsValid) {
+  Channel channel;
+  for (int i = 0; i < 1000; ++i)
+    ASSERT_EQ(channel.next(5 + 0.5 * std::sin(0.05 * i), 0.01 * i), Validity::valid);
+}
+
+TEST(Plausibility, WhatTheDriverFoundStands) {
+  Plausibility judge(typical);
+  Reading reading;
+  EXPECT_EQ(judge.judge(reading, 5, 0), Validity::none_yet);
+  reading.validity = Validity::sensor_error;
+  EXPECT_EQ(judge.judge(reading, 5, 0), Validity::sensor_error);
+}
+
+TEST(Plausibility, NoNumberIsOutOfRange) {
+  Channel channel;
+  EXPECT_EQ(channel.next(std::numeric_limits<double>::quiet_NaN()), Validity::out_of_range);
+}
+
+TEST(Plausibility, AnOldReadingIsStale) {
+  Channel channel;
+  EXPECT_EQ(channel.next(5, 0, 30'000'000), Validity::valid);
+  EXPECT_EQ(channel.next(5, 0, 30'000'001), Validity::stale);
+  EXPECT_EQ(channel.next(5), Validity::valid);
+}
+
+TEST(Plausibility, AJumpIsNotBelievedUntilTheFingerCouldHaveMadeIt) {
+  Channel channel;
+  EXPECT_EQ(channel.next(5), Validity::valid);
+  EXPECT_EQ(channel.next(6.4), Validity::valid) << "200 mm/s for 5 ms, and the margin";
+  EXPECT_EQ(channel.next(12), Validity::jumped);
+  EXPECT_EQ(channel.next(6.4), Validity::valid) << "a spike passes";
+  EXPECT_EQ(channel.next(12), Validity::jumped);
+  int ticks = 1;
+  while (channel.next(12) == Validity::jumped) ++ticks;
+  EXPECT_EQ(ticks, 5) << "5.1 mm at 200 mm/s are 25.5 ms";
+}
+
+TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
+  Channel still;
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(still.next(5, 20), Validity::valid);
+
+  Channel moving;
+  int valid = 0;
+  for (int i = 0; i < 200; ++i) valid += moving.next(5, 0.2 * i) == Validity::valid;
+  EXPECT_EQ(valid, 100) << "0.5 s at 5 ms";
+  EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "it moves again";
+}
+
+TEST(Plausibility, FreezingNeedsTheWholeTimeWithoutAChange) {
+  Channel channel;
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_EQ(channel.next(i / 90 % 2 == 0 ? 5 : 5.01, 0.05 * i), Validity::valid) << i;
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::control

@@ -1,0 +1,138 @@
+#include "control/feedforward/actuator_inverse.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "control/feedforward/running_model.h"
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::model_named;
+using sim::tick_s;
+
+// Smooth and within what 60 kPa can do: slow and fast parts, minor loops.
+double wanted_mm(double t) {
+  const double rise = 1 - std::exp(-t * t);
+  return rise * (12 - 4 * std::cos(0.7 * t) - 2 * std::cos(2.3 * t + 0.4) + 0.6 * std::sin(9 * t));
+}
+
+TEST(ActuatorInverse, FollowedByTheChainItIsTheIdentity) {
+  const model::Model body = body_of(model_named("bench_twin"));
+  ActuatorInverse inverse(body, tick_s);
+  model::Chain<double> finger(body, {}, tick_s);
+  double worst = 0;
+  double highest = 0;
+  for (int k = 1; k <= 8000; ++k) {
+    const double wanted = std::max(0.0, wanted_mm(k * tick_s));
+    const auto solution = inverse.solve(wanted, 0, 60);
+    ASSERT_TRUE(solution.reached) << "at " << k * tick_s;
+    inverse.advance(solution.pressure_kpa);
+    finger.step(tick_s, solution.pressure_kpa);
+    worst = std::max(worst, std::abs(finger.reading_mm() - wanted));
+    highest = std::max(highest, solution.pressure_kpa);
+  }
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_GT(highest, 15) << "the reference is too easy";
+}
+
+// Every exponent and branch count, from any state, up and down, by small and by large steps.
+TEST(ActuatorInverse, SolvesFromRandomStates) {
+  const unsigned seed = 99;
+  SCOPED_TRACE(::testing::Message() << "seed " << seed);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> pressure(0, 60);
+  for (const double exponent : {1.0, 2.0}) {
+    model::Model body = body_of(model_named("bench_twin"));
+    const auto place = model::find_path(body, "bouc_wen.exponent");
+    ASSERT_TRUE(place);
+    auto values = model::flat_values(body);
+    values[*place] = exponent;
+    body = model::with_values(body, values);
+    ActuatorInverse inverse(body, tick_s);
+    model::Chain<double> finger(body, {}, tick_s);
+    for (int k = 0; k < 3000; ++k) {
+      const double hidden =
+          random() % 3 == 0 ? pressure(random) : inverse.pressure_kpa() + 1e-3 * (k % 7 - 3);
+      const double inside = std::clamp(hidden, 0.0, 60.0);
+      const double wanted = inverse.displacement_at(inside);
+      const auto solution = inverse.solve(wanted, 0, 60);
+      ASSERT_NEAR(inverse.displacement_at(solution.pressure_kpa), wanted, 1e-10) << "step " << k;
+      ASSERT_NEAR(solution.pressure_kpa, inside, 1e-7) << "step " << k;
+      inverse.advance(solution.pressure_kpa);
+    }
+  }
+}
+
+// The slope has a kink where the pressure turns: the last, unchecked step of the iteration must not cross it.
+TEST(ActuatorInverse, ATurnRightBesideTheGuessIsExactToo) {
+  ActuatorInverse inverse(body_of(model_named("bench_twin")), tick_s);
+  for (const double pressure : {20.0, 40.0 - 2e-6, 40.0 - 1e-6, 40.0}) inverse.advance(pressure);
+  for (const double turn : {1e-6, 4e-6, 1e-5, 1.5e-5}) {
+    const double wanted = inverse.displacement_at(40 - turn);
+    EXPECT_NEAR(inverse.displacement_at(inverse.solve(wanted, 0, 60).pressure_kpa), wanted, 2e-11) << turn;
+  }
+}
+
+TEST(ActuatorInverse, OutOfReachIsTheBoundAndNoWindUp) {
+  const model::Model body = body_of(model_named("bench_twin"));
+  ActuatorInverse inverse(body, tick_s);
+  for (int k = 0; k < 400; ++k) inverse.advance(0.15 * std::min(k, 300));
+  // Vented, the creep leaves the finger above 0 for a while: 0 mm is out of reach.
+  int out_of_reach = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const auto solution = inverse.solve(k < 3000 ? 0 : 5, 0, 60);
+    if (!solution.reached) {
+      ++out_of_reach;
+      ASSERT_EQ(solution.pressure_kpa, 0);
+    }
+    inverse.advance(solution.pressure_kpa);
+    if (k >= 3000) {
+      ASSERT_NEAR(inverse.displacement_mm(), 5, 1e-9) << "at once, from the true state";
+    }
+  }
+  EXPECT_GT(out_of_reach, 1000);
+  const auto high = inverse.solve(500, 0, 60);
+  EXPECT_FALSE(high.reached);
+  EXPECT_EQ(high.pressure_kpa, 60);
+}
+
+// The explicit form p[k] = (y[k] + h[k-1]) / alpha, as it is often written down, is a fixed-point iteration
+// with loop gain beta/alpha near h = 0. Of the published model that is 2.43: it runs away until the
+// hysteresis state levels off, and beyond all bounds as soon as the reference turns.
+struct ExplicitInverse {
+  double alpha, beta, gamma, eta;
+  double p_kpa = 0, h_mm = 0;
+  void step(double wanted_mm) {
+    const double next = (wanted_mm + h_mm) / alpha;
+    const double change = next - p_kpa;
+    h_mm += beta * change - gamma * change * std::abs(h_mm) - eta * std::abs(change) * h_mm;
+    p_kpa = next;
+  }
+};
+
+TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
+  ExplicitInverse published{0.07079, 0.17207, 0.02093, 0.02};
+  published.step(0.01);
+  const double first = published.p_kpa;
+  for (int k = 0; k < 5; ++k) published.step(0.01);
+  EXPECT_GT(published.p_kpa, std::pow(2.4, 5) * first) << "a steady reference of 0.01 mm";
+  for (int k = 0; k < 34; ++k) published.step(0.01);
+  EXPECT_GT(published.p_kpa, 50);
+  for (int k = 0; k < 40; ++k) published.step(0.009);
+  EXPECT_FALSE(std::abs(published.p_kpa) < 1e6) << "a micrometre less";
+
+  // With beta/alpha = 0.81 of the twin it converges, by a fifth of the way per tick: late on a ramp.
+  ExplicitInverse twin{0.21105, 0.1713, 0.01625, 0.02428};
+  for (int k = 0; k <= 60; ++k) twin.step(0.01 * k);
+  EXPECT_NEAR(twin.alpha * twin.p_kpa - twin.h_mm, 0.6, 0.1);
+  EXPECT_GT(std::abs(twin.alpha * twin.p_kpa - twin.h_mm - 0.6), 0.003);
+}
+
+}  // namespace
+}  // namespace softgrip::control

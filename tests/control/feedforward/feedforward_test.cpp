@@ -1,0 +1,223 @@
+#include "control/feedforward/feedforward_kinds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::model_named;
+using sim::tick_s;
+
+constexpr LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
+
+model::Model with_value(const model::Model& model, const std::string& path, double value) {
+  auto values = model::flat_values(model);
+  values[model::find_path(model, path).value()] = value;
+  return model::with_values(model, values);
+}
+
+/// From rest to 6 mm, then the sine of the studies.
+Reference sine_reference(double frequency_hz) {
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.hold_for(0.2);
+  (void)reference.ramp_for(6, 2);
+  (void)reference.hold_for(1);
+  (void)reference.sine(13, 7, frequency_hz, 4);
+  return reference;
+}
+
+struct Outcome {
+  double worst_mm = 0;
+  double worst_step_kpa = 0;
+  int out_of_reach = 0;
+};
+
+/// The feedforward alone in front of a finger that is what the model says: the error is the feedforward's.
+Outcome run_alone(const model::Model& model, const FeedforwardSettings& settings, const Reference& reference,
+                  double finger_late_s = 0) {
+  Feedforward feedforward(model, settings, limits, tick_s);
+  RunningModel running(model, tick_s, settings.extra_latency_s, 0.1);
+  const int sub_steps = 5;
+  model::Model plant = model;
+  if (finger_late_s > 0) {
+    plant = with_value(plant, "transport_delay.delay_s", dead_time_s(model) + finger_late_s);
+  }
+  model::Chain<double> finger(plant, {}, tick_s / sub_steps);
+  FeedforwardQuery query{&reference, 0, 0};
+  feedforward.enter(running, query, 0);
+  Outcome run;
+  double last = 0;
+  for (int k = 0; k * tick_s < reference.end_s(); ++k) {
+    query.time_s = k * tick_s;
+    const FeedforwardStep step = feedforward.step(query);
+    run.worst_step_kpa = std::max(run.worst_step_kpa, std::abs(step.pressure_kpa - last));
+    last = step.pressure_kpa;
+    run.out_of_reach += step.out_of_reach ? 1 : 0;
+    finger.step(0, step.pressure_kpa);
+    for (int i = 1; i <= sub_steps; ++i) {
+      finger.step(tick_s / sub_steps, step.pressure_kpa);
+      const double t = query.time_s + i * tick_s / sub_steps;
+      run.worst_mm = std::max(run.worst_mm, std::abs(finger.reading_mm() - reference.at(t).value));
+    }
+  }
+  return run;
+}
+
+TEST(FullModelFeedforward, TracksAFingerThatIsTheModel) {
+  for (const double frequency : {0.05, 0.1, 0.2}) {
+    const Outcome run =
+        run_alone(model_named("bench_twin"), {FeedforwardKind::full_model, 0}, sine_reference(frequency));
+    EXPECT_LT(run.worst_mm, 2e-3) << frequency << " Hz";
+    EXPECT_EQ(run.out_of_reach, 0) << frequency << " Hz";
+    EXPECT_LT(run.worst_step_kpa, 400 * tick_s) << "what the slew limits pass";
+  }
+}
+
+TEST(FullModelFeedforward, LooksAheadByAllDeadTime) {
+  const model::Model twin = model_named("bench_twin");
+  const Feedforward plain(twin, {FeedforwardKind::full_model, 0}, limits, tick_s);
+  EXPECT_NEAR(plain.preview_s(), 0.130 + tick_s, 1e-12);
+  const Outcome late = run_alone(twin, {FeedforwardKind::full_model, 0}, sine_reference(0.2), 0.0075);
+  const Outcome known = run_alone(twin, {FeedforwardKind::full_model, 0.0075}, sine_reference(0.2), 0.0075);
+  EXPECT_GT(late.worst_mm, 0.05);
+  EXPECT_LT(known.worst_mm, 2e-3);
+}
+
+TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
+  const model::Model fast = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
+  // What is left is the staircase of the held command itself: half a step of the steepest stretch.
+  const Outcome run = run_alone(fast, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
+  EXPECT_LT(run.worst_mm, 0.02);
+}
+
+TEST(FullModelFeedforward, AStopThatIsInTheModelIsPushedAgainst) {
+  model::Model model =
+      with_block(model_named("bench_twin"), model::default_block(*model::find_block("contact")));
+  model = with_value(model, "contact.position_mm", 15);
+  model = with_value(model, "contact.stiffening", 0.5);
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.hold_for(0.2);
+  (void)reference.ramp_for(16, 4);
+  (void)reference.hold_for(1);
+  const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, reference);
+  EXPECT_LT(run.worst_mm, 2e-3);
+}
+
+TEST(FullModelFeedforward, OutOfReachSaysSoAndResumesWithoutWindUp) {
+  const model::Model twin = model_named("bench_twin");
+  Feedforward feedforward(twin, {FeedforwardKind::full_model, 0}, limits, tick_s);
+  RunningModel running(twin, tick_s, 0, 0.1);
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.ramp_for(18, 2);
+  (void)reference.hold_for(10);
+  (void)reference.ramp_for(0, 0.6);  // faster than creep lets it fall at 0 kPa
+  (void)reference.hold_for(5);
+  (void)reference.ramp_for(10, 2);
+  (void)reference.hold_for(2);
+  model::Chain<double> finger(twin, {}, tick_s);
+  FeedforwardQuery query{&reference, 0, 0};
+  feedforward.enter(running, query, 0);
+  int low = 0, high = 0;
+  for (int k = 0; k * tick_s < reference.end_s(); ++k) {
+    query.time_s = k * tick_s;
+    const FeedforwardStep step = feedforward.step(query);
+    ASSERT_GE(step.pressure_kpa, 0);
+    ASSERT_LE(step.pressure_kpa, 60);
+    const double then = query.time_s + feedforward.preview_s();
+    low += step.out_of_reach && then > 12 && then < 18;
+    high += step.out_of_reach && then > 18.5;
+    finger.step(0, step.pressure_kpa);
+    finger.step(tick_s, step.pressure_kpa);
+    if (query.time_s > 19) {
+      ASSERT_NEAR(finger.reading_mm(), reference.at(query.time_s + tick_s).value, 2e-3) << query.time_s;
+    }
+  }
+  EXPECT_GT(low, 400);
+  EXPECT_EQ(high, 0);
+}
+
+TEST(FullModelFeedforward, ASaturatingValveBoundsThePlan) {
+  model::Model model =
+      with_block(model_named("bench_twin"), model::default_block(*model::find_block("pressure_saturation")));
+  model = with_value(model, "pressure_saturation.limit_kpa", 30);
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.ramp_for(20, 3);
+  (void)reference.hold_for(2);
+  const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, reference);
+  EXPECT_GT(run.out_of_reach, 100);
+}
+
+// A corner or a jump in the reference must not make the plan ring.
+TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
+  const model::Model twin = model_named("bench_twin");
+  for (const double slew : {60.0, 120.0, 400.0}) {
+    SCOPED_TRACE(slew);
+    const LimitSettings slow{0, 60, slew, slew, 0, 25, 1};
+    Feedforward feedforward(twin, {FeedforwardKind::full_model, 0}, slow, tick_s);
+    RunningModel running(twin, tick_s, 0, 0.1);
+    Reference reference;
+    reference.start(0, 0);
+    (void)reference.ramp_for(6, 1);
+    (void)reference.hold_for(0.5);
+    static const auto jump = [](const void*, double) noexcept { return ReferencePoint{12, 0, 0}; };
+    (void)reference.follow({nullptr, jump}, 5);
+    FeedforwardQuery query{&reference, 0, 0};
+    feedforward.enter(running, query, 0);
+    model::Chain<double> finger(twin, {}, tick_s);
+    double command = 0;
+    double highest = 0;
+    int turns = 0;
+    double before = 0, direction = 0;
+    for (int k = 0; k < 1200; ++k) {
+      query.time_s = k * tick_s;
+      const double planned = feedforward.step(query).pressure_kpa;
+      ASSERT_LE(std::abs(planned - command), slew * tick_s * (1 + 1e-9)) << "what the limits pass";
+      command = planned;
+      finger.step(0, command);
+      finger.step(tick_s, command);
+      highest = std::max(highest, finger.reading_mm());
+      const double now = finger.reading_mm() - before;
+      if (std::abs(now) > 1e-3) {
+        turns += now * direction < 0 ? 1 : 0;
+        direction = now;
+      }
+      before = finger.reading_mm();
+    }
+    EXPECT_LT(highest, 12.02);
+    EXPECT_EQ(turns, 0);
+    EXPECT_NEAR(finger.reading_mm(), 12, 2e-3);
+  }
+}
+
+TEST(BoucWenFeedforward, InvertsTheElementAlone) {
+  const model::Model twin = model_named("bench_twin");
+  Feedforward feedforward(twin, {FeedforwardKind::bouc_wen, 0}, limits, tick_s);
+  RunningModel running(twin, tick_s, 0, 0.1);
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.ramp_for(5, 2);
+  FeedforwardQuery query{&reference, 0, 0};
+  feedforward.enter(running, query, 0);
+  EXPECT_EQ(feedforward.preview_s(), 0);
+  const auto alone = model::only(twin, [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });
+  model::Chain<double> element(alone);
+  for (int k = 0; k < 600; ++k) {
+    query.time_s = k * tick_s;
+    const FeedforwardStep step = feedforward.step(query);
+    ASSERT_FALSE(step.out_of_reach);
+    element.step(tick_s, step.pressure_kpa);
+    ASSERT_NEAR(element.reading_mm(), reference.at(query.time_s).value, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::control

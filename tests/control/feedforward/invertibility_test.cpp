@@ -1,0 +1,110 @@
+#include "control/feedforward/invertibility.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::model_named;
+
+constexpr LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
+
+tl::expected<void, Refusal> check(const model::Model& model, FeedforwardKind kind) {
+  return check_feedforward(model, {kind, 0}, limits, sim::tick_s);
+}
+
+model::Model with_value(const model::Model& model, const std::string& path, double value) {
+  auto values = model::flat_values(model);
+  values[model::find_path(model, path).value()] = value;
+  return model::with_values(model, values);
+}
+
+TEST(Invertibility, ThePublishedModelIsRefusedForBothKinds) {
+  const model::Model published = model_named("zhang2025");
+  const auto full = check(published, FeedforwardKind::full_model);
+  ASSERT_FALSE(full);
+  EXPECT_EQ(
+      full.error().text,
+      "beta > alpha + 1/k0 (0.1721 > 0.07386 mm/kPa): the model moves the wrong way first; a latency in the "
+      "data is the usual cause, run `softgrip diagnose`");
+  const auto part = check(published, FeedforwardKind::bouc_wen);
+  ASSERT_FALSE(part);
+  EXPECT_EQ(
+      part.error().text,
+      "beta > alpha (0.1721 > 0.07079 mm/kPa): the model moves the wrong way first; a latency in the data is "
+      "the usual cause, run `softgrip diagnose`");
+  EXPECT_TRUE(check(published, FeedforwardKind::none));
+}
+
+TEST(Invertibility, TheTwinIsAcceptedForBothKinds) {
+  const model::Model twin = model_named("bench_twin");
+  EXPECT_TRUE(check(twin, FeedforwardKind::full_model));
+  EXPECT_TRUE(check(twin, FeedforwardKind::bouc_wen));
+}
+
+// Positive where it starts and negative where hysteresis takes it: only the walk through the range finds it.
+TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
+  const model::Model twin = model_named("bench_twin");
+  const model::Model hidden = with_value(twin, "bouc_wen.alpha_mm_per_kpa", 0.1800);
+  const auto refused = check(hidden, FeedforwardKind::full_model);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("the instantaneous gain is -"), std::string::npos)
+      << refused.error().text;
+  EXPECT_NE(refused.error().text.find("kPa while the pressure"), std::string::npos) << refused.error().text;
+  // In a smaller range the same model never gets there.
+  LimitSettings small = limits;
+  small.pressure_max_kpa = 5;
+  EXPECT_TRUE(check_feedforward(hidden, {FeedforwardKind::full_model, 0}, small, sim::tick_s));
+}
+
+TEST(Invertibility, BetaEqualToTheGainIsRefusedToo) {
+  const model::Model twin = model_named("bench_twin");
+  const auto refused =
+      check(with_value(twin, "bouc_wen.beta_mm_per_kpa", 0.21105), FeedforwardKind::bouc_wen);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("beta = alpha"), std::string::npos) << refused.error().text;
+}
+
+TEST(Invertibility, WhatIsMissingIsNamed) {
+  const model::Model linear = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
+  EXPECT_TRUE(check(linear, FeedforwardKind::full_model));
+  const auto refused = check(linear, FeedforwardKind::bouc_wen);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("`bouc_wen`"), std::string::npos);
+  model::Model valve_only = model_named("bench_twin");
+  valve_only = model::only(
+      valve_only, [](const model::BlockInfo& info) { return info.station == model::Station::valve; });
+  EXPECT_FALSE(check(valve_only, FeedforwardKind::full_model));
+}
+
+// Whatever blocks there are or will be: those in the way of the pressure either have an inverse that the
+// feedforward knows, or the refusal names them.
+TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
+  const model::Model twin = model_named("bench_twin");
+  for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
+    const model::BlockInfo& info = model::catalogue()[type].info;
+    if (model::position_of(twin, type)) continue;
+    const auto answer =
+        check(model::with_block(twin, model::default_block(type)), FeedforwardKind::full_model);
+    if (answer) {
+      const bool harmless = info.station == model::Station::sensor ||
+                            info.inverse == model::Inverse::ignored ||
+                            info.inverse == model::Inverse::implicit || info.id == "pressure_saturation";
+      EXPECT_TRUE(harmless) << info.id;
+    } else if (info.inverse != model::Inverse::implicit) {
+      EXPECT_NE(answer.error().text.find(info.id), std::string::npos) << answer.error().text;
+    }
+  }
+}
+
+TEST(Invertibility, ExtraLatencyHasBounds) {
+  const model::Model twin = model_named("bench_twin");
+  EXPECT_FALSE(check_feedforward(twin, {FeedforwardKind::full_model, -0.001}, limits, sim::tick_s));
+  EXPECT_FALSE(check_feedforward(twin, {FeedforwardKind::full_model, std::nan("")}, limits, sim::tick_s));
+  EXPECT_TRUE(check_feedforward(twin, {FeedforwardKind::full_model, 0.002}, limits, sim::tick_s));
+}
+
+}  // namespace
+}  // namespace softgrip::control

@@ -1,0 +1,156 @@
+#include "control/feedforward/planned_feedforward.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ctime>
+#include <tuple>
+
+#include "control/feedforward/running_model.h"
+#include "model/chain.h"
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::model_named;
+using sim::tick_s;
+
+constexpr LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
+
+Reference sine_reference(double frequency_hz, double cycles) {
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.hold_for(Planner::lead_s);
+  (void)reference.ramp_for(6, 3);
+  (void)reference.hold_for(1);
+  (void)reference.sine(13, 7, frequency_hz, cycles);
+  return reference;
+}
+
+/// The largest miss of a finger that is the model, driven by the plan, from `from_s` on.
+double worst_mm(const model::Model& model, const PressurePlan& plan, const Reference& reference,
+                double from_s) {
+  constexpr double fine_s = 0.001;
+  const double dead_s = dead_time_s(model);
+  model::Chain<double> finger(model, {}, fine_s);
+  double worst = 0;
+  for (int k = 1; k * fine_s < reference.end_s(); ++k) {
+    const double t = k * fine_s;
+    finger.step(fine_s, plan.at(t + dead_s));
+    if (t > from_s)
+      worst = std::max(worst, std::abs(finger.after(model::Station::load) - reference.at(t).value));
+  }
+  return worst;
+}
+
+TEST(Planner, FollowsAModelThatHasAnInverse) {
+  const model::Model twin = model_named("bench_twin");
+  const Reference reference = sine_reference(0.2, 2);
+  const PressurePlan plan = Planner(twin, limits, tick_s).plan(reference, 0, reference.end_s());
+  EXPECT_LT(plan.rmse_mm, 0.005);
+  EXPECT_LT(worst_mm(twin, plan, reference, 0.5), 0.05);
+}
+
+TEST(Planner, FollowsThePublishedModelWhichHasNone) {
+  const model::Model published = model_named("zhang2025");
+  const Reference reference = sine_reference(0.2, 2);
+  const PressurePlan plan = Planner(published, limits, tick_s).plan(reference, 0, reference.end_s());
+  EXPECT_LT(plan.rmse_mm, 0.01);
+  EXPECT_LT(worst_mm(published, plan, reference, 0.5), 0.1);
+}
+
+// Windows that begin anywhere in the cycle, the command turning inside them.
+TEST(Planner, DoesNotComeToRestAtACorner) {
+  for (const char* name : {"bench_twin", "zhang2025"}) {
+    for (const double frequency : {0.05, 0.1, 0.13, 0.2}) {
+      const Reference reference = sine_reference(frequency, 2);
+      const PressurePlan plan =
+          Planner(model_named(name), limits, tick_s).plan(reference, 0, reference.end_s());
+      EXPECT_LT(plan.rmse_mm, 0.02) << name << " at " << frequency << " Hz";
+    }
+  }
+}
+
+TEST(Planner, StaysWithinPressureAndSlew) {
+  LimitSettings narrow = limits;
+  narrow.pressure_max_kpa = 30;
+  narrow.slew_up_kpa_per_s = 20;
+  narrow.slew_down_kpa_per_s = 10;
+  for (const char* name : {"bench_twin", "zhang2025"}) {
+    const Reference reference = sine_reference(0.5, 4);
+    const PressurePlan plan =
+        Planner(model_named(name), narrow, tick_s).plan(reference, 0, reference.end_s());
+    for (std::size_t i = 1; i < plan.pressure_kpa.size(); ++i) {
+      const double change = plan.pressure_kpa[i] - plan.pressure_kpa[i - 1];
+      ASSERT_GE(plan.pressure_kpa[i], 0);
+      ASSERT_LE(plan.pressure_kpa[i], 30);
+      ASSERT_LE(change, 20 * plan.step_s + 1e-9);
+      ASSERT_GE(change, -10 * plan.step_s - 1e-9);
+    }
+    EXPECT_GT(plan.rmse_mm, 0.1) << name << " is out of reach";
+  }
+}
+
+// What is out of reach for a while must not spoil what comes after, and is prepared for before.
+TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
+  LimitSettings slow = limits;
+  slow.slew_up_kpa_per_s = 30;
+  const model::Model twin = model_named("bench_twin");
+  Reference reference;
+  reference.start(0, 5);
+  (void)reference.hold_for(6);
+  (void)reference.ramp_for(15, 0.1);
+  (void)reference.hold_for(4);
+  const PressurePlan plan = Planner(twin, slow, tick_s).plan(reference, 0, reference.end_s());
+  const double before = plan.displacement_mm[static_cast<std::size_t>(std::lround(6.0 / plan.step_s))];
+  EXPECT_GT(before, 5.2) << "the plan begins to move before a step that it cannot follow";
+  EXPECT_LT(plan.miss_mm(9.5), 0.05) << "half a per cent of the step is left after 3.4 s";
+}
+
+TEST(Planner, GoesOnFromThePlanBefore) {
+  const model::Model twin = model_named("bench_twin");
+  const Reference reference = sine_reference(0.2, 2);
+  Planner planner(twin, limits, tick_s);
+  const PressurePlan first = planner.plan(reference, 0, 6);
+  const PressurePlan second = planner.plan(reference, 6, reference.end_s());
+  EXPECT_EQ(first.pressure_kpa.back(), second.pressure_kpa.front());
+  EXPECT_NEAR(first.displacement_mm.back(), second.displacement_mm.front(), 1e-9);
+  EXPECT_LT(second.rmse_mm, 0.005);
+}
+
+TEST(Planner, TakesLessThanASecondPerTenSecondsOfMotion) {
+  LimitSettings narrow = limits;
+  narrow.pressure_max_kpa = 30;
+  narrow.slew_up_kpa_per_s = 20;
+  for (const auto& [name, within, frequency] :
+       {std::tuple("bench_twin", limits, 0.1), std::tuple("zhang2025", limits, 0.1),
+        std::tuple("zhang2025", narrow, 0.5)}) {
+    const Reference reference = sine_reference(frequency, 40 * frequency);
+    // Processor time of this process: other programs on the machine do not count.
+    const std::clock_t begin = std::clock();
+    (void)Planner(model_named(name), within, tick_s).plan(reference, 0, reference.end_s());
+    const double took_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    RecordProperty(std::string("seconds_per_ten_of_") + name,
+                   std::to_string(10 * took_s / reference.end_s()));
+    std::printf("%s: %.3f s per 10 s of motion\n", name, 10 * took_s / reference.end_s());
+#ifdef NDEBUG
+    EXPECT_LT(took_s, 0.1 * reference.end_s());
+#endif
+  }
+}
+
+TEST(PressurePlan, HoldsItsEndsAndIsStraightBetweenItsPoints) {
+  PressurePlan plan;
+  EXPECT_EQ(plan.at(1), 0);
+  plan.start_s = 2;
+  plan.step_s = 0.5;
+  plan.pressure_kpa = {10, 20, 15};
+  EXPECT_EQ(plan.at(0), 10);
+  EXPECT_EQ(plan.at(2.25), 15);
+  EXPECT_EQ(plan.at(2.5), 20);
+  EXPECT_EQ(plan.at(9), 15);
+}
+
+}  // namespace
+}  // namespace softgrip::control

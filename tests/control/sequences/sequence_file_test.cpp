@@ -1,0 +1,194 @@
+#include "control/sequences/sequence_file.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "tests/control/settings_fixture.h"
+
+namespace softgrip::control {
+namespace {
+
+std::optional<Sequence> read(const std::string& text, document::Problems& problems) {
+  const auto document = document::parse("seq.yaml", text, problems);
+  return read_sequence(document, problems);
+}
+
+/// A sequence of one step, given as flow text.
+std::string with_step(const std::string& step) {
+  return "name: x\nsteps:\n  - " + step + "\n";
+}
+
+TEST(SequenceFile, ExamplesLoadAndFitTheExampleRig) {
+  for (const char* name : {"pick_stone", "pick_screw", "empty_grip", "track_sine", "pressure_staircase"}) {
+    document::Problems problems;
+    const auto sequence =
+        load_sequence(std::string(SOFTGRIP_SOURCE_DIR "/config/sequences/") + name + ".yaml", problems);
+    ASSERT_TRUE(sequence) << problems.format();
+    EXPECT_EQ(sequence->name, name);
+    EXPECT_TRUE(prepare(*sequence, two_finger_settings(), problems)) << problems.format();
+  }
+}
+
+TEST(SequenceFile, EveryKeyArrives) {
+  document::Problems problems;
+  const auto sequence = read(R"(
+name: all
+about: one line
+interlock: always
+channels: [left]
+steps:
+  - move: {name: near, displacement_mm: 5, duration_s: 1, settle_s: 0.2, tolerance_mm: 0.5, timeout_s: 3, retries: 2, on_fail: continue}
+  - grip: {pressure_kpa: 30, speed_kpa_per_s: 20, settle_s: 0.1, verify: {by: detection, window_s: 0.4, displacement_max_mm: 12}, timeout_s: 4, on_fail: hold}
+  - hold: {hold_s: 2, reverify_every_s: 0.5, on_fail: vent}
+  - release: {pressure_kpa: 3, duration_s: 0.5, purge_s: 0.7, timeout_s: 4, on_fail: abort}
+  - track: {mean_mm: 13, amplitude_mm: 7, frequency_hz: 0.1, cycles: 5}
+  - pressure: {signal: sp2, scale: 0.5, cycles: 2}
+)",
+                             problems);
+  ASSERT_TRUE(sequence) << problems.format();
+  EXPECT_EQ(sequence->interlock, Interlock::always);
+  EXPECT_EQ(sequence->channels, std::vector<std::string>{"left"});
+  ASSERT_EQ(sequence->steps.size(), 6U);
+  const Step& move = sequence->steps[0];
+  EXPECT_EQ(move.name, "near");
+  EXPECT_EQ(move.target.quantity, Target::Quantity::displacement_mm);
+  EXPECT_EQ(move.target.value, 5);
+  EXPECT_EQ(move.target.duration_s, 1);
+  EXPECT_EQ(move.tolerance_mm, 0.5);
+  EXPECT_EQ(move.retries, 2U);
+  EXPECT_EQ(move.on_fail, OnFail::carry_on);
+  const Step& grip = sequence->steps[1];
+  EXPECT_EQ(grip.target.quantity, Target::Quantity::pressure_kpa);
+  EXPECT_EQ(grip.target.speed, 20);
+  EXPECT_EQ(grip.verify.window_s, 0.4);
+  EXPECT_EQ(grip.verify.displacement_max_mm, 12);
+  EXPECT_EQ(grip.verify.displacement_min_mm, -INFINITY);
+  EXPECT_EQ(grip.on_fail, OnFail::hold);
+  EXPECT_EQ(sequence->steps[2].reverify_every_s, 0.5);
+  EXPECT_EQ(sequence->steps[3].target.value, 3);
+  EXPECT_FALSE(sequence->steps[3].target.lowest);
+  EXPECT_EQ(sequence->steps[3].purge_s, 0.7);
+  EXPECT_EQ(sequence->steps[4].sine.cycles, 5U);
+  EXPECT_EQ(sequence->steps[5].profile.signal, model::SignalName::sp2);
+  EXPECT_EQ(sequence->steps[5].profile.cycles, 2U);
+}
+
+struct Broken {
+  const char* what;
+  std::string text;
+  int line;             ///< of the first problem
+  std::string message;  ///< that some problem contains
+};
+
+class BrokenSequence : public testing::TestWithParam<Broken> {};
+
+TEST_P(BrokenSequence, IsRefusedWithPlaceAndReason) {
+  document::Problems problems;
+  EXPECT_FALSE(read(GetParam().text, problems));
+  ASSERT_FALSE(problems.empty());
+  const std::string all = problems.format();
+  EXPECT_EQ(problems.list().front().at.line, GetParam().line) << all;
+  EXPECT_NE(all.find(GetParam().message), std::string::npos) << all;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , BrokenSequence,
+    testing::Values(
+        Broken{"no_steps", "name: x\n", 1, "steps"},
+        Broken{"empty_steps", "name: x\nsteps: []\n", 2, "at least one step"},
+        Broken{"unknown_kind", with_step("grib: {}"), 3, "did you mean 'grip'?"},
+        Broken{"two_kinds", "name: x\nsteps:\n  - move: {}\n    hold: {}\n", 3, "one key"},
+        Broken{"step_is_text", with_step("move"), 3, "one key"},
+        Broken{"unknown_key", with_step("hold: {hold_s: 1, reverify_every_s: 0.5, on_fail: vent, force: 3}"),
+               3, "force"},
+        Broken{"both_targets", with_step("move: {displacement_mm: 5, pressure_kpa: 5, duration_s: 1}"), 3,
+               "not to both"},
+        Broken{"no_target", with_step("move: {duration_s: 1}"), 3, "pressure_kpa"},
+        Broken{"wrong_speed", with_step("move: {displacement_mm: 5, speed_kpa_per_s: 5}"), 3,
+               "speed_mm_per_s"},
+        Broken{"both_ramps", with_step("move: {displacement_mm: 5, speed_mm_per_s: 5, duration_s: 3}"), 3,
+               "not both"},
+        Broken{"jump", with_step("move: {displacement_mm: 5}"), 3, "needs speed_mm_per_s"},
+        Broken{"not_finite", with_step("move: {displacement_mm: .nan, duration_s: 1}"), 3, "displacement_mm"},
+        Broken{"far", with_step("move: {displacement_mm: 5000, duration_s: 1}"), 3, "displacement_mm"},
+        Broken{
+            "silent_failure",
+            with_step(
+                "grip: {pressure_kpa: 5, settle_s: 0, verify: {by: detection, window_s: 1}, timeout_s: 9}"),
+            3, "on_fail"},
+        Broken{"blind_position",
+               with_step("grip: {pressure_kpa: 5, settle_s: 0, verify: {by: position, window_s: 1}, "
+                         "timeout_s: 9, on_fail: vent}"),
+               3, "displacement_min_mm and displacement_max_mm"},
+        Broken{"mixed_verify",
+               with_step("grip: {pressure_kpa: 5, settle_s: 0, verify: {by: pressure, window_s: 1, "
+                         "pressure_min_kpa: 4, displacement_min_mm: 3}, timeout_s: 9, on_fail: vent}"),
+               3, "displacement_min_mm"},
+        Broken{"tolerance_of_pressure",
+               with_step("move: {pressure_kpa: 5, tolerance_mm: 1, timeout_s: 3, on_fail: vent}"), 3,
+               "belongs to a target"},
+        Broken{"backwards",
+               with_step("pressure: {points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, pressure_kpa: 1}, "
+                         "{time_s: 1, pressure_kpa: 1}]}"),
+               3, "back in time"},
+        Broken{"late_start",
+               with_step("pressure: {points: [{time_s: 1, pressure_kpa: 1}, {time_s: 2, pressure_kpa: 1}]}"),
+               3, "time_s: 0"},
+        Broken{"no_closed_cycle",
+               with_step("pressure: {points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, pressure_kpa: 2}], "
+                         "cycles: 2}"),
+               3, "must end"},
+        Broken{"points_and_signal",
+               with_step("pressure: {signal: tp1, points: [{time_s: 0, pressure_kpa: 1}, {time_s: 2, "
+                         "pressure_kpa: 2}]}"),
+               3, "not both"},
+        Broken{"unknown_signal", with_step("pressure: {signal: tp3}"), 3, "tp1"},
+        Broken{
+            "twice",
+            "name: x\nchannels: [a, a]\nsteps:\n  - hold: {hold_s: 1, reverify_every_s: 1, on_fail: vent}\n",
+            2, "listed twice"}),
+    [](const auto& broken) { return broken.param.what; });
+
+TEST(SequenceFile, ADocumentThatParsingRefusedIsNone) {
+  for (const char* text : {"name: x\nsteps:\n  - pressure: {signal: tp1}\n  - hold: [",
+                           "name: &a x\nsteps:\n  - pressure: {signal: tp1}\n",
+                           "name: x\nsteps:\n  - pressure: {signal: tp1, scale: !!float 1}\n"}) {
+    document::Problems problems;
+    EXPECT_FALSE(read(text, problems)) << text;
+    EXPECT_FALSE(problems.empty());
+  }
+}
+
+TEST(SequenceFile, TheExampleOfTheManualIsOne) {
+  std::ifstream file(SOFTGRIP_SOURCE_DIR "/docs/reference/sequence-file.md");
+  const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::size_t begin = manual.find("```yaml\n");
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t text = begin + 8;
+  document::Problems problems;
+  const auto sequence = read(manual.substr(text, manual.find("```", text) - text), problems);
+  ASSERT_TRUE(sequence) << problems.format();
+  EXPECT_TRUE(prepare(*sequence, two_finger_settings(), problems)) << problems.format();
+}
+
+TEST(SequenceFile, AllErrorsComeAtOnce) {
+  document::Problems problems;
+  EXPECT_FALSE(
+      read("nam: x\nsteps:\n  - grib: {}\n  - move: {displacement_mm: 1}\n  - hold: {}\n", problems));
+  std::vector<int> lines;
+  for (const auto& problem : problems.list()) {
+    lines.push_back(problem.at.line);
+  }
+  for (const int line : {1, 3, 4, 5}) {
+    EXPECT_NE(std::find(lines.begin(), lines.end(), line), lines.end()) << line << "\n" << problems.format();
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::control

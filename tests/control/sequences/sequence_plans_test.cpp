@@ -1,0 +1,307 @@
+// Planned feedforward from a sequence to the loop: the plans of a prepared sequence, and what the rig does
+// with them when all goes as planned and when it does not.
+
+#include "control/sequences/sequence_plans.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/feedforward/feedforward_kinds.h"
+#include "control/feedforward/running_model.h"
+#include "control/sequences/sequence_file.h"
+#include "tests/control/rig_fixture.h"
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+/// Gains of `softgrip tune --model config/models/zhang2025.yaml --feedforward planned` and `... none`.
+constexpr PidSettings for_planned{3.067, 12.68, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
+constexpr PidSettings for_pid_alone{4.402, 13.79, 0, 0.01, 1, AntiWindup::back_calculation, 0.5};
+/// The same for bench_twin.
+constexpr PidSettings twin_gains{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
+
+RigSettings rig_with(const char* model, FeedforwardKind kind, const PidSettings& pid) {
+  RigSettings settings = two_finger_settings();
+  for (ChannelSettings& channel : settings.channels) {
+    channel.model = sim::model_named(model);
+    channel.feedforward.kind = kind;
+    channel.pid = pid;
+  }
+  EXPECT_EQ(settings_problems(settings), std::vector<std::string>{});
+  return settings;
+}
+
+RigSettings planned_rig(const char* model) {
+  return rig_with(model, FeedforwardKind::planned, model[0] == 'z' ? for_planned : twin_gains);
+}
+
+/// Of the finger itself against the reference, while a step runs [mm].
+double tracking_rmse_mm(const RigSettings& settings, const char* truth, const char* sequence,
+                        std::uint16_t step) {
+  const PreparedSequence prepared = example_sequence(sequence, settings);
+  SimulatedRig rig(settings, 1, sim::model_named(truth));
+  EXPECT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &prepared);
+  EXPECT_TRUE(rig.run_until_step(step, 30));
+  double squares = 0;
+  double count = 0;
+  while (rig.tick().state == State::running && rig.output().channels[0].step == step) {
+    const double error = rig.plant_mm(0) - rig.output().channels[0].reference_mm;
+    squares += error * error;
+    ++count;
+  }
+  EXPECT_GT(count, 1000);
+  return std::sqrt(squares / count);
+}
+
+TEST(SequencePlans, TracksThePublishedModelThreeTimesBetterThanPidAlone) {
+  const double alone = tracking_rmse_mm(rig_with("zhang2025", FeedforwardKind::none, for_pid_alone),
+                                        "zhang2025", "track_sine", 1);
+  const double planned = tracking_rmse_mm(planned_rig("zhang2025"), "zhang2025", "track_sine", 1);
+  std::printf("zhang2025: PID alone %.3f mm, planned %.3f mm\n", alone, planned);
+  EXPECT_GT(alone, 3 * planned);
+}
+
+TEST(SequencePlans, TracksTheTwinThreeTimesBetterThanPidAlone) {
+  const double alone = tracking_rmse_mm(rig_with("bench_twin", FeedforwardKind::none, twin_gains),
+                                        "bench_twin", "track_sine", 1);
+  const double planned = tracking_rmse_mm(planned_rig("bench_twin"), "bench_twin", "track_sine", 1);
+  std::printf("bench_twin: PID alone %.3f mm, planned %.3f mm\n", alone, planned);
+  EXPECT_GT(alone, 3 * planned);
+}
+
+TEST(SequencePlans, EveryMoveToADisplacementHasOneWithinTheLimits) {
+  for (const char* model : {"zhang2025", "bench_twin"}) {
+    SCOPED_TRACE(model);
+    const RigSettings settings = planned_rig(model);
+    const LimitSettings& limits = settings.channels[0].limits;
+    const PreparedSequence pick = example_sequence("pick_stone", settings);
+    ASSERT_EQ(pick.steps.size(), 4U);
+    EXPECT_EQ(pick.steps[2].plan_of(0), nullptr) << "a hold goes on with the plan of the grip";
+    EXPECT_EQ(pick.steps[3].plan_of(0), nullptr) << "a release by pressure";
+    for (const std::size_t k : {0U, 1U}) {
+      const PressurePlan* plan = pick.steps[k].plan_of(0);
+      ASSERT_NE(plan, nullptr);
+      EXPECT_LT(plan->worst_mm, 0.1);
+      for (std::size_t i = 1; i < plan->pressure_kpa.size(); ++i) {
+        const double change = plan->pressure_kpa[i] - plan->pressure_kpa[i - 1];
+        ASSERT_GE(plan->pressure_kpa[i], limits.pressure_min_kpa);
+        ASSERT_LE(plan->pressure_kpa[i], limits.pressure_max_kpa);
+        ASSERT_LE(change, limits.slew_up_kpa_per_s * plan->step_s + 1e-9);
+        ASSERT_GE(change, -limits.slew_down_kpa_per_s * plan->step_s - 1e-9);
+      }
+    }
+    const double grip_to_end_s = pick.steps[1].plan_of(0)->step_s *
+                                 static_cast<double>(pick.steps[1].plan_of(0)->pressure_kpa.size() - 1);
+    EXPECT_GT(grip_to_end_s, 5) << "over the hold";
+  }
+}
+
+TEST(SequencePlans, AreReadAheadByTheDeadTime) {
+  RigSettings settings = planned_rig("bench_twin");
+  settings.channels[0].feedforward.extra_latency_s = 0.02;
+  const PreparedSequence track = example_sequence("track_sine", settings);
+  const double dead_s = dead_time_s(settings.channels[0].model);
+  EXPECT_GT(dead_s, 0.1);
+  const PressurePlan* left = track.steps[1].plan_of(0);
+  EXPECT_NEAR(left->start_s - left->begin_s, dead_s + 0.02 + 0.5 / settings.rate_hz, 1e-9);
+  const PressurePlan* right = track.steps[1].plan_of(1);
+  EXPECT_NEAR(right->start_s - right->begin_s, dead_s + 0.5 / settings.rate_hz, 1e-9);
+}
+
+TEST(SequencePlans, GoOnFromWhatAPressureDidBefore) {
+  const RigSettings settings = planned_rig("bench_twin");
+  const PreparedSequence sequence = sequence_of(R"(
+name: x
+steps:
+  - move: {pressure_kpa: 20, duration_s: 2, settle_s: 3}
+  - move: {displacement_mm: 12, duration_s: 2}
+)",
+                                                settings);
+  EXPECT_EQ(sequence.steps[0].plan_of(0), nullptr);
+  const PressurePlan* plan = sequence.steps[1].plan_of(0);
+  ASSERT_NE(plan, nullptr);
+  EXPECT_NEAR(plan->pressure_kpa.front(), 20, 1e-6);
+  EXPECT_GT(plan->displacement_mm.front(), 5);
+  EXPECT_LT(plan->worst_mm, 0.05);
+}
+
+TEST(SequencePlans, ASequenceThatIsTooLongIsRefusedWithWordsAndAtOnce) {
+  const RigSettings settings = planned_rig("zhang2025");
+  document::Problems problems;
+  const auto sequence = read_sequence(
+      document::parse("long.yaml",
+                      "name: x\nsteps:\n  - move: {displacement_mm: 6, duration_s: 1}\n"
+                      "  - track: {mean_mm: 13, amplitude_mm: 7, frequency_hz: 0.1, cycles: 1000}\n",
+                      problems),
+      problems);
+  ASSERT_TRUE(sequence) << problems.format();
+  const std::clock_t begin = std::clock();
+  EXPECT_FALSE(prepare(*sequence, settings, problems));
+  EXPECT_LT(std::clock() - begin, CLOCKS_PER_SEC);
+  EXPECT_NE(problems.format().find("more than 600 s of motion would have to be planned"), std::string::npos)
+      << problems.format();
+}
+
+TEST(SequencePlans, WhatIsOutOfReachIsAWarningAtItsStep) {
+  RigSettings settings = planned_rig("zhang2025");
+  settings.channels[0].limits.slew_up_kpa_per_s = 5;
+  document::Problems problems;
+  const auto sequence = read_sequence(
+      document::parse("fast.yaml", "name: x\nsteps:\n  - move: {displacement_mm: 15, duration_s: 2}\n",
+                      problems),
+      problems);
+  ASSERT_TRUE(sequence && prepare(*sequence, settings, problems)) << problems.format();
+  ASSERT_EQ(problems.warnings().size(), 1U);
+  EXPECT_EQ(problems.warnings()[0].at.line, 3);
+  EXPECT_NE(problems.warnings()[0].message.find("channel 'left' cannot follow"), std::string::npos);
+}
+
+TEST(SequencePlans, ARigWithAnotherModelOrSlewNeedsOthers) {
+  const RigSettings one = planned_rig("bench_twin");
+  RigSettings other = planned_rig("zhang2025");
+  EXPECT_NE(rig_key(one), rig_key(other));
+  other = one;
+  other.channels[1].limits.slew_up_kpa_per_s = 200;
+  EXPECT_NE(rig_key(one), rig_key(other));
+}
+
+// A stone in the way, nothing there with a retry (which backs off outside any plan), then the next grip.
+TEST(SequencePlans, EveryGripHasItsAnswer) {
+  for (const char* model : {"zhang2025", "bench_twin"}) {
+    SCOPED_TRACE(model);
+    const RigSettings settings = planned_rig(model);
+    const PreparedSequence pick = example_sequence("pick_stone", settings);
+    SimulatedRig rig(settings, 1, sim::model_named(model));
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    for (const bool stone : {true, false, true}) {
+      if (stone) rig.stone(12);
+      if (!stone) rig.stone(std::nullopt);
+      rig.request(Request::Kind::start, &pick);
+      ASSERT_TRUE(rig.run_until(State::running, 12));
+      ASSERT_TRUE(rig.run_until(State::idle, 60));
+      EXPECT_EQ(rig.result(0), stone ? GripResult::released : GripResult::no_part);
+      EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
+      if (!stone) rig.request(Request::Kind::acknowledge);
+    }
+  }
+}
+
+/// The largest change of a command from tick to tick while `running`, and where the finger is at the end.
+struct Motion {
+  double jump_kpa = 0;
+  double worst_mm = 0;  ///< of reference minus finger
+};
+Motion watch(SimulatedRig& rig, double seconds) {
+  Motion motion;
+  double before = rig.output().channels[0].command_kpa;
+  for (double end = rig.time_s() + seconds; rig.time_s() < end && rig.tick().state == State::running;) {
+    const ChannelOutput& channel = rig.output().channels[0];
+    motion.jump_kpa = std::max(motion.jump_kpa, std::abs(channel.command_kpa - before));
+    if (std::isfinite(channel.reference_mm)) {
+      motion.worst_mm = std::max(motion.worst_mm, std::abs(channel.reference_mm - rig.plant_mm(0)));
+    }
+    before = channel.command_kpa;
+  }
+  return motion;
+}
+
+constexpr const char* slow_move = R"(
+name: x
+steps:
+  - move: {displacement_mm: 15, duration_s: 3, settle_s: 3}
+)";
+
+// The sensor's zero is off by 1.5 mm: the plan, made for a finger at its zero, is corrected by as much.
+TEST(SequencePlans, AFingerThatStandsOffItsModelArrivesAllTheSame) {
+  for (const char* model : {"zhang2025", "bench_twin"}) {
+    SCOPED_TRACE(model);
+    const RigSettings settings = planned_rig(model);
+    const PreparedSequence move = sequence_of(slow_move, settings);
+    SimulatedRig rig(settings, 1, sim::model_named(model));
+    rig.fault[0].offset_mm = 1.5;
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &move);
+    ASSERT_TRUE(rig.run_until(State::running, 12));
+    const Motion motion = watch(rig, 5);
+    EXPECT_LT(motion.jump_kpa, 0.5) << "no more than noise and motion";
+    EXPECT_LT(motion.worst_mm, 1.5 + 0.8);
+    EXPECT_NEAR(rig.plant_mm(0) + 1.5, 15, 0.15);
+  }
+}
+
+/// A sequence that was stopped half way leaves the finger inflated; the next one starts from there.
+Motion from_half_way(RigSettings settings, const char* truth) {
+  settings.safety.safe_action.fill(SafeAction::hold);
+  const PreparedSequence move = sequence_of(slow_move, settings);
+  SimulatedRig rig(settings, 1, sim::model_named(truth));
+  EXPECT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &move);
+  EXPECT_TRUE(rig.run_until(State::running, 5));
+  rig.run(2.4);
+  rig.request(Request::Kind::stop);
+  EXPECT_TRUE(rig.run_until(State::idle, 5));
+  rig.run(4);
+  EXPECT_GT(rig.board_kpa(0), 5);
+  rig.request(Request::Kind::start, &move);
+  EXPECT_TRUE(rig.run_until(State::running, 12));
+  const Motion motion = watch(rig, 5);
+  EXPECT_NEAR(rig.plant_mm(0), 15, 0.15);
+  return motion;
+}
+
+TEST(SequencePlans, AStartFromAnotherDisplacementIsBumplessAndBetterThanPidAlone) {
+  for (const char* model : {"zhang2025", "bench_twin"}) {
+    SCOPED_TRACE(model);
+    const Motion planned = from_half_way(planned_rig(model), model);
+    const PidSettings& gains = model[0] == 'z' ? for_pid_alone : twin_gains;
+    const Motion alone = from_half_way(rig_with(model, FeedforwardKind::none, gains), model);
+    std::printf("%s: worst %.2f mm, with PID alone %.2f mm\n", model, planned.worst_mm, alone.worst_mm);
+    EXPECT_LT(planned.jump_kpa, 0.5) << "no more than noise and motion";
+    EXPECT_LT(planned.worst_mm, alone.worst_mm);
+  }
+}
+
+TEST(SequencePlans, BackingOffIsBumpless) {
+  for (const char* model : {"zhang2025", "bench_twin"}) {
+    SCOPED_TRACE(model);
+    const RigSettings settings = planned_rig(model);
+    const PreparedSequence pick = example_sequence("pick_stone", settings);
+    SimulatedRig rig(settings, 1, sim::model_named(model));
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &pick);
+    ASSERT_TRUE(rig.run_until_step(1, 10));
+    const Motion motion = watch(rig, 8);
+    EXPECT_LT(motion.jump_kpa, 0.6) << "10 mm/s need about 0.2 kPa a tick; the rest is the sensor's noise";
+    EXPECT_LT(motion.worst_mm, 2);
+  }
+}
+
+// What a model says in one tick cannot reach the loop as a value that is not a number.
+TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
+  const model::Model twin = sim::model_named("bench_twin");
+  const LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
+  Feedforward feedforward(twin, {FeedforwardKind::planned, 0}, limits, sim::tick_s);
+  const RunningModel running(twin, sim::tick_s, 0, 0.1);
+  Reference reference;
+  reference.start(0, 5);
+  (void)reference.hold_for(1);
+  (void)reference.ramp_for(15, 2);
+  FeedforwardQuery query{&reference, 0, 0, nullptr, 0};
+  feedforward.enter(running, query, 30);
+  EXPECT_NEAR(feedforward.step(query).pressure_kpa, 30, 1e-9) << "from where it is";
+  double last = 30;
+  for (int k = 1; k < 1000; ++k) {
+    query.time_s = k * sim::tick_s;
+    const double now = feedforward.step(query).pressure_kpa;
+    ASSERT_LT(std::abs(now - last), 0.3);
+    last = now;
+  }
+  EXPECT_NEAR(last, settled_line(twin, limits).pressure_kpa(15), 1e-9);
+}
+
+}  // namespace
+}  // namespace softgrip::control

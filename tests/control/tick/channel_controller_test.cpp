@@ -1,0 +1,367 @@
+#include "control/tick/channel_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::tick_ns;
+using sim::tick_s;
+using sim::twin_settings;
+using Mode = ChannelDemand::Mode;
+
+/// A controller and a finger on one clock.
+class Rig {
+ public:
+  explicit Rig(const ChannelSettings& settings, double noise_mm = 0, std::uint64_t seed = 1)
+      : Rig(settings, settings.model, noise_mm, seed) {}
+  Rig(const ChannelSettings& settings, const model::Model& truth, double noise_mm, std::uint64_t seed)
+      : controller(settings, tick_s), finger(truth, noise_mm, seed) {
+    controller.start(0);
+    exchange();
+  }
+
+  /// One tick with what is demanded; the exchange follows at once, as on the rig.
+  ChannelStep tick() {
+    now += tick_ns;
+    input.now = now;
+    input.demand.time_s = time_s();
+    last = controller.tick(input);
+    exchange();
+    return last;
+  }
+  void run(
+      double seconds, const std::function<void()>& each = [] {}) {
+    for (int i = 0; i < std::lround(seconds / tick_s); ++i) {
+      tick();
+      each();
+    }
+  }
+  void track(const Reference& reference) {
+    input.demand.mode = Mode::displacement;
+    input.demand.reference = &reference;
+  }
+  void press(double pressure_kpa) {
+    input.demand.mode = Mode::pressure;
+    input.demand.pressure_kpa = pressure_kpa;
+  }
+  [[nodiscard]] double time_s() const { return static_cast<double>(now) * 1e-9; }
+  /// Reference minus finger, now.
+  [[nodiscard]] double error_mm() const {
+    return input.demand.reference->at(time_s() + tick_s).value - finger.displacement_mm();
+  }
+
+  ChannelController controller;
+  sim::SimulatedFinger finger;
+  ChannelInput input;
+  ChannelStep last;
+  Nanoseconds now = 1'000'000'000'000;
+
+ private:
+  void exchange() { input.reading = finger.write(controller.command_kpa(), now); }
+};
+
+Reference ramp_and_sine(double from_s) {
+  Reference reference;
+  reference.start(from_s, 0);
+  (void)reference.hold_for(0.2);  // longer than the preview: nothing can come sooner
+  (void)reference.ramp_for(6, 2);
+  (void)reference.hold_for(1);
+  (void)reference.sine(13, 7, 0.1, 3);
+  return reference;
+}
+
+TEST(ChannelController, TracksTheTwinWithinMicrometres) {
+  Rig rig(twin_settings());
+  const Reference reference = ramp_and_sine(rig.time_s());
+  rig.track(reference);
+  double worst = 0;
+  rig.run(33, [&] { worst = std::max(worst, std::abs(rig.error_mm())); });
+  EXPECT_LT(worst, 5e-3);
+  EXPECT_LT(std::abs(rig.last.residual_mm), 1e-3);
+}
+
+TEST(ChannelController, FeedbackMakesUpForAModelThatIsOff) {
+  ChannelSettings settings = twin_settings();
+  const model::Model finger = settings.model;
+  auto values = model::flat_values(settings.model);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool whole = model::parameter_spec(settings.model, i).whole;
+    values[i] *= whole ? 1 : i % 2 == 0 ? 1.05 : 0.95;
+  }
+  settings.model = model::with_values(settings.model, values);
+  const auto tracked = [&](const PidSettings& pid) {
+    settings.pid = pid;
+    Rig rig(settings, finger, 0.03, 7);
+    const Reference reference = ramp_and_sine(rig.time_s());
+    rig.track(reference);
+    double square = 0;
+    rig.run(13);
+    rig.run(20, [&] { square += rig.error_mm() * rig.error_mm() / 4000; });
+    return std::sqrt(square);
+  };
+  const double with_feedback = tracked(settings.pid);
+  const double alone = tracked({});
+  EXPECT_LT(with_feedback, 0.5 * alone);
+}
+
+TEST(ChannelController, EveryChangeOfModeIsBumpless) {
+  Rig rig(twin_settings(), 0.02);
+  Reference reference;
+  double before = 0;
+  // One tick of what each mode may do by itself: here 1 kPa is half of the slew limit.
+  const auto expect_smooth = [&](const char* what) {
+    rig.run(0.05, [&] {
+      EXPECT_NEAR(rig.last.command_kpa, before, 1.0) << what;
+      before = rig.last.command_kpa;
+    });
+  };
+  rig.press(20);
+  rig.run(1.5);
+  before = rig.last.command_kpa;
+  reference.start(rig.time_s(), rig.last.displacement_mm);
+  rig.track(reference);
+  rig.tick();
+  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "pressure to displacement, creep under way";
+  expect_smooth("after the start of tracking");
+  EXPECT_TRUE(reference.ramp_to(15, 10));
+  rig.run(0.4);
+  before = rig.last.command_kpa;
+  rig.input.demand.mode = Mode::hold;
+  rig.tick();
+  EXPECT_EQ(rig.last.command_kpa, before);
+  EXPECT_EQ(rig.last.feedback_kpa, 0);
+  EXPECT_TRUE(std::isnan(rig.last.reference_mm));
+  rig.run(0.7);
+  reference.start(rig.time_s(), rig.last.displacement_mm);
+  rig.track(reference);
+  rig.tick();
+  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9) << "hold to displacement";
+  expect_smooth("after hold");
+}
+
+TEST(ChannelController, AChangeOfGainsIsBumpless) {
+  Rig rig(twin_settings(), 0.02);
+  const Reference reference = ramp_and_sine(rig.time_s());
+  rig.track(reference);
+  rig.run(8);
+  const double before = rig.last.command_kpa;
+  PidSettings other = twin_settings().pid;
+  other.kp_kpa_per_mm = 2;
+  other.kd_kpa_s_per_mm = 0.05;
+  rig.controller.change_gains(other);
+  rig.tick();
+  EXPECT_NEAR(rig.last.command_kpa, before, 0.5);
+}
+
+TEST(ChannelController, FeedbackThatWasHeldGoesOnWithoutAStep) {
+  Rig rig(twin_settings());
+  const Reference reference = ramp_and_sine(rig.time_s());
+  rig.track(reference);
+  rig.run(5);
+  const double held = rig.last.feedback_kpa;
+  rig.input.demand.feedback_held = true;
+  rig.run(1, [&] { EXPECT_EQ(rig.last.feedback_kpa, held); });
+  const double before = rig.last.command_kpa;
+  rig.input.demand.feedback_held = false;
+  rig.tick();
+  EXPECT_NEAR(rig.last.command_kpa, before, 0.1);
+}
+
+TEST(ChannelController, VentGoesDownAtTheSlewLimit) {
+  ChannelSettings settings = twin_settings();
+  settings.limits.slew_down_kpa_per_s = 100;
+  Rig rig(settings);
+  rig.press(40);
+  rig.run(1);
+  EXPECT_EQ(rig.last.command_kpa, 40);
+  rig.input.demand.mode = Mode::vent;
+  rig.tick();
+  EXPECT_NEAR(rig.last.command_kpa, 39.5, 1e-9);
+  EXPECT_TRUE(rig.last.slewing);
+  rig.run(0.4);
+  EXPECT_EQ(rig.last.command_kpa, 0);
+}
+
+TEST(ChannelController, ADisplacementWithoutAReferenceHolds) {
+  Rig rig(twin_settings());
+  rig.press(10);
+  rig.run(0.5);
+  rig.input.demand.mode = Mode::displacement;
+  rig.input.demand.reference = nullptr;
+  rig.tick();
+  EXPECT_EQ(rig.last.command_kpa, 10);
+  rig.press(std::nan(""));
+  rig.tick();
+  EXPECT_EQ(rig.last.command_kpa, 10);
+  EXPECT_TRUE(rig.last.request_invalid);
+}
+
+TEST(ChannelController, TheReferenceStaysInsideTheDisplacementRange) {
+  ChannelSettings settings = twin_settings();
+  settings.limits.displacement_max_mm = 10;
+  Rig rig(settings);
+  Reference reference;
+  reference.start(rig.time_s(), 0);
+  (void)reference.ramp_for(20, 3);
+  rig.track(reference);
+  double highest = 0;
+  rig.run(6, [&] { highest = std::max(highest, rig.finger.displacement_mm()); });
+  EXPECT_TRUE(rig.last.reference_clamped);
+  EXPECT_EQ(rig.last.reference_mm, 10);
+  EXPECT_LT(highest, 10.3);
+  EXPECT_FALSE(rig.last.displacement_beyond);
+  settings.limits.displacement_max_mm = 5;
+  Rig other(settings);
+  other.press(30);
+  other.run(3);
+  EXPECT_TRUE(other.last.displacement_beyond);
+}
+
+TEST(ChannelController, AGapInTheReadingsHoldsTheFeedbackAndGoesOn) {
+  Rig rig(twin_settings(), 0.02);
+  const Reference reference = ramp_and_sine(rig.time_s());
+  rig.track(reference);
+  rig.run(6);
+  const double held = rig.last.feedback_kpa;
+  rig.run(0.2, [&] { rig.input.reading.validity = model::Validity::sensor_error; });
+  EXPECT_EQ(rig.last.validity, model::Validity::sensor_error);
+  EXPECT_NEAR(rig.last.feedback_kpa, held, 0.2);
+  EXPECT_TRUE(std::isnan(rig.last.residual_mm));
+  rig.run(1);
+  EXPECT_LT(std::abs(rig.error_mm()), 0.05);
+}
+
+TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
+  // The controller starts anew under a finger that still creeps, with a zero that is off.
+  ChannelSettings settings = twin_settings();
+  Rig rig(settings, 0.02);
+  rig.press(30);
+  rig.run(5);
+  rig.controller.start(rig.last.command_kpa);
+  rig.input.demand.mode = Mode::hold;
+  rig.tick();
+  const double off = rig.last.residual_mm;
+  EXPECT_GT(std::abs(off), 0.3) << "creep that the model started without";
+  rig.input.resynchronise = true;
+  int ticks = 0;
+  while (!rig.tick().synchronised && ticks < 1000) ++ticks;
+  EXPECT_LT(ticks * tick_s, 1);
+  EXPECT_NEAR(rig.last.residual_mm, 0, 0.1);
+  EXPECT_NEAR(rig.controller.offset_mm(), off, 0.3);
+  rig.input.resynchronise = false;
+  const double before = rig.last.command_kpa;
+  Reference reference;
+  reference.start(rig.time_s(), rig.last.displacement_mm);
+  rig.track(reference);
+  rig.tick();
+  EXPECT_NEAR(rig.last.command_kpa, before, 1e-9);
+  rig.run(2);
+  EXPECT_NEAR(rig.error_mm(), 0, 0.1);
+}
+
+TEST(ChannelController, ModelHealthSeesAFingerThatChanged) {
+  ChannelSettings settings = twin_settings();
+  settings.health.model_error_mm = 0.05;
+  model::Model weak = settings.model;
+  auto values = model::flat_values(weak);
+  values[model::find_path(weak, "kelvin_voigt.k2_kpa_per_mm").value()] *= 1.4;
+  weak = model::with_values(weak, values);
+  Rig rig(settings, weak, 0.03, 5);
+  const Reference reference = ramp_and_sine(rig.time_s());
+  rig.track(reference);
+  int changes = 0;
+  rig.run(33, [&] { changes += rig.last.health_changed ? 1 : 0; });
+  EXPECT_GE(rig.last.health, HealthState::suspect);
+  EXPECT_GE(changes, 2);
+
+  Rig touching(settings, weak, 0.03, 5);
+  touching.track(reference);
+  touching.input.free_motion = false;
+  touching.run(33);
+  EXPECT_EQ(touching.last.health, HealthState::unknown) << "an object is not a fault of the model";
+}
+
+TEST(ChannelController, SlippedTicksAreCaughtUp) {
+  Rig rig(twin_settings());
+  const Reference reference = ramp_and_sine(rig.time_s());
+  rig.track(reference);
+  rig.run(5);
+  // Three periods pass without a tick: the board holds its output.
+  for (int i = 0; i < 3; ++i) {
+    rig.now += tick_ns;
+    rig.input.reading = rig.finger.write(rig.controller.command_kpa(), rig.now);
+  }
+  rig.run(0.5);
+  EXPECT_LT(std::abs(rig.last.residual_mm), 2e-3);
+  rig.run(2);
+  EXPECT_LT(std::abs(rig.error_mm()), 0.02);
+}
+
+TEST(ChannelController, AnUnusedDisplacementIsNeverActedOn) {
+  ChannelSettings settings = twin_settings();
+  settings.displacement_used = false;
+  settings.limits.displacement_max_mm = 1;
+  Rig rig(settings);
+  rig.press(30);
+  rig.run(3);
+  EXPECT_EQ(rig.last.command_kpa, 30);
+  EXPECT_FALSE(rig.last.displacement_beyond);
+  EXPECT_EQ(rig.last.health, HealthState::unknown);
+  rig.input.resynchronise = true;
+  EXPECT_TRUE(rig.tick().synchronised);
+}
+
+// Whatever is demanded and read, the command is a number inside the range and the slew limits.
+TEST(ChannelController, LimitsAreNeverExceededUnderRandomDemands) {
+  for (const FeedforwardKind kind :
+       {FeedforwardKind::none, FeedforwardKind::bouc_wen, FeedforwardKind::full_model}) {
+    const unsigned seed = 31337 + static_cast<unsigned>(kind);
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    std::mt19937 random(seed);
+    ChannelSettings settings = twin_settings();
+    settings.feedforward.kind = kind;
+    settings.pid = {20, 200, 0.5, 0.005, 1, AntiWindup::none, 1};
+    Rig rig(settings, 0.5, seed);
+    Reference reference;
+    std::uniform_real_distribution<double> any(-50, 100);
+    const double wild[] = {std::nan(""), 1e308, -1e308, std::numeric_limits<double>::infinity()};
+    double last = 0;
+    for (int i = 0; i < 20000; ++i) {
+      if (random() % 50 == 0) {
+        rig.input.demand.mode = static_cast<Mode>(random() % 4);
+        rig.input.demand.reference = random() % 10 == 0 ? nullptr : &reference;
+        rig.input.demand.pressure_kpa = random() % 5 == 0 ? wild[random() % 4] : any(random);
+        rig.input.demand.feedback_held = random() % 4 == 0;
+        rig.input.resynchronise = random() % 4 == 0;
+        reference.start(rig.time_s(), any(random));
+        (void)reference.ramp_for(any(random), 0.01 + 0.01 * static_cast<double>(random() % 100));
+      }
+      if (random() % 20 == 0) rig.input.reading.displacement_mm = wild[random() % 4];
+      if (random() % 20 == 0) rig.input.reading.validity = static_cast<model::Validity>(random() % 7);
+      if (random() % 500 == 0) rig.now += tick_ns * static_cast<Nanoseconds>(random() % 2000);
+      const double now = rig.tick().command_kpa;
+      ASSERT_GE(now, 0) << i;
+      ASSERT_LE(now, 60) << i;
+      ASSERT_LE(std::abs(now - last), 400 * tick_s * (1 + 1e-9)) << i;
+      last = now;
+    }
+  }
+}
+
+TEST(ChannelController, ARefusedFeedforwardIsNone) {
+  ChannelSettings settings = twin_settings();
+  settings.model = sim::model_named("zhang2025");
+  ChannelController controller(settings, tick_s);
+  EXPECT_EQ(controller.preview_s(), 0);
+}
+
+}  // namespace
+}  // namespace softgrip::control

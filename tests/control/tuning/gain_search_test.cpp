@@ -1,0 +1,34 @@
+#include "control/tuning/gain_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace softgrip::control {
+namespace {
+
+TEST(GainSearch, FindsTheBottomOfABowlFromTheGrid) {
+  int evaluations = 0;
+  const auto cost = [&](const PidSettings& pid) {
+    ++evaluations;
+    return std::pow(std::log(pid.kp_kpa_per_mm / 0.37), 2) +
+           std::pow(std::log(pid.ki_kpa_per_mm_s / 2.2), 2) + 100 * std::pow(pid.kd_kpa_s_per_mm - 0.015, 2);
+  };
+  const PidSettings found = search_gains(cost);
+  EXPECT_NEAR(found.kp_kpa_per_mm, 0.37, 0.01);
+  EXPECT_NEAR(found.ki_kpa_per_mm_s, 2.2, 0.05);
+  EXPECT_NEAR(found.kd_kpa_s_per_mm, 0.015, 0.005);
+  EXPECT_LT(evaluations, 160);
+}
+
+TEST(GainSearch, NoGainIsEverNegative) {
+  (void)search_gains([](const PidSettings& pid) {
+    EXPECT_GE(pid.kp_kpa_per_mm, 0);
+    EXPECT_GE(pid.ki_kpa_per_mm_s, 0);
+    EXPECT_GE(pid.kd_kpa_s_per_mm, 0);
+    return pid.kp_kpa_per_mm + pid.ki_kpa_per_mm_s + pid.kd_kpa_s_per_mm;
+  });
+}
+
+}  // namespace
+}  // namespace softgrip::control

@@ -1,0 +1,123 @@
+#include "control/tuning/tracking_run.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/random.h"
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::model_named;
+using sim::tick_s;
+
+/// The gains that the search of bench/tracking_study.cpp finds for every scheme at Ms <= 2.
+constexpr PidSettings found{2.7, 13, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
+
+TrackingRun run_with(FeedforwardKind kind, std::uint64_t seed) {
+  TrackingRun run;
+  run.finger = model_named("bench_twin");
+  run.settings = sim::twin_settings();
+  run.settings.limits.displacement_max_mm = 30;
+  run.settings.feedforward.kind = kind;
+  run.settings.pid = found;
+  run.settings.model = with_scatter(run.finger, 0.05, seed);
+  run.seed = seed;
+  return run;
+}
+
+TEST(TrackingRun, TheFullModelTracksTenTimesBetterThanPidAloneWithAModelThatIsOff) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const double alone = track(run_with(FeedforwardKind::none, seed)).rmse_mm;
+    const double full = track(run_with(FeedforwardKind::full_model, seed)).rmse_mm;
+    EXPECT_GT(alone, 10 * full) << "seed " << seed << ": " << alone << " and " << full << " mm";
+  }
+}
+
+TEST(TrackingRun, TheBoucWenPartAloneIsNoBetterThanNoFeedforward) {
+  const double alone = track(run_with(FeedforwardKind::none, 1)).rmse_mm;
+  EXPECT_GT(track(run_with(FeedforwardKind::bouc_wen, 1)).rmse_mm, alone);
+}
+
+TEST(TrackingRun, TheExchangesLatencyIsMadeUpForWhenItIsKnown) {
+  TrackingRun run = run_with(FeedforwardKind::full_model, 1);
+  run.settings.model = run.finger;
+  run.settings.pid = {};
+  run.noise_mm = 0;
+  run.exchange_s = 0.002;
+  run.settings.feedforward.extra_latency_s = 0;
+  const double unknown = track(run).rmse_mm;
+  run.settings.feedforward.extra_latency_s = 0.002;
+  EXPECT_LT(track(run).rmse_mm, 0.1 * unknown);
+}
+
+TEST(TrackingRun, OneSeedOneResult) {
+  TrackingRun run = run_with(FeedforwardKind::full_model, 3);
+  run.reading_step_mm = 100.0 / 65536;
+  run.command_step_kpa = 100.0 / 4096;
+  const TrackingResult first = track(run);
+  EXPECT_EQ(first.rmse_mm, track(run).rmse_mm);
+  run.seed = 4;
+  EXPECT_NE(first.rmse_mm, track(run).rmse_mm);
+}
+
+// The share of models off by so much that are not called healthy: the rate that model_health.h states.
+TEST(TrackingRun, ModelHealthToleratesAFewPercentAndNotTwenty) {
+  const auto not_healthy = [](double scatter) {
+    int count = 0;
+    for (std::uint64_t i = 0; i < 40; ++i) {
+      TrackingRun run = run_with(FeedforwardKind::none, 1);
+      run.settings.model = with_scatter(run.finger, scatter, derived_seed(7, i));
+      run.settings.health = {};
+      run.frequency_hz = i % 2 == 0 ? 0.05 : 0.1;
+      run.settling_cycles = 0;
+      run.measured_cycles = 5;
+      run.seed = i + 1;
+      count += track(run).health > HealthState::healthy ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(not_healthy(0), 0);
+  EXPECT_EQ(not_healthy(0.05), 0);
+  EXPECT_EQ(not_healthy(0.10), 5);
+  EXPECT_EQ(not_healthy(0.20), 23);
+}
+
+// 1/(c s) behind a dead time under a gain: |L| = 1 at K/c, phase there -90 degrees - dead time.
+TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
+  model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("bouc_wen"));
+  model = model::without_block(model, *model::find_block("valve_lag"));
+  auto values = model::flat_values(model);
+  const auto set = [&](const char* path, double value) {
+    values[model::find_path(model, path).value()] = value;
+  };
+  set("kelvin_voigt.k0_kpa_per_mm", 1e9);
+  set("kelvin_voigt.k1_kpa_per_mm", 0);
+  set("kelvin_voigt.c1_kpa_s_per_mm", 1);
+  set("kelvin_voigt.k2_kpa_per_mm", 1e9);
+  set("transport_delay.delay_s", 0.1);
+  model = model::with_values(model, values);
+  const double dead_s = 0.1 + 0.5 * tick_s + tick_s;
+  const LoopMargins half = loop_margins(model, {5, 0, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s);
+  EXPECT_NEAR(half.crossover_hz, 5 / (2 * M_PI), 0.01);
+  EXPECT_GT(half.sensitivity, 1.5);
+  // The stability limit of an integrator with a dead time is K L = pi/2.
+  const double limit = M_PI / 2 / dead_s;
+  EXPECT_TRUE(std::isfinite(
+      loop_margins(model, {0.98 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s)
+          .sensitivity));
+  EXPECT_FALSE(std::isfinite(
+      loop_margins(model, {1.02 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s)
+          .sensitivity));
+}
+
+TEST(LoopMargins, OfTheRigsGainsAreThoseThatWereAskedFor) {
+  const LoopMargins margins = loop_margins(model_named("bench_twin"), found, 60, tick_s, tick_s);
+  EXPECT_LT(margins.sensitivity, 2.05);
+}
+
+}  // namespace
+}  // namespace softgrip::control

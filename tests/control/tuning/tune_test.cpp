@@ -1,0 +1,75 @@
+#include "control/tuning/tune.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+TuneTask quick_task(FeedforwardKind kind) {
+  TuneTask task;
+  task.channel = sim::twin_settings();
+  task.channel.limits.displacement_max_mm = 30;
+  task.channel.feedforward.kind = kind;
+  task.finger = sim::model_named("bench_twin");
+  task.rate_hz = 100;
+  task.frequencies_hz = {0.3};
+  task.draws = 2;
+  task.iterations = 12;
+  return task;
+}
+
+TEST(Tune, KeepsTheMarginAndBeatsCautiousGains) {
+  const TuneTask task = quick_task(FeedforwardKind::none);
+  const Tuned tuned = tune(task);
+  EXPECT_LE(tuned.sensitivity, task.most_sensitivity);
+  EXPECT_GT(tuned.sensitivity, 1);
+  TrackingRun run;
+  run.settings = task.channel;
+  run.settings.pid = {0.3, 1, 0, 0.02, 1, AntiWindup::back_calculation, 0.5};
+  run.finger = task.finger;
+  run.rate_hz = task.rate_hz;
+  run.frequency_hz = 0.3;
+  EXPECT_LT(tuned.rmse_mm, track(run).rmse_mm);
+  EXPECT_NE(tuned.limited_by.find("dead time"), std::string::npos) << tuned.limited_by;
+}
+
+TEST(Tune, LessSensitivityCostsError) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  const Tuned bold = tune(task);
+  task.most_sensitivity = 1.3;
+  const Tuned careful = tune(task);
+  EXPECT_LE(careful.sensitivity, 1.3);
+  EXPECT_GT(careful.rmse_mm, bold.rmse_mm);
+}
+
+TEST(Tune, OneSeedOneResult) {
+  TuneTask task = quick_task(FeedforwardKind::full_model);
+  task.iterations = 4;
+  const Tuned first = tune(task);
+  const Tuned second = tune(task);
+  EXPECT_EQ(first.pid.kp_kpa_per_mm, second.pid.kp_kpa_per_mm);
+  EXPECT_EQ(first.rmse_mm, second.rmse_mm);
+}
+
+TEST(Tune, TheReferenceIsWithinReach) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  choose_reference(task);
+  EXPECT_GT(task.mean_mm - task.amplitude_mm, 1);
+  EXPECT_LT(task.mean_mm + task.amplitude_mm, 30);
+}
+
+// The published model has no inverse. Its plan and its PID against its PID alone, each tuned alike.
+TEST(Tune, PlannedOnThePublishedModelIsThreeTimesBetterThanItsPid) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  task.finger = task.channel.model = sim::model_named("zhang2025");
+  task.frequencies_hz = {0.2};
+  const Tuned alone = tune(task);
+  task.channel.feedforward.kind = FeedforwardKind::planned;
+  const Tuned planned = tune(task);
+  EXPECT_GT(alone.rmse_mm, 3 * planned.rmse_mm) << alone.rmse_mm << " and " << planned.rmse_mm << " mm";
+}
+
+}  // namespace
+}  // namespace softgrip::control

@@ -1,0 +1,224 @@
+#include "daemon/loop/bus.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/daemon/scripted_board.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using control::FaultCode;
+using drivers::BusStatus;
+using testing::ScriptedBoard;
+
+constexpr Nanoseconds period = 5'000'000;
+
+class BusTest : public ::testing::Test {
+ protected:
+  void command(double command_kpa, double safe_kpa, bool moving) {
+    Commands commands;
+    commands.command_kpa.fill(command_kpa);
+    commands.safe_kpa.fill(safe_kpa);
+    commands.moving = moving;
+    wires_.commands.publish(commands);
+  }
+  void step() {
+    bus_.step(clock_.now());
+    clock_.advance(period);
+    wires_.bus.fetch();
+  }
+  double last_written() const { return board_.written.back().front(); }
+  std::vector<BusEvent::Kind> events() {
+    std::vector<BusEvent::Kind> kinds;
+    for (BusEvent event; wires_.bus_events.pop(event);) kinds.push_back(event.kind);
+    return kinds;
+  }
+
+  VirtualClock clock_;
+  ScriptedBoard board_{2, clock_};
+  rig::LoopSettings loop_;
+  rig::ReconnectSettings reconnect_;
+  Wires wires_{16};
+  BusStatistics statistics_;
+  Bus bus_{board_, loop_, reconnect_, clock_, wires_, statistics_};
+};
+
+TEST_F(BusTest, WritesNothingBeforeTheLoopHasSpoken) {
+  for (int i = 0; i < 20; ++i) step();
+  EXPECT_TRUE(board_.written.empty());
+  EXPECT_TRUE(board_.connect_attempts.empty());
+}
+
+TEST_F(BusTest, WritesTheNewestCommandsAndPublishesTheReadings) {
+  command(12, 0, true);
+  step();
+  EXPECT_EQ(board_.written, (std::vector<std::vector<double>>{{12, 12}}));
+  const BusReport& report = wires_.bus.value();
+  EXPECT_TRUE(report.health.connected);
+  EXPECT_EQ(report.health.fault, FaultCode::none);
+  EXPECT_EQ(report.readings[1].validity, model::Validity::valid);
+  EXPECT_EQ(events(), std::vector<BusEvent::Kind>{BusEvent::Kind::connected});
+}
+
+TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilItsCommandsNoLongerMove) {
+  command(12, 3, true);
+  step();
+  for (std::uint32_t i = 1; i < loop_.max_missed_commands; ++i) {
+    step();
+    EXPECT_EQ(last_written(), 12);
+  }
+  step();
+  EXPECT_EQ(last_written(), 3);
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::cycles_lost);
+  command(14, 3, true);  // the loop is back in the middle of its motion, from where the board no longer is
+  step();
+  EXPECT_EQ(last_written(), 3);
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::cycles_lost);
+  command(4, 3, false);
+  step();
+  EXPECT_EQ(last_written(), 4);
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::none);
+  EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::loop_silent,
+                                                   BusEvent::Kind::loop_back}));
+}
+
+TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
+  reconnect_.longest_pause = std::chrono::milliseconds(400);
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::timed_out;
+  step();
+  EXPECT_FALSE(wires_.bus.value().health.connected);
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::bus_timed_out);
+  board_.connect_attempts.clear();
+  board_.next_connect = BusStatus::disconnected;
+  for (Nanoseconds begin = clock_.now(); clock_.now() - begin < 2 * ns_per_s;) {
+    command(12, 0, true);
+    step();
+  }
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::bus_down);
+  const auto& attempts = board_.connect_attempts;
+  ASSERT_GE(attempts.size(), 5U);
+  const std::vector<Nanoseconds> pauses_ms{100, 200, 400, 400};
+  for (std::size_t i = 0; i < pauses_ms.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
+                static_cast<double>(period));
+  }
+  board_.next_connect = BusStatus::ok;
+  board_.next_exchange = BusStatus::ok;
+  for (int i = 0; i < 100; ++i) {
+    command(12, 0, true);
+    step();
+  }
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::none);
+  EXPECT_EQ(wires_.bus.value().health.consecutive_failures, 0U);
+  EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::failed,
+                                                   BusEvent::Kind::connected, BusEvent::Kind::recovered}));
+}
+
+TEST_F(BusTest, SessionsThatFailAtTheirFirstExchangeAreAsRareAsFailedAttempts) {
+  reconnect_.longest_pause = std::chrono::milliseconds(400);
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::bad_reply;
+  step();
+  board_.connect_attempts.clear();
+  for (Nanoseconds begin = clock_.now(); clock_.now() - begin < 2 * ns_per_s;) {
+    command(12, 0, true);
+    step();
+  }
+  const auto& attempts = board_.connect_attempts;
+  ASSERT_GE(attempts.size(), 5U);
+  ASSERT_LE(attempts.size(), 8U);
+  const std::vector<Nanoseconds> pauses_ms{100, 200, 400, 400};
+  for (std::size_t i = 0; i < pauses_ms.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(attempts[i + 1] - attempts[i]), static_cast<double>(pauses_ms[i]) * 1e6,
+                static_cast<double>(period));
+  }
+  // A good exchange makes the next loss an ordinary one: the session is rebuilt at once.
+  board_.next_exchange = BusStatus::ok;
+  for (int i = 0; i < 100; ++i) step();
+  board_.next_exchange = BusStatus::timed_out;
+  step();
+  board_.connect_attempts.clear();
+  step();
+  EXPECT_EQ(board_.connect_attempts.size(), 1U);
+}
+
+TEST_F(BusTest, CyclesWithoutASessionCountAsFailuresWhileItWaits) {
+  board_.next_connect = BusStatus::disconnected;
+  for (int i = 0; i < 10; ++i) {
+    command(12, 0, false);
+    step();
+  }
+  EXPECT_EQ(wires_.bus.value().health.consecutive_failures, 10U);
+}
+
+TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
+  command(12, 0, true);
+  step();
+  for (const BusStatus status : {BusStatus::exception, BusStatus::write_refused}) {
+    board_.next_exchange = status;
+    step();
+    EXPECT_TRUE(wires_.bus.value().health.connected);
+    EXPECT_EQ(wires_.bus.value().health.fault, fault_of(status));
+    EXPECT_EQ(wires_.bus.value().health.consecutive_failures, status == BusStatus::exception ? 1U : 2U);
+  }
+  EXPECT_EQ(board_.connect_attempts.size(), 1U);
+}
+
+TEST_F(BusTest, WhatTheBoardRefusedOnceIsReportedUntilTheLoopMustHaveSeenIt) {
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::watchdog_tripped;
+  step();
+  EXPECT_FALSE(wires_.bus.value().health.connected) << "only a new session clears a watchdog";
+  board_.next_exchange = BusStatus::ok;
+  for (int report = 0; report < 3; ++report) {
+    step();
+    EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::board_watchdog_tripped);
+    EXPECT_TRUE(wires_.bus.value().health.connected);
+  }
+  step();
+  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::none);
+}
+
+TEST_F(BusTest, LeavesWhenTheBoardHasConfirmedTheLastCommands) {
+  Commands last;
+  last.last = true;
+  last.command_kpa.fill(1);
+  wires_.commands.publish(last);
+  wires_.leave.store(true);
+  board_.next_exchange = BusStatus::exception;
+  step();
+  EXPECT_FALSE(wires_.left_safely.load());
+  board_.next_exchange = BusStatus::ok;
+  step();
+  EXPECT_TRUE(wires_.left_safely.load());
+  EXPECT_EQ(last_written(), 1);
+}
+
+TEST(BusThread, GivesUpLeavingWhenTheBoardDoesNotAnswer) {
+  const MonotonicClock clock;
+  ScriptedBoard board(1, clock);
+  board.next_connect = BusStatus::disconnected;
+  rig::LoopSettings loop;
+  rig::ReconnectSettings reconnect;
+  Wires wires(16);
+  BusStatistics statistics;
+  Bus bus(board, loop, reconnect, clock, wires, statistics);
+  Commands last;
+  last.last = true;
+  wires.commands.publish(last);
+  wires.leave.store(true);
+  const Nanoseconds begin = clock.now();
+  bus.run(Grid(begin, period), std::chrono::milliseconds(50));
+  EXPECT_FALSE(wires.left_safely.load());
+  EXPECT_GE(clock.now() - begin, 50'000'000);
+  EXPECT_LT(clock.now() - begin, 2 * ns_per_s);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,49 @@
+#include "daemon/loop/heartbeat.h"
+
+#include <gtest/gtest.h>
+
+#include "base/grid.h"
+
+namespace softgrip::daemon {
+namespace {
+
+TEST(Heartbeat, BeatsWhileAllCountsGrow) {
+  Heartbeat heartbeat({10, 30});
+  for (std::uint64_t i = 0; i < 100; ++i)
+    EXPECT_TRUE(heartbeat.beats(static_cast<Nanoseconds>(i) * 10, {i, i}));
+}
+
+TEST(Heartbeat, StopsWhenOneStandsStillLongerThanItMay) {
+  for (const std::size_t hung : {std::size_t{0}, std::size_t{1}}) {
+    Heartbeat heartbeat({10, 30});
+    const Nanoseconds patience = hung == 0 ? 10 : 30;
+    std::uint64_t count = 0;
+    EXPECT_TRUE(heartbeat.beats(0, {5, 5}));
+    for (Nanoseconds now = 1; now < 100; ++now) {
+      ++count;
+      EXPECT_EQ(heartbeat.beats(now, {hung == 0 ? 5 : 5 + count, hung == 1 ? 5 : 5 + count}), now <= patience)
+          << "counter " << hung << " at " << now;
+    }
+  }
+}
+
+// A bus that was busy connecting for an hour is thousands of steps behind the loop. When the loop then hangs,
+// the bus has much to catch up, and must not speak for it.
+TEST(Heartbeat, ACountThatIsBehindDoesNotSpeakForTheOther) {
+  Heartbeat heartbeat({10, 10});
+  EXPECT_TRUE(heartbeat.beats(0, {1'000'000, 10}));
+  std::uint64_t bus = 10;
+  bool alive = true;
+  for (Nanoseconds now = 1; now <= 11; ++now) alive = heartbeat.beats(now, {1'000'000, ++bus});
+  EXPECT_FALSE(alive);
+}
+
+TEST(Heartbeat, BeatsAgainWhenTheCountGrowsAgain) {
+  Heartbeat heartbeat({10});
+  EXPECT_TRUE(heartbeat.beats(0, {1}));
+  EXPECT_FALSE(heartbeat.beats(11, {1}));
+  EXPECT_TRUE(heartbeat.beats(12, {2}));
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

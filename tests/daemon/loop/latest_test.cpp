@@ -1,0 +1,136 @@
+#include "daemon/loop/latest.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <thread>
+
+#include "tests/daemon/loop/torn_value.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using testing::TornValue;
+
+/// What looks right and is not: two slots, the reader reads the one that the writer is not filling now. A
+/// writer that publishes twice while the reader copies fills the slot that is being read.
+template <class T>
+class TwoSlots {
+ public:
+  T& draft() noexcept { return slots_[1 - current_.load()]; }
+  void publish() noexcept { current_.store(1 - current_.load()); }
+  bool fetch() noexcept {
+    held_ = current_.load();
+    return true;
+  }
+  const T& value() const noexcept { return slots_[held_]; }
+
+ private:
+  std::array<T, 2> slots_{};
+  std::atomic<std::size_t> current_{0};
+  std::size_t held_ = 0;
+};
+
+struct Seen {
+  std::uint64_t torn = 0;
+  std::uint64_t backward = 0;
+  std::uint64_t fetched = 0;
+  std::uint64_t last = 0;
+};
+
+/// One thread writes 1 .. count, the other looks on until it has seen the last one.
+template <class Cell>
+Seen race(Cell& cell, std::uint64_t count) {
+  std::atomic<bool> done{false};
+  std::thread writer([&cell, &done, count] {
+    for (std::uint64_t n = 1; n <= count; ++n) {
+      cell.draft() = TornValue(n);
+      cell.publish();
+    }
+    done.store(true);
+  });
+  Seen seen;
+  while (!done.load()) {
+    if (!cell.fetch()) continue;
+    const TornValue copy(cell.value());
+    ++seen.fetched;
+    if (!copy.whole()) ++seen.torn;
+    if (copy.number() < seen.last) ++seen.backward;
+    seen.last = copy.number();
+  }
+  writer.join();
+  if (cell.fetch()) seen.last = cell.value().number();  // the newest is not lost
+  return seen;
+}
+
+TEST(Latest, GivesNothingBeforeTheFirstPublish) {
+  Latest<int> cell(7);
+  EXPECT_FALSE(cell.fetch());
+  EXPECT_EQ(cell.value(), 7);
+}
+
+TEST(Latest, GivesTheNewestOnce) {
+  Latest<int> cell;
+  for (int n = 1; n <= 5; ++n) cell.publish(n);
+  EXPECT_TRUE(cell.fetch());
+  EXPECT_EQ(cell.value(), 5);
+  EXPECT_FALSE(cell.fetch());
+  EXPECT_EQ(cell.value(), 5);
+  cell.publish(6);
+  EXPECT_TRUE(cell.fetch());
+  EXPECT_EQ(cell.value(), 6);
+}
+
+TEST(Latest, KeepsTheHeldValueWhileTheWriterGoesOn) {
+  Latest<int> cell;
+  cell.publish(1);
+  ASSERT_TRUE(cell.fetch());
+  const int& held = cell.value();
+  for (int n = 2; n < 100; ++n) {
+    cell.publish(n);
+    EXPECT_EQ(held, 1);
+  }
+}
+
+/// A reader is interrupted in the middle of its copy by `publishes` publishes; returns whether its copy is
+/// whole.
+template <class Cell>
+bool whole_when_interrupted(int publishes) {
+  Cell cell;
+  cell.draft() = TornValue(1);
+  cell.publish();
+  cell.fetch();
+  TornValue::halfway = [&cell, publishes] {
+    for (int n = 0; n < publishes; ++n) {
+      cell.draft() = TornValue(static_cast<std::uint64_t>(2 + n));
+      cell.publish();
+    }
+  };
+  const TornValue copy(cell.value());
+  return copy.whole() && copy.number() == 1;
+}
+
+TEST(Latest, IsWholeHoweverOftenTheWriterPublishesDuringACopy) {
+  for (int publishes = 0; publishes < 10; ++publishes) {
+    EXPECT_TRUE(whole_when_interrupted<Latest<TornValue>>(publishes)) << publishes;
+  }
+}
+
+TEST(Latest, TheSameInterruptionTearsAWrongCell) {
+  EXPECT_TRUE(whole_when_interrupted<TwoSlots<TornValue>>(1)) << "looks right at first";
+  EXPECT_FALSE(whole_when_interrupted<TwoSlots<TornValue>>(2));
+}
+
+TEST(Latest, IsNeverTornNorOlderThanBeforeUnderARace) {
+  Latest<TornValue> cell;
+  const std::uint64_t count = testing::thread_sanitizer ? 2000 : 50'000;
+  const Seen seen = race(cell, count);
+  EXPECT_EQ(seen.last, count);
+  EXPECT_EQ(seen.torn, 0U);
+  EXPECT_EQ(seen.backward, 0U);
+  EXPECT_GT(seen.fetched, 0U);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,323 @@
+// What the loop's thread may not do: allocate, page-fault, call the system for anything but the clock and the
+// sleep.
+
+#include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <malloc.h>
+#include <stddef.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "daemon/loop/real_time.h"
+#include "daemon/service/daemon_parts.h"
+#include "tests/daemon/rig_under_test.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SOFTGRIP_SANITIZED 1
+#else
+#define SOFTGRIP_SANITIZED 0
+#endif
+
+namespace {
+
+thread_local bool armed = false;
+std::atomic<std::uint64_t> allocations{0};
+
+}  // namespace
+
+#if !SOFTGRIP_SANITIZED
+namespace {
+
+void count_allocation() noexcept {
+  if (armed) allocations.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+// The C library's own functions behind counters: operator new ends here too.
+extern "C" {
+void* __libc_malloc(size_t);
+void* __libc_calloc(size_t, size_t);
+void* __libc_realloc(void*, size_t);
+void __libc_free(void*);
+void* __libc_memalign(size_t, size_t);
+
+void* malloc(size_t size) {
+  count_allocation();
+  return __libc_malloc(size);
+}
+void* calloc(size_t count, size_t size) {
+  count_allocation();
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, size_t size) {
+  count_allocation();
+  return __libc_realloc(old, size);
+}
+void* memalign(size_t alignment, size_t size) {
+  count_allocation();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(size_t alignment, size_t size) {
+  count_allocation();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** memory, size_t alignment, size_t size) {
+  count_allocation();
+  *memory = __libc_memalign(alignment, size);
+  return *memory == nullptr ? ENOMEM : 0;
+}
+void free(void* memory) {
+  if (memory != nullptr) count_allocation();
+  __libc_free(memory);
+}
+}
+#endif
+
+namespace softgrip::daemon {
+namespace {
+
+using control::Request;
+using control::State;
+
+std::unique_ptr<DaemonParts> make_parts(bool virtual_time) {
+  rig::RigFile rig = testing::example_rig("rig.yaml");
+  DaemonOptions options;
+  options.virtual_time = virtual_time;
+  return std::make_unique<DaemonParts>(std::move(rig), std::move(options));
+}
+
+/// Ticks in virtual time with everything beside the loop called in between, the loop alone under watch.
+class WatchedTicks {
+ public:
+  explicit WatchedTicks(DaemonParts& parts) : parts_(parts), due_(parts.origin) {}
+
+  /// Ticks until the state is reached, or 60 s have passed.
+  bool until(State state) {
+    for (const Nanoseconds end = due_ + 60 * ns_per_s; due_ < end;) {
+      tick();
+      if (parts_.service.snapshot().state == state) return true;
+    }
+    return false;
+  }
+  void tick() {
+    parts_.virtual_clock.set(due_);
+    armed = true;
+    parts_.loop.tick(due_);
+    armed = false;
+    parts_.virtual_clock.set(due_ + parts_.bus_offset());
+    parts_.bus.step(due_ + parts_.bus_offset());
+    parts_.service.pump();
+    parts_.recorder.drain();
+    due_ += parts_.period();
+  }
+
+ private:
+  DaemonParts& parts_;
+  Nanoseconds due_;
+};
+
+TEST(LoopRules, TheHookSeesAnAllocation) {
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers bring an allocator of their own";
+  allocations.store(0);
+  armed = true;
+  // Volatile: the pair of calls must not be optimised away.
+  void* volatile memory = std::malloc(16);
+  std::free(memory);
+  armed = false;
+  EXPECT_EQ(allocations.load(), 2U);
+}
+
+TEST(LoopRules, NoTickAllocates) {
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers bring an allocator of their own";
+  const auto parts = make_parts(true);
+  parts->rig.recorder.mode = rig::RecorderSettings::Mode::off;
+  const auto sequence = testing::example_sequence(parts->rig, "pick_stone.yaml");
+  WatchedTicks ticks(*parts);
+  allocations.store(0);
+  ASSERT_TRUE(ticks.until(State::idle));
+  parts->service.submit(Request::Kind::start, sequence);
+  ASSERT_TRUE(ticks.until(State::running));
+  ASSERT_TRUE(ticks.until(State::idle)) << "the whole sequence";
+  parts->service.submit(Request::Kind::start, sequence);
+  ASSERT_TRUE(ticks.until(State::running));
+  parts->service.submit(Request::Kind::vent);
+  ASSERT_TRUE(ticks.until(State::stopping));
+  ASSERT_TRUE(ticks.until(State::idle));
+  parts->wires.inputs.emergency_stop.store(true);
+  ASSERT_TRUE(ticks.until(State::faulted));
+  parts->wires.inputs.emergency_stop.store(false);
+  ticks.tick();
+  parts->service.submit(Request::Kind::acknowledge);
+  ASSERT_TRUE(ticks.until(State::idle));
+  EXPECT_GT(parts->loop_statistics.ticks.value(), 2000U);
+  EXPECT_EQ(allocations.load(), 0U);
+}
+
+/// What is called around the loop.
+struct Around {
+  std::function<void()> before = [] {};  ///< in the loop's thread, when all is prepared
+  std::function<void()> after = [] {};   ///< there, when the loop has ended
+  std::function<void()> last = [] {};    ///< there, when the end was announced
+  std::function<void()> ended = [] {};   ///< in the calling thread, when the end was announced
+};
+
+/// The real loop and bus, each in its thread as in the daemon, for `duration`.
+void run_threads(DaemonParts& parts, Nanoseconds duration, const Around& around) {
+  RealTimeReport report;
+  const ProcessorLatencyRequest latency = prepare_process(parts.rig.real_time, report);
+  parts.bus.open();
+  const Nanoseconds start = parts.clock.now() + ns_per_s / 50;
+  std::atomic<bool> loop_ended{false};
+  std::thread bus(
+      [&] { parts.bus.run(Grid(start + parts.bus_offset(), parts.period()), std::chrono::seconds(1)); });
+  std::thread loop([&] {
+    RealTimeReport ignored;
+    prepare_thread(parts.rig.real_time, parts.rig.real_time.priority, "the loop", ignored);
+    around.before();
+    parts.loop.run(Grid(start, parts.period()));
+    around.after();
+    loop_ended.store(true);
+    around.last();
+  });
+  const Nanoseconds end = start + duration;
+  bool asked = false;
+  const auto sequence = testing::example_sequence(parts.rig, "pick_stone.yaml");
+  while (parts.clock.now() < end) {
+    parts.service.pump();
+    if (!asked && parts.service.snapshot().state == State::idle) {
+      parts.service.submit(Request::Kind::start, sequence);
+      asked = true;
+    }
+    sleep_until(parts.clock.now() + ns_per_s / 100);
+  }
+  parts.wires.leave.store(true);
+  bus.join();
+  while (!loop_ended.load()) sleep_until(parts.clock.now() + ns_per_s / 1000);
+  around.ended();
+  loop.join();
+}
+
+TEST(LoopRules, NoTickPageFaults) {
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers touch pages of their own";
+  const auto parts = make_parts(false);
+  rusage before{};
+  rusage after{};
+  Around around;
+  around.before = [&] { getrusage(RUSAGE_THREAD, &before); };
+  around.after = [&] { getrusage(RUSAGE_THREAD, &after); };
+  run_threads(*parts, 3 * ns_per_s, around);
+  EXPECT_GT(parts->loop_statistics.ticks.value(), 100U);
+  // Locked memory is what prevents them; without the right to lock, pages of the rings are touched as they
+  // fill.
+  EXPECT_EQ(after.ru_majflt, before.ru_majflt);
+  EXPECT_EQ(after.ru_minflt, before.ru_minflt);
+}
+
+std::atomic<long> forbidden_call{-1};
+
+void on_forbidden_call(int, siginfo_t* info, void*) {
+  long expected = -1;
+  forbidden_call.compare_exchange_strong(expected, info->si_syscall);
+}
+
+/// From here on the calling thread may sleep, read the clock and return from signal handlers. Anything else
+/// is noted and fails. There is no way back, so this runs in a process of its own.
+void allow_only_clock_and_sleep() {
+  const std::array<sock_filter, 8> program{{
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_clock_nanosleep, 4, 0),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_clock_gettime, 3, 0),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_restart_syscall, 2, 0),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_rt_sigreturn, 1, 0),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+  }};
+  const sock_fprog filter{static_cast<unsigned short>(program.size()),
+                          const_cast<sock_filter*>(program.data())};
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+      prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter) != 0) {
+    forbidden_call.store(-2);
+  }
+}
+
+constexpr int clean = 0;
+constexpr int no_filter = 100;
+constexpr int no_ticks = 101;
+constexpr int forbidden = 102;
+
+/// Runs `body` in a process of its own; its exit code: `clean`, or what went wrong.
+int in_child(const std::function<int()>& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    struct sigaction action {};
+    action.sa_sigaction = on_forbidden_call;
+    action.sa_flags = SA_SIGINFO;
+    sigaction(SIGSYS, &action, nullptr);
+    _exit(body());
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+int verdict() {
+  const long call = forbidden_call.load();
+  if (call == -1) return clean;
+  if (call == -2) return no_filter;
+  std::fprintf(stderr, "system call %ld in the loop's thread\n", call);
+  return forbidden;
+}
+
+TEST(LoopRules, TheFilterSeesASystemCall) {
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make calls of their own";
+  const auto body = [] {
+    std::atomic<bool> done{false};
+    std::thread thread([&done] {
+      allow_only_clock_and_sleep();
+      sleep_until(1);
+      syscall(SYS_getppid);
+      done.store(true);
+      for (;;) sleep_until(INT64_MAX);
+    });
+    while (!done.load()) sleep_until(MonotonicClock().now() + ns_per_s / 1000);
+    _exit(verdict());
+    return clean;
+  };
+  EXPECT_EQ(in_child(body), forbidden);
+}
+
+TEST(LoopRules, NoTickCallsTheSystemButForClockAndSleep) {
+  if (SOFTGRIP_SANITIZED) GTEST_SKIP() << "sanitizers make calls of their own";
+  const auto body = [] {
+    const auto parts = make_parts(false);
+    Around around;
+    around.before = allow_only_clock_and_sleep;
+    // The thread cannot end any more: that takes system calls.
+    around.last = [] {
+      for (;;) sleep_until(INT64_MAX);
+    };
+    around.ended = [&parts] { _exit(parts->loop_statistics.ticks.value() < 100 ? no_ticks : verdict()); };
+    run_threads(*parts, 3 * ns_per_s, around);
+    return clean;
+  };
+  EXPECT_EQ(in_child(body), clean);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,184 @@
+#include "daemon/loop/loop.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "daemon/service/daemon_parts.h"
+#include "tests/daemon/rig_under_test.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using control::FaultCode;
+using control::State;
+
+/// The parts of a daemon in virtual time, moved by hand.
+class LoopTest : public ::testing::Test {
+ protected:
+  LoopTest() {
+    DaemonOptions options;
+    options.virtual_time = true;
+    rig::RigFile rig = testing::example_rig("rig.yaml");
+    rig.recorder.mode = rig::RecorderSettings::Mode::off;
+    parts_ = std::make_unique<DaemonParts>(std::move(rig), options);
+    due_ = parts_->origin;
+  }
+  /// One tick, `late` after it was due.
+  void tick(Nanoseconds late = 0) {
+    parts_->virtual_clock.set(due_ + late);
+    parts_->loop.tick(due_);
+    due_ += parts_->period();
+  }
+  void exchange() {
+    parts_->virtual_clock.set(due_ - parts_->period() + parts_->bus_offset());
+    parts_->bus.step(parts_->virtual_clock.now());
+  }
+  bool until(State state) {
+    for (int i = 0; i < 10'000; ++i) {
+      tick();
+      exchange();
+      parts_->service.pump();
+      parts_->recorder.drain();
+      if (snapshot().state == state) return true;
+    }
+    return false;
+  }
+  const Snapshot& snapshot() { return parts_->service.snapshot(); }
+
+  std::unique_ptr<DaemonParts> parts_;
+  Nanoseconds due_ = 0;
+};
+
+TEST_F(LoopTest, EveryTickSendsCommandsASnapshotAndARowPerChannel) {
+  tick();
+  EXPECT_TRUE(parts_->wires.commands.fetch());
+  EXPECT_EQ(snapshot().ticks, 1U);
+  EXPECT_EQ(snapshot().channel_count, 2U);
+  std::vector<Record> records(32);
+  records.resize(parts_->wires.records.pop(records));
+  const auto rows =
+      std::count_if(records.begin(), records.end(), [](const Record& record) { return !record.is_event; });
+  EXPECT_EQ(rows, 2);
+  EXPECT_EQ(records.back().channel, 1);
+}
+
+TEST_F(LoopTest, ALateWakeUpIsMeasuredFromTheGrid) {
+  tick(250'000);
+  EXPECT_EQ(parts_->loop_statistics.wake_up.summary().max_ns, 250'000);
+}
+
+TEST_F(LoopTest, RowsThatFindNoRoomAreCountedAndEventsStillFindTheirs) {
+  const std::size_t capacity = parts_->wires.records.capacity();
+  for (std::size_t i = 0; i < capacity; ++i) {
+    tick();
+    exchange();
+    parts_->service.pump();
+  }
+  EXPECT_GT(parts_->wires.records_dropped.load(), capacity / 2);
+  const std::size_t before = parts_->wires.records.size();
+  EXPECT_LT(before, capacity);
+  parts_->wires.inputs.emergency_stop.store(true);
+  tick();
+  EXPECT_GT(parts_->wires.records.size(), before) << "the fault";
+}
+
+TEST_F(LoopTest, AnExchangeThatHangsIsAFaultAfterTheConfiguredCycles) {
+  ASSERT_TRUE(until(State::idle));
+  const auto cycles = parts_->rig.settings.faults.bus_down_cycles;
+  ASSERT_LT(cycles * parts_->period(), nanoseconds(parts_->rig.settings.channels[0].plausibility.max_age_s));
+  tick();  // with the report of the last good exchange
+  tick();  // one missing report is jitter
+  for (std::uint32_t i = 0; i < cycles; ++i) {
+    EXPECT_EQ(snapshot().state, State::idle) << i;
+    tick();
+  }
+  EXPECT_EQ(snapshot().state, State::faulted);
+  EXPECT_EQ(snapshot().first_fault, FaultCode::bus_down);
+}
+
+TEST_F(LoopTest, ACutWireStopsMotionUntilAcknowledgedAndStartedAgain) {
+  ASSERT_TRUE(until(State::idle));
+  parts_->service.submit(control::Request::Kind::start,
+                         testing::example_sequence(parts_->rig, "pick_stone.yaml"));
+  ASSERT_TRUE(until(State::running));
+  for (int i = 0; i < 200; ++i) {
+    tick();
+    exchange();
+  }
+  ASSERT_GT(snapshot().channels[0].command_kpa, 1);
+  auto& board = dynamic_cast<simulation::SimulatedBoard&>(*parts_->board);
+  simulation::SimulatedEvent cut;
+  cut.kind = simulation::SimulatedEvent::Kind::bus_lost;
+  board.happen(cut);
+  const std::uint64_t before = parts_->loop_statistics.ticks.value();
+  ASSERT_TRUE(until(State::faulted));
+  EXPECT_LE(parts_->loop_statistics.ticks.value() - before, parts_->rig.settings.faults.bus_down_cycles + 1);
+  simulation::SimulatedEvent mended;
+  mended.kind = simulation::SimulatedEvent::Kind::bus_restored;
+  board.happen(mended);
+  for (int i = 0; i < 1000; ++i) {
+    tick();
+    exchange();
+    parts_->service.pump();
+    parts_->recorder.drain();
+    ASSERT_EQ(snapshot().state, State::faulted);
+  }
+  EXPECT_TRUE(snapshot().bus.connected);
+  EXPECT_EQ(snapshot().channels[0].command_kpa, 0) << "closing: vent, says the rig file";
+  parts_->service.submit(control::Request::Kind::acknowledge);
+  ASSERT_TRUE(until(State::idle));
+  EXPECT_EQ(snapshot().channels[0].command_kpa, 0) << "nothing moves by itself";
+}
+
+TEST_F(LoopTest, LeavingSendsTheSafeOutputsAsTheLastOnes) {
+  ASSERT_TRUE(until(State::idle));
+  parts_->service.submit(control::Request::Kind::start,
+                         testing::example_sequence(parts_->rig, "pick_stone.yaml"));
+  ASSERT_TRUE(until(State::running));
+  for (int i = 0; i < 200; ++i) {
+    tick();
+    exchange();
+  }
+  ASSERT_GT(snapshot().channels[0].command_kpa, 1);
+  parts_->loop.leave();
+  ASSERT_TRUE(parts_->wires.commands.fetch());
+  EXPECT_TRUE(parts_->wires.commands.value().last);
+  EXPECT_EQ(parts_->wires.commands.value().command_kpa[0], 0);
+}
+
+TEST_F(LoopTest, DecimationRecordsEveryNthTick) {
+  rig::RigFile rig = testing::example_rig("rig.yaml");
+  rig.recorder.decimation = 10;
+  DaemonOptions options;
+  options.virtual_time = true;
+  DaemonParts parts(std::move(rig), options);
+  for (int i = 0; i < 100; ++i) parts.loop.tick(parts.virtual_clock.now());
+  std::vector<Record> records(1000);
+  records.resize(parts.wires.records.pop(records));
+  EXPECT_EQ(
+      std::count_if(records.begin(), records.end(), [](const Record& record) { return !record.is_event; }),
+      20);
+}
+
+TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
+  rig::RigFile rig = testing::example_rig("rig.yaml");
+  rig.settings.faults.slipped_cycles = 10;
+  DaemonParts parts(std::move(rig), {});
+  parts.bus.open();
+  // The grid lies in the past: the first tick is woken very late, all others in time.
+  const Nanoseconds now = parts.clock.now();
+  std::thread loop([&] { parts.loop.run(Grid(now - 100 * parts.period(), parts.period())); });
+  sleep_until(now + 3 * parts.period());
+  parts.wires.leave.store(true);
+  loop.join();
+  EXPECT_GE(parts.loop_statistics.slips_woken_late.value(), 100U);
+  EXPECT_LE(parts.loop_statistics.ticks.value(), 10U) << "no burst";
+  EXPECT_EQ(parts.service.snapshot().first_fault, FaultCode::cycles_lost);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,422 @@
+// The digital lines in front of a daemon that really runs, on a simulated board.
+
+#include "daemon/panel/panel.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "base/clock.h"
+#include "daemon/panel/panel_guard.h"
+#include "daemon/service/daemon.h"
+#include "tests/daemon/rig_under_test.h"
+#include "tests/daemon/scripted_lines.h"
+#include "tests/daemon/service/softgripd_process.h"
+#include "tests/daemon/temporary_folder.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using drivers::GpioRole;
+using testing::Terminals;
+
+rig::GpioSettings all_lines() {
+  rig::GpioSettings gpio;
+  gpio.debounce_s = 0.005;
+  gpio.stale_after_s = 0.5;
+  for (std::size_t i = 0; i < drivers::gpio_role_count; ++i) {
+    drivers::GpioLineSettings line;
+    line.role = static_cast<GpioRole>(i);
+    line.chip = "gpiochip0";
+    line.offset = static_cast<std::uint32_t>(i);
+    gpio.lines.push_back(line);
+    gpio.places.push_back({"rig.yaml", {10 + static_cast<int>(i), 5}, "  a line", "", ""});
+  }
+  return gpio;
+}
+
+bool eventually(const std::function<bool()>& condition, double timeout_s = 5) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(timeout_s);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+/// The panel alone, between terminals and a loop that the test plays.
+class PanelTest : public ::testing::Test {
+ protected:
+  void make(const rig::GpioSettings& settings) {
+    settings_ = settings;
+    panel_.emplace(terminals_.lines(), settings_, clock_, wires_, statistics_);
+  }
+  /// Steps for so long, with a loop that ticks.
+  void run(double duration_s, bool loop_ticks = true) {
+    const Nanoseconds end = clock_.now() + nanoseconds(duration_s);
+    while (clock_.now() < end) {
+      if (loop_ticks) statistics_.ticks.add();
+      panel_->step();
+    }
+  }
+  /// As after the start: the loop has latched, the stop is released, somebody acknowledged.
+  void make_ready() {
+    wires_.state.store(control::State::faulted);
+    run(0.03);
+    wires_.state.store(control::State::idle);
+    run(0.03);
+  }
+  [[nodiscard]] bool pressed() const { return wires_.inputs.emergency_stop.load(); }
+  [[nodiscard]] bool is_on(GpioRole role) const { return terminals_.level(role); }
+
+  rig::GpioSettings settings_;
+  Terminals terminals_;
+  MonotonicClock clock_;
+  Wires wires_{16};
+  LoopStatistics statistics_;
+  std::optional<Panel> panel_;
+};
+
+TEST_F(PanelTest, StartsPressedAndOpenBeforeAnythingIsRead) {
+  make(all_lines());
+  EXPECT_TRUE(pressed());
+  EXPECT_TRUE(wires_.inputs.interlock_open.load());
+}
+
+TEST_F(PanelTest, IsNotReleasedBeforeTheLoopHasLatchedIt) {
+  make(all_lines());
+  run(0.05);
+  EXPECT_TRUE(pressed()) << "the line is released, but a loop that never saw it pressed would just go on";
+  wires_.state.store(control::State::faulted);
+  run(0.02);
+  EXPECT_FALSE(pressed());
+}
+
+TEST_F(PanelTest, AnInputThatTheRigDoesNotHaveSaysNothing) {
+  rig::GpioSettings settings = all_lines();
+  settings.lines.erase(settings.lines.begin(), settings.lines.begin() + 2);
+  make(settings);
+  run(0.02);
+  EXPECT_FALSE(pressed());
+  EXPECT_FALSE(wires_.inputs.interlock_open.load());
+}
+
+TEST_F(PanelTest, PressingIsSeenWithinTheDebounceTimeAndALook) {
+  make(all_lines());
+  make_ready();
+  ASSERT_FALSE(pressed());
+  terminals_.set(GpioRole::emergency_stop, true);
+  const Nanoseconds began = clock_.now();
+  while (!pressed() && clock_.now() - began < ns_per_s) panel_->step();
+  EXPECT_GE(clock_.now() - began, nanoseconds(0.005));
+  EXPECT_LT(clock_.now() - began, nanoseconds(0.1)) << "a busy machine may add to the 5 ms";
+}
+
+TEST_F(PanelTest, PressingWithoutAnEdgeIsSeenAllTheSame) {
+  make(all_lines());
+  make_ready();
+  terminals_.set(GpioRole::emergency_stop, true, false);
+  run(0.03);
+  EXPECT_TRUE(pressed());
+}
+
+TEST_F(PanelTest, ThePartOpensAndClosesTheInterlock) {
+  make(all_lines());
+  run(0.03);
+  EXPECT_TRUE(wires_.inputs.interlock_open.load());
+  terminals_.set(GpioRole::part_in_position, true);
+  run(0.03);
+  EXPECT_FALSE(wires_.inputs.interlock_open.load());
+}
+
+TEST_F(PanelTest, EnableAndLampsFollowTheState) {
+  make(all_lines());
+  run(0.01);
+  EXPECT_FALSE(is_on(GpioRole::enable));
+  EXPECT_FALSE(is_on(GpioRole::ready_lamp));
+  wires_.state.store(control::State::faulted);
+  run(0.03);
+  EXPECT_TRUE(is_on(GpioRole::fault_lamp));
+  wires_.state.store(control::State::starting);
+  run(0.02);
+  EXPECT_FALSE(is_on(GpioRole::enable)) << "not before the rig is ready";
+  EXPECT_FALSE(is_on(GpioRole::fault_lamp));
+  wires_.state.store(control::State::idle);
+  run(0.02);
+  EXPECT_TRUE(is_on(GpioRole::enable));
+  EXPECT_TRUE(is_on(GpioRole::ready_lamp));
+  EXPECT_TRUE(wires_.enable_on.load());
+}
+
+TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
+  for (const bool drops : {true, false}) {
+    rig::GpioSettings settings = all_lines();
+    settings.enable_drops_on_fault = drops;
+    panel_.reset();
+    make(settings);
+    make_ready();
+    ASSERT_TRUE(is_on(GpioRole::enable));
+    wires_.state.store(control::State::faulted);
+    run(0.02);
+    EXPECT_EQ(is_on(GpioRole::enable), !drops);
+    wires_.state.store(control::State::starting);  // acknowledged
+    run(0.02);
+    EXPECT_EQ(is_on(GpioRole::enable), !drops);
+  }
+}
+
+TEST_F(PanelTest, TheEmergencyStopAlwaysDropsTheEnable) {
+  rig::GpioSettings settings = all_lines();
+  settings.enable_drops_on_fault = false;
+  make(settings);
+  make_ready();
+  terminals_.set(GpioRole::emergency_stop, true);
+  run(0.03);
+  EXPECT_FALSE(is_on(GpioRole::enable)) << "even while the loop still says idle";
+}
+
+TEST_F(PanelTest, ALoopThatHangsDropsTheEnableAndMayNotGoOn) {
+  rig::GpioSettings settings = all_lines();
+  settings.stale_after_s = 0.05;
+  make(settings);
+  make_ready();
+  ASSERT_TRUE(is_on(GpioRole::enable));
+  run(0.1, false);
+  EXPECT_FALSE(is_on(GpioRole::enable));
+  EXPECT_TRUE(is_on(GpioRole::fault_lamp));
+  EXPECT_TRUE(wires_.inputs.lost.load()) << "a loop that wakes up again finds a fault";
+  run(0.02);
+  EXPECT_TRUE(wires_.inputs.lost.load()) << "until it has latched it";
+  wires_.state.store(control::State::faulted);
+  run(0.02);
+  EXPECT_FALSE(wires_.inputs.lost.load());
+}
+
+TEST_F(PanelTest, ALostChipLosesTheInputs) {
+  make(all_lines());
+  make_ready();
+  terminals_.fail();
+  run(0.02);
+  EXPECT_TRUE(wires_.inputs.lost.load());
+  EXPECT_TRUE(wires_.inputs.interlock_open.load());
+  EXPECT_FALSE(is_on(GpioRole::enable));
+  std::vector<PanelEvent::Kind> kinds;
+  for (PanelEvent event; wires_.panel_events.pop(event);) kinds.push_back(event.kind);
+  EXPECT_EQ(std::count(kinds.begin(), kinds.end(), PanelEvent::Kind::gpio_lost), 1);
+}
+
+TEST_F(PanelTest, WhatWasDroppedStaysDropped) {
+  make(all_lines());
+  make_ready();
+  panel_->drop();
+  run(0.02);
+  EXPECT_FALSE(is_on(GpioRole::enable));
+  wires_.state.store(control::State::faulted);
+  run(0.02);
+  wires_.state.store(control::State::idle);
+  run(0.02);
+  EXPECT_FALSE(is_on(GpioRole::enable));
+  EXPECT_FALSE(is_on(GpioRole::ready_lamp));
+}
+
+/// The enable output is a byte of shared memory here: the child crashes, the parent looks.
+class PipeLines final : public drivers::GpioLines {
+ public:
+  explicit PipeLines(int descriptor) : descriptor_(descriptor) {}
+  std::optional<std::size_t> wait(Nanoseconds, std::span<drivers::GpioEdge>) noexcept override { return 0; }
+  std::optional<bool> read(GpioRole) noexcept override { return false; }
+  bool write(GpioRole role, bool active) noexcept override {
+    const char byte = active ? '1' : '0';
+    return role != GpioRole::enable || ::write(descriptor_, &byte, 1) == 1;
+  }
+  [[nodiscard]] bool sees_edges() const noexcept override { return true; }
+
+ private:
+  int descriptor_;
+};
+
+TEST(PanelGuard, ACrashDropsTheEnableAndStillIsACrash) {
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGQUIT}) {
+    std::array<int, 2> pipe{};
+    ASSERT_EQ(::pipe(pipe.data()), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const rig::GpioSettings settings = all_lines();
+      const MonotonicClock clock;
+      Wires wires(16);
+      const LoopStatistics statistics;
+      Panel panel(std::make_unique<PipeLines>(pipe[1]), settings, clock, wires, statistics);
+      const PanelGuard guard(panel);
+      ::raise(signal);
+      ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << signal;
+    char byte = 0;
+    EXPECT_EQ(::read(pipe[0], &byte, 1), 1);
+    EXPECT_EQ(byte, '0');
+    ::close(pipe[0]);
+    ::close(pipe[1]);
+  }
+}
+
+/// The whole daemon, its lines in the test's hands, spoken to over its socket.
+class PanelOfDaemon : public ::testing::Test {
+ protected:
+  /// end() signals this process: only the daemon may take it.
+  PanelOfDaemon() {
+    sigset_t term;
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &term, &before_);
+  }
+  void start(const std::function<void(rig::RigFile&)>& change = {}) {
+    rig::RigFile rig = testing::example_rig("rig.yaml");
+    rig.recorder.mode = rig::RecorderSettings::Mode::off;
+    rig.real_time = {};
+    rig.real_time.priority = 0;
+    rig.real_time.lock_memory = false;
+    rig.real_time.cpu_dma_latency_us.reset();
+    rig.gpio = all_lines();
+    rig.socket.path = folder_.path() + "/socket";
+    if (change) change(rig);
+    DaemonOptions options;
+    options.open_gpio = [this](auto) { return open(); };
+    auto daemon = Daemon::create(std::move(rig), std::move(options));
+    ASSERT_TRUE(daemon) << daemon.error();
+    daemon_ = std::move(*daemon);
+    thread_ = std::thread([this] { outcome_ = daemon_->run(); });
+    client_.emplace(folder_.path() + "/socket");
+    ASSERT_TRUE(client_->open());
+  }
+  ~PanelOfDaemon() override {
+    end();
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+
+  virtual tl::expected<std::unique_ptr<drivers::GpioLines>, drivers::GpioFailure> open() {
+    return terminals_.lines();
+  }
+  void end() {
+    if (!thread_.joinable()) return;
+    ::kill(::getpid(), SIGTERM);  // the daemon has it blocked in all threads and waits for it
+    thread_.join();
+  }
+  nlohmann::json status() { return client_->ask({{"command", "status"}})["result"]; }
+  bool until_state(const std::string& state) {
+    return eventually([&] { return status()["state"] == state; });
+  }
+  nlohmann::json ask(const std::string& command) { return client_->ask({{"command", command}}); }
+
+  sigset_t before_{};
+  testing::TemporaryFolder folder_;
+  Terminals terminals_;
+  std::unique_ptr<Daemon> daemon_;
+  Outcome outcome_;
+  std::thread thread_;
+  std::optional<testing::ApiClient> client_;
+};
+
+TEST_F(PanelOfDaemon, StartsFaultedAndMovesOnlyAfterReleaseAndAcknowledgement) {
+  terminals_.set(GpioRole::emergency_stop, true);
+  terminals_.set(GpioRole::part_in_position, true);
+  start();
+  ASSERT_TRUE(until_state("faulted"));
+  EXPECT_EQ(status()["fault"]["code"], "F501");
+  EXPECT_EQ(status()["gpio"]["emergency_stop"], true);
+  EXPECT_EQ(ask("acknowledge")["error"]["refusal"]["name"], "cause_persists") << "still pressed";
+
+  terminals_.set(GpioRole::emergency_stop, false);
+  ASSERT_TRUE(eventually([&] { return status()["gpio"]["emergency_stop"] == false; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(status()["state"], "faulted") << "a reset starts nothing";
+  EXPECT_FALSE(terminals_.level(GpioRole::enable));
+  EXPECT_TRUE(terminals_.level(GpioRole::fault_lamp));
+
+  EXPECT_EQ(ask("acknowledge")["ok"], true);
+  ASSERT_TRUE(until_state("idle"));
+  ASSERT_TRUE(eventually([&] { return terminals_.level(GpioRole::enable); }));
+  EXPECT_TRUE(terminals_.level(GpioRole::ready_lamp));
+
+  ASSERT_EQ(client_->ask({{"command", "start"}, {"sequence", "pick_stone"}})["ok"], true);
+  ASSERT_TRUE(until_state("running"));
+  terminals_.set(GpioRole::emergency_stop, true);
+  ASSERT_TRUE(until_state("faulted"));
+  EXPECT_EQ(status()["fault"]["code"], "F501");
+  ASSERT_TRUE(eventually([&] { return !terminals_.level(GpioRole::enable); }));
+  ASSERT_TRUE(eventually([&] { return status()["channels"][0]["command_kpa"] == 0; }));
+
+  terminals_.set(GpioRole::emergency_stop, false);
+  ASSERT_TRUE(eventually([&] { return ask("acknowledge")["ok"] == true; }));
+  ASSERT_TRUE(until_state("idle")) << "and there it stays";
+  end();
+  EXPECT_TRUE(outcome_.left_safely);
+  EXPECT_FALSE(terminals_.level(GpioRole::enable)) << "dropped at the end";
+  EXPECT_FALSE(terminals_.level(GpioRole::ready_lamp));
+}
+
+TEST_F(PanelOfDaemon, APartThatIsAwayRefusesAStart) {
+  start([](rig::RigFile& rig) {
+    auto& lines = rig.gpio->lines;
+    lines.erase(lines.begin());  // no emergency stop here: starts without a fault
+  });
+  ASSERT_TRUE(until_state("idle"));
+  const auto refused = client_->ask({{"command", "start"}, {"sequence", "pick_stone"}});
+  EXPECT_EQ(refused["error"]["refusal"]["name"], "interlock_open");
+  terminals_.set(GpioRole::part_in_position, true);
+  ASSERT_TRUE(eventually([&] { return status()["gpio"]["part_in_position"] == true; }));
+  EXPECT_EQ(client_->ask({{"command", "start"}, {"sequence", "pick_stone"}})["ok"], true);
+}
+
+TEST_F(PanelOfDaemon, ALostChipIsAFaultThatCannotBeAcknowledged) {
+  start([](rig::RigFile& rig) { rig.gpio->lines.erase(rig.gpio->lines.begin()); });
+  ASSERT_TRUE(until_state("idle"));
+  terminals_.fail();
+  ASSERT_TRUE(until_state("faulted"));
+  EXPECT_EQ(status()["fault"]["code"], "F502");
+  EXPECT_EQ(ask("acknowledge")["error"]["refusal"]["name"], "cause_persists");
+}
+
+TEST(PanelRun, LinesThatCannotBeHadEndTheStartWithTheirPlaceInTheRigFile) {
+  for (const auto kind : {drivers::GpioFailure::Kind::refused, drivers::GpioFailure::Kind::failed}) {
+    rig::RigFile rig = testing::example_rig("rig.yaml");
+    rig.gpio = all_lines();
+    DaemonOptions options;
+    options.listen = false;
+    options.open_gpio =
+        [kind](auto) -> tl::expected<std::unique_ptr<drivers::GpioLines>, drivers::GpioFailure> {
+      return tl::unexpected(drivers::GpioFailure{kind, 2, "no such line", "look at gpioinfo"});
+    };
+    const auto daemon = Daemon::create(std::move(rig), options);
+    ASSERT_TRUE(daemon);
+    const Outcome outcome = (*daemon)->run();
+    EXPECT_EQ(exit_code_of(outcome), kind == drivers::GpioFailure::Kind::refused ? 3 : 4);
+    EXPECT_EQ(outcome.message.find("rig.yaml:12:5: no such line"), 0U) << outcome.message;
+    EXPECT_NE(outcome.message.find("look at gpioinfo"), std::string::npos);
+    EXPECT_EQ(outcome.ticks, 0U);
+  }
+}
+
+TEST(PanelRun, VirtualTimeHasNoDigitalLines) {
+  rig::RigFile rig = testing::example_rig("rig.yaml");
+  rig.gpio = all_lines();
+  DaemonOptions options;
+  options.virtual_time = true;
+  options.duration_s = 1;
+  const auto daemon = Daemon::create(std::move(rig), options);
+  ASSERT_FALSE(daemon);
+  EXPECT_NE(daemon.error().find("digital lines"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

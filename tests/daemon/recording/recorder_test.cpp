@@ -1,0 +1,254 @@
+#include "daemon/recording/recorder.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/grid.h"
+#include "tests/daemon/temporary_folder.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using control::Event;
+using control::State;
+using testing::TemporaryFolder;
+using testing::text_of;
+
+constexpr Nanoseconds period = 10'000'000;
+
+/// A recorder that is fed tick by tick.
+class RecorderTest : public ::testing::Test {
+ protected:
+  RecorderTest() {
+    settings_.directory = temporary_.path();
+    provenance_.software_version = "test";
+    provenance_.rig = "bench";
+    provenance_.channel_names = {"left", "right"};
+    provenance_.rate_hz = 100;
+    provenance_.virtual_time = true;
+    provenance_.seed = 42;
+    auto sequence = std::make_shared<LoadedSequence>();
+    sequence->prepared.name = "pick stone";
+    sequence->sha256 = "00ff";
+    shelf_.put(7, sequence);
+  }
+
+  Recorder& recorder() {
+    if (!recorder_) {
+      recorder_ = std::make_unique<Recorder>(settings_, provenance_, only_folder_, 0, wires_, log_, shelf_);
+    }
+    return *recorder_;
+  }
+
+  void event(Event::Kind kind, std::uint16_t detail = 0, std::uint32_t request = 0) {
+    Record record;
+    record.at = now_;
+    record.is_event = true;
+    record.event.kind = kind;
+    record.event.detail = detail;
+    record.event.request = request;
+    wires_.records.push(record);
+  }
+
+  void ticks(int count, State state) {
+    for (int i = 0; i < count; ++i) {
+      for (std::uint8_t channel = 0; channel < 2; ++channel) {
+        Record record;
+        record.at = now_;
+        record.state = state;
+        record.channel = channel;
+        record.output.validity = model::Validity::valid;
+        wires_.records.push(record);
+      }
+      now_ += period;
+      recorder().drain();
+    }
+  }
+
+  /// Names of the run folders, sorted.
+  std::vector<std::string> folders() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(temporary_.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  nlohmann::json json(const std::string& folder) const {
+    return nlohmann::json::parse(text_of(temporary_.path() + "/" + folder + "/run.json"));
+  }
+  std::vector<std::string> lines(const std::string& folder) const {
+    std::vector<std::string> result;
+    std::istringstream text(text_of(temporary_.path() + "/" + folder + "/run.csv"));
+    for (std::string line; std::getline(text, line);) result.push_back(line);
+    return result;
+  }
+
+  TemporaryFolder temporary_;
+  rig::RecorderSettings settings_;
+  Provenance provenance_;
+  std::string only_folder_;
+  Wires wires_{4096};
+  EventLog log_{100};
+  SequenceShelf shelf_;
+  std::unique_ptr<Recorder> recorder_;
+  Nanoseconds now_ = 50 * ns_per_s;
+};
+
+TEST_F(RecorderTest, RecordsASequenceFromItsStartToHalfASecondAfterItsMotion) {
+  ticks(200, State::idle);
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(100, State::running);
+  ticks(200, State::idle);
+  recorder().finish();
+  ASSERT_EQ(folders(), std::vector<std::string>{"run-0001_pick_stone"});
+  const auto rows = lines(folders().front());
+  EXPECT_EQ(rows.size(), 1 + 2 * (100 + 50));
+  EXPECT_EQ(rows[1].substr(0, 7), "0,left,");
+  const auto story = json(folders().front());
+  EXPECT_EQ(story["state"], "complete");
+  EXPECT_EQ(story["reason"], "sequence");
+  EXPECT_EQ(story["sequence"]["name"], "pick stone");
+  EXPECT_EQ(story["sequence"]["request"], 7);
+  EXPECT_EQ(story["rows"], 300);
+  EXPECT_EQ(story["dropped_rows"], 0);
+  EXPECT_EQ(story["seed"], 42);
+  EXPECT_FALSE(story.contains("started_at"));
+  EXPECT_EQ(story["events"][0]["kind"], "sequence_started");
+}
+
+TEST_F(RecorderTest, AFaultAtRestHasItsLastSecondAttached) {
+  ticks(300, State::idle);
+  event(Event::Kind::fault_latched, static_cast<std::uint16_t>(control::FaultCode::bus_down));
+  ticks(200, State::faulted);
+  recorder().finish();
+  ASSERT_EQ(folders(), std::vector<std::string>{"run-0001_fault"});
+  const auto story = json(folders().front());
+  EXPECT_EQ(story["reason"], "fault");
+  EXPECT_EQ(story["faults"][0]["code"], "F101");
+  EXPECT_NEAR(story["faults"][0]["time_s"].get<double>(), 1.0, 0.011);
+  EXPECT_EQ(lines(folders().front())[1].substr(0, 7), "0,left,");
+}
+
+TEST_F(RecorderTest, AFaultDuringASequenceStaysInItsRecording) {
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(10, State::running);
+  event(Event::Kind::fault_latched, static_cast<std::uint16_t>(control::FaultCode::reading_jumped));
+  ticks(200, State::faulted);
+  recorder().finish();
+  ASSERT_EQ(folders().size(), 1U);
+  EXPECT_EQ(json(folders().front())["faults"][0]["code"], "F204");
+}
+
+TEST_F(RecorderTest, AStartSoonAfterARunGetsARecordingOfItsOwn) {
+  for (int run = 0; run < 2; ++run) {
+    event(Event::Kind::sequence_started, 0, 7);
+    ticks(10, State::running);
+    ticks(10, State::idle);
+  }
+  recorder().finish();
+  EXPECT_EQ(folders(), (std::vector<std::string>{"run-0001_pick_stone", "run-0002_pick_stone"}));
+  EXPECT_EQ(json("run-0001_pick_stone")["rows"], 40);
+}
+
+TEST_F(RecorderTest, AlwaysIsOneRecordingFromStartToStop) {
+  settings_.mode = rig::RecorderSettings::Mode::always;
+  ticks(10, State::starting);
+  ticks(100, State::idle);
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(10, State::running);
+  recorder().finish();
+  ASSERT_EQ(folders().size(), 1U);
+  EXPECT_EQ(lines(folders().front()).size(), 1 + 2 * 120U);
+  EXPECT_EQ(json(folders().front())["sequence"]["name"], "pick stone");
+}
+
+TEST_F(RecorderTest, OffRecordsNothing) {
+  settings_.mode = rig::RecorderSettings::Mode::off;
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(10, State::running);
+  recorder().finish();
+  EXPECT_TRUE(folders().empty());
+}
+
+TEST_F(RecorderTest, ANamedFolderOverrulesTheMode) {
+  settings_.mode = rig::RecorderSettings::Mode::off;
+  only_folder_ = temporary_.path() + "/mine";
+  ticks(10, State::idle);
+  recorder().finish();
+  EXPECT_EQ(folders(), std::vector<std::string>{"mine"});
+  EXPECT_EQ(json("mine")["reason"], "always");
+}
+
+TEST_F(RecorderTest, DroppedRowsAreCounted) {
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(1, State::running);
+  wires_.records_dropped.store(12);
+  ticks(1, State::running);
+  recorder().finish();
+  EXPECT_EQ(json(folders().front())["dropped_rows"], 12);
+  EXPECT_EQ(recorder().status().dropped_rows, 12U);
+}
+
+TEST_F(RecorderTest, ADiskThatFillsUpEndsTheRecordingAndIsTold) {
+  void (*handler)(int) = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{3000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(100, State::running);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  ticks(100, State::running);
+  recorder().finish();
+  ASSERT_EQ(folders().size(), 1U);
+  EXPECT_EQ(json(folders().front())["state"], "stopped_early");
+  EXPECT_NE(json(folders().front())["error"].get<std::string>().find("File too large"), std::string::npos);
+  const std::string csv = text_of(temporary_.path() + "/" + folders().front() + "/run.csv");
+  EXPECT_EQ(csv.back(), '\n');
+  const auto events = log_.since(0, 100);
+  EXPECT_EQ(events.back().kind, "recording_failed");
+  EXPECT_EQ(events.back().severity, Severity::error);
+  EXPECT_FALSE(recorder().status().active);
+  EXPECT_FALSE(recorder().status().error.empty());
+}
+
+TEST_F(RecorderTest, TriesAgainWithTheNextSequenceAMinuteAfterTheDiskRefused) {
+  settings_.directory = "/proc/softgrip";
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(10, State::running);
+  EXPECT_EQ(log_.since(0, 100).size(), 1U) << "told once, not at every row";
+  settings_.directory = temporary_.path();
+  ticks(6100, State::idle);
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(10, State::running);
+  recorder().finish();
+  EXPECT_EQ(folders().size(), 1U);
+}
+
+TEST_F(RecorderTest, RunJsonIsThereFromTheFirstRowOn) {
+  event(Event::Kind::sequence_started, 0, 7);
+  ticks(1, State::running);
+  EXPECT_EQ(json(folders().front())["state"], "recording");
+}
+
+TEST_F(RecorderTest, BytesThatAreNoUtf8DoNotMakeRunJsonUnreadable) {
+  provenance_.rig = "bench \xff";
+  settings_.mode = rig::RecorderSettings::Mode::always;
+  ticks(1, State::idle);
+  recorder().finish();
+  EXPECT_EQ(json(folders().front())["state"], "complete");
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

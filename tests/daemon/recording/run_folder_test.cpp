@@ -1,0 +1,94 @@
+#include "daemon/recording/run_folder.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include "tests/daemon/temporary_folder.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using testing::TemporaryFolder;
+using testing::text_of;
+
+/// A disk that is full beyond `bytes` per file.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  SmallDisk(SmallDisk&&) = delete;
+  SmallDisk& operator=(SmallDisk&&) = delete;
+  ~SmallDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(RunFolder, CreatesItsFolderAndTheFirstLine) {
+  const TemporaryFolder temporary;
+  const auto folder = RunFolder::create(temporary.path() + "/a/b", "time_s\n", true);
+  ASSERT_TRUE(folder) << folder.error();
+  EXPECT_EQ(text_of(temporary.path() + "/a/b/run.csv"), "time_s\n");
+}
+
+TEST(RunFolder, NeverOverwritesARecording) {
+  const TemporaryFolder temporary;
+  ASSERT_TRUE(RunFolder::create(temporary.path(), "first\n", true));
+  const auto second = RunFolder::create(temporary.path(), "second\n", true);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().find("never overwritten"), std::string::npos);
+  EXPECT_EQ(text_of(temporary.path() + "/run.csv"), "first\n");
+}
+
+TEST(RunFolder, SaysWhyItCannotBegin) {
+  const auto folder = RunFolder::create("/proc/softgrip", "time_s\n", true);
+  ASSERT_FALSE(folder);
+  EXPECT_NE(folder.error().find("/proc/softgrip"), std::string::npos);
+}
+
+TEST(RunFolder, AFullDiskCutsTheFileAtAWholeLineAndIsRemembered) {
+  const TemporaryFolder temporary;
+  auto folder = RunFolder::create(temporary.path(), "header\n", true);
+  ASSERT_TRUE(folder);
+  ASSERT_TRUE(folder->append("0,1\n"));
+  {
+    const SmallDisk disk(14);
+    EXPECT_FALSE(folder->append("1,2\n2,3\n3,4\n"));
+  }
+  EXPECT_FALSE(folder->healthy());
+  EXPECT_NE(folder->error().find("File too large"), std::string::npos) << folder->error();
+  EXPECT_EQ(text_of(temporary.path() + "/run.csv"), "header\n0,1\n");
+  EXPECT_FALSE(folder->append("4,5\n"));
+  EXPECT_TRUE(folder->replace_json("{}"));
+}
+
+TEST(RunFolder, RunJsonIsTheOldOneOrTheNewOne) {
+  const TemporaryFolder temporary;
+  auto folder = RunFolder::create(temporary.path(), "header\n", true);
+  ASSERT_TRUE(folder);
+  ASSERT_TRUE(folder->replace_json("{\"a\":1}"));
+  {
+    const SmallDisk disk(8);
+    EXPECT_FALSE(folder->replace_json("{\"a\":1,\"b\":2}"));
+  }
+  EXPECT_EQ(text_of(temporary.path() + "/run.json"), "{\"a\":1}");
+  EXPECT_FALSE(std::filesystem::exists(temporary.path() + "/run.json.tmp"));
+  EXPECT_TRUE(folder->healthy());
+  EXPECT_FALSE(folder->error().empty());
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,102 @@
+#include "daemon/service/daemon.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/daemon/rig_under_test.h"
+#include "tests/daemon/temporary_folder.h"
+
+namespace softgrip::daemon {
+namespace {
+
+TEST(Daemon, VirtualTimeNeedsAnEnd) {
+  DaemonOptions options;
+  options.virtual_time = true;
+  const auto daemon = Daemon::create(testing::example_rig("rig.yaml"), options);
+  ASSERT_FALSE(daemon);
+  EXPECT_NE(daemon.error().find("end"), std::string::npos);
+}
+
+TEST(Daemon, VirtualTimeNeedsASimulatedBoard) {
+  DaemonOptions options;
+  options.virtual_time = true;
+  options.duration_s = 1;
+  const auto daemon = Daemon::create(testing::example_rig("rig_tcp.yaml"), options);
+  ASSERT_FALSE(daemon);
+  EXPECT_NE(daemon.error().find("simulated"), std::string::npos);
+}
+
+TEST(Daemon, RunsASequenceAndReportsItsResult) {
+  rig::RigFile rig = testing::example_rig("rig.yaml");
+  rig.recorder.mode = rig::RecorderSettings::Mode::off;
+  DaemonOptions options;
+  options.virtual_time = true;
+  options.sequence = testing::example_sequence(rig, "pick_stone.yaml");
+  std::vector<std::string> kinds;
+  options.on_event = [&kinds](const EventEntry& event) { kinds.push_back(event.kind); };
+  const auto daemon = Daemon::create(std::move(rig), options);
+  ASSERT_TRUE(daemon) << daemon.error();
+  const Outcome outcome = (*daemon)->run();
+  EXPECT_EQ(outcome.ending, Ending::sequence_ended);
+  EXPECT_EQ(outcome.sequence_end, control::SequenceEnd::done);
+  EXPECT_EQ(outcome.last.channels[0].result, control::GripResult::released);
+  EXPECT_TRUE(outcome.left_safely);
+  EXPECT_EQ(exit_code_of(outcome), 0);
+  EXPECT_NE(std::find(kinds.begin(), kinds.end(), "sequence_finished"), kinds.end());
+}
+
+TEST(Daemon, AnExceptionOfTheCallersOwnStillEndsWithSafeOutputs) {
+  const testing::TemporaryFolder folder;
+  rig::RigFile rig = testing::example_rig("rig.yaml");
+  rig.recorder.mode = rig::RecorderSettings::Mode::off;
+  rig.real_time = {};
+  rig.real_time.lock_memory = false;  // of the test's own process
+  DaemonOptions options;
+  options.listen = false;
+  options.duration_s = 20;
+  options.on_event = [](const EventEntry& event) {
+    if (event.kind == "state_changed") throw std::runtime_error("on purpose");
+  };
+  const auto daemon = Daemon::create(std::move(rig), options);
+  ASSERT_TRUE(daemon);
+  const Outcome outcome = (*daemon)->run();
+  EXPECT_EQ(outcome.ending, Ending::broken);
+  EXPECT_EQ(outcome.message, "on purpose");
+  EXPECT_TRUE(outcome.left_safely);
+  EXPECT_EQ(exit_code_of(outcome), 1);
+  EXPECT_LT(outcome.wall_s, 10);
+}
+
+TEST(Daemon, EveryEndingHasItsExitCode) {
+  Outcome outcome;
+  outcome.left_safely = true;
+  const auto code = [&outcome](Ending ending) {
+    outcome.ending = ending;
+    return exit_code_of(outcome);
+  };
+  EXPECT_EQ(code(Ending::asked), 0);
+  EXPECT_EQ(code(Ending::sequence_refused), 5);
+  EXPECT_EQ(code(Ending::not_idle), 5);
+  EXPECT_EQ(code(Ending::real_time_refused), 1);
+  EXPECT_EQ(code(Ending::socket_failed), 4);
+  EXPECT_EQ(code(Ending::broken), 1);
+  using control::SequenceEnd;
+  for (const auto& [end, expected] :
+       {std::pair{SequenceEnd::done, 0}, std::pair{SequenceEnd::failed, 6},
+        std::pair{SequenceEnd::stopped, 1}, std::pair{SequenceEnd::faulted, 1}}) {
+    outcome.sequence_end = end;
+    EXPECT_EQ(code(Ending::sequence_ended), expected);
+  }
+  outcome.left_safely = false;
+  outcome.sequence_end = SequenceEnd::done;
+  EXPECT_EQ(code(Ending::sequence_ended), 1) << "a board that was not left safely is a failure";
+  EXPECT_EQ(code(Ending::asked), 1);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

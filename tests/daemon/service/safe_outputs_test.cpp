@@ -1,0 +1,87 @@
+#include "daemon/service/safe_outputs.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/daemon/scripted_board.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using drivers::BusStatus;
+using testing::ScriptedBoard;
+
+/// Refuses so many calls of connect() and exchange() each, then works.
+class RecoveringBoard final : public drivers::Board {
+ public:
+  RecoveringBoard(ScriptedBoard& inner, int refused_connects, int refused_exchanges)
+      : inner_(inner), refused_connects_(refused_connects), refused_exchanges_(refused_exchanges) {}
+  [[nodiscard]] std::size_t channels() const noexcept override { return inner_.channels(); }
+  [[nodiscard]] BusStatus connect(std::chrono::nanoseconds deadline) noexcept override {
+    return refused_connects_-- > 0 ? BusStatus::disconnected : inner_.connect(deadline);
+  }
+  [[nodiscard]] BusStatus exchange(std::span<const double> commands_kpa, std::span<drivers::Reading> readings,
+                                   std::chrono::nanoseconds deadline) noexcept override {
+    return refused_exchanges_-- > 0 ? BusStatus::timed_out
+                                    : inner_.exchange(commands_kpa, readings, deadline);
+  }
+  [[nodiscard]] std::string describe() const override { return "recovering board"; }
+  [[nodiscard]] Budget budget() const override { return {}; }
+  [[nodiscard]] bool has_watchdog() const noexcept override { return false; }
+
+ private:
+  ScriptedBoard& inner_;
+  int refused_connects_;
+  int refused_exchanges_;
+};
+
+class SafeOutputsTest : public ::testing::Test {
+ protected:
+  SafeOutputsTest() {
+    rig_.settings.channels.resize(2);
+    rig_.settings.channels[0].limits.pressure_min_kpa = 0;
+    rig_.settings.channels[1].limits.pressure_min_kpa = 2;
+    rig_.reconnect.first_pause = std::chrono::milliseconds(1);
+  }
+  SafeOutputsReport write(drivers::Board& board,
+                          std::chrono::nanoseconds patience = std::chrono::seconds(5)) {
+    return write_safe_outputs(rig_, board, clock_, patience);
+  }
+
+  rig::RigFile rig_;
+  MonotonicClock clock_;
+  ScriptedBoard board_{2, clock_};
+};
+
+TEST_F(SafeOutputsTest, WritesTheLowestPressureOfEachChannelAndNothingElse) {
+  EXPECT_EQ(write(board_).end, SafeOutputsEnd::confirmed);
+  ASSERT_EQ(board_.written.size(), 2U);
+  for (const auto& written : board_.written) EXPECT_EQ(written, (std::vector<double>{0, 2}));
+}
+
+TEST_F(SafeOutputsTest, ReconnectsUntilTheBoardConfirms) {
+  RecoveringBoard board(board_, 3, 2);
+  EXPECT_EQ(write(board).end, SafeOutputsEnd::confirmed);
+  EXPECT_EQ(board_.written.size(), 2U);
+  EXPECT_EQ(board_.connect_attempts.size(), 3U);  // each lost exchange costs its session
+}
+
+TEST_F(SafeOutputsTest, ABoardThatStaysSilentIsNotConfirmed) {
+  board_.next_connect = BusStatus::disconnected;
+  const SafeOutputsReport report = write(board_, std::chrono::milliseconds(20));
+  EXPECT_EQ(report.end, SafeOutputsEnd::board_silent);
+  EXPECT_EQ(exit_code_of(report.end), 4);
+  EXPECT_TRUE(board_.written.empty());
+}
+
+TEST_F(SafeOutputsTest, ATrippedWatchdogOfTheBoardIsSafeEnough) {
+  board_.next_exchange = BusStatus::watchdog_tripped;
+  EXPECT_EQ(write(board_).end, SafeOutputsEnd::board_holds);
+}
+
+TEST_F(SafeOutputsTest, AfterAnOrderlyEndTheOutputsStay) {
+  EXPECT_EQ(leave_safe_outputs(rig_, "success").end, SafeOutputsEnd::not_needed);
+  EXPECT_EQ(exit_code_of(SafeOutputsEnd::not_needed), 0);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,173 @@
+// Sessions with a running softgripd over its socket, friendly and hostile.
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/daemon/service/softgripd_process.h"
+#include "tests/daemon/temporary_folder.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using nlohmann::json;
+using testing::ApiClient;
+using testing::make_rig;
+using testing::SoftgripdProcess;
+
+class SocketSession : public ::testing::Test {
+ protected:
+  SocketSession()
+      : process_(folder_.path(), {.arguments = {"--config", make_rig(folder_.path())}}), client_(socket()) {}
+  void SetUp() override {
+    ASSERT_TRUE(client_.open()) << process_.output();
+    ASSERT_TRUE(until_state("idle"));
+  }
+  std::string socket() const { return folder_.path() + "/socket"; }
+  json ask(const json& request) { return client_.ask(request); }
+  json status() { return ask({{"command", "status"}})["result"]; }
+  bool until_state(const std::string& state) {
+    for (int i = 0; i < 500; ++i) {
+      if (status()["state"] == state) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return false;
+  }
+
+  testing::TemporaryFolder folder_;
+  SoftgripdProcess process_;
+  ApiClient client_;
+};
+
+TEST_F(SocketSession, AGripFromStartToVent) {
+  const json start = ask({{"id", 1}, {"command", "start"}, {"sequence", "pick_stone.yaml"}});
+  EXPECT_EQ(start["id"], 1);
+  ASSERT_EQ(start["ok"], true) << start;
+  const auto request = start["result"]["request"].get<std::uint32_t>();
+  ASSERT_TRUE(until_state("running"));
+
+  const json again = ask({{"id", 2}, {"command", "start"}, {"sequence", "pick_stone"}});
+  EXPECT_EQ(again["ok"], false);
+  EXPECT_EQ(again["error"]["code"], "refused");
+  EXPECT_EQ(again["error"]["refusal"]["name"], "not_idle");
+
+  const json seen = status();
+  EXPECT_EQ(seen["sequence"]["name"], "pick_stone");
+  EXPECT_EQ(seen["sequence"]["request"], request);
+  EXPECT_EQ(seen["sequence"]["ended"], nullptr);
+  EXPECT_EQ(seen["recording"]["active"], true);
+
+  EXPECT_EQ(ask({{"command", "vent"}})["ok"], true);
+  ASSERT_TRUE(until_state("idle"));
+  EXPECT_EQ(status()["sequence"]["ended"], "stopped");
+  const json events = ask({{"command", "events"}})["result"];
+  bool started = false;
+  for (const json& event : events["events"]) {
+    started = started || (event["kind"] == "sequence_started" && event["request"] == request);
+  }
+  EXPECT_TRUE(started);
+  const auto newest = events["newest"].get<std::uint64_t>();
+  const json later = ask({{"command", "events"}, {"since", newest}})["result"]["events"];
+  for (const json& event : later) EXPECT_GT(event["id"].get<std::uint64_t>(), newest);
+}
+
+TEST_F(SocketSession, RequestsThatTheStateDoesNotAllowAreRefusedWithTheirReason) {
+  EXPECT_EQ(ask({{"command", "stop"}})["error"]["refusal"]["name"], "nothing_to_stop");
+  EXPECT_EQ(ask({{"command", "acknowledge"}})["error"]["refusal"]["name"], "nothing_to_acknowledge");
+}
+
+TEST_F(SocketSession, ASequenceThatCannotRunIsRefusedWithAllItsProblems) {
+  const json reply =
+      ask({{"command", "start"},
+           {"sequence", "mine"},
+           {"sequence_text", "name: mine\nsteps:\n  - move: {displacement_mm: 500}\n  - fly: {}\n"}});
+  EXPECT_EQ(reply["error"]["code"], "sequence_refused");
+  ASSERT_GE(reply["error"]["problems"].size(), 1U) << reply;
+  EXPECT_EQ(reply["error"]["problems"][0]["file"], "mine");
+  EXPECT_GE(reply["error"]["problems"][0]["line"], 3);
+  for (const std::string name : {"../rig", "/etc/passwd", ".hidden", "none"}) {
+    EXPECT_EQ(ask({{"command", "start"}, {"sequence", name}})["error"]["code"], "sequence_refused") << name;
+  }
+  EXPECT_EQ(status()["state"], "idle");
+}
+
+TEST_F(SocketSession, ASequenceMayComeAsText) {
+  const json reply =
+      ask({{"command", "start"},
+           {"sequence", "inline.yaml"},
+           {"sequence_text", testing::text_of(SOFTGRIP_SOURCE_DIR "/config/sequences/pick_stone.yaml")}});
+  EXPECT_EQ(reply["ok"], true) << reply;
+  EXPECT_TRUE(until_state("running"));
+}
+
+TEST_F(SocketSession, WatchStreamsAtTheRateThatWasAskedFor) {
+  ASSERT_EQ(ask({{"id", 9}, {"command", "watch"}, {"rate_hz", 20}})["ok"], true);
+  std::vector<double> times;
+  for (int i = 0; i < 20; ++i) {
+    const json line = client_.receive();
+    ASSERT_TRUE(line.contains("watch")) << line;
+    EXPECT_EQ(line["id"], 9);
+    times.push_back(line["watch"]["time_s"]);
+  }
+  const double period_s = (times.back() - times.front()) / 19;
+  EXPECT_GT(period_s, 0.04);
+  EXPECT_LT(period_s, 0.5) << "a loaded machine may be slow, not stuck";
+}
+
+TEST_F(SocketSession, StatisticsHaveTheirHistogramsOnRequest) {
+  const json plain = ask({{"command", "statistics"}})["result"];
+  EXPECT_GT(plain["loop"]["ticks"], 0);
+  EXPECT_FALSE(plain["loop"]["wake_up"].contains("bins_us"));
+  const json full = ask({{"command", "statistics"}, {"histograms", true}})["result"];
+  std::uint64_t sum = 0;
+  for (const json& bin : full["loop"]["wake_up"]["bins_us"]) sum += bin[1].get<std::uint64_t>();
+  EXPECT_NEAR(static_cast<double>(sum), full["loop"]["wake_up"]["count"].get<double>(), 5);
+}
+
+TEST_F(SocketSession, HostileClientsDisturbNobody) {
+  const unsigned seed = 99;
+  SCOPED_TRACE(seed);
+  const auto ticks_before = status()["loop"]["ticks"].get<std::uint64_t>();
+  std::vector<std::thread> crowd;
+  for (unsigned i = 0; i < 6; ++i) {
+    crowd.emplace_back([this, i] {
+      std::mt19937 random(seed + i);
+      const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
+      while (std::chrono::steady_clock::now() < end) {
+        ApiClient hostile(socket());
+        if (!hostile.open()) continue;
+        std::string text(random() % 100'000, '\0');
+        for (char& c : text) c = static_cast<char>(random() % 7 == 0 ? '\n' : random() % 256);
+        if (i % 3 == 1) {  // asks and never reads
+          text.clear();
+          for (int n = 0; n < 5000; ++n) text += "{\"command\":\"statistics\",\"histograms\":true}\n";
+        }
+        if (i % 3 == 2) text = std::string(200'000, '[');
+        ::send(hostile.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      }
+    });
+  }
+  int answered = 0;
+  for (int i = 0; i < 20; ++i) {
+    if (ask({{"id", i}, {"command", "status"}})["id"] == i) ++answered;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  for (std::thread& thread : crowd) thread.join();
+  EXPECT_EQ(answered, 20);
+  const json after = status();
+  EXPECT_EQ(after["state"], "idle");
+  EXPECT_GT(after["loop"]["ticks"].get<std::uint64_t>(), ticks_before + 200);
+  process_.signal(SIGTERM);
+  EXPECT_EQ(process_.wait(), 0) << process_.output();
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,28 @@
+// Fuzz target of the socket's line parser: any bytes are a request or a refusal with a sentence.
+//
+//   cmake --preset fuzz && cmake --build --preset fuzz --target client_request_fuzz
+//   build/fuzz/tests/daemon/client_request_fuzz -max_total_time=660 -max_len=1024
+//   -dict=tests/daemon/client_request.dict NEW_CORPUS tests/daemon/client_request_corpus
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "daemon/socket/client_request.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view line(reinterpret_cast<const char*>(data), size);
+  const auto request = softgrip::daemon::parse_client_request(line);
+  if (!request) {
+    if (request.error().message.empty()) std::abort();
+    return 0;
+  }
+  // What was accepted keeps the bounds that the rest relies on.
+  if (!(request->rate_hz >= 0.1 && request->rate_hz <= 50)) std::abort();
+  if (request->limit < 1 || request->limit > 1000) std::abort();
+  if (request->id.value_or(0) > (std::uint64_t{1} << 53)) std::abort();
+  if (request->command == softgrip::daemon::ClientRequest::Command::start && request->sequence.empty())
+    std::abort();
+  return 0;
+}

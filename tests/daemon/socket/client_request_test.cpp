@@ -1,0 +1,138 @@
+#include "daemon/socket/client_request.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace softgrip::daemon {
+namespace {
+
+using Command = ClientRequest::Command;
+
+std::string problem_of(const std::string& line) {
+  const auto request = parse_client_request(line);
+  return request ? "" : request.error().message;
+}
+
+TEST(ClientRequest, ReadsEveryCommand) {
+  const std::vector<std::pair<std::string, Command>> lines{
+      {R"({"command":"status"})", Command::status},
+      {R"({"command":"watch","rate_hz":25})", Command::watch},
+      {R"({"command":"unwatch"})", Command::unwatch},
+      {R"({"command":"start","sequence":"a"})", Command::start},
+      {R"({"command":"stop"})", Command::stop},
+      {R"({"command":"vent"})", Command::vent},
+      {R"({"command":"acknowledge"})", Command::acknowledge},
+      {R"({"command":"events","since":5,"limit":10})", Command::events},
+      {R"({"command":"statistics","histograms":true})", Command::statistics},
+  };
+  for (const auto& [line, command] : lines) {
+    const auto request = parse_client_request(line);
+    ASSERT_TRUE(request) << line << ": " << problem_of(line);
+    EXPECT_EQ(request->command, command);
+    EXPECT_FALSE(request->id.has_value());
+  }
+}
+
+TEST(ClientRequest, ReadsArguments) {
+  const auto watch = parse_client_request(R"({"id":7,"command":"watch","rate_hz":2.5})");
+  ASSERT_TRUE(watch);
+  EXPECT_EQ(watch->id, 7U);
+  EXPECT_EQ(watch->rate_hz, 2.5);
+  const auto start =
+      parse_client_request(R"({"command":"start","sequence":"s","sequence_text":"name: x\n"})");
+  ASSERT_TRUE(start);
+  EXPECT_EQ(start->sequence, "s");
+  EXPECT_EQ(start->sequence_text, "name: x\n");
+  const auto events = parse_client_request(R"({"id":9007199254740992,"command":"events","since":12})");
+  ASSERT_TRUE(events);
+  EXPECT_EQ(events->id, 9007199254740992U);
+  EXPECT_EQ(events->since, 12U);
+  EXPECT_EQ(events->limit, 100U);
+}
+
+TEST(ClientRequest, SaysWhatIsWrong) {
+  const std::vector<std::pair<std::string, std::string>> lines{
+      {"", "not a JSON object"},
+      {"status", "not a JSON object"},
+      {"[]", "not a JSON object"},
+      {"5", "not a JSON object"},
+      {R"({"command":"status")", "not a JSON object"},
+      {R"({"command":"status"}{})", "not a JSON object"},
+      {"{\"command\":\"st\xff\"}", "not a JSON object"},
+      {R"({"command":"status","command":"stop"})", "stands twice"},
+      {R"({"command":{"a":1}})", "flat"},
+      {R"({"command":"status","x":[[[1]]]})", "flat"},
+      {"{}", "'command' is missing"},
+      {R"({"command":5})", "'command' is a text"},
+      {R"({"command":null})", "'command' is null"},
+      {R"({"command":"fly"})", "no command 'fly'"},
+      {R"({"command":"status","rate_hz":5})", "knows no key 'rate_hz'"},
+      {R"({"command":"start"})", "needs the key 'sequence'"},
+      {R"({"command":"start","sequence":""})", "'sequence' is a text"},
+      {R"({"command":"start","sequence_text":"a"})", "needs the key 'sequence'"},
+      {R"({"command":"watch","rate_hz":0})", "'rate_hz' is a number from"},
+      {R"({"command":"watch","rate_hz":1e999})", ""},
+      {R"({"command":"watch","rate_hz":"10"})", "'rate_hz' is a number from"},
+      {R"({"id":-1,"command":"status"})", "'id' is a whole number"},
+      {R"({"id":1.5,"command":"status"})", "'id' is a whole number"},
+      {R"({"id":18446744073709551615,"command":"status"})", "'id' is a whole number"},
+      {R"({"command":"events","limit":0})", "'limit' is a whole number"},
+      {R"({"command":"events","limit":1001})", "'limit' is a whole number"},
+      {R"({"command":"statistics","histograms":1})", "'histograms' is true or false"},
+  };
+  for (const auto& [line, part] : lines) {
+    const auto request = parse_client_request(line);
+    EXPECT_FALSE(request) << line;
+    EXPECT_NE(problem_of(line).find(part), std::string::npos) << line << ": " << problem_of(line);
+  }
+}
+
+TEST(ClientRequest, TheErrorCarriesTheIdWhereItCouldBeRead) {
+  const auto request = parse_client_request(R"({"id":3,"command":"fly"})");
+  ASSERT_FALSE(request);
+  EXPECT_EQ(request.error().id, 3U);
+}
+
+TEST(ClientRequest, DepthCostsNothing) {
+  std::string line = R"({"command":)";
+  line += std::string(60'000, '[');
+  EXPECT_FALSE(parse_client_request(line));
+}
+
+// The fuzzer's corpus in every build: each line whole, cut off at every byte, and with every byte damaged.
+TEST(ClientRequest, TheFuzzersCorpusIsHarmless) {
+  const auto feed = [](const std::string& line) {
+    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
+  };
+  std::size_t files = 0;
+  const std::filesystem::path folder =
+      std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/daemon/client_request_corpus";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string line{std::istreambuf_iterator<char>(file), {}};
+    feed(line);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      feed(line.substr(0, i));
+      for (const char byte : {'\0', '"', '[', '}', '9', '\xff'}) {
+        std::string damaged = line;
+        damaged[i] = byte;
+        feed(damaged);
+      }
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 13U);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

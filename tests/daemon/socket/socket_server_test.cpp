@@ -1,0 +1,271 @@
+#include "daemon/socket/socket_server.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/clock.h"
+#include "base/grid.h"
+#include "tests/daemon/temporary_folder.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using testing::TemporaryFolder;
+
+Descriptor connect_to(const std::string& path) {
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, path.data(), path.size());
+  EXPECT_EQ(::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0)
+      << std::strerror(errno);
+  return socket;
+}
+
+class SocketServerTest : public ::testing::Test {
+ protected:
+  SocketServerTest() {
+    settings_.path = temporary_.path() + "/socket";
+    settings_.max_clients = 3;
+    settings_.max_line_bytes = 100;
+    settings_.max_queue_bytes = 300'000;
+  }
+
+  SocketServer& server() {
+    if (!server_) {
+      auto listening = SocketServer::listen(settings_);
+      EXPECT_TRUE(listening) << listening.error();
+      server_.emplace(std::move(*listening));
+      server_->set_handlers({[this](std::uint64_t client, std::string_view line) {
+                               lines_.emplace_back(line);
+                               if (answer_) answer_(client, line);
+                             },
+                             [this](std::uint64_t) { ++closed_; }});
+    }
+    return *server_;
+  }
+  /// Lets the server see what there is; time passes by `step` at each look.
+  void turn(int looks = 5, Nanoseconds step = 0) {
+    for (int i = 0; i < looks; ++i) {
+      now_ += step;
+      server().poll(now_, now_ + 1'000'000);
+    }
+  }
+  static void send_text(const Descriptor& socket, std::string_view text) {
+    ASSERT_EQ(::send(socket.get(), text.data(), text.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(text.size()));
+  }
+  /// What has arrived; nothing when the peer closed.
+  static std::optional<std::string> received(const Descriptor& socket) {
+    std::string text(1 << 20, '\0');
+    const ssize_t count = ::recv(socket.get(), text.data(), text.size(), 0);
+    if (count == 0) return std::nullopt;
+    text.resize(count < 0 ? 0 : static_cast<std::size_t>(count));
+    return text;
+  }
+
+  TemporaryFolder temporary_;
+  rig::SocketSettings settings_;
+  std::optional<SocketServer> server_;
+  std::vector<std::string> lines_;
+  std::function<void(std::uint64_t, std::string_view)> answer_;
+  int closed_ = 0;
+  Nanoseconds now_ = MonotonicClock().now();
+};
+
+TEST_F(SocketServerTest, TheFileHasTheModeThatWasAskedFor) {
+  settings_.mode = 0640;
+  server();
+  struct stat status {};
+  ASSERT_EQ(stat(settings_.path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0640U);
+}
+
+TEST_F(SocketServerTest, AGroupThatIsNotThereIsAnError) {
+  settings_.group = "no-such-group";
+  const auto listening = SocketServer::listen(settings_);
+  ASSERT_FALSE(listening);
+  EXPECT_NE(listening.error().find("no-such-group"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(settings_.path));
+}
+
+TEST_F(SocketServerTest, RemovesItsFileAndReplacesThatOfADaemonThatIsGone) {
+  server();
+  server_.reset();
+  EXPECT_FALSE(std::filesystem::exists(settings_.path));
+  {
+    // A daemon that was killed leaves its file behind.
+    Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::memcpy(address.sun_path, settings_.path.data(), settings_.path.size());
+    ASSERT_EQ(bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  ASSERT_TRUE(std::filesystem::exists(settings_.path));
+  server();
+  const Descriptor client = connect_to(settings_.path);
+}
+
+TEST_F(SocketServerTest, ASecondDaemonIsRefusedAndDoesNotTakeTheFileAway) {
+  server();
+  const auto second = SocketServer::listen(settings_);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().find("another softgripd"), std::string::npos);
+  const Descriptor client = connect_to(settings_.path);
+}
+
+TEST_F(SocketServerTest, AFileThatIsNoSocketIsNotTouched) {
+  { std::ofstream(settings_.path) << "precious"; }
+  EXPECT_FALSE(SocketServer::listen(settings_));
+  EXPECT_EQ(testing::text_of(settings_.path), "precious");
+}
+
+TEST_F(SocketServerTest, LinesArriveWholeHoweverTheyAreCut) {
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  turn();
+  for (const char c : std::string("{\"a\":1}\r\nsecond\n\nthird")) {
+    send_text(client, std::string_view(&c, 1));
+    turn(1);
+  }
+  turn();
+  EXPECT_EQ(lines_, (std::vector<std::string>{"{\"a\":1}", "second"}));
+  send_text(client, "\n");
+  turn();
+  EXPECT_EQ(lines_.back(), "third");
+}
+
+TEST_F(SocketServerTest, ALineThatIsTooLongIsAnsweredAndEndsTheConnection) {
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  turn();
+  send_text(client, "short\n" + std::string(101, 'x') + "\nafter\n");
+  turn();
+  EXPECT_EQ(lines_, std::vector<std::string>{"short"});
+  EXPECT_NE(received(client).value_or("").find("too_long"), std::string::npos);
+  EXPECT_FALSE(received(client).has_value());
+  EXPECT_EQ(closed_, 1);
+}
+
+TEST_F(SocketServerTest, AnEndlessLineIsCutOffBeforeItCostsMemory) {
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  turn();
+  send_text(client, std::string(10'000, 'x'));
+  turn();
+  EXPECT_NE(received(client).value_or("").find("too_long"), std::string::npos);
+  EXPECT_EQ(server().clients(), 0U);
+}
+
+TEST_F(SocketServerTest, OneClientTooManyIsToldSoAndTheOthersStay) {
+  server();
+  std::vector<Descriptor> clients;
+  for (int i = 0; i < 4; ++i) clients.push_back(connect_to(settings_.path));
+  turn();
+  EXPECT_EQ(server().clients(), 3U);
+  EXPECT_NE(received(clients[3]).value_or("").find("too_many_clients"), std::string::npos);
+  send_text(clients[0], "still here\n");
+  turn();
+  EXPECT_EQ(lines_, std::vector<std::string>{"still here"});
+}
+
+TEST_F(SocketServerTest, AClientThatAsksForMoreThanItsBoundIsDropped) {
+  answer_ = [this](std::uint64_t client, std::string_view) {
+    server().send(client, std::string(50'000, 'a'), false);
+  };
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  turn();
+  std::string questions;
+  for (int i = 0; i < 1000; ++i) questions += "more\n";
+  send_text(client, questions);
+  turn();
+  EXPECT_EQ(server().clients(), 0U);
+  EXPECT_LT(lines_.size(), 100U);
+}
+
+TEST_F(SocketServerTest, AClientThatDoesNotReadIsNotReadEitherAndThenDropped) {
+  answer_ = [this](std::uint64_t client, std::string_view) {
+    server().send(client, std::string(50'000, 'a'), false);
+  };
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  turn();
+  for (int i = 0; i < 200; ++i) {
+    send_text(client, "more\n");
+    turn(1);
+  }
+  EXPECT_LT(lines_.size(), 100U) << "what it asks waits in its own buffer";
+  EXPECT_EQ(server().clients(), 1U);
+  turn(11, ns_per_s);
+  EXPECT_EQ(server().clients(), 0U);
+}
+
+TEST_F(SocketServerTest, ASlowWatcherMissesLinesAndThenIsDropped) {
+  std::uint64_t watcher = 0;
+  answer_ = [&](std::uint64_t client, std::string_view) { watcher = client; };
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  send_text(client, "watch\n");
+  turn();
+  for (int i = 0; i < 1000; ++i) server().send(watcher, std::string(10'000, 'w'), true);
+  turn();
+  EXPECT_EQ(server().clients(), 1U) << "what it misses does not pile up";
+  turn(11, ns_per_s);
+  EXPECT_EQ(server().clients(), 0U) << "it took nothing for ten seconds";
+}
+
+TEST_F(SocketServerTest, ASlowClientThatReadsOnStays) {
+  std::uint64_t watcher = 0;
+  answer_ = [&](std::uint64_t client, std::string_view) { watcher = client; };
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  send_text(client, "watch\n");
+  turn();
+  for (int second = 0; second < 30; ++second) {
+    server().send(watcher, std::string(10'000, 'w') + "\n", true);
+    turn(1, ns_per_s);
+    ASSERT_TRUE(received(client).has_value());
+  }
+  EXPECT_EQ(server().clients(), 1U);
+}
+
+TEST_F(SocketServerTest, AClientThatEndsItsSendingSideStillGetsItsAnswer) {
+  std::uint64_t asker = 0;
+  answer_ = [&](std::uint64_t client, std::string_view) { asker = client; };
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  send_text(client, "ask\n");
+  shutdown(client.get(), SHUT_WR);
+  turn();
+  server().send(asker, "answer\n", false);
+  turn();
+  EXPECT_EQ(received(client), "answer\n");
+  turn(4, ns_per_s);
+  EXPECT_EQ(server().clients(), 0U);
+}
+
+TEST_F(SocketServerTest, AClientThatVanishesIsForgotten) {
+  answer_ = [this](std::uint64_t client, std::string_view) { server().send(client, "answer\n", false); };
+  server();
+  {
+    const Descriptor client = connect_to(settings_.path);
+    send_text(client, "ask\n");
+  }
+  turn();
+  EXPECT_EQ(server().clients(), 0U);
+  EXPECT_EQ(closed_, 1);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

@@ -1,0 +1,522 @@
+// The board's driver against a server on real sockets: right registers, right numbers, right status.
+
+#include "drivers/modbus/modbus_board.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/clock.h"
+#include "rig/board_map_file.h"
+#include "tests/drivers/modbus/on_tcp.h"
+#include "tests/drivers/modbus/register_server.h"
+#include "tests/drivers/modbus/two_fingers.h"
+
+namespace softgrip::drivers {
+namespace {
+
+using namespace std::chrono_literals;
+using model::Validity;
+using test::RegisterServer;
+using Requests = std::vector<RegisterServer::Request>;
+
+constexpr auto generous = 5s;
+
+BoardMap shipped(const std::string& name) {
+  document::Problems problems;
+  auto map = rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/" + name, problems);
+  if (!map.has_value()) throw std::runtime_error(problems.format());
+  return *map;
+}
+
+/// ADAM-6024 input register for a voltage.
+std::uint16_t adam_raw(double volt) {
+  return static_cast<std::uint16_t>(std::lround((volt + 10) / 20 * 65535));
+}
+
+class ModbusBoardTest : public testing::Test {
+ protected:
+  ModbusBoardTest() {
+    for (std::uint16_t input = 0; input < 6; ++input) server_.set_input(input, adam_raw(5));
+    // The outputs read back as input registers 10 and 11 on an ADAM-6024.
+    server_.on_request([](RegisterServer& server, const RegisterServer::Request&) {
+      server.input_[10] = server.holding_[10];
+      server.input_[11] = server.holding_[11];
+    });
+  }
+
+  ModbusSettings settings(const BoardMap& map) const { return test::on_tcp(server_.port(), map, wiring_, 0); }
+
+  /// Makes and connects the board; the requests of connecting are forgotten.
+  void connect(const BoardMap& map) {
+    board_ = std::make_unique<ModbusBoard>(settings(map));
+    ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+    (void)server_.take_requests();
+  }
+
+  BusStatus exchange(double left_kpa, double right_kpa, std::chrono::nanoseconds deadline = generous) {
+    const std::vector<double> commands{left_kpa, right_kpa};
+    return board_->exchange(commands, readings_, deadline);
+  }
+
+  RegisterServer server_;
+  std::vector<ChannelWiring> wiring_ = test::two_fingers();
+  std::unique_ptr<ModbusBoard> board_;
+  std::vector<Reading> readings_{2};
+};
+
+TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
+  connect(shipped("adam-6024.yaml"));
+  server_.set_input(0, adam_raw(3));
+  server_.set_input(1, adam_raw(7));
+  server_.set_input(4, adam_raw(1));
+  server_.set_input(5, adam_raw(2));
+  ASSERT_EQ(exchange(40, 100), BusStatus::ok) << board_->detail();
+
+  const Requests expected{
+      {16, 10, 0, 10, {1638, 4095}}, {4, 0, 6, 0, {}}, {4, 10, 2, 0, {}}, {4, 20, 6, 0, {}}};
+  EXPECT_EQ(server_.take_requests(), expected);
+  // Half a step of 16 bits over 20 V is 0.15 mV, of 12 bits over 10 V 1.2 mV; 5 mm/V and 10 kPa/V.
+  EXPECT_NEAR(readings_[0].displacement_mm, 10, 0.001);
+  EXPECT_NEAR(readings_[1].displacement_mm, 30, 0.001);
+  EXPECT_NEAR(readings_[0].pressure_kpa, 10, 0.002);
+  EXPECT_NEAR(readings_[1].pressure_kpa, 20, 0.002);
+  EXPECT_NEAR(readings_[0].command_readback_kpa, 40, 0.0123);
+  EXPECT_NEAR(readings_[1].command_readback_kpa, 100, 1e-9);
+  for (const Reading& reading : readings_) {
+    EXPECT_EQ(reading.validity, Validity::valid);
+    EXPECT_EQ(reading.sequence, 1U);
+  }
+}
+
+TEST_F(ModbusBoardTest, SampledAtIsWhenTheInputsWereAsked) {
+  connect(shipped("adam-6024.yaml"));
+  const Nanoseconds before = MonotonicClock().now();
+  ASSERT_EQ(exchange(0, 0), BusStatus::ok);
+  const Nanoseconds after = MonotonicClock().now();
+  EXPECT_GE(readings_[0].sampled_at, before);
+  EXPECT_LE(readings_[0].sampled_at, after);
+  EXPECT_EQ(readings_[0].sampled_at, readings_[1].sampled_at);
+  const Nanoseconds first = readings_[0].sampled_at;
+  ASSERT_EQ(exchange(0, 0), BusStatus::ok);
+  EXPECT_GT(readings_[0].sampled_at, first);
+  EXPECT_EQ(readings_[0].sequence, 2U);
+}
+
+TEST_F(ModbusBoardTest, OneTransactionWithFunction23) {
+  wiring_ = test::two_fingers(false);
+  connect(shipped("softgrip-sim.yaml"));
+  const auto put = [this](std::uint16_t address, float volt) {
+    const auto bits = std::bit_cast<std::uint32_t>(volt);
+    server_.set_holding(address, static_cast<std::uint16_t>(bits >> 16));
+    server_.set_holding(static_cast<std::uint16_t>(address + 1), static_cast<std::uint16_t>(bits & 0xffff));
+  };
+  put(0, 3.5F);
+  put(2, 6.25F);
+  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
+    for (std::size_t i = 0; i < request.written.size(); ++i) {
+      server.holding_[static_cast<std::uint16_t>(24 + i)] = request.written[i];
+    }
+  });
+  ASSERT_EQ(exchange(12.5, 50), BusStatus::ok) << board_->detail();
+  const Requests requests = server_.take_requests();
+  // After a new session the watchdog's state is asked for once, to clear it if it tripped.
+  ASSERT_EQ(requests.size(), 2U);
+  EXPECT_EQ(requests[0].function, 23);
+  EXPECT_EQ(requests[0].write_address, 256);
+  EXPECT_EQ(requests[0].written, (std::vector<std::uint16_t>{0x3fa0, 0, 0x40a0, 0}));  // 1.25 V, 5 V
+  EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 12.5);
+  EXPECT_DOUBLE_EQ(readings_[1].displacement_mm, 26.25);
+  EXPECT_DOUBLE_EQ(readings_[1].command_readback_kpa, 50);
+  ASSERT_EQ(exchange(12.5, 50), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(server_.take_requests().size(), 1U);
+}
+
+TEST_F(ModbusBoardTest, LowWordFirst) {
+  wiring_ = test::two_fingers(false);
+  BoardMap map = shipped("softgrip-sim.yaml");
+  map.word_order = WordOrder::low_first;
+  map.read_back.reset();
+  connect(map);
+  server_.set_holding(0, 0x0000);
+  server_.set_holding(1, 0x4060);  // 3.5 V
+  server_.set_holding(3, 0x4060);
+  ASSERT_EQ(exchange(12.5, 0), BusStatus::ok) << board_->detail();
+  EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 12.5);
+  EXPECT_EQ(server_.holding(256), 0);
+  EXPECT_EQ(server_.holding(257), 0x3fa0);
+}
+
+// On a bipolar board raw 0 is -10 V: an output that nobody wired must never be written.
+TEST_F(ModbusBoardTest, OnlyWiredOutputsAreWritten) {
+  BoardMap map = shipped("softgrip-sim.yaml");
+  map.has_fc23 = false;
+  map.read_back.reset();
+  map.watchdog = {};
+  map.setup.clear();
+  wiring_ = test::two_fingers(false);
+  wiring_[0].valve.output = 0;
+  wiring_[1].valve.output = 3;
+  connect(map);
+  server_.set_holding(0, 0x40a0);
+  server_.set_holding(2, 0x40a0);
+  ASSERT_EQ(exchange(10, 20), BusStatus::ok) << board_->detail();
+  for (const auto& request : server_.take_requests()) {
+    if (request.written.empty()) continue;
+    EXPECT_EQ(request.written.size(), 2U);
+    EXPECT_TRUE(request.write_address == 256 || request.write_address == 262) << request.write_address;
+  }
+}
+
+TEST_F(ModbusBoardTest, ChannelsMayBeWiredInAnyOrder) {
+  std::swap(wiring_[0].valve.output, wiring_[1].valve.output);
+  std::swap(wiring_[0].displacement.input, wiring_[1].displacement.input);
+  connect(shipped("adam-6024.yaml"));
+  server_.set_input(0, adam_raw(3));
+  server_.set_input(1, adam_raw(7));
+  ASSERT_EQ(exchange(40, 100), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(server_.holding(10), 4095);
+  EXPECT_EQ(server_.holding(11), 1638);
+  EXPECT_NEAR(readings_[0].displacement_mm, 30, 0.001);
+  EXPECT_NEAR(readings_[1].displacement_mm, 10, 0.001);
+}
+
+TEST_F(ModbusBoardTest, ValidityOfReadings) {
+  connect(shipped("adam-6024.yaml"));
+  server_.set_input(0, adam_raw(0.05));  // below the electrical range
+  server_.set_input(1, adam_raw(9.95));  // the sensor's error code
+  ASSERT_EQ(exchange(0, 0), BusStatus::ok);
+  EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
+  EXPECT_EQ(readings_[1].validity, Validity::sensor_error);
+  server_.set_input(0, adam_raw(5));
+  server_.set_input(1, adam_raw(5));
+  server_.set_input(20, 1);  // over
+  server_.set_input(21, 7);  // a number that the manual does not know
+  server_.set_input(24, 2);  // the left pressure input is under its range
+  ASSERT_EQ(exchange(0, 0), BusStatus::ok);
+  EXPECT_EQ(readings_[0].validity, Validity::out_of_range);
+  EXPECT_EQ(readings_[1].validity, Validity::sensor_error);
+  EXPECT_TRUE(std::isnan(readings_[0].pressure_kpa));
+  EXPECT_FALSE(std::isnan(readings_[1].pressure_kpa));
+}
+
+TEST_F(ModbusBoardTest, ACommandBeyondTheOutputsRangeIsReportedAndItsEndWritten) {
+  connect(shipped("adam-6024.yaml"));
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  EXPECT_EQ(exchange(10, 101), BusStatus::write_refused);
+  EXPECT_NE(std::string(board_->detail()).find("right"), std::string::npos) << board_->detail();
+  EXPECT_EQ(server_.holding(11), 4095);
+  EXPECT_EQ(exchange(-1, 10), BusStatus::write_refused);
+  EXPECT_EQ(server_.holding(10), 0);
+  EXPECT_EQ(readings_[0].sequence, 1U) << "readings change only with ok";
+  EXPECT_EQ(exchange(100, 0), BusStatus::ok) << "the ends themselves are allowed: " << board_->detail();
+}
+
+TEST_F(ModbusBoardTest, ACommandThatIsNoNumberWritesNothing) {
+  connect(shipped("adam-6024.yaml"));
+  ASSERT_EQ(exchange(10, 20), BusStatus::ok);
+  (void)server_.take_requests();
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(exchange(bad, 50), BusStatus::write_refused);
+    EXPECT_EQ(exchange(50, bad), BusStatus::write_refused);
+  }
+  EXPECT_TRUE(server_.take_requests().empty());
+}
+
+TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
+  BoardMap map = shipped("adam-6024.yaml");
+  map.read_back->lag_exchanges = 0;
+  connect(map);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  server_.ignore_writes(true);
+  EXPECT_EQ(exchange(10.01, 10), BusStatus::ok) << "within the read-back tolerance";
+  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused);
+  EXPECT_NE(std::string(board_->detail()).find("left"), std::string::npos) << board_->detail();
+  server_.ignore_writes(false);
+  EXPECT_EQ(exchange(50, 10), BusStatus::ok);
+}
+
+// Some boards show in the read-back what they were told one exchange ago, all the more with function 23.
+TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
+  BoardMap map = shipped("adam-6024.yaml");
+  map.read_back->lag_exchanges = 1;
+  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
+    if (request.function != 16) return;  // called before the write is carried out: shows the one before
+    server.input_[10] = server.holding_[10];
+    server.input_[11] = server.holding_[11];
+  });
+  connect(map);
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
+  map.read_back->lag_exchanges = 0;
+  connect(map);
+  EXPECT_EQ(exchange(70, 70), BusStatus::write_refused);
+  map.read_back->lag_exchanges = 1;
+  connect(map);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  server_.ignore_writes(true);
+  ASSERT_EQ(exchange(50, 10), BusStatus::ok) << "it may still show the exchange before";
+  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "but not for ever";
+}
+
+TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
+  connect(shipped("adam-6024.yaml"));
+  for (const std::uint8_t function : {std::uint8_t{16}, std::uint8_t{4}}) {
+    server_.refuse(function, 2);
+    EXPECT_EQ(exchange(10, 10), BusStatus::exception);
+    EXPECT_NE(std::string(board_->detail()).find("function " + std::to_string(function)), std::string::npos)
+        << board_->detail();
+    EXPECT_EQ(readings_[0].sequence, 0U);
+    server_.refuse(std::nullopt);
+  }
+  EXPECT_EQ(exchange(10, 10), BusStatus::ok);
+  EXPECT_EQ(server_.sessions(), 1U);
+}
+
+TEST_F(ModbusBoardTest, TheDeadlineSpansTheWholeExchange) {
+  connect(shipped("adam-6024.yaml"));
+  server_.delay(30ms);  // each of four round trips within the deadline, together beyond it
+  const Nanoseconds before = MonotonicClock().now();
+  EXPECT_EQ(exchange(10, 10, 50ms), BusStatus::timed_out);
+  EXPECT_LT(MonotonicClock().now() - before, 50'000'000 + 400'000'000);
+  EXPECT_EQ(exchange(10, 10), BusStatus::disconnected);
+  EXPECT_NE(std::string(board_->detail()).find("deadline"), std::string::npos)
+      << "the reason of the loss stays: " << board_->detail();
+  EXPECT_EQ(readings_[0].sequence, 0U);
+  server_.delay(0ms);
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(exchange(10, 10), BusStatus::ok);
+}
+
+TEST_F(ModbusBoardTest, WithoutASessionNothingIsSent) {
+  board_ = std::make_unique<ModbusBoard>(settings(shipped("adam-6024.yaml")));
+  EXPECT_EQ(exchange(10, 10), BusStatus::disconnected);
+  EXPECT_EQ(server_.sessions(), 0U);
+}
+
+TEST_F(ModbusBoardTest, SetupIsWrittenInOrderOnEveryConnect) {
+  BoardMap map = shipped("adam-6024.yaml");
+  map.setup = {{6, 500, 7}, {16, 501, 8}, {5, 3, 1}};
+  board_ = std::make_unique<ModbusBoard>(settings(map));
+  const Requests expected{{6, 500, 0, 500, {7}}, {16, 501, 0, 501, {8}}, {5, 3, 0, 3, {0xff00}}};
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+    EXPECT_EQ(server_.take_requests(), expected);
+  }
+  server_.refuse(6, 3);
+  EXPECT_EQ(board_->connect(generous), BusStatus::exception);
+  EXPECT_EQ(exchange(0, 0), BusStatus::disconnected) << "a board that refuses its setup is not used";
+}
+
+TEST_F(ModbusBoardTest, ConnectingWritesNoOutput) {
+  ModbusSettings with_probes = settings(shipped("adam-6024.yaml"));
+  with_probes.probes = 3;
+  board_ = std::make_unique<ModbusBoard>(with_probes);
+  EXPECT_NE(board_->budget().explanation.find("assumed"), std::string::npos);
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok);
+  const Requests expected(3, {4, 0, 6, 0, {}});
+  EXPECT_EQ(server_.take_requests(), expected);
+  const Board::Budget budget = board_->budget();
+  EXPECT_NE(budget.explanation.find("4 round trips"), std::string::npos) << budget.explanation;
+  EXPECT_NE(budget.explanation.find("median of 3 measured"), std::string::npos) << budget.explanation;
+  EXPECT_GT(budget.exchange_s, 0);
+}
+
+TEST_F(ModbusBoardTest, LaterSessionsBeginWithTheOutputs) {
+  ModbusSettings with_probes = settings(shipped("adam-6024.yaml"));
+  with_probes.probes = 3;
+  board_ = std::make_unique<ModbusBoard>(with_probes);
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok);
+  (void)server_.take_requests();
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok);
+  EXPECT_TRUE(server_.take_requests().empty())
+      << "what is asked first feeds a watchdog before the outputs are safe";
+  ASSERT_EQ(exchange(0, 0), BusStatus::ok);
+  EXPECT_EQ(server_.take_requests().front().function, 16);
+}
+
+TEST_F(ModbusBoardTest, Describes) {
+  board_ = std::make_unique<ModbusBoard>(settings(shipped("adam-6024.yaml")));
+  EXPECT_EQ(board_->describe(), "ADAM-6024 at 127.0.0.1:" + std::to_string(server_.port()) + " unit 1");
+  EXPECT_TRUE(board_->has_watchdog());
+  EXPECT_EQ(board_->channels(), 2U);
+}
+
+TEST_F(ModbusBoardTest, AWrongNumberOfChannelsIsRefused) {
+  connect(shipped("adam-6024.yaml"));
+  const std::vector<double> one{1};
+  EXPECT_EQ(board_->exchange(one, readings_, generous), BusStatus::write_refused);
+  EXPECT_TRUE(server_.take_requests().empty());
+}
+
+/// A board with a latching watchdog: tripped shows in coil 32, writing 1 to coil 33 clears it, and while it
+/// is tripped writes are confirmed but the outputs (holding 256...) stay at 0.
+class WatchdogTest : public ModbusBoardTest {
+ protected:
+  WatchdogTest() {
+    map_ = shipped("adam-6024.yaml");
+    map_.read_back.reset();
+    map_.input_status.reset();
+    map_.watchdog.tripped = BoardWatchdog::Tripped{.function = 1, .address = 32, .mask = 1};
+    map_.watchdog.clear = {FixedWrite{.function = 5, .address = 33, .value = 1}};
+    server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
+      if (request.function == 5 && request.write_address == 33) {
+        server.coils_[32] = 0;
+        server.ignore_writes(false);
+      }
+    });
+  }
+
+  void trip() {
+    server_.set_coil(32, 1);
+    server_.set_holding(10, 0);
+    server_.set_holding(11, 0);
+    server_.ignore_writes(true);
+  }
+
+  BoardMap map_;
+};
+
+TEST_F(WatchdogTest, ATripIsReportedAndNotClearedByExchanging) {
+  connect(map_);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  trip();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped);
+  EXPECT_EQ(server_.holding(10), 0) << "outputs stay safe until somebody connects anew";
+  EXPECT_EQ(server_.coil(32), 1);
+  EXPECT_EQ(readings_[0].sequence, 1U);
+}
+
+TEST_F(WatchdogTest, AfterConnectTheFirstCommandsStandBeforeAndAfterTheClearing) {
+  connect(map_);
+  trip();
+  ASSERT_EQ(exchange(50, 50), BusStatus::ok) << board_->detail();
+  const Requests requests = server_.take_requests();
+  const RegisterServer::Request write{16, 10, 0, 10, {2048, 2048}};
+  ASSERT_EQ(requests.size(), 6U);
+  EXPECT_EQ(requests[0], write);
+  EXPECT_EQ(requests[1].function, 1);
+  EXPECT_EQ(requests[2].function, 5);
+  EXPECT_EQ(requests[3], write);
+  EXPECT_EQ(server_.holding(10), 2048);
+  trip();
+  EXPECT_EQ(exchange(50, 50), BusStatus::watchdog_tripped) << "cleared once per session";
+}
+
+TEST_F(WatchdogTest, AWatchdogThatDidNotTripIsNotCleared) {
+  connect(map_);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  for (const auto& request : server_.take_requests()) EXPECT_NE(request.function, 5);
+  trip();
+  EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped) << "nor later in the same session";
+}
+
+TEST_F(WatchdogTest, AFeedingWriteIsSentInEveryExchange) {
+  map_.watchdog.feed = BoardWatchdog::Feed::feed_write;
+  map_.watchdog.feed_write = FixedWrite{.function = 6, .address = 4099, .value = 1};
+  connect(map_);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+    int fed = 0;
+    for (const auto& request : server_.take_requests()) fed += request.write_address == 4099 ? 1 : 0;
+    EXPECT_EQ(fed, 1);
+  }
+}
+
+/// The board refuses writes with an exception while its watchdog holds the outputs, as some couplers do.
+TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
+  map_.setup = {{6, 500, 7}};
+  connect(map_);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
+  server_.set_coil(32, 1);
+  server_.refuse(16, 4);
+  EXPECT_EQ(exchange(10, 10), BusStatus::watchdog_tripped) << board_->detail();
+  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
+    if (request.function != 5 || request.write_address != 33) return;
+    server.coils_[32] = 0;
+    server.refuse(std::nullopt);
+  });
+  (void)server_.take_requests();
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+  for (const auto& request : server_.take_requests()) {
+    EXPECT_NE(request.function, 6) << "to set it up again could end the trip before the outputs are written";
+  }
+  ASSERT_EQ(exchange(5, 5), BusStatus::ok) << board_->detail();
+  int set_up = 0;
+  for (const auto& request : server_.take_requests()) set_up += request.function == 6 ? 1 : 0;
+  EXPECT_EQ(set_up, 1);
+  EXPECT_EQ(server_.coil(32), 0);
+}
+
+/// Outputs and inputs are two devices at two addresses.
+class TwoModules : public ModbusBoardTest {
+ protected:
+  TwoModules() {
+    for (std::uint16_t input = 0; input < 8; ++input) inputs_->set_input(input, 5000);
+    wiring_ = test::two_fingers();
+    for (ChannelWiring& channel : wiring_) {
+      channel.displacement.module = 1;
+      channel.pressure->module = 1;
+    }
+    settings_ = {.links = {TcpAddress{"127.0.0.1", server_.port()}, TcpAddress{"127.0.0.1", inputs_->port()}},
+                 .modules = {{.name = "out", .map = shipped("waveshare-ao8-b.yaml"), .unit = 1, .link = 0},
+                             {.name = "in", .map = shipped("waveshare-ai8-b.yaml"), .unit = 1, .link = 1}},
+                 .wiring = wiring_,
+                 .probes = 2};
+    board_ = std::make_unique<ModbusBoard>(settings_);
+  }
+  std::unique_ptr<RegisterServer> inputs_ = std::make_unique<RegisterServer>();
+  ModbusSettings settings_;
+};
+
+TEST_F(TwoModules, AreOneBoard) {
+  EXPECT_TRUE(problems_of(settings_).empty());
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+  (void)server_.take_requests();
+  (void)inputs_->take_requests();
+  inputs_->set_input(1, 8000);
+  ASSERT_EQ(exchange(40, 60), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(server_.take_requests(), (Requests{{16, 0, 0, 0, {4000, 6000}}, {3, 0, 2, 0, {}}}));
+  EXPECT_EQ(inputs_->take_requests(), (Requests{{4, 0, 6, 0, {}}}));
+  EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 20);
+  EXPECT_DOUBLE_EQ(readings_[1].displacement_mm, 35);
+  EXPECT_DOUBLE_EQ(readings_[0].pressure_kpa, 50);
+  EXPECT_DOUBLE_EQ(readings_[1].command_readback_kpa, 60);
+  EXPECT_FALSE(board_->has_watchdog());
+  EXPECT_NE(board_->describe().find("; Waveshare AI 8CH (B) at"), std::string::npos) << board_->describe();
+  EXPECT_NE(board_->budget().explanation.find("; then Modbus TCP, 1 round trip (in: FC4 reads 6 from 0)"),
+            std::string::npos)
+      << board_->budget().explanation;
+}
+
+TEST_F(TwoModules, OutputsAreReachedThoughTheInputsAreGone) {
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
+  ASSERT_EQ(exchange(40, 60), BusStatus::ok) << board_->detail();
+  inputs_.reset();
+  EXPECT_EQ(exchange(40, 60), BusStatus::disconnected);
+  EXPECT_NE(std::string(board_->detail()).find("'in'"), std::string::npos) << board_->detail();
+  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << "as far as outputs go";
+  EXPECT_EQ(exchange(0, 0), BusStatus::disconnected);
+  EXPECT_EQ(server_.holding(0), 0) << "this board has no watchdog: the valves are told all the same";
+  EXPECT_EQ(server_.holding(1), 0);
+}
+
+TEST_F(TwoModules, WithoutTheOutputsThereIsNoSession) {
+  settings_.links[0] = TcpAddress{"127.0.0.1", 1};
+  ModbusBoard board(settings_);
+  EXPECT_EQ(board.connect(500ms), BusStatus::disconnected);
+}
+
+TEST_F(TwoModules, AModuleWithoutAWireIsAProblem) {
+  for (ChannelWiring& channel : settings_.wiring) channel.displacement.module = 0;
+  const std::vector<std::string> problems = problems_of(settings_);
+  ASSERT_EQ(problems.size(), 2U);
+  EXPECT_NE(problems[0].find("out has no input 0"), std::string::npos) << problems[0];
+}
+
+}  // namespace
+}  // namespace softgrip::drivers

@@ -1,0 +1,422 @@
+// The session against a peer that does everything a board must not do. Every case says what it must be called
+// and how long it may take.
+
+#include "drivers/modbus/modbus_tcp_link.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <random>
+#include <string>
+
+#include "base/clock.h"
+#include "drivers/modbus/big_endian.h"
+#include "tests/drivers/modbus/scripted_server.h"
+
+namespace softgrip::drivers {
+namespace {
+
+using namespace std::chrono_literals;
+using test::Bytes;
+using test::Peer;
+using test::ScriptedServer;
+
+// How much later than its deadline a call may return on a loaded machine. Far below what a drip-fed or a
+// late reply takes in these tests, so that following either would fail them.
+constexpr Nanoseconds slack = 400'000'000;
+constexpr Nanoseconds deadline = 50'000'000;
+constexpr Nanoseconds generous = 5'000'000'000;
+
+constexpr ModbusRequest read_four{.function = 3, .address = 100, .count = 4};
+
+Nanoseconds now() {
+  return MonotonicClock().now();
+}
+
+std::uint16_t register_value(std::uint16_t address) {
+  return static_cast<std::uint16_t>(address * 7 + 3);
+}
+
+void answer_well(Peer& peer, const Bytes& request) {
+  peer.send(test::registers_reply(request, register_value));
+}
+
+/// True if the session's data are the registers that `request` asked for.
+testing::AssertionResult is_answer(const ModbusTcpLink& session, const ModbusRequest& request) {
+  if (session.data().size() != 2U * request.count) {
+    return testing::AssertionFailure() << session.data().size() << " bytes for " << request.count;
+  }
+  for (std::uint16_t i = 0; i < request.count; ++i) {
+    const auto expected = register_value(static_cast<std::uint16_t>(request.address + i));
+    const auto got = word_at(session.data(), 2U * i);
+    if (got != expected) {
+      return testing::AssertionFailure()
+             << "register " << request.address + i << " is " << got << ", not " << expected;
+    }
+  }
+  return testing::AssertionSuccess();
+}
+
+struct Outcome {
+  BusStatus status;
+  bool open_after;
+  Nanoseconds took;
+  std::string detail;
+};
+
+/// One question to a server whose first answer is given by `misbehave`; afterwards it behaves. Checks that a
+/// new session then gets the right numbers.
+Outcome ask_once(const std::function<void(Peer&, const Bytes&)>& misbehave,
+                 const ModbusRequest& request = read_four, Nanoseconds within = deadline) {
+  ScriptedServer server([&](Peer& peer, const Bytes& asked, std::size_t index) {
+    if (index == 0) {
+      misbehave(peer, asked);
+    } else {
+      answer_well(peer, asked);
+    }
+  });
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+  EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
+  const Nanoseconds before = now();
+  Outcome outcome{};
+  outcome.status = session.ask(1, request, before + within);
+  outcome.took = now() - before;
+  outcome.open_after = session.is_open();
+  outcome.detail = session.detail();
+  if (!session.is_open()) {
+    EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::disconnected)
+        << "a poisoned session answered";
+    EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
+  }
+  EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
+  EXPECT_TRUE(is_answer(session, read_four));
+  return outcome;
+}
+
+/// The same with a well-formed reply changed by `spoil`.
+Outcome ask_spoiled(const std::function<void(Bytes&)>& spoil) {
+  return ask_once([&](Peer& peer, const Bytes& request) {
+    Bytes reply = test::registers_reply(request, register_value);
+    spoil(reply);
+    peer.send(reply);
+  });
+}
+
+void expect_poisoned(const Outcome& outcome, BusStatus status, Nanoseconds at_most) {
+  EXPECT_EQ(name_of(outcome.status), std::string(name_of(status))) << outcome.detail;
+  EXPECT_FALSE(outcome.open_after);
+  EXPECT_LT(outcome.took, at_most);
+  EXPECT_FALSE(outcome.detail.empty());
+}
+
+TEST(ModbusTcpLink, ReadsRegisters) {
+  const Outcome outcome = ask_once(answer_well, read_four, generous);
+  EXPECT_EQ(outcome.status, BusStatus::ok) << outcome.detail;
+  EXPECT_TRUE(outcome.open_after);
+}
+
+TEST(ModbusTcpLink, LateReplyTimesOutAndIsNeverTakenForALaterAnswer) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
+    peer.wait(750ms);
+    answer_well(peer, request);
+  });
+  expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
+  EXPECT_GE(outcome.took, deadline);
+}
+
+TEST(ModbusTcpLink, DripFedReplyDoesNotExtendTheDeadline) {
+  const ModbusRequest large{.function = 3, .address = 0, .count = 125};
+  const Outcome outcome = ask_once(
+      [](Peer& peer, const Bytes& request) {
+        peer.drip(test::registers_reply(request, register_value), 10ms);  // 2.6 s in all
+      },
+      large);
+  expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
+}
+
+TEST(ModbusTcpLink, ReplyInPiecesWithinTheDeadlineIsFine) {
+  const Outcome outcome =
+      ask_once([](Peer& peer,
+                  const Bytes& request) { peer.drip(test::registers_reply(request, register_value), 1ms); },
+               read_four, generous);
+  EXPECT_EQ(outcome.status, BusStatus::ok) << outcome.detail;
+}
+
+TEST(ModbusTcpLink, WrongUnitId) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply[6] = 2; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, WrongTransactionId) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply[1] ^= 1; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, WrongProtocolId) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply[3] = 1; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, LengthTooLarge) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { ++reply[5]; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, LengthTooSmall) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { --reply[5]; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, LengthOfAnExceptionOnAnOrdinaryReply) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply[5] = 3; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, FewerRegistersThanAsked) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
+    peer.send(test::frame_for(request, {3, 2, 0, 1}));
+  });
+  expect_poisoned(outcome, BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, ByteCountContradictsTheLength) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply[8] = 6; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, AnotherFunctionAnswered) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply[7] = 4; }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, ShortReplyTimesOut) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply.pop_back(); }), BusStatus::timed_out,
+                  deadline + slack);
+}
+
+TEST(ModbusTcpLink, BytesBehindTheReply) {
+  expect_poisoned(ask_spoiled([](Bytes& reply) { reply.push_back(0); }), BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, FloodOfBytes) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes&) {
+    peer.send(Bytes(1'000'000, 0x5a));
+    peer.hang_up();
+  });
+  expect_poisoned(outcome, BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, FloodBehindAGoodReply) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
+    Bytes reply = test::registers_reply(request, register_value);
+    reply.resize(500'000, 0);
+    peer.send(reply);
+    peer.hang_up();
+  });
+  expect_poisoned(outcome, BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, NoReplyAtAll) {
+  const Outcome outcome = ask_once([](Peer&, const Bytes&) {});
+  expect_poisoned(outcome, BusStatus::timed_out, deadline + slack);
+  EXPECT_GE(outcome.took, deadline);
+}
+
+TEST(ModbusTcpLink, HungUpBeforeTheReply) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.hang_up(); });
+  expect_poisoned(outcome, BusStatus::disconnected, slack);
+}
+
+TEST(ModbusTcpLink, HungUpInTheMiddleOfTheReply) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
+    Bytes reply = test::registers_reply(request, register_value);
+    reply.resize(reply.size() / 2);
+    peer.send(reply);
+    peer.hang_up();
+  });
+  expect_poisoned(outcome, BusStatus::disconnected, slack);
+}
+
+TEST(ModbusTcpLink, ResetByThePeer) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes&) { peer.reset(); });
+  expect_poisoned(outcome, BusStatus::disconnected, slack);
+}
+
+TEST(ModbusTcpLink, ExceptionsKeepTheSession) {
+  for (const int code : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0x55, 255}) {
+    const Outcome outcome = ask_once(
+        [code](Peer& peer, const Bytes& request) {
+          peer.send(test::exception_reply(request, static_cast<std::uint8_t>(code)));
+        },
+        read_four, generous);
+    EXPECT_EQ(outcome.status, BusStatus::exception) << code;
+    EXPECT_TRUE(outcome.open_after) << code;
+    EXPECT_NE(outcome.detail.find("(exception " + std::to_string(code) + ")"), std::string::npos)
+        << outcome.detail;
+  }
+}
+
+TEST(ModbusTcpLink, ExceptionOfAnotherFunction) {
+  const Outcome outcome = ask_once([](Peer& peer, const Bytes& request) {
+    peer.send(test::frame_for(request, {0x90, 2}));
+  });
+  expect_poisoned(outcome, BusStatus::bad_reply, slack);
+}
+
+TEST(ModbusTcpLink, WriteConfirmedForAnotherAddress) {
+  const std::uint16_t value = 77;
+  const Outcome outcome = ask_once(
+      [](Peer& peer, const Bytes& request) {
+        peer.send(test::frame_for(request, {6, 0, 11, 0, 77}));
+      },
+      {.function = 6, .address = 10, .values = {&value, 1}});
+  expect_poisoned(outcome, BusStatus::bad_reply, slack);
+}
+
+// One duplicated reply leaves a careless client off by one for ever. Here replies are duplicated, at once or
+// later, at random; every question asks for other registers; no answer may be that of another question.
+TEST(ModbusTcpLink, DuplicatedRepliesNeverMoveTheAnswers) {
+  const unsigned seed = 20250411;
+  std::mt19937 random(seed);
+  ScriptedServer server([&random](Peer& peer, const Bytes& request, std::size_t) {
+    const Bytes reply = test::registers_reply(request, register_value);
+    peer.send(reply);
+    const unsigned chance = random() % 4;
+    if (chance == 0) peer.send(reply);
+    if (chance == 1) {
+      peer.wait(1ms);
+      peer.send(reply);
+    }
+  });
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+  std::size_t good = 0;
+  std::size_t bad = 0;
+  for (std::uint16_t i = 0; i < 300; ++i) {
+    if (!session.is_open()) {
+      ASSERT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
+    }
+    const ModbusRequest request{.function = 4, .address = static_cast<std::uint16_t>(i * 3), .count = 2};
+    const BusStatus status = session.ask(1, request, now() + generous);
+    if (status == BusStatus::ok) {
+      ++good;
+      ASSERT_TRUE(is_answer(session, request)) << "question " << i << ", seed " << seed;
+    } else {
+      ++bad;
+      ASSERT_EQ(status, BusStatus::bad_reply) << session.detail() << ", seed " << seed;
+    }
+  }
+  EXPECT_GT(good, 100U);
+  EXPECT_GT(bad, 50U) << "the duplicates did not reach the client: the test tests nothing";
+}
+
+TEST(ModbusTcpLink, RefusedConnection) {
+  std::uint16_t port = 0;
+  {
+    port = ScriptedServer([](Peer&, const Bytes&, std::size_t) {}).port();
+  }
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", port});
+  const Nanoseconds before = now();
+  EXPECT_EQ(session.open(before + generous), BusStatus::disconnected);
+  EXPECT_LT(now() - before, slack);
+  EXPECT_NE(std::string(session.detail()).find("refused"), std::string::npos) << session.detail();
+}
+
+TEST(ModbusTcpLink, NamesAreNotResolved) {
+  ModbusTcpLink session(TcpAddress{"localhost", 502});
+  EXPECT_EQ(session.open(now() + generous), BusStatus::disconnected);
+  EXPECT_NE(std::string(session.detail()).find("numeric"), std::string::npos) << session.detail();
+}
+
+// A listener whose queue is full drops the first packet of every further connection: nothing ever answers.
+TEST(ModbusTcpLink, ConnectingIsBoundedWhenNobodyAnswers) {
+  const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::listen(listener, 0), 0);
+  ASSERT_EQ(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  std::vector<std::unique_ptr<ModbusTcpLink>> queue;
+  BusStatus status = BusStatus::ok;
+  Nanoseconds took = 0;
+  for (int i = 0; i < 8 && status == BusStatus::ok; ++i) {
+    queue.push_back(std::make_unique<ModbusTcpLink>(TcpAddress{"127.0.0.1", ntohs(address.sin_port)}));
+    const Nanoseconds before = now();
+    status = queue.back()->open(before + deadline);
+    took = now() - before;
+  }
+  EXPECT_EQ(status, BusStatus::timed_out);
+  EXPECT_GE(took, deadline);
+  EXPECT_LT(took, deadline + slack);
+  ::close(listener);
+}
+
+TEST(ModbusTcpLink, AHalfOpenSessionTimesOut) {
+  ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t index) {
+    if (index == 0) answer_well(peer, request);  // then it is there and says nothing any more
+  });
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  ASSERT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok);
+  const Nanoseconds before = now();
+  EXPECT_EQ(session.ask(1, read_four, before + deadline), BusStatus::timed_out);
+  EXPECT_LT(now() - before, deadline + slack);
+  EXPECT_EQ(session.ask(1, read_four, now() + deadline), BusStatus::disconnected);
+}
+
+TEST(ModbusTcpLink, ADeadlineInThePastFailsAtOnce) {
+  ScriptedServer server([](Peer&, const Bytes&, std::size_t) {});
+  ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+  ASSERT_EQ(session.open(now() + generous), BusStatus::ok);
+  EXPECT_EQ(session.ask(1, read_four, now() - 1), BusStatus::timed_out);
+}
+
+// Descriptors of 1024 and above do not fit an fd_set; code that uses select writes past it.
+TEST(ModbusTcpLink, DescriptorsAboveTheFdSet) {
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const rlimit before = limit;
+  limit.rlim_cur = std::min<rlim_t>(2048, limit.rlim_max);
+  ASSERT_GE(limit.rlim_cur, 1200U);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+  {
+    ScriptedServer server([](Peer& peer, const Bytes& request, std::size_t) { answer_well(peer, request); });
+    std::vector<int> taken;
+    while (taken.empty() || taken.back() < 1100) {
+      taken.push_back(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+      ASSERT_GE(taken.back(), 0);
+    }
+    ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+    EXPECT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
+    EXPECT_EQ(session.ask(1, read_four, now() + generous), BusStatus::ok) << session.detail();
+    EXPECT_TRUE(is_answer(session, read_four));
+    for (const int descriptor : taken) ::close(descriptor);
+  }
+  ::setrlimit(RLIMIT_NOFILE, &before);
+}
+
+// A timer that interrupts every wait must neither end it early nor start it anew.
+TEST(ModbusTcpLink, SignalsDoNotMoveTheDeadline) {
+  struct sigaction handler {};
+  struct sigaction old {};
+  handler.sa_handler = [](int) {};
+  ::sigaction(SIGALRM, &handler, &old);
+  const itimerval every{{0, 2000}, {0, 2000}};
+  const itimerval never{};
+  {
+    ScriptedServer server([](Peer&, const Bytes&, std::size_t) {});
+    ModbusTcpLink session(TcpAddress{"127.0.0.1", server.port()});
+    ASSERT_EQ(session.open(now() + generous), BusStatus::ok) << session.detail();
+    ::setitimer(ITIMER_REAL, &every, nullptr);
+    const Nanoseconds before = now();
+    EXPECT_EQ(session.ask(1, read_four, before + deadline), BusStatus::timed_out) << session.detail();
+    const Nanoseconds took = now() - before;
+    ::setitimer(ITIMER_REAL, &never, nullptr);
+    EXPECT_GE(took, deadline);
+    EXPECT_LT(took, deadline + slack);
+  }
+  ::sigaction(SIGALRM, &old, nullptr);
+}
+
+}  // namespace
+}  // namespace softgrip::drivers

@@ -1,0 +1,40 @@
+#pragma once
+// Two fingers on the first terminals of a board, as most tests wire them.
+
+#include <string>
+#include <vector>
+
+#include "drivers/board/board_map.h"
+#include "drivers/board/channel_wiring.h"
+
+namespace softgrip::drivers::test {
+
+/// Valves on outputs 0 and 1: 0-10 V are 0-100 kPa. Sensors on inputs 0 and 1: 0-10 V are -5-45 mm, valid
+/// from 0.1 to 9.9 V, 9.95 V is an error code. Pressure monitors, if wanted, on inputs 4 and 5: 0-10 V, 0-100
+/// kPa.
+inline std::vector<ChannelWiring> two_fingers(bool with_pressure = true) {
+  std::vector<ChannelWiring> wiring;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ChannelWiring channel;
+    channel.name = i == 0 ? "left" : "right";
+    channel.valve = {.output = i, .unit = ElectricalUnit::volt, .scaling = {0, 0, 10, 100}};
+    channel.displacement = {.input = i,
+                            .unit = ElectricalUnit::volt,
+                            .scaling = {0, -5, 10, 45},
+                            .valid_min = 0.1,
+                            .valid_max = 9.9,
+                            .error_codes = {{9.95, 0.02}}};
+    if (with_pressure) {
+      channel.pressure = InputWiring{.input = 4 + i,
+                                     .unit = ElectricalUnit::volt,
+                                     .scaling = {0, 0, 10, 100},
+                                     .valid_min = -0.2,
+                                     .valid_max = 10,
+                                     .error_codes = {}};
+    }
+    wiring.push_back(channel);
+  }
+  return wiring;
+}
+
+}  // namespace softgrip::drivers::test

@@ -1,0 +1,39 @@
+// Fuzz target of the model file: any bytes are a model, which then survives being written and read, or a
+// refusal.
+//
+//   scripts/fuzz.sh model_file_fuzz 30
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "model/file/model_file.h"
+
+namespace {
+
+using namespace softgrip;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  document::Problems problems;
+  const document::Document document =
+      document::parse("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), problems);
+  const auto model = model::read_model(document, problems);
+  (void)problems.format();
+  require(model.has_value() || !problems.empty());
+  if (!model || !problems.empty()) return 0;
+  document::Problems again;
+  const std::string text = model::to_yaml(*model);
+  const auto copy = model::read_model(document::parse("again.yaml", text, again), again);
+  require(copy.has_value() && again.empty());
+  require(model::to_yaml(*copy) == text);
+  require(model::model_hash(*copy) == model::model_hash(*model));
+  return 0;
+}

@@ -1,0 +1,274 @@
+#include "rig/board_map_file.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace softgrip::rig {
+namespace {
+
+const std::string boards = SOFTGRIP_SOURCE_DIR "/config/boards/";
+
+/// A small valid board; the tests change one line of it.
+const std::string valid = R"(name: test
+source: a test
+address_base: 1
+word_order: high_first
+fc23: false
+inputs:
+  function: 4
+  address: 1
+  count: 6
+  kind: uint16
+  at_raw: [0, 65535]
+  is_v: [-10, 10]
+  raw_min: 0
+  raw_max: 65535
+  bits: 16
+outputs:
+  function: 16
+  address: 11
+  count: 2
+  kind: uint16
+  at_raw: [0, 4095]
+  is_ma: [4, 20]
+  raw_min: 0
+  raw_max: 4095
+  bits: 12
+input_status: {function: 4, address: 21, ok: [0], over: [1], under: [2]}
+read_back: {function: 3, address: 11, tolerance_raw: 1}
+watchdog:
+  kind: communication_timeout
+  timeout_s: 0.5
+  safe_ma: [4, 4]
+  fed_by: functions
+  functions: [16]
+  tripped: {function: 1, address: 33}
+  clear: {function: 5, address: 33, value: 1}
+setup:
+  - {function: 6, address: 101, value: 5}
+)";
+
+struct Result {
+  std::optional<BoardMap> map;
+  document::Problems problems;
+};
+
+Result read(const std::string& text) {
+  Result result;
+  const document::Document document = document::parse("board.yaml", text, result.problems);
+  result.map = read_board_map(document, result.problems);
+  return result;
+}
+
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = valid;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(BoardMapFile, EverythingLandsWhereItBelongs) {
+  const Result result = read(valid);
+  ASSERT_TRUE(result.map.has_value()) << result.problems.format();
+  const BoardMap& map = *result.map;
+  EXPECT_EQ(map.inputs.registers.address, 0) << "the file counts from 1, the wire from 0";
+  EXPECT_EQ(map.inputs.registers.function, 4);
+  EXPECT_EQ(map.inputs.registers.count, 6);
+  EXPECT_EQ(map.inputs.unit, ElectricalUnit::volt);
+  EXPECT_EQ(map.inputs.scaling, (TwoPoints{0, -10, 65535, 10}));
+  EXPECT_EQ(map.outputs.registers.address, 10);
+  EXPECT_EQ(map.outputs.unit, ElectricalUnit::milliampere);
+  EXPECT_EQ(map.outputs.bits, 12);
+  ASSERT_TRUE(map.input_status.has_value());
+  EXPECT_EQ(map.input_status->registers.address, 20);
+  EXPECT_EQ(map.input_status->registers.count, 6);
+  EXPECT_EQ(map.input_status->under, std::vector<std::uint16_t>{2});
+  ASSERT_TRUE(map.read_back.has_value());
+  EXPECT_EQ(map.read_back->registers.count, 2);
+  EXPECT_EQ(map.read_back->registers.function, 3);
+  EXPECT_EQ(map.watchdog.kind, BoardWatchdog::Kind::communication_timeout);
+  EXPECT_EQ(map.watchdog.safe_electrical, (std::vector<double>{4, 4}));
+  EXPECT_EQ(map.watchdog.feed, BoardWatchdog::Feed::functions);
+  ASSERT_TRUE(map.watchdog.tripped.has_value());
+  EXPECT_EQ(map.watchdog.tripped->address, 32);
+  ASSERT_EQ(map.watchdog.clear.size(), 1U);
+  EXPECT_EQ(map.watchdog.clear[0].function, 5);
+  ASSERT_EQ(map.setup.size(), 1U);
+  EXPECT_EQ(map.setup[0].address, 100);
+}
+
+TEST(BoardMapFile, ShippedBoardsAreValid) {
+  for (const std::string name : {"adam-6024.yaml", "softgrip-sim.yaml"}) {
+    document::Problems problems;
+    EXPECT_TRUE(load_board_map(boards + name, problems).has_value()) << problems.format();
+  }
+}
+
+TEST(BoardMapFile, AdamHasTheRegistersOfItsManual) {
+  document::Problems problems;
+  const auto map = load_board_map(boards + "adam-6024.yaml", problems);
+  ASSERT_TRUE(map.has_value()) << problems.format();
+  EXPECT_EQ(map->inputs.registers.address, 0);  // 40001
+  EXPECT_EQ(map->inputs.registers.count, 6);
+  EXPECT_EQ(map->outputs.registers.address, 10);  // 40011
+  EXPECT_EQ(map->outputs.registers.count, 2);
+  ASSERT_TRUE(map->input_status.has_value());
+  EXPECT_EQ(map->input_status->registers.address, 20);  // 40021
+  EXPECT_DOUBLE_EQ(map->inputs.scaling.y_at(65535), 10);
+  EXPECT_DOUBLE_EQ(map->outputs.scaling.x_at(10), 4095);
+}
+
+struct Mistake {
+  std::string from;
+  std::string to;
+  std::string message;
+  std::string line;  ///< part of the line that must be pointed at
+};
+
+void expect_one_problem(const Mistake& mistake) {
+  const Result result = read(changed(mistake.from, mistake.to));
+  EXPECT_FALSE(result.map.has_value()) << mistake.to;
+  ASSERT_EQ(result.problems.size(), 1U) << mistake.to << '\n' << result.problems.format();
+  const document::Problem& problem = result.problems.list()[0];
+  EXPECT_NE(problem.message.find(mistake.message), std::string::npos) << problem.message;
+  EXPECT_NE(problem.line_text.find(mistake.line), std::string::npos) << result.problems.format();
+}
+
+TEST(BoardMapFile, AddressBaseAndWordOrderHaveNoDefault) {
+  expect_one_problem({"address_base: 1\n", "", "address_base", "name: test"});
+  expect_one_problem({"word_order: high_first\n", "", "word_order", "name: test"});
+  expect_one_problem({"address_base: 1", "address_base: 40001", "allowed is 0 to 1", "address_base: 40001"});
+}
+
+TEST(BoardMapFile, MistakesAreFoundWhereTheyStand) {
+  const std::vector<Mistake> mistakes{
+      {"fc23: false\n", "", "fc23", "name: test"},
+      {"word_order: high_first", "word_order: big", "high_first", "big"},
+      {"  function: 4\n  address: 1\n", "  function: 16\n  address: 1\n", "3, 4", "function: 16"},
+      {"  function: 4\n  address: 1\n", "  function: 4\n  address: 0\n", "address", "address: 0"},
+      {"  address: 1\n  count: 6", "  address: 65536\n  count: 6", "beyond the last register", "65536"},
+      {"  kind: uint16\n  at_raw: [0, 65535]", "  kind: uint8\n  at_raw: [0, 65535]", "uint16", "uint8"},
+      {"at_raw: [0, 65535]", "at_raw: [7, 7]", "must differ", "[7, 7]"},
+      {"at_raw: [0, 65535]", "at_raw: [0]", "2 numbers", "at_raw: [0]"},
+      {"is_v: [-10, 10]", "is_v: [.nan, 10]", "number", "nan"},
+      {"is_v: [-10, 10]", "is_v: [3, 3]", "must differ", "[3, 3]"},
+      {"raw_max: 65535", "raw_max: 65536", "allowed", "65536"},
+      {"bits: 12", "bits: 13", "do not fit", "bits: 13"},
+      {"  function: 16\n  address: 11", "  function: 5\n  address: 11", "6, 16", "function: 5"},
+      {"ok: [0]", "ok: []", "no status value", "ok: []"},
+      {"tolerance_raw: 1", "tolerance_raw: -1", "allowed", "tolerance_raw: -1"},
+      {"kind: communication_timeout", "kind: sometimes", "communication_timeout", "sometimes"},
+      {"timeout_s: 0.5", "timeout_s: 0", "allowed", "timeout_s: 0"},
+      {"timeout_s: 0.5", "timeout_ms: 500", "timeout_ms", "timeout_ms: 500"},
+      {"safe_ma: [4, 4]", "safe_ma: [4]", "2 numbers", "safe_ma: [4]"},
+      {"functions: [16]", "functions: [3, 4]", "does not feed it", "[3, 4]"},
+      {"value: 1}", "value: 2}", "allowed", "value: 2"},
+      {"value: 5}", "value: 70000}", "allowed", "70000"},
+      {"name: test", "name: test\ncolour: red", "unknown key", "colour: red"},
+  };
+  for (const Mistake& mistake : mistakes) expect_one_problem(mistake);
+}
+
+TEST(BoardMapFile, Function23NeedsHoldingRegistersAndFunction16) {
+  std::string text = changed("fc23: false", "fc23: true");
+  text.replace(text.find("functions: [16]"), 15, "functions: [23]");
+  text.replace(text.find("function: 16"), 12, "function: 6");
+  const Result result = read(text);
+  ASSERT_EQ(result.problems.size(), 2U) << result.problems.format();
+  for (const document::Problem& problem : result.problems.list()) EXPECT_EQ(problem.at.line, 5);
+}
+
+TEST(BoardMapFile, Function6CannotWriteTwoRegisters) {
+  std::string text = changed("  function: 16\n  address: 11\n  count: 2\n  kind: uint16\n",
+                             "  function: 6\n  address: 11\n  count: 2\n  kind: float32\n");
+  text.replace(text.find("functions: [16]"), 15, "functions: [6]");
+  const Result result = read(text);
+  ASSERT_EQ(result.problems.size(), 1U) << result.problems.format();
+  EXPECT_NE(result.problems.list()[0].message.find("two each"), std::string::npos);
+}
+
+std::string without(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t begin = text.find(from);
+  return text.erase(begin, text.find(to) - begin);
+}
+
+TEST(BoardMapFile, AModuleMayHaveOneDirectionOnly) {
+  std::string outputs_only = without(without(valid, "inputs:", "outputs:"), "input_status:", "read_back:");
+  const Result outputs = read(outputs_only);
+  ASSERT_TRUE(outputs.map.has_value()) << outputs.problems.format();
+  EXPECT_FALSE(outputs.map->has_inputs());
+  EXPECT_TRUE(outputs.map->has_outputs());
+
+  const std::string inputs_only =
+      without(without(valid, "outputs:", "input_status:"), "read_back:", "setup:") +
+      "watchdog: {kind: none}\n";
+  const Result inputs = read(inputs_only);
+  ASSERT_TRUE(inputs.map.has_value()) << inputs.problems.format();
+  EXPECT_TRUE(inputs.map->has_inputs());
+  EXPECT_FALSE(inputs.map->has_outputs());
+
+  // What belongs to a direction needs it, and a module without any is none.
+  EXPECT_NE(
+      read(without(valid, "inputs:", "outputs:")).problems.format().find("`input_status` needs `inputs`"),
+      std::string::npos);
+  EXPECT_NE(read(without(valid, "outputs:", "input_status:")).problems.format().find("needs `outputs`"),
+            std::string::npos);
+  EXPECT_FALSE(read(without(without(valid, "inputs:", "outputs:"), "outputs:", "setup:")).map.has_value());
+}
+
+TEST(BoardMapFile, SeveralFlagsAndSeveralClearingWrites) {
+  std::string text = valid;
+  text.replace(text.find("{function: 1, address: 33}"), 26, "{function: 2, address: 33, count: 2}");
+  text.replace(text.find("{function: 5, address: 33, value: 1}"), 36,
+               "[{function: 5, address: 41, value: 1}, {function: 5, address: 42, value: 1}]");
+  const Result result = read(text);
+  ASSERT_TRUE(result.map.has_value()) << result.problems.format();
+  EXPECT_EQ(result.map->watchdog.tripped->count, 2);
+  ASSERT_EQ(result.map->watchdog.clear.size(), 2U);
+  EXPECT_EQ(result.map->watchdog.clear[1].address, 41) << "counted from 1";
+}
+
+/// The trap of couplers whose watchdog is fed by the functions of a mask: the mask is made of what the file
+/// promises, and what the file promises is checked against the function that writes.
+TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {
+  std::string text = valid;
+  text.replace(text.find("functions: [16]"), 15, "functions: [3, 16, 23]");
+  text +=
+      "  - {function: 6, address: 200, value: functions_1_to_16}\n"
+      "  - {function: 6, address: 201, value: functions_17_to_32}\n";
+  const Result result = read(text);
+  ASSERT_TRUE(result.map.has_value()) << result.problems.format();
+  ASSERT_EQ(result.map->setup.size(), 3U);
+  EXPECT_EQ(result.map->setup[1].value, 0x8004);
+  EXPECT_EQ(result.map->setup[2].value, 0x0040);
+  EXPECT_FALSE(read(text + "  - {function: 6, address: 202, value: functions_33_to_48}\n").map.has_value());
+}
+
+TEST(BoardMapFile, TheWagoMapArmsItsWatchdogWithTheFunctionThatWrites) {
+  document::Problems problems;
+  const auto map = load_board_map(boards + "wago-750-559.yaml", problems);
+  ASSERT_TRUE(map.has_value()) << problems.format();
+  std::uint16_t mask = 0;
+  for (const FixedWrite& write : map->setup) mask = write.address == 0x1001 ? write.value : mask;
+  EXPECT_NE(mask & 1U << (map->outputs.registers.function - 1), 0U);
+}
+
+TEST(BoardMapFile, ThePressureGeneratorsZeroIsInTheMiddle) {
+  document::Problems problems;
+  const auto map = load_board_map(boards + "festo-pgva.yaml", problems);
+  ASSERT_TRUE(map.has_value()) << problems.format();
+  EXPECT_EQ(map->outputs.unit, ElectricalUnit::kilopascal);
+  EXPECT_DOUBLE_EQ(map->outputs.scaling.x_at(0), 2047.5);
+  EXPECT_DOUBLE_EQ(map->outputs.scaling.x_at(10), 4.095 * 100 + 2047.5) << "10 kPa are 100 mbar";
+  EXPECT_NEAR(map->inputs.scaling.y_at(2460), (0.244 * 2460 - 500) / 10, 1e-3);
+}
+
+TEST(BoardMapFile, AllProblemsAtOnce) {
+  const Result result = read("name: x\naddress_base: 7\ninputs: {function: 9}\nwatchdog: {kind: none}\n");
+  EXPECT_FALSE(result.map.has_value());
+  EXPECT_GT(result.problems.size(), 5U) << result.problems.format();
+}
+
+}  // namespace
+}  // namespace softgrip::rig

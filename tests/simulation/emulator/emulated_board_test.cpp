@@ -1,0 +1,145 @@
+#include "simulation/emulator/emulated_board.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "rig/board_map_file.h"
+
+namespace softgrip::simulation {
+namespace {
+
+constexpr Nanoseconds second = 1'000'000'000;
+
+drivers::BoardMap adam() {
+  document::Problems problems;
+  auto map = rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/adam-6024.yaml", problems);
+  EXPECT_TRUE(map) << problems.format();
+  return *map;
+}
+
+/// FC16 of both outputs of the ADAM-6024.
+Bytes write_outputs(std::uint16_t first, std::uint16_t second_value) {
+  Bytes pdu{0x10, 0, 10, 0, 2, 4};
+  append_word(pdu, first);
+  append_word(pdu, second_value);
+  return pdu;
+}
+
+std::uint16_t read_one(EmulatedBoard& board, Nanoseconds now, std::uint8_t function, std::uint8_t address) {
+  const Bytes reply = board.answer(now, Bytes{function, 0, address, 0, 1}).pdu;
+  EXPECT_EQ(reply.size(), 4U);
+  return reply.size() == 4 ? word_at(reply, 2) : std::uint16_t{0};
+}
+
+TEST(EmulatedBoard, OutputsFollowTheMapsScaling) {
+  EmulatedBoard board(adam());
+  EXPECT_FALSE(board.commanded());
+  EXPECT_EQ(board.answer(0, write_outputs(4095, 819)).pdu, (Bytes{0x10, 0, 10, 0, 2}));
+  EXPECT_TRUE(board.commanded());
+  EXPECT_NEAR(board.output(0), 10, 1e-12);
+  EXPECT_NEAR(board.output(1), 2, 1e-12);
+  EXPECT_EQ(read_one(board, 0, 0x04, 10), 4095) << "read back";
+  EXPECT_EQ(read_one(board, 0, 0x03, 11), 819);
+}
+
+TEST(EmulatedBoard, ARawNumberBeyondTheConverterIsItsEnd) {
+  EmulatedBoard board(adam());
+  board.answer(0, write_outputs(5000, 0xffff));
+  EXPECT_NEAR(board.output(0), 10, 1e-12);
+  EXPECT_EQ(read_one(board, 0, 0x04, 10), 4095);
+}
+
+TEST(EmulatedBoard, InputsShowVoltsAndTheirStatus) {
+  EmulatedBoard board(adam());
+  board.set_input(0, 5);
+  board.set_input(1, 12);
+  board.set_input(2, -12);
+  EXPECT_EQ(read_one(board, 0, 0x04, 0), 49151);  // (5 + 10) / 20 * 65535 = 49151.25
+  EXPECT_EQ(read_one(board, 0, 0x04, 1), 65535);
+  EXPECT_EQ(read_one(board, 0, 0x04, 2), 0);
+  EXPECT_EQ(read_one(board, 0, 0x04, 20), 0);
+  EXPECT_EQ(read_one(board, 0, 0x04, 21), 1);
+  EXPECT_EQ(read_one(board, 0, 0x04, 22), 2);
+}
+
+TEST(EmulatedBoard, WatchdogVentsAndSaysSo) {
+  drivers::BoardMap map = adam();
+  map.watchdog.timeout_s = 0.5;
+  EmulatedBoard board(map);
+  EXPECT_FALSE(board.watchdog_due()) << "it sleeps until a client comes";
+  board.answer(0, write_outputs(2000, 2000));
+  EXPECT_EQ(board.watchdog_due(), second / 2);
+  board.advance(second / 2 - 1);
+  EXPECT_FALSE(board.tripped());
+  board.advance(second / 2);
+  EXPECT_TRUE(board.tripped());
+  EXPECT_EQ(board.output(0), 0);
+  EXPECT_EQ(read_one(board, second, 0x04, 10), 0) << "the read-back shows what the output is";
+  EXPECT_TRUE(board.tripped()) << "a read feeds it but clears nothing";
+  board.answer(second, write_outputs(1000, 1000));
+  EXPECT_FALSE(board.tripped()) << "any write ends it where the map knows no other way";
+  EXPECT_GT(board.output(0), 2);
+}
+
+TEST(EmulatedBoard, AnyRequestFeedsTheWatchdog) {
+  EmulatedBoard board(adam());
+  board.answer(0, write_outputs(2000, 2000));
+  for (int i = 1; i < 20; ++i) read_one(board, i * second / 10, 0x04, 0);
+  EXPECT_FALSE(board.tripped());
+}
+
+TEST(EmulatedBoard, OnlyTheMapsFunctionsFeedAWatchdogThatIsPicky) {
+  drivers::BoardMap map = adam();
+  map.watchdog.feed = drivers::BoardWatchdog::Feed::functions;
+  map.watchdog.functions = {0x10};
+  EmulatedBoard board(map);
+  board.answer(0, write_outputs(2000, 2000));
+  for (int i = 1; i < 20; ++i) read_one(board, i * second / 10, 0x04, 0);
+  EXPECT_TRUE(board.tripped());
+}
+
+TEST(EmulatedBoard, ALatchedTripIgnoresWritesUntilItIsCleared) {
+  drivers::BoardMap map = adam();
+  map.watchdog.clear = {drivers::FixedWrite{5, 0x1020, 1}};
+  map.watchdog.tripped = drivers::BoardWatchdog::Tripped{1, 0x1021, 0xffff};
+  EmulatedBoard board(map);
+  board.answer(0, write_outputs(2000, 2000));
+  board.advance(second);
+  ASSERT_TRUE(board.tripped());
+  EXPECT_EQ(board.answer(second, Bytes{0x01, 0x10, 0x21, 0, 1}).pdu, (Bytes{0x01, 1, 1}));
+  board.answer(second, write_outputs(2000, 2000));
+  EXPECT_EQ(board.output(0), 0) << "answered, without effect";
+  board.answer(second, Bytes{0x05, 0x10, 0x20, 0xff, 0});
+  EXPECT_FALSE(board.tripped());
+  EXPECT_EQ(board.output(0), 0) << "clearing alone moves nothing";
+  board.answer(second, write_outputs(2000, 2000));
+  EXPECT_GT(board.output(0), 4);
+}
+
+TEST(EmulatedBoard, IgnoredWritesAreAnswered) {
+  EmulatedBoard board(adam());
+  board.answer(0, write_outputs(1000, 1000));
+  board.ignore_writes(true);
+  EXPECT_EQ(board.answer(0, write_outputs(3000, 3000)).pdu, (Bytes{0x10, 0, 10, 0, 2}));
+  EXPECT_EQ(read_one(board, 0, 0x04, 10), 1000);
+}
+
+TEST(EmulatedBoard, AnswersEveryRequestWithAReplyOrAnException) {
+  constexpr std::uint64_t seed = 20251120;
+  SCOPED_TRACE(seed);
+  std::mt19937_64 random(seed);
+  EmulatedBoard board(adam());
+  for (int i = 0; i < 100'000; ++i) {
+    Bytes pdu(1 + random() % 20);
+    for (std::uint8_t& byte : pdu)
+      byte = static_cast<std::uint8_t>(random() % 4 == 0 ? random() : random() % 24);
+    const Bytes reply = board.answer(i, pdu).pdu;
+    ASSERT_GE(reply.size(), 2U);
+    ASSERT_LE(reply.size(), max_pdu_size);
+    ASSERT_EQ(reply[0] & 0x7fU, pdu[0] & 0x7fU);
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::simulation

@@ -1,0 +1,51 @@
+// Fuzz target: what a client may send to the emulator, byte by byte, in pieces of any size.
+//
+//   cmake --preset fuzz && cmake --build --preset fuzz --target emulator_fuzz
+//   build/fuzz/tests/tools/emulator_fuzz -max_total_time=660 -max_len=1024
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "rig/board_map_file.h"
+#include "simulation/emulator/emulated_board.h"
+#include "simulation/emulator/mbap.h"
+
+namespace {
+
+using namespace softgrip;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+drivers::BoardMap sim_board() {
+  document::Problems problems;
+  auto map = rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/softgrip-sim.yaml", problems);
+  require(map.has_value());
+  return *map;
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const drivers::BoardMap map = sim_board();
+  simulation::EmulatedBoard board(map);
+  simulation::RequestStream stream;
+  std::span<const std::uint8_t> bytes(data, size);
+  Nanoseconds now = 0;
+  while (!bytes.empty()) {
+    const std::size_t piece = std::min<std::size_t>(bytes.size(), 1 + bytes.front() % 32);
+    stream.append(bytes.first(piece));
+    bytes = bytes.subspan(piece);
+    while (const auto request = stream.next()) {
+      now += 10'000'000;
+      const auto answer = board.answer(now, request->pdu);
+      require(answer.pdu.size() >= 2 && answer.pdu.size() <= simulation::max_pdu_size);
+      require((answer.pdu[0] & 0x7fU) == (request->pdu[0] & 0x7fU));
+    }
+  }
+  return 0;
+}

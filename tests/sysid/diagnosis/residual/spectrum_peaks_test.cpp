@@ -1,0 +1,94 @@
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+#include "sysid/diagnosis/residual/fourier.h"
+
+namespace softgrip::sysid {
+namespace {
+
+struct Campaign {
+  std::vector<Record> records;
+  std::vector<std::vector<double>> residual_mm;
+};
+
+/// Two records of 60 s with noise and an oscillation that runs on from one to the other.
+Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s) {
+  Campaign c;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> off(-jitter_s, jitter_s);
+  for (int k = 0; k < 2; ++k) {
+    Record record;
+    record.campaign_time_s = 60.0 * k;
+    std::vector<double> residual;
+    for (int i = 0; i < 6000; ++i) {
+      record.time_s.push_back(0.01 * i + (jitter_s > 0 && i > 0 ? off(random) : 0));
+      const double t = record.campaign_time_s + record.time_s.back();
+      residual.push_back(amplitude_mm * std::sin(2 * std::numbers::pi * frequency_hz * t + 0.7) +
+                         0.04 * normal_at(9, static_cast<std::uint64_t>(6000 * k + i)));
+    }
+    c.records.push_back(std::move(record));
+    c.residual_mm.push_back(std::move(residual));
+  }
+  return c;
+}
+
+TEST(SpectrumPeaks, FindsAWeakOscillationToAThirdOfWhatTheCampaignResolves) {
+  for (const double frequency_hz : {0.73, 3.21, 17.7}) {
+    const Campaign c = campaign(frequency_hz, 0.01, 0);
+    const auto peaks = spectrum_peaks(c.records, c.residual_mm, 3);
+    ASSERT_FALSE(peaks.empty());
+    EXPECT_NEAR(peaks.front().frequency_hz, frequency_hz, 1.0 / 120 / 2) << frequency_hz;
+  }
+}
+
+TEST(SpectrumPeaks, TheLineIsAStartNearTheLeastSquares) {
+  // Removed from the residual, it takes most of the oscillation with it.
+  Campaign c = campaign(3.21, 0.2, 0);
+  const Line line = spectrum_peaks(c.records, c.residual_mm, 1).front();
+  double before = 0, after = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t i = 0; i < c.residual_mm[k].size(); ++i) {
+      const double turn =
+          2 * std::numbers::pi * line.frequency_hz * (c.records[k].campaign_time_s + c.records[k].time_s[i]);
+      const double r = c.residual_mm[k][i];
+      before += r * r;
+      after += std::pow(r - line.sine_mm * std::sin(turn) - line.cosine_mm * std::cos(turn), 2);
+    }
+  }
+  EXPECT_LT(after, 0.35 * before);
+}
+
+TEST(SpectrumPeaks, IrregularSamplesAndMissingReadingsAreNoObstacle) {
+  Campaign c = campaign(2.4, 0.02, 0.004);
+  for (std::size_t i = 1000; i < 1200; ++i) c.residual_mm[0][i] = std::nan("");
+  EXPECT_NEAR(spectrum_peaks(c.records, c.residual_mm, 1).front().frequency_hz, 2.4, 1.0 / 120 / 2);
+}
+
+TEST(SpectrumPeaks, AWanderingZeroIsNoOscillation) {
+  const Campaign c = campaign(0.05, 2.0, 0);
+  for (const Line& peak : spectrum_peaks(c.records, c.residual_mm, 3))
+    EXPECT_GE(peak.frequency_hz, 0.2 - 1e-9);
+}
+
+TEST(Fourier, AgreesWithItsDefinition) {
+  std::vector<Complex> x;
+  for (std::uint64_t i = 0; i < 64; ++i) x.emplace_back(normal_at(1, i), normal_at(2, i));
+  std::vector<Complex> transformed = x;
+  fourier_transform(transformed);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    Complex sum = 0;
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      sum += x[n] * std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k * n) / 64);
+    }
+    EXPECT_NEAR(std::abs(transformed[k] - sum), 0, 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

@@ -1,0 +1,71 @@
+// How many causes are named: what the form of an equation leaves is none, a small effect of its own is one.
+
+#include "sysid/diagnosis/search/selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/fitting/trajectory.h"
+#include "tests/sysid/diagnosis/campaign.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double noise_mm = 0.03;
+
+/// What is selected where the twin's readings are bent by `bend(y, t)`, t the time of the campaign.
+Selection select(const std::function<double(double y_mm, double t_s)>& bend) {
+  const model::Model given = loaded("bench_twin");
+  std::vector<Record> records = known_campaign(2);
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    Record& r = records[k];
+    r.reading_mm = predict(given, r, rest_starts(given, {r}).front());
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      r.reading_mm[i] =
+          bend(r.reading_mm[i], r.campaign_time_s + r.time_s[i]) + noise_mm * normal_at(7 + k, i);
+    }
+  }
+  SearchData data = make_search_data(records, given);
+  StructureFit base = fit_structure(data.records, {}, data.given);
+  data.scales.residual_lines = spectrum_peaks(data.records, base.residual_mm, 3);
+  return select_causes(data, std::move(base), noise_mm, divide(data.records, 8), {});
+}
+
+std::vector<std::string> names(const Selection& selection) {
+  std::vector<std::string> ids;
+  for (const ChosenCause& chosen : selection.chosen) ids.emplace_back(chosen.cause.id);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+/// A scale whose bend is no polynomial: a few percent of it stay.
+double bent(double y_mm) {
+  return y_mm + 1.2 * std::sin(1.3 * std::numbers::pi * y_mm / 20);
+}
+
+TEST(Selection, WhatTheFormOfACauseLeavesGetsNoNameOfItsOwn) {
+  const Selection selection = select([](double y_mm, double) { return bent(y_mm); });
+  EXPECT_TRUE(selection.left.present) << "the form fits after all: this test shows nothing";
+  ASSERT_EQ(selection.chosen.size(), 1U);
+  EXPECT_EQ(names(selection), std::vector<std::string>{"sensor_nonlinearity"});
+}
+
+TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
+  const Selection selection = select([](double y_mm, double t_s) {
+    return y_mm * (1 + 0.15 * t_s / 120) + 0.09 * std::sin(2 * std::numbers::pi * 3.1 * t_s);
+  });
+  EXPECT_EQ(names(selection), (std::vector<std::string>{"ageing", "periodic_disturbance"}));
+  // It takes less of the misfit than the form of a large one may leave.
+  const double excess = selection.base_structure.excess_mm;
+  EXPECT_LT(0.09 * 0.09 / 2, 0.05 * excess * excess);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

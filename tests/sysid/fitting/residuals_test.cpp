@@ -1,0 +1,197 @@
+#include "sysid/fitting/residuals.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "model/catalogue.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using model::Model;
+
+struct World {
+  std::string name;
+  Model model;
+  bool irregular = false;
+  bool held = false;
+  bool unknown_start = false;
+};
+std::ostream& operator<<(std::ostream& out, const World& world) {
+  return out << world.name;
+}
+
+Model bench_twin() {
+  return loaded("bench_twin");
+}
+Model with_delay_only() {
+  return model::without_block(bench_twin(), *model::find_block("valve_lag"));
+}
+Model with_lag_only() {
+  return model::without_block(bench_twin(), *model::find_block("transport_delay"));
+}
+Model three_branches() {
+  Model model = loaded("zhang2025");
+  auto& kv = model.blocks.back().values;
+  kv.insert(kv.end(), {5.0, 0.5});
+  return model;
+}
+/// gamma > eta: the state levels off faster than it comes back, and crosses zero steeply.
+Model odd_hysteresis() {
+  Model model = loaded("zhang2025");
+  model.blocks[0].values[2] = -0.01;
+  model.blocks[0].values[3] = 0.06;
+  return model;
+}
+
+std::vector<World> worlds() {
+  return {{"Base", loaded("zhang2025")},
+          {"BaseIrregular", loaded("zhang2025"), true},
+          {"BaseHeld", loaded("zhang2025"), false, true},
+          {"BaseUnknownStart", loaded("zhang2025"), false, false, true},
+          {"ThreeBranches", three_branches()},
+          {"OddHysteresis", odd_hysteresis()},
+          {"Delay", with_delay_only()},
+          {"DelayIrregular", with_delay_only(), true},
+          {"DelayHeld", with_delay_only(), false, true},
+          {"Lag", with_lag_only()},
+          {"LagUnknownStart", with_lag_only(), false, false, true},
+          {"Twin", bench_twin()},
+          {"TwinIrregularUnknownStart", bench_twin(), true, false, true},
+          {"TwinHeld", bench_twin(), false, true}};
+}
+
+std::vector<Record> records_of(const World& world) {
+  std::vector<Log> logs{simulated(world.model, model::SignalName::tp1, 40, 0.05, 1),
+                        simulated(world.model, model::SignalName::sp2, 35, 0.05, 2)};
+  std::mt19937_64 random(3);
+  if (world.irregular) {
+    for (Log& log : logs) {
+      for (std::size_t i = 1; i + 1 < log.size(); ++i) {
+        log.time_s[i] += std::uniform_real_distribution<double>(-0.01, 0.01)(random);
+      }
+    }
+  }
+  if (world.unknown_start) {
+    for (Log& log : logs) log = slice(log, 300, log.size());
+  }
+  logs[0].displacement_mm[17] = std::nan("");
+  RecordOptions options;
+  options.held = world.held;
+  options.start = world.unknown_start ? Start::unknown : Start::rest;
+  auto records = make_records(logs, options);
+  records[1].offset_free = true;
+  return records;
+}
+
+std::vector<std::size_t> all_but_the_exponent(const Model& model) {
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
+    if (!model::parameter_spec(model, i).whole) free.push_back(i);
+  }
+  return free;
+}
+
+class BothWays : public testing::TestWithParam<World> {};
+
+/// The chain by automatic differentiation and the closed form are two programs for one set of equations.
+TEST_P(BothWays, ValuesAndDerivativesAgree) {
+  const World& world = GetParam();
+  const std::vector<Record> records = records_of(world);
+  const FitSpace space(world.model, records, all_but_the_exponent(world.model));
+  const auto chain = chain_residuals(records, space);
+  const auto separable = separable_residuals(records, space);
+  ASSERT_TRUE(separable);
+  FitPoint point{world.model, rest_starts(world.model, records)};
+  point.starts[1].offset_mm = 0.3;
+  if (world.unknown_start) {
+    point.starts[0].peak_before_kpa = 55;
+    point.starts[1].peak_before_kpa = 52;
+    for (double& u : point.starts[0].unsettled_mm) u = 0.4;
+  }
+  const std::vector<double> z = space.z(point);
+  const std::size_t rows = chain->count();
+  ASSERT_EQ(rows, records[0].size() + records[1].size() - 1);
+  std::vector<double> r1(rows), r2(rows), j1(rows * z.size()), j2(rows * z.size());
+  ASSERT_TRUE(chain->evaluate(z, r1, j1));
+  ASSERT_TRUE(separable->evaluate(z, r2, j2));
+  double worst = 0;
+  for (std::size_t i = 0; i < rows; ++i) worst = std::max(worst, std::abs(r1[i] - r2[i]));
+  // A lag's turn inside a sample reaches creep as two parabolas in the chain and as one here.
+  const bool lagged = model::position_of(world.model, "valve_lag").has_value();
+  EXPECT_LT(worst, lagged ? 1e-6 : 1e-9) << "mm";
+  for (std::size_t c = 0; c < z.size(); ++c) {
+    double largest = 0;
+    double difference = 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      largest += j1[i * z.size() + c] * j1[i * z.size() + c];
+      const double d = j1[i * z.size() + c] - j2[i * z.size() + c];
+      difference += d * d;
+    }
+    EXPECT_LT(std::sqrt(difference), 1e-4 * std::sqrt(largest)) << space.free()[c].name;
+    EXPECT_GT(largest, 0) << space.free()[c].name;
+  }
+}
+
+TEST_P(BothWays, ValuesWithoutDerivativesAreTheSame) {
+  const World& world = GetParam();
+  const std::vector<Record> records = records_of(world);
+  const FitSpace space(world.model, records, all_but_the_exponent(world.model));
+  for (const auto& residuals : {chain_residuals(records, space), separable_residuals(records, space)}) {
+    const std::vector<double> z = space.z({world.model, rest_starts(world.model, records)});
+    std::vector<double> r1(residuals->count()), r2(r1.size()), j(r1.size() * z.size());
+    ASSERT_TRUE(residuals->evaluate(z, r1, {}));
+    ASSERT_TRUE(residuals->evaluate(z, r2, j));
+    for (std::size_t i = 0; i < r1.size(); ++i) ASSERT_NEAR(r1[i], r2[i], 1e-9);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, BothWays, testing::ValuesIn(worlds()),
+                         [](const auto& world) { return world.param.name; });
+
+/// Against central differences of the model itself: what is called a derivative is one.
+TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
+  World world{"TwinUnknownStart", bench_twin(), true, false, true};
+  const std::vector<Record> records = records_of(world);
+  const FitSpace space(world.model, records, all_but_the_exponent(world.model));
+  const auto residuals = chain_residuals(records, space);
+  FitPoint point{world.model, rest_starts(world.model, records)};
+  for (auto& start : point.starts) start.peak_before_kpa = 55;
+  for (double& u : point.starts[0].unsettled_mm) u = 0.4;
+  const std::vector<double> z = space.z(point);
+  const std::size_t rows = residuals->count();
+  std::vector<double> jacobian(rows * z.size()), up(rows), down(rows);
+  ASSERT_TRUE(residuals->evaluate(z, {}, jacobian));
+  for (std::size_t c = 0; c < z.size(); ++c) {
+    std::vector<double> moved = z;
+    const double step = 1e-6 * std::max(1.0, std::abs(z[c]));
+    moved[c] = z[c] + step;
+    ASSERT_TRUE(residuals->evaluate(moved, up, {}));
+    moved[c] = z[c] - step;
+    ASSERT_TRUE(residuals->evaluate(moved, down, {}));
+    double difference = 0;
+    double largest = 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      const double by_difference = (up[i] - down[i]) / (2 * step);
+      difference = std::max(difference, std::abs(by_difference - jacobian[i * z.size() + c]));
+      largest = std::max(largest, std::abs(by_difference));
+    }
+    EXPECT_LT(difference, 2e-3 * largest) << space.free()[c].name;
+  }
+}
+
+TEST(SeparableResiduals, AreRefusedForOtherChains) {
+  const World world{"Base", loaded("zhang2025")};
+  const std::vector<Record> records = records_of(world);
+  Model model = world.model;
+  model.blocks[0].values[4] = 2;
+  EXPECT_FALSE(separable_residuals(records, FitSpace(model, records, {0})));
+  model = model::with_block(world.model, model::default_block(*model::find_block("contact")));
+  EXPECT_FALSE(separable_residuals(records, FitSpace(model, records, {0})));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

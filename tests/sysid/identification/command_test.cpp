@@ -1,0 +1,82 @@
+// softgrip identify and validate as a user calls them: exit codes, files, nothing written on refusal.
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "model/file/model_file.h"
+#include "tests/sysid/command_fixture.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Command : public CommandInFolder {
+ protected:
+  void write_log(const std::string& name, model::SignalName signal) {
+    write(name, format_log(simulated(loaded("zhang2025"), signal, 20, 0.05, 7)));
+  }
+};
+
+TEST_F(Command, IdentifyWritesModelJsonAndReport) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  write_log("sp1.csv", model::SignalName::sp1);
+  ASSERT_EQ(run("identify --data tp1.csv --validate sp1.csv --out result --json"), 0) << read("err.txt");
+  const auto json = nlohmann::json::parse(read("result/identify.json"));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_NEAR(json["rmse_mm"]["tp1"], 0.05, 0.005);
+  EXPECT_GT(json["rmse_percent_of_span"]["tp1"], 0);
+  EXPECT_NEAR(json["validation"]["rmse_mm"]["sp1"], 0.05, 0.005);
+  for (const char* key : {"value", "ci95", "identifiable"}) {
+    EXPECT_TRUE(json["parameters"]["bouc_wen.beta_mm_per_kpa"].contains(key)) << key;
+    EXPECT_TRUE(json["combinations"]["instantaneous_gain_mm_per_kpa"].contains(key)) << key;
+  }
+  EXPECT_EQ(json["multistart"]["starts"], 20);
+  EXPECT_TRUE(json.contains("wall_s"));
+  EXPECT_EQ(read("out.txt"), read("result/identify.json"));
+  document::Problems problems;
+  EXPECT_TRUE(model::load_model((folder_ / "result/model.yaml").string(), problems)) << problems.format();
+  const std::string html = read("result/report.html");
+  EXPECT_LT(html.size(), 1'500'000U);
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  ASSERT_EQ(run("validate --model result/model.yaml --data sp1.csv --out checked"), 0) << read("err.txt");
+  EXPECT_TRUE(fs::exists(folder_ / "checked/validate.json"));
+  EXPECT_EQ(run("validate --model result/model.yaml --data sp1.csv --at-most-percent 0.01"), 6);
+}
+
+TEST_F(Command, TheSameInputsGiveTheSameReport) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  ASSERT_EQ(run("identify --data tp1.csv --out a"), 0);
+  ASSERT_EQ(run("identify --data tp1.csv --out b"), 0);
+  EXPECT_EQ(read("a/report.html"), read("b/report.html"));
+  EXPECT_EQ(read("a/model.yaml"), read("b/model.yaml"));
+}
+
+TEST_F(Command, ABadLogIsRefusedAndNothingWritten) {
+  write_log("good.csv", model::SignalName::tp1);
+  write("bad.csv", "time_s,pressure_command_bar,displacement_mm\n0,1,2\n");
+  EXPECT_EQ(run("identify --data good.csv bad.csv --out result"), 3);
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+  EXPECT_NE(read("err.txt").find("bad.csv:1:8: column 'pressure_command_bar' has the wrong unit"),
+            std::string::npos)
+      << read("err.txt");
+  EXPECT_EQ(run("identify --data good.csv --validate bad.csv --out result"), 3);
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+}
+
+TEST_F(Command, OtherRefusalsHaveTheirCodes) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  EXPECT_EQ(run("identify --data absent.csv --out result"), 4);
+  EXPECT_EQ(run("identify --data tp1.csv --start absent.yaml --out result"), 4);
+  EXPECT_EQ(run("identify --data tp1.csv"), 2);
+  EXPECT_EQ(run("identify --data tp1.csv --fix bouc_wen.delta --out result"), 3);
+  EXPECT_EQ(run("identify --data tp1.csv --drive measured --out result"), 3);
+  EXPECT_EQ(run("identify --data tp1.csv --out /proc/nowhere"), 4);
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

@@ -1,0 +1,142 @@
+// Noise model, quantiles, bounded least squares, scores.
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "sysid/fitting/bounded_solve.h"
+#include "sysid/fitting/score.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/identification/noise_model.h"
+#include "sysid/identification/uncertainty.h"
+#include "sysid/identification/validate.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+std::vector<double> autoregressive(double correlation, std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values;
+  double e = normal(random);
+  for (std::size_t i = 0; i < count; ++i) {
+    e = correlation * e + std::sqrt(1 - correlation * correlation) * normal(random);
+    values.push_back(e);
+  }
+  return values;
+}
+
+TEST(NoiseModel, CountsCorrelatedSamplesForWhatTheyAreWorth) {
+  for (const double correlation : {0.0, 0.5, 0.9, 0.98}) {
+    const auto values = autoregressive(correlation, 60'000, 1);
+    const NoiseModel noise = fit_noise(autocovariance_of({values}));
+    EXPECT_NEAR(noise.lag1_correlation, correlation, 0.02);
+    EXPECT_NEAR(noise.deviation_mm, 1, 0.15);
+    const double expected = 60'000 * (1 - correlation) / (1 + correlation);
+    EXPECT_NEAR(noise.effective_samples / expected, 1, 0.25) << correlation;
+  }
+}
+
+TEST(NoiseModel, GapsAndSeveralSeriesDoNotMix) {
+  auto first = autoregressive(0.8, 20'000, 2);
+  first[777] = std::nan("");
+  const auto second = autoregressive(0.8, 20'000, 3);
+  EXPECT_NEAR(fit_noise(autocovariance_of({first, second})).lag1_correlation, 0.8, 0.02);
+}
+
+TEST(TQuantile, MatchesTables) {
+  EXPECT_NEAR(t_quantile(3), 3.182, 0.03);
+  EXPECT_NEAR(t_quantile(10), 2.228, 0.001);
+  EXPECT_NEAR(t_quantile(30), 2.042, 0.0005);
+  EXPECT_NEAR(t_quantile(1e9), 1.95996, 1e-5);
+}
+
+/// Against a fine search over a grid.
+TEST(BoundedSolve, FindsTheConstrainedMinimum) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 20; ++trial) {
+    Eigen::MatrixXd a(8, 2);
+    Eigen::VectorXd y(8);
+    for (Eigen::Index i = 0; i < 8; ++i) {
+      y(i) = normal(random);
+      for (Eigen::Index j = 0; j < 2; ++j) a(i, j) = normal(random);
+    }
+    const Eigen::MatrixXd gram = a.transpose() * a;
+    const Eigen::VectorXd right = a.transpose() * y;
+    const Eigen::Vector2d lower(-0.2, 0.0);
+    const Eigen::Vector2d upper(0.2, 0.3);
+    const auto solution = solve_bounded(gram, right, lower, upper);
+    const auto cost = [&](const Eigen::VectorXd& x) { return 0.5 * x.dot(gram * x) - right.dot(x); };
+    double best = 1e9;
+    for (int i = 0; i <= 200; ++i) {
+      for (int j = 0; j <= 200; ++j) {
+        const Eigen::Vector2d x(-0.2 + 0.4 * i / 200.0, 0.3 * j / 200.0);
+        best = std::min(best, cost(x));
+      }
+    }
+    EXPECT_LE(cost(solution.x), best + 1e-9) << "trial " << trial;
+    EXPECT_TRUE((solution.x.array() >= lower.array() - 1e-12).all());
+    EXPECT_TRUE((solution.x.array() <= upper.array() + 1e-12).all());
+  }
+}
+
+TEST(BoundedSolve, SurvivesTwoEqualColumns) {
+  Eigen::MatrixXd gram(2, 2);
+  gram << 1, 1, 1, 1;
+  const Eigen::Vector2d wide(1e6, 1e6);
+  const auto solution = solve_bounded(gram, Eigen::Vector2d(1, 1), -wide, wide);
+  EXPECT_NEAR(solution.x.sum(), 1, 1e-6);
+}
+
+TEST(Cycles, AreWhatRepeats) {
+  const model::Model model = loaded("zhang2025");
+  const auto tp1 = make_records({simulated(model, model::SignalName::tp1, 50, 0, 1)}, {});
+  const auto starts = cycle_starts(tp1.front());
+  ASSERT_EQ(starts.size(), 2U);
+  EXPECT_NEAR(tp1.front().time_s[starts[1]], 25, 0.5);
+  const auto hold = make_records({simulated(model, model::SignalName::hold, 50, 0, 1)}, {});
+  EXPECT_EQ(cycle_starts(hold.front()).size(), 1U);
+  EXPECT_TRUE(std::isnan(score_of(model, hold.front(), {}, hold.front().reading_mm).settled_rmse_mm));
+}
+
+TEST(Score, OfTheTrueModelIsTheNoise) {
+  const model::Model model = loaded("bench_twin");
+  const auto records = make_records({simulated(model, model::SignalName::sp1, 50, 0.05, 1)}, {});
+  const Score score = score_of(model, records[0], rest_starts(model, records)[0], records[0].reading_mm);
+  EXPECT_NEAR(score.rmse_mm, 0.05, 0.002);
+  EXPECT_NEAR(score.rmse_percent_of_span, 100 * score.rmse_mm / records[0].span_mm, 1e-9);
+  EXPECT_NEAR(fast_noise_mm(records[0]), 0.05, 0.003);
+}
+
+TEST(Validate, EstimatesOnlyWhatTheLogLeavesOpen) {
+  const model::Model model = loaded("bench_twin");
+  std::vector<Log> logs{simulated(model, model::SignalName::sp1, 50, 0.05, 1),
+                        simulated(model, model::SignalName::tp2, 50, 0.05, 2)};
+  for (double& y : logs[1].displacement_mm) y += 2;
+  const Validation v = validate_logs(model, logs);
+  EXPECT_EQ(v.scores[0].start.offset_mm, 0);
+  EXPECT_NEAR(v.scores[1].start.offset_mm, 2, 0.01);
+  for (const Score& s : v.scores) EXPECT_NEAR(s.rmse_mm, 0.05, 0.002);
+}
+
+TEST(Records, MissingMeasuredPressuresAreFilledAndReadingsAreNot) {
+  Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 1);
+  log.pressure_kpa = log.pressure_command_kpa;
+  for (const std::size_t i : {std::size_t{0}, std::size_t{40}, std::size_t{41}, log.size() - 1}) {
+    log.pressure_kpa[i] = std::nan("");
+    log.displacement_mm[i] = std::nan("");
+  }
+  RecordOptions options;
+  options.drive = Drive::measured;
+  const Record record = make_records({log}, options).front();
+  EXPECT_EQ(record.readings, log.size() - 4);
+  EXPECT_NEAR(record.drive_kpa[40], log.pressure_command_kpa[40], 1e-9);
+  EXPECT_EQ(record.drive_kpa[0], log.pressure_command_kpa[1]);
+  EXPECT_TRUE(std::isfinite(record.drive_kpa.back()));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

@@ -1,0 +1,186 @@
+#include "sysid/pages/chart.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "sysid/pages/chart_path.h"
+#include "sysid/pages/chart_scale.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> at_of(const std::vector<Tick>& ticks) {
+  std::vector<double> values;
+  for (const Tick& tick : ticks) values.push_back(tick.at);
+  return values;
+}
+
+TEST(Scale, TicksAreRoundNumbersInsideTheAxis) {
+  for (const double width : {3e-7, 0.02, 1.0, 7.3, 42.0, 1.9e6}) {
+    for (const double lower : {-0.7 * width, 0.0, 13 * width}) {
+      const Axis axis;
+      const Scale scale(axis, lower, lower + width, 0, 500, false);
+      const auto ticks = scale.ticks(6);
+      ASSERT_GE(ticks.size(), 2U) << width;
+      EXPECT_LE(ticks.size(), 8U) << width;
+      const double step = ticks[1].at - ticks[0].at;
+      const double mantissa = step / std::pow(10.0, std::floor(std::log10(step) + 1e-9));
+      EXPECT_TRUE(std::abs(mantissa - 1) < 1e-6 || std::abs(mantissa - 2) < 1e-6 ||
+                  std::abs(mantissa - 5) < 1e-6)
+          << step;
+      for (const Tick& tick : ticks) {
+        EXPECT_GE(tick.at, lower - 1e-9 * width);
+        EXPECT_LE(tick.at, lower + width + 1e-9 * width);
+      }
+    }
+  }
+}
+
+TEST(Scale, TextsOfTicksTellThemApart) {
+  const Axis axis;
+  const Scale scale(axis, 1000.001, 1000.0042, 0, 500, false);
+  const auto ticks = scale.ticks(6);
+  for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_NE(ticks[i].text, ticks[i - 1].text);
+}
+
+TEST(Scale, ZeroIsWrittenWithoutASign) {
+  const Axis axis;
+  for (const Tick& tick : Scale(axis, -1, 1, 0, 500, false).ticks(5))
+    EXPECT_NE(tick.text.substr(0, 3), "-0.0");
+}
+
+TEST(Scale, LogarithmicTicksArePowersOfTen) {
+  Axis axis;
+  axis.logarithmic = true;
+  EXPECT_EQ(at_of(Scale(axis, 0.5, 2000, 0, 500, false).ticks(6)), (std::vector<double>{1, 10, 100, 1000}));
+}
+
+TEST(Scale, OneValueAndNoValueStillMakeAnAxis) {
+  const Axis axis;
+  EXPECT_LT(Scale(axis, 5, 5, 0, 500, true).lower(), 5);
+  const Scale nothing(axis, 1e300, -1e300, 0, 500, true);
+  EXPECT_LT(nothing.lower(), nothing.upper());
+}
+
+TEST(Thinning, KeepsEveryExtreme) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise;
+  std::vector<Pixel> curve;
+  for (int i = 0; i < 200'000; ++i) curve.push_back({700.0 * i / 200'000, noise(random)});
+  curve[123'456].y = 50;
+  curve[77'777].y = -60;
+  const auto kept = thinned(curve);
+  EXPECT_LE(kept.size(), 4 * 700U);
+  double highest = 0;
+  double lowest = 0;
+  for (const Pixel& p : kept) {
+    highest = std::max(highest, p.y);
+    lowest = std::min(lowest, p.y);
+  }
+  EXPECT_EQ(highest, 50);
+  EXPECT_EQ(lowest, -60);
+  // Column by column, what is drawn reaches as far as the data.
+  std::vector<std::pair<double, double>> data(700, {1e9, -1e9});
+  auto drawn = data;
+  for (const Pixel& p : curve) {
+    auto& [low, high] = data[static_cast<std::size_t>(p.x)];
+    low = std::min(low, p.y);
+    high = std::max(high, p.y);
+  }
+  for (const Pixel& p : kept) {
+    auto& [low, high] = drawn[static_cast<std::size_t>(p.x)];
+    low = std::min(low, p.y);
+    high = std::max(high, p.y);
+  }
+  EXPECT_EQ(drawn, data);
+}
+
+TEST(Thinning, ShortCurvesStayAsTheyAre) {
+  const std::vector<Pixel> curve{{0, 1}, {10, 5}, {20, 2}};
+  EXPECT_EQ(thinned(curve).size(), 3U);
+}
+
+TEST(Thinning, AGapStaysAGap) {
+  const auto kept = thinned({{0, 1}, {10, 5}, {nan_value, 0}, {nan_value, 0}, {20, 2}, {30, 4}});
+  ASSERT_EQ(kept.size(), 5U);
+  EXPECT_TRUE(std::isnan(kept[2].x));
+  EXPECT_EQ(path_data(kept), "M0 1l10 4M20 2l10 2");
+}
+
+TEST(Thinning, ALoopRunThousandTimesIsDrawnOnce) {
+  std::vector<Pixel> curve;
+  for (int i = 0; i < 1000 * 360; ++i) {
+    const double angle = i * std::numbers::pi / 180;
+    curve.push_back({200 + 100 * std::cos(angle), 200 + 100 * std::sin(angle)});
+  }
+  const auto kept = thinned(curve);
+  EXPECT_LT(kept.size(), 2000U);
+  EXPECT_GT(kept.size(), 300U);
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+Chart a_chart() {
+  Chart chart;
+  chart.title = "Overlay <of> \"a\" & b";
+  chart.x.label = "time [s]";
+  chart.y.label = "displacement [mm]";
+  Series line{.label = "model", .x = {}, .y = {}, .y_upper = {}, .colour = Colour::model};
+  for (int i = 0; i < 100'000; ++i) {
+    line.x.push_back(0.001 * i);
+    line.y.push_back(std::sin(0.0001 * i) + 0.1 * std::sin(77.0 * i));
+  }
+  chart.series = {line};
+  chart.marks = {{Mark::Direction::vertical, 40, "released"}};
+  return chart;
+}
+
+TEST(Chart, IsSmallAndEscaped) {
+  const std::string svg = to_svg(a_chart());
+  EXPECT_LT(svg.size(), 60'000U);
+  EXPECT_EQ(svg.find("<of>"), std::string::npos);
+  EXPECT_NE(svg.find("&lt;of&gt;"), std::string::npos);
+  EXPECT_NE(svg.find("released"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
+TEST(Chart, TagsAreBalanced) {
+  Chart chart = a_chart();
+  for (const auto style :
+       {Series::Style::points, Series::Style::band, Series::Style::bars, Series::Style::steps}) {
+    Series series{
+        .label = "s", .x = {1, 2, nan_value, 4}, .y = {1, nan_value, 3, 4}, .y_upper = {2, 3, 4, 5}};
+    series.style = style;
+    chart.series.push_back(series);
+  }
+  const std::string svg = to_svg({chart, chart});
+  for (const std::string tag : {"svg", "g", "text"}) {
+    EXPECT_EQ(count(svg, "<" + tag + " ") + count(svg, "<" + tag + ">"), count(svg, "</" + tag + ">")) << tag;
+  }
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+}
+
+TEST(Chart, NothingToDrawIsStillAChart) {
+  EXPECT_NE(to_svg(Chart{}).find("</svg>"), std::string::npos);
+  Chart chart;
+  chart.series = {Series{.label = "", .x = {nan_value}, .y = {nan_value}, .y_upper = {}}};
+  EXPECT_EQ(to_svg(chart).find("nan"), std::string::npos);
+}
+
+TEST(Chart, SameValuesSameBytes) {
+  EXPECT_EQ(to_svg(a_chart()), to_svg(a_chart()));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

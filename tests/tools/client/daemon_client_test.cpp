@@ -1,0 +1,110 @@
+#include "tools/client/daemon_client.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "simulation/emulator/listener.h"
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Accepts one client, waits for one line, says what it was told to say, and hangs up.
+class ScriptedDaemon {
+ public:
+  explicit ScriptedDaemon(std::string reply)
+      : folder_(std::filesystem::temp_directory_path() / ("softgrip_client_" + std::to_string(::getpid()))),
+        reply_(std::move(reply)) {
+    std::filesystem::create_directories(folder_);
+    listener_ = std::move(*rig::listen_unix(path()));
+    thread_ = std::thread([this] { serve(); });
+  }
+  ScriptedDaemon(const ScriptedDaemon&) = delete;
+  ScriptedDaemon& operator=(const ScriptedDaemon&) = delete;
+  ScriptedDaemon(ScriptedDaemon&&) = delete;
+  ScriptedDaemon& operator=(ScriptedDaemon&&) = delete;
+  ~ScriptedDaemon() {
+    thread_.join();
+    std::filesystem::remove_all(folder_);
+  }
+
+  [[nodiscard]] std::string path() const { return folder_ / "daemon.sock"; }
+
+ private:
+  void serve() {
+    Descriptor client;
+    while (!client) {
+      client = rig::accept_client(listener_);
+      if (!client) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    char byte = 0;
+    while (byte != '\n') {
+      if (::recv(client.get(), &byte, 1, 0) < 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    for (const char out : reply_) ::send(client.get(), &out, 1, MSG_NOSIGNAL);  // in the smallest of pieces
+  }
+
+  std::filesystem::path folder_;
+  std::string reply_;
+  Descriptor listener_;
+  std::thread thread_;
+};
+
+tl::expected<Json, ClientFailure> answer_to(const std::string& reply) {
+  const ScriptedDaemon daemon(reply);
+  auto client = DaemonClient::connect(daemon.path());
+  EXPECT_TRUE(client);
+  return client->ask({{"command", "status"}});
+}
+
+TEST(DaemonClient, ReturnsTheResult) {
+  const auto result = answer_to("{\"id\": null, \"ok\": true, \"result\": {\"state\": \"idle\"}}\n");
+  ASSERT_TRUE(result) << result.error().message;
+  EXPECT_EQ((*result)["state"], "idle");
+}
+
+TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {
+  const auto absent = DaemonClient::connect("/tmp/no/such.sock");
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().code, ExitCode::io);
+  EXPECT_NE(absent.error().message.find("softgripd --config"), std::string::npos);
+
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("softgrip_left_over_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / "left.sock";
+  { const auto listener = rig::listen_unix(path); }
+  const auto left_over = DaemonClient::connect(path);
+  ASSERT_FALSE(left_over);
+  EXPECT_NE(left_over.error().message.find("nobody listens"), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(DaemonClient, MapsRefusalsToExitCodes) {
+  const auto refused = answer_to(
+      R"({"id":null,"ok":false,"error":{"code":"refused","message":"faulted","refusal":{"code":"R01","name":"faulted"}}})"
+      "\n");
+  EXPECT_EQ(refused.error().code, ExitCode::state_refused);
+  EXPECT_NE(refused.error().message.find("R01"), std::string::npos);
+  const auto sequence = answer_to(
+      R"({"id":null,"ok":false,"error":{"code":"sequence_refused","message":"no","problems":[{"file":"a.yaml","line":3,"column":5,"message":"m","hint":"h"}]}})"
+      "\n");
+  EXPECT_EQ(sequence.error().code, ExitCode::input_refused);
+  EXPECT_NE(sequence.error().message.find("a.yaml:3:5: m (h)"), std::string::npos);
+}
+
+TEST(DaemonClient, SurvivesADaemonThatTalksNonsenseOrHangsUp) {
+  EXPECT_EQ(answer_to("hello\n").error().code, ExitCode::failed);
+  EXPECT_EQ(answer_to("[1]\n").error().code, ExitCode::failed);
+  EXPECT_EQ(answer_to("{\"ok\"").error().code, ExitCode::io);
+  EXPECT_EQ(answer_to("").error().code, ExitCode::io);
+}
+
+}  // namespace
+}  // namespace softgrip::tools

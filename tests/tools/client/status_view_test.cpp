@@ -1,0 +1,134 @@
+#include "tools/client/status_view.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json channel(const std::string& name) {
+  return Json::parse(
+             R"({"command_kpa": 30.0, "pressure_kpa": 29.5, "displacement_mm": 12.25, "reference_mm": 12.5,
+    "age_s": 0.0031, "validity": "valid", "result": "HOLDING", "evidence": "displacement", "saturated": false,
+    "slewing": true, "health": "healthy",
+    "limits": {"pressure_min_kpa": 0, "pressure_max_kpa": 60, "displacement_min_mm": 0, "displacement_max_mm": 25}})")
+      .patch(Json::array({{{"op", "add"}, {"path", "/name"}, {"value", name}}}));
+}
+
+Json status() {
+  Json status =
+      Json::parse(R"({"rig": "bench", "rate_hz": 200, "time_s": 12.345, "state": "running", "fault": null,
+    "sequence": {"name": "pick_stone", "request": 1, "step": 2, "step_name": "hold", "steps": 4, "ended": null},
+    "bus": {"board": "ADAM-6024 at 127.0.0.1:1502 unit 1", "connected": true, "fault": null, "consecutive_failures": 0},
+    "loop": {"ticks": 2469, "slips": 1, "wake_up_p99_us": 43.2, "wake_up_max_us": 120.0},
+    "recording": {"active": true, "folder": "/tmp/run", "rows": 100, "dropped_rows": 0, "error": null},
+    "real_time": {"degraded": true, "steps": []}})");
+  status["channels"] = Json::array({channel("left"), channel("right")});
+  return status;
+}
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
+  return text;
+}
+
+/// Columns that a line takes: escapes none, a UTF-8 character one.
+std::size_t columns_of(const std::string& line) {
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '\x1b') {
+      i = line.find('m', i);
+    } else if ((static_cast<unsigned char>(line[i]) & 0xc0U) != 0x80U) {
+      ++columns;
+    }
+  }
+  return columns;
+}
+
+TEST(StatusView, IsGoldenInPlainText) {
+  EXPECT_EQ(joined(view_of(status(), {100, false, false})),
+            R"(softgrip bench  running  pick_stone: step 3/4 hold  12.3 s
+
+left            HOLDING by displacement   reading valid, 3.1 ms old   model healthy   slewing
+  pressure      [###################|                  ]  29.50 kPa, command 30.00
+  displacement  [###################|                  ]  12.25 mm, reference 12.50, error 0.25
+
+right           HOLDING by displacement   reading valid, 3.1 ms old   model healthy   slewing
+  pressure      [###################|                  ]  29.50 kPa, command 30.00
+  displacement  [###################|                  ]  12.25 mm, reference 12.50, error 0.25
+
+board           ADAM-6024 at 127.0.0.1:1502 unit 1  connected
+loop            200 Hz, 2469 ticks, 1 slips, wake-up p99 43 us, max 120 us  real time degraded
+recording       on   /tmp/run
+)");
+}
+
+TEST(StatusView, NoLineIsLongerThanTheTerminal) {
+  for (const std::size_t columns : {1U, 20U, 40U, 80U, 200U}) {
+    for (const bool fancy : {false, true}) {
+      for (const std::string& line : view_of(status(), {columns, fancy, fancy})) {
+        EXPECT_LE(columns_of(line), columns) << line;
+      }
+    }
+  }
+}
+
+TEST(StatusView, ColoursOnlyWhenAsked) {
+  EXPECT_EQ(joined(view_of(status(), {80, false, false})).find('\x1b'), std::string::npos);
+  EXPECT_NE(joined(view_of(status(), {80, true, false})).find("\x1b[32m"), std::string::npos);
+}
+
+TEST(StatusView, AFaultComesWithItsRemedy) {
+  Json faulted = status();
+  faulted["state"] = "faulted";
+  faulted["fault"] = {{"code", "F101"},
+                      {"name", "bus_down"},
+                      {"meaning", "No session."},
+                      {"cause", "A cable."},
+                      {"remedy", "Look."}};
+  const std::string text = joined(view_of(faulted, {80, false, false}));
+  EXPECT_NE(text.find("F101"), std::string::npos);
+  EXPECT_NE(text.find("usually: A cable."), std::string::npos);
+  EXPECT_NE(text.find("do: Look."), std::string::npos);
+  EXPECT_NE(line_of_status(faulted).find("faulted F101"), std::string::npos);
+}
+
+TEST(StatusView, WhatIsUnknownIsADash) {
+  Json unknown = status();
+  for (Json& each : unknown["channels"]) {
+    each["pressure_kpa"] = nullptr;
+    each["reference_mm"] = nullptr;
+    each["result"] = "-";
+  }
+  unknown["sequence"] = nullptr;
+  const std::string text = joined(view_of(unknown, {100, false, false}));
+  EXPECT_NE(text.find("- kPa, command 30.00"), std::string::npos);
+  EXPECT_NE(text.find("12.25 mm, reference -"), std::string::npos);
+  EXPECT_EQ(text.find("error"), std::string::npos);
+  for (const Json& nonsense : {Json::object(), Json::parse(R"({"channels": 3, "bus": "x", "fault": 1})")}) {
+    EXPECT_FALSE(view_of(nonsense, {80, false, false}).empty());
+    EXPECT_FALSE(line_of_status(nonsense).empty());
+  }
+}
+
+TEST(StatusView, ATextFromTheWireCannotReachTheTerminal) {
+  Json hostile = status();
+  hostile["rig"] = "\x1b[2Jboo";
+  hostile["channels"][0]["name"] = "a\nb";
+  const std::string text = joined(view_of(hostile, {80, false, false}));
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+  EXPECT_EQ(text.find("a\nb"), std::string::npos);
+}
+
+TEST(StatusView, OneLineSaysWhatMatters) {
+  EXPECT_EQ(line_of_status(status()),
+            "12.35 s  running  left 30.00 kPa 12.25 mm of 12.50 HOLDING  right 30.00 kPa 12.25 mm of 12.50 "
+            "HOLDING");
+}
+
+}  // namespace
+}  // namespace softgrip::tools

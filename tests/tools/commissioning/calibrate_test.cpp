@@ -1,0 +1,355 @@
+// softgrip calibrate against rigs whose truth is known.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "rig/rig_file.h"
+#include "simulation/plant/simulated_board.h"
+#include "tests/daemon/rig_under_test.h"
+#include "tests/daemon/temporary_folder.h"
+#include "tests/tools/virtual_pace.h"
+#include "tools/commissioning/line_fit.h"
+#include "tools/commissioning/procedure.h"
+#include "tools/commissioning/snippet.h"
+
+namespace softgrip::tools::calibrate {
+namespace {
+
+/// Four visits to two places of y = 3 - 2 x.
+std::vector<Visit> visits() {
+  std::vector<Visit> list;
+  for (const double off : {0.001, -0.001}) {
+    list.push_back({false, 1, 0.002, 0, 400, 1 + off});
+    list.push_back({true, 6, 0.002, 0, 400, -9 + off});
+  }
+  return list;
+}
+constexpr Demands demands{1, 0.2};
+
+TEST(FitLine, FindsSlopeSignResidualsAndSpread) {
+  const auto line = fit_line(visits(), demands, "mm", "V");
+  ASSERT_TRUE(line) << line.error();
+  EXPECT_NEAR(line->slope, -2, 1e-12);
+  EXPECT_NEAR(line->points.y_at(3.5), 3 - 7, 1e-12);
+  ASSERT_EQ(line->residuals.size(), 4U);
+  EXPECT_NEAR(line->residuals[0], 0.001, 1e-12);
+  EXPECT_NEAR(line->residuals[2], -0.001, 1e-12);
+  EXPECT_NEAR(line->repeat_spread.value_or(0), 0.002, 1e-12);
+  EXPECT_NEAR(line->noise, 0.004, 1e-12);
+}
+
+TEST(FitLine, WithoutRepetitionTheSpreadIsNotKnown) {
+  std::vector<Visit> two = visits();
+  two.resize(2);
+  const auto line = fit_line(two, demands, "mm", "V");
+  ASSERT_TRUE(line);
+  EXPECT_FALSE(line->repeat_spread);
+  EXPECT_NEAR(line->residuals[0], 0, 1e-12);
+}
+
+TEST(FitLine, RefusesNonsenseAndSaysWhy) {
+  const auto why = [](const std::function<void(std::vector<Visit>&)>& spoil) {
+    std::vector<Visit> list = visits();
+    spoil(list);
+    const auto line = fit_line(list, demands, "mm", "V");
+    return line ? std::string("accepted") : line.error();
+  };
+  EXPECT_EQ(why([](auto&) {}), "accepted");
+  EXPECT_NE(why([](auto& list) { list[1].reference = list[3].reference = 1.5; }).find("too close"),
+            std::string::npos);
+  EXPECT_NE(why([](auto& list) { list[1].electrical = list[3].electrical = 1.1; }).find("does not follow"),
+            std::string::npos);
+  EXPECT_NE(why([](auto& list) { list[2].noise = 0.2; }).find("too much noise"), std::string::npos);
+  EXPECT_NE(why([](auto& list) { list[2].reference = 3; }).find("does not repeat"), std::string::npos);
+  EXPECT_NE(why([](auto& list) { list[0].reference = NAN; }).find("not a number"), std::string::npos);
+  EXPECT_NE(why([](auto& list) { list.resize(1); }).find("two places"), std::string::npos);
+}
+
+TEST(FindDeadZone, FindsABendInNoise) {
+  constexpr std::uint64_t seed = 7;
+  SCOPED_TRACE(seed);
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0, 0.1);
+  std::vector<double> command;
+  std::vector<double> response;
+  for (int i = 0; i < 2000; ++i) {
+    command.push_back(i * 0.01);
+    response.push_back(std::max(0.0, command.back() - 3.2) + 0.4 + noise(random));
+  }
+  const auto zone = find_dead_zone(command, response);
+  ASSERT_TRUE(zone);
+  EXPECT_TRUE(zone->significant);
+  EXPECT_NEAR(zone->end, 3.2, 0.1);
+  EXPECT_NEAR(zone->gain, 1, 0.02);
+}
+
+TEST(FindDeadZone, DoesNotInventOne) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> noise(0, 0.1);
+  std::vector<double> command;
+  std::vector<double> response;
+  std::vector<double> nothing;
+  for (int i = 0; i < 2000; ++i) {
+    command.push_back(i * 0.01);
+    response.push_back(command.back() + noise(random));
+    nothing.push_back(noise(random));
+  }
+  const auto zone = find_dead_zone(command, response);
+  ASSERT_TRUE(zone);
+  EXPECT_FALSE(zone->significant);
+  EXPECT_FALSE(find_dead_zone(command, nothing)) << "nothing rises";
+}
+
+/// Reads the gauge where the simulation really is.
+class KnowingOperator final : public Operator {
+ public:
+  explicit KnowingOperator(std::function<std::string()> reading) : reading_(std::move(reading)) {}
+  void tell(const std::string& text) override { told.push_back(text); }
+  void ask(const std::string& question) override {
+    asked.push_back(question);
+    waited_ = 0;
+  }
+  std::optional<std::string> answer() override {
+    // Nobody answers at once, and the board wants to be talked to meanwhile.
+    if (++waited_ < 300) return std::nullopt;
+    return reading_();
+  }
+  [[nodiscard]] bool gone() const override { return false; }
+  [[nodiscard]] bool patient() const override { return false; }
+
+  std::vector<std::string> asked;
+  std::vector<std::string> told;
+
+ private:
+  std::function<std::string()> reading_;
+  int waited_ = 0;
+};
+
+class CalibrateTest : public ::testing::Test {
+ protected:
+  CalibrateTest() {
+    for (simulation::SimulatedChannel& channel : simulated().channels) channel.plant.object.reset();
+    settings_.may_move = true;
+    settings_.low_kpa = 10;
+    settings_.high_kpa = 40;
+    settings_.repeats = 2;
+  }
+  simulation::SimulatedBoardSettings& simulated() {
+    return std::get<simulation::SimulatedBoardSettings>(rig_.board);
+  }
+  void make() {
+    board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
+    drive_ = std::make_unique<HandDrive>(rig_, *board_, pace_);
+    ASSERT_TRUE(drive_->connect());
+  }
+  [[nodiscard]] std::string truth_mm() { return std::to_string(board_->plant(0).displacement_mm()); }
+  [[nodiscard]] std::string truth_kpa() { return std::to_string(board_->plant(0).pressure_kpa()); }
+
+  rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
+  testing::VirtualPace pace_;
+  Settings settings_;
+  std::unique_ptr<simulation::SimulatedBoard> board_;
+  std::unique_ptr<HandDrive> drive_;
+};
+
+TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
+  for (const drivers::TwoPoints& truth :
+       {drivers::TwoPoints{0, -5, 10, 45}, drivers::TwoPoints{0.5, 45, 9.5, -5}}) {
+    pace_.clock.set(1'000'000'000);
+    rig_.wiring[0].displacement.scaling = truth;
+    make();
+    KnowingOperator person([this] { return truth_mm(); });
+    const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+    ASSERT_TRUE(line) << line.error().text;
+    EXPECT_EQ(line->slope > 0, truth.y1 > truth.y0);
+    for (const double x : {line->points.x0, line->points.x1}) {
+      EXPECT_NEAR(line->points.y_at(x), truth.y_at(x), line->error) << "stated " << line->error;
+    }
+    EXPECT_LT(line->error, 0.5) << "and the statement is worth something";
+    EXPECT_EQ(person.asked.size(), 4U);
+    drive_.reset();
+    EXPECT_EQ(board_->plant(0).held_command_kpa(), 0) << "left safely";
+  }
+}
+
+TEST_F(CalibrateTest, RecoversTheValveAgainstTheMonitorAndAgainstAManometer) {
+  make();
+  KnowingOperator person([this] { return truth_kpa(); });
+  for (const bool by_monitor : {true, false}) {
+    const auto result = calibrate_valve(rig_, *drive_, person, settings_, by_monitor);
+    ASSERT_TRUE(result) << result.error().text;
+    for (const double x : {result->valve.points.x0, result->valve.points.x1}) {
+      EXPECT_NEAR(result->valve.points.y_at(x), rig_.wiring[0].valve.scaling.y_at(x),
+                  std::max(result->valve.error, 0.05))
+          << "the simulated valve is ideal";
+    }
+    EXPECT_EQ(result->monitor.has_value(), !by_monitor);
+  }
+}
+
+TEST_F(CalibrateTest, FindsNoDeadZoneWhereThereIsNone) {
+  make();
+  KnowingOperator person([] { return ""; });
+  const auto result = search_dead_zone(rig_, *drive_, person, settings_);
+  ASSERT_TRUE(result) << result.error().text;
+  EXPECT_TRUE(result->by_pressure);
+  EXPECT_LT(result->zone->end, 1);
+}
+
+TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
+  simulation::SimulatedEvent blind;
+  blind.kind = simulation::SimulatedEvent::Kind::sensor_fault;
+  blind.sensor.kind = simulation::SensorFault::Kind::out_of_range;
+  simulated().events.push_back(blind);
+  make();
+  KnowingOperator person([this] { return truth_mm(); });
+  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  ASSERT_FALSE(line);
+  EXPECT_EQ(line.error().code, ExitCode::not_acceptable);
+  EXPECT_NE(line.error().text.find("not valid (out_of_range)"), std::string::npos) << line.error().text;
+}
+
+TEST_F(CalibrateTest, RefusesASensorThatDoesNotFollow) {
+  simulation::SimulatedEvent stuck;
+  stuck.kind = simulation::SimulatedEvent::Kind::sensor_fault;
+  stuck.sensor.kind = simulation::SensorFault::Kind::stuck;
+  simulated().events.push_back(stuck);
+  make();
+  KnowingOperator person([this] { return truth_mm(); });
+  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  ASSERT_FALSE(line);
+  EXPECT_NE(line.error().text.find("does not follow"), std::string::npos) << line.error().text;
+}
+
+TEST_F(CalibrateTest, AnAnswerThatIsNoNumberIsRefusedAndTheRigIsSafe) {
+  make();
+  KnowingOperator person([] { return "about ten"; });
+  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  ASSERT_FALSE(line);
+  EXPECT_EQ(line.error().code, ExitCode::input_refused);
+  drive_.reset();
+  EXPECT_EQ(board_->plant(0).held_command_kpa(), 0);
+}
+
+TEST_F(CalibrateTest, StoppedOnTheWayItVents) {
+  pace_.stop_at = 4'000'000'000;
+  make();
+  KnowingOperator person([this] { return truth_mm(); });
+  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  ASSERT_FALSE(line);
+  EXPECT_EQ(line.error().text, "stopped by the user");
+  EXPECT_GT(board_->plant(0).held_command_kpa(), 1) << "it was on its way";
+  EXPECT_TRUE(drive_->leave());
+  EXPECT_EQ(board_->plant(0).held_command_kpa(), 0);
+}
+
+TEST_F(CalibrateTest, NeverCommandsBeyondTheLimits) {
+  settings_.high_kpa = 500;
+  make();
+  double highest = 0;
+  KnowingOperator person([this] { return truth_mm(); });
+  (void)drive_->ramp(0, 500, 1e9,
+                     [&](const auto& commands, const auto&) { highest = std::max(highest, commands[0]); });
+  EXPECT_LE(highest, 60);
+}
+
+TEST_F(CalibrateTest, ByHandNothingMoves) {
+  settings_.may_move = false;
+  make();
+  double place = 2;
+  KnowingOperator person([&] {
+    // A target put there by hand: the simulated finger stays, the scaling plays the target.
+    return std::to_string(place += 10);
+  });
+  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  EXPECT_FALSE(line) << "the signal did not follow the gauge";
+  EXPECT_EQ(board_->plant(0).pressure_kpa(), 0);
+  EXPECT_NE(person.asked.front().find("put the target"), std::string::npos);
+}
+
+TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
+  make();
+  int answered = 0;
+  KnowingOperator person([&]() -> std::string {
+    const std::vector<std::string> answers{"", "12,5", "-", ""};
+    return answers[static_cast<std::size_t>(answered++)];
+  });
+  const auto visits = read_positions(*drive_, person, settings_, {0, 10, 20, 30});
+  ASSERT_TRUE(visits) << visits.error().text;
+  ASSERT_EQ(visits->size(), 3U) << "one was left out";
+  EXPECT_EQ((*visits)[0].position_mm, 0) << "Enter: it is where it was asked for";
+  EXPECT_EQ((*visits)[1].position_mm, 12.5);
+  EXPECT_EQ((*visits)[2].position_mm, 30);
+  for (const GaugeVisit& visit : *visits) {
+    EXPECT_NEAR(visit.reading_mm, board_->plant(0).displacement_mm(), 0.02);
+    EXPECT_GT(visit.count, 100U);
+  }
+  EXPECT_NE(person.asked[1].find("2 of 4: target at 10 mm"), std::string::npos) << person.asked[1];
+  EXPECT_EQ(board_->plant(0).pressure_kpa(), 0);
+}
+
+TEST_F(CalibrateTest, AGaugePositionThatTheSensorDoesNotSeeIsLeftOut) {
+  simulation::SimulatedEvent blind;
+  blind.kind = simulation::SimulatedEvent::Kind::sensor_fault;
+  blind.sensor.kind = simulation::SensorFault::Kind::out_of_range;
+  simulated().events.push_back(blind);
+  make();
+  KnowingOperator person([] { return ""; });
+  const auto visits = read_positions(*drive_, person, settings_, {0, 10});
+  ASSERT_TRUE(visits) << visits.error().text;
+  EXPECT_TRUE(visits->empty());
+  EXPECT_NE(person.told.front().find("left out"), std::string::npos);
+}
+
+TEST_F(CalibrateTest, AGaugeCheckStopsWhenAsked) {
+  pace_.stop_at = 4'000'000'000;
+  make();
+  KnowingOperator person([] { return ""; });
+  const auto visits = read_positions(*drive_, person, settings_, {0, 10, 20, 30});
+  ASSERT_FALSE(visits);
+  EXPECT_EQ(visits.error().text, "stopped by the user");
+}
+
+TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
+  make();
+  KnowingOperator person([this] { return truth_mm(); });
+  Results results;
+  results.date = "2026-11-20";
+  results.sensor = calibrate_sensor(rig_, *drive_, person, settings_).value();
+  results.valve = calibrate_valve(rig_, *drive_, person, settings_, true).value();
+  results.dead_zone = search_dead_zone(rig_, *drive_, person, settings_).value();
+  const std::string text = snippet(rig_, results);
+  EXPECT_EQ(text.find("# softgrip calibrate, 2026-11-20: rig simulated, channel left"), 0U) << text;
+  EXPECT_NE(text.find("the signal rises"), std::string::npos);
+  EXPECT_NE(text.find("use 60 % of the valve's range\n"), std::string::npos) << text;
+
+  // Its lines in the place of the old ones.
+  std::string file = daemon::testing::text_of(SOFTGRIP_SOURCE_DIR "/config/rig.yaml");
+  for (const std::string key : {"sensor", "valve"}) {
+    const auto line_at = [&](const std::string& in, std::size_t from) { return in.find(key + ": {", from); };
+    const std::size_t old_at = line_at(file, file.find("channels:"));
+    const std::size_t new_at = line_at(text, 0);
+    ASSERT_NE(new_at, std::string::npos) << key;
+    file.replace(old_at, file.find('\n', old_at) - old_at,
+                 text.substr(new_at, text.find('\n', new_at) - new_at));
+  }
+  document::Problems problems;
+  const auto document = document::parse(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", file, problems);
+  const auto rig = rig::read_rig(document, problems);
+  ASSERT_TRUE(rig) << problems.format() << text;
+  EXPECT_NEAR(rig->wiring[0].displacement.scaling.y_at(5), results.sensor->points.y_at(5), 1e-3);
+}
+
+TEST_F(CalibrateTest, TellsWhenLessThanAFifthOfTheValveIsUsed) {
+  rig_.valves[0].range_max_kpa = 500;
+  EXPECT_NEAR(share_of_valve(rig_, 0), 0.12, 1e-12);
+  EXPECT_NE(snippet(rig_, {"2026-11-20", 0, {}, {}, {}}).find("less than a fifth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::tools::calibrate

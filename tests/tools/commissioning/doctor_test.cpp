@@ -1,0 +1,327 @@
+// softgrip doctor on a healthy rig and on sick ones, simulated in virtual time.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "rig/rig_file.h"
+#include "simulation/plant/simulated_board.h"
+#include "tests/daemon/rig_under_test.h"
+#include "tests/daemon/temporary_folder.h"
+#include "tests/tools/virtual_pace.h"
+#include "tools/commissioning/daemon_examination.h"
+#include "tools/commissioning/machine.h"
+#include "tools/commissioning/motion.h"
+#include "tools/commissioning/rig_examination.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+using simulation::LineFault;
+using simulation::SensorFault;
+using Event = simulation::SimulatedEvent;
+
+class DoctorTest : public ::testing::Test {
+ protected:
+  DoctorTest() {
+    // No stone: a finger that moves a little moves freely.
+    for (simulation::SimulatedChannel& channel : simulated().channels) channel.plant.object.reset();
+  }
+  simulation::SimulatedBoardSettings& simulated() {
+    return std::get<simulation::SimulatedBoardSettings>(rig_.board);
+  }
+  void at_once(Event event) { simulated().events.push_back(event); }
+  void line_fault(LineFault::Kind kind, double share = 0) {
+    Event event;
+    event.kind = Event::Kind::line_fault;
+    event.line = {kind, share};
+    at_once(event);
+  }
+  void sensor_fault(SensorFault::Kind kind) {
+    Event event;
+    event.kind = Event::Kind::sensor_fault;
+    event.sensor.kind = kind;
+    at_once(event);
+  }
+  const Findings& examine(bool move) {
+    board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
+    examine_description(rig_, *board_, findings_);
+    examine_rig(rig_, *board_, pace_, move, {}, findings_);
+    return findings_;
+  }
+  [[nodiscard]] Finding finding(const std::string& name) const {
+    for (const Finding& finding : findings_.list()) {
+      if (finding.name == name) return finding;
+    }
+    return {"no " + name, Verdict::ok, "", ""};
+  }
+  void expect(const std::string& name, Verdict verdict, const std::string& text) {
+    const Finding found = finding(name);
+    EXPECT_EQ(found.name, name);
+    EXPECT_EQ(found.verdict, verdict) << found.text;
+    EXPECT_NE(found.text.find(text), std::string::npos) << found.text;
+    if (verdict != Verdict::ok) {
+      EXPECT_FALSE(found.advice.empty()) << name << " does not say what to do";
+    }
+  }
+  [[nodiscard]] double output_kpa(std::size_t channel) { return board_->plant(channel).held_command_kpa(); }
+
+  rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
+  tools::testing::VirtualPace pace_;
+  std::unique_ptr<simulation::SimulatedBoard> board_;
+  Findings findings_;
+};
+
+TEST_F(DoctorTest, AHealthyRigIsFit) {
+  examine(true);
+  EXPECT_EQ(findings_.worst(), Verdict::ok) << text_of({"", "", false, true}, findings_, 100, false);
+  expect("board", Verdict::ok, "answers");
+  expect("sensor left", Verdict::ok, "mm");
+  expect("valve right", Verdict::ok, "the monitor shows");
+  expect("finger right", Verdict::ok, "moved");
+  expect("model left", Verdict::ok, "RMS");
+  expect("safe state", Verdict::ok, "confirmed");
+  EXPECT_EQ(output_kpa(0), 0);
+  EXPECT_EQ(output_kpa(1), 0);
+}
+
+TEST_F(DoctorTest, WithoutConsentNothingMoves) {
+  double highest = 0;
+  examine(false);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+    highest = std::max(highest, board_->plant(i).pressure_kpa());
+  EXPECT_EQ(highest, 0);
+  EXPECT_EQ(finding("valve left").name, "no valve left");
+  EXPECT_EQ(findings_.worst(), Verdict::ok);
+}
+
+TEST_F(DoctorTest, ABoardThatIsAwayIsAllThatIsSaid) {
+  Event lost;
+  lost.kind = Event::Kind::bus_lost;
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
+  board_->happen(lost);
+  examine_rig(rig_, *board_, pace_, true, {}, findings_);
+  ASSERT_EQ(findings_.list().size(), 1U);
+  expect("board", Verdict::fail, "the simulated bus is down");
+}
+
+TEST_F(DoctorTest, ABoardThatFallsSilentOnTheWay) {
+  Event silent;
+  silent.kind = Event::Kind::bus_lost;
+  silent.status = drivers::BusStatus::timed_out;
+  silent.at_s = 2;
+  at_once(silent);
+  examine(true);
+  expect("motion left", Verdict::fail, "simulated");
+  expect("safe state", Verdict::fail, "did not confirm");
+}
+
+TEST_F(DoctorTest, AWatchdogThatIsMissing) {
+  rig_.settings.safety.board_vents_when_silent = false;
+  rig_.accept_no_watchdog = rig::no_watchdog_words;
+  examine(true);
+  expect("watchdog", Verdict::warn, "the outputs keep their last pressure");
+}
+
+TEST_F(DoctorTest, WithoutAWatchdogAPartThatMayBeHeldIsNotDropped) {
+  rig_.settings.safety.board_vents_when_silent = false;
+  examine(false);
+  expect("sensors", Verdict::warn, "a part may still be held");
+  EXPECT_TRUE(pace_.clock.now() < 2'000'000'000) << "no exchange";
+}
+
+TEST_F(DoctorTest, ASensorThatSeesNothing) {
+  sensor_fault(SensorFault::Kind::out_of_range);
+  examine(false);
+  expect("sensor left", Verdict::fail, "out_of_range");
+}
+
+TEST_F(DoctorTest, ASensorThatIsStuckShowsItselfWhenTheFingerMoves) {
+  sensor_fault(SensorFault::Kind::stuck);
+  examine(false);
+  expect("sensor left", Verdict::warn, "all the same");
+  findings_ = {};
+  examine(true);
+  expect("valve left", Verdict::ok, "the monitor shows");
+  expect("finger left", Verdict::fail, "moved 0.00 mm");
+  EXPECT_NE(finding("finger left").advice.find("the pressure is there"), std::string::npos);
+}
+
+TEST_F(DoctorTest, AValveThatDoesNotFollow) {
+  line_fault(LineFault::Kind::blocked);
+  examine(true);
+  expect("valve left", Verdict::fail, "15.00 kPa were asked for");
+  expect("finger left", Verdict::fail, "moved");
+  EXPECT_EQ(output_kpa(0), 0);
+}
+
+TEST_F(DoctorTest, ALineThatLeaks) {
+  line_fault(LineFault::Kind::leaking, 0.4);
+  examine(true);
+  expect("valve left", Verdict::fail, "the monitor shows 9");
+}
+
+TEST_F(DoctorTest, AnOutputThatCannotBeWritten) {
+  Event refused;
+  refused.kind = Event::Kind::write_refused;
+  refused.at_s = 1.5;
+  at_once(refused);
+  examine(true);
+  expect("motion left", Verdict::fail, "the output did not follow");
+}
+
+TEST_F(DoctorTest, AModelOfAnotherFinger) {
+  rig_.settings.channels[0].health.unfit_mm = 0.3;
+  rig_.settings.channels[0].health.model_error_mm = 0.05;
+  rig_.settings.channels[0].health.noise_mm = 0.03;
+  for (simulation::SimulatedChannel& channel : simulated().channels) {
+    channel.plant.object = simulation::PlantObject{1, 0.5};  // as a finger twice as stiff
+  }
+  examine(true);
+  expect("model left", Verdict::fail, "unfit above 0.30");
+}
+
+TEST_F(DoctorTest, AWrongSignOfTheSensor) {
+  ChannelSample rest;
+  rest.displacement_mm.deviation = 0.03;
+  Motion motion;
+  motion.command_kpa = 15;
+  motion.model_mm = 5;
+  motion.up.displacement_mm.mean = -5;
+  judge_motion(rig_, 0, rest, motion, findings_);
+  expect("finger left", Verdict::fail, "moved -5.00 mm");
+  EXPECT_NE(finding("finger left").advice.find("sign"), std::string::npos);
+}
+
+TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
+  class SlowBoard final : public drivers::Board {
+   public:
+    [[nodiscard]] std::size_t channels() const noexcept override { return 2; }
+    [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {
+      return drivers::BusStatus::disconnected;
+    }
+    [[nodiscard]] drivers::BusStatus exchange(std::span<const double>, std::span<model::Reading>,
+                                              std::chrono::nanoseconds) noexcept override {
+      return drivers::BusStatus::disconnected;
+    }
+    [[nodiscard]] std::string describe() const override { return "a slow board"; }
+    [[nodiscard]] Budget budget() const override { return {0.0469, "9600 8N1: 46.9 ms"}; }
+    [[nodiscard]] bool has_watchdog() const noexcept override { return true; }
+  };
+  examine_description(rig_, SlowBoard(), findings_);
+  expect("bus budget", Verdict::fail, "46.9 ms; a cycle is 5 ms");
+  EXPECT_NE(finding("bus budget").advice.find("lower rate_hz to 19"), std::string::npos);
+  findings_ = {};
+  rig_.accept_over_budget = true;
+  examine_description(rig_, SlowBoard(), findings_);
+  expect("bus budget", Verdict::warn, "46.9 ms");
+}
+
+TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
+  pace_.stop_at = 2'500'000'000;  // on the way up
+  examine(true);
+  expect("motion left", Verdict::fail, "stopped by the user");
+  EXPECT_EQ(output_kpa(0), 0);
+  expect("safe state", Verdict::ok, "confirmed");
+}
+
+TEST_F(DoctorTest, AFolderThatCannotBeWrittenAndOneThatCan) {
+  const daemon::testing::TemporaryFolder folder;
+  rig_.recorder.mode = rig::RecorderSettings::Mode::always;
+  rig_.recorder.directory = folder.path() + "/new/runs";
+  examine_disk(rig_, findings_);
+  EXPECT_EQ(finding("disk").name, "disk");
+  EXPECT_NE(finding("disk").text.find("GB free"), std::string::npos) << finding("disk").text;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing was left behind";
+  findings_ = {};
+  rig_.recorder.directory = "/proc/softgrip-runs";
+  examine_disk(rig_, findings_);
+  expect("disk", Verdict::fail, "cannot be written");
+  findings_ = {};
+  rig_.recorder.directory = "/dev/null";
+  examine_disk(rig_, findings_);
+  expect("disk", Verdict::fail, "no folder");
+}
+
+/// What a healthy daemon answers.
+nlohmann::ordered_json healthy_status() {
+  return nlohmann::ordered_json::parse(R"({"version": "1", "rig": "bench", "rate_hz": 200, "state": "idle",
+    "fault": null, "sequence": null, "bus": {"board": "ADAM", "connected": true},
+    "channels": [{"name": "left", "validity": "valid", "displacement_mm": 0.1, "command_kpa": 0, "health": "healthy",
+                  "health_rms_mm": 0.1}],
+    "recording": {"dropped_rows": 0, "error": null}, "gpio": null,
+    "real_time": {"degraded": false, "steps": [{"name": "kernel", "outcome": "not asked for", "detail": "6.1, PREEMPT_RT"}]}})");
+}
+nlohmann::ordered_json healthy_statistics() {
+  return nlohmann::ordered_json::parse(
+      R"({"loop": {"ticks": 10000, "slips_woken_late": 0, "slips_took_long": 0,
+    "wake_up": {"p99_us": 40, "max_us": 90}}, "bus": {"exchanges": 10000, "failures": 0, "exchange": {"p99_us": 900}}})");
+}
+Verdict worst_after(const std::function<void(nlohmann::ordered_json&, nlohmann::ordered_json&)>& spoil) {
+  auto status = healthy_status();
+  auto statistics = healthy_statistics();
+  spoil(status, statistics);
+  Findings findings;
+  examine_daemon(status, statistics, "bench", findings);
+  return findings.worst();
+}
+
+TEST(ExamineDaemon, FindsWhatTheDaemonSaysOfItself) {
+  using Json = nlohmann::ordered_json;
+  EXPECT_EQ(worst_after([](Json&, Json&) {}), Verdict::ok);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["rig"] = "another"; }), Verdict::warn);
+  EXPECT_EQ(worst_after([](Json& status, Json&) {
+              status["fault"] = {{"code", "F101"}, {"name", "bus_down"}};
+            }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["bus"]["connected"] = false; }), Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["channels"][0]["validity"] = "frozen"; }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["recording"]["error"] = "disk full"; }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json&, Json& statistics) { statistics["loop"]["slips_took_long"] = 3; }),
+            Verdict::warn);
+  EXPECT_EQ(worst_after([](Json&, Json& statistics) { statistics["loop"]["slips_took_long"] = 300; }),
+            Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) { status["gpio"] = {{"lost", true}}; }), Verdict::fail);
+  EXPECT_EQ(worst_after([](Json& status, Json&) {
+              status["gpio"] = {{"emergency_stop", true}};
+            }),
+            Verdict::warn);
+}
+
+TEST(ExamineDaemon, AnUnfitModelCountsOnceSomethingHasRun) {
+  using Json = nlohmann::ordered_json;
+  const auto unfit = [](Json& status, Json&) { status["channels"][0]["health"] = "unfit"; };
+  EXPECT_EQ(worst_after(unfit), Verdict::warn) << "at the start the finger may have been on its way to rest";
+  EXPECT_EQ(worst_after([&](Json& status, Json& statistics) {
+              unfit(status, statistics);
+              status["sequence"] = {{"name", "pick"}};
+            }),
+            Verdict::fail);
+}
+
+TEST(ExamineDaemon, SurvivesAnAnswerThatSaysNothing) {
+  Findings findings;
+  examine_daemon({}, {}, "bench", findings);
+  EXPECT_EQ(findings.worst(), Verdict::fail);
+}
+
+TEST(Findings, TheTextNamesWhatToDoUnderWhatIsWrong) {
+  Findings findings;
+  findings.ok("kernel", "6.1, PREEMPT_RT");
+  findings.fail("board", "does not answer", "check power and cable");
+  EXPECT_EQ(text_of({"bench", "rig.yaml", false, false}, findings, 80, false),
+            "rig bench (rig.yaml): no softgripd runs; looked at, not moved\n"
+            " ok   kernel  6.1, PREEMPT_RT\n"
+            " FAIL board   does not answer\n"
+            "              -> check power and cable\n"
+            "NOT FIT: 1 failure\n");
+}
+
+}  // namespace
+}  // namespace softgrip::tools::doctor

@@ -1,0 +1,50 @@
+// The extension's worth in closed loop.
+
+#include "tools/investigation/closed_loop_gain.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "model/file/model_file.h"
+
+namespace softgrip::tools {
+namespace {
+
+model::Model loaded(const std::string& name) {
+  document::Problems problems;
+  return model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/" + name + ".yaml", problems).value();
+}
+
+TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
+  ClosedLoopQuestion question;
+  question.recalibrated = loaded("zhang2025");  // has no inverse
+  question.extended = loaded("bench_twin");
+  question.span_mm = 27;
+  const ClosedLoopGain gain = measure_closed_loop(question);
+  EXPECT_LT(gain.wall_s, 5);
+  EXPECT_FALSE(gain.recalibrated.refused.empty());
+  EXPECT_EQ(gain.recalibrated.rmse_mm, gain.pid_alone.rmse_mm);
+  EXPECT_TRUE(gain.extended.refused.empty()) << gain.extended.refused;
+  EXPECT_LT(gain.extended.rmse_mm, 0.25 * gain.pid_alone.rmse_mm);
+  EXPECT_EQ(gain.reference(), "13 +- 7 mm at 0.2 Hz");
+  const auto json = nlohmann::json::parse(with_closed_loop("{\"schema\": 1}", gain));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["closed_loop"]["extended_rmse_mm"], gain.extended.rmse_mm);
+  EXPECT_EQ(json["closed_loop"]["gains"]["recalibrated"]["feedforward"], "none");
+  EXPECT_NE(json["closed_loop"]["notes"].dump().find("PID alone"), std::string::npos);
+}
+
+TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing) {
+  ClosedLoopQuestion question;
+  question.recalibrated = question.extended = loaded("bench_twin");
+  question.span_mm = 11;  // half of what 13 +- 7 mm needs
+  const ClosedLoopGain one = measure_closed_loop(question);
+  const ClosedLoopGain two = measure_closed_loop(question);
+  EXPECT_EQ(one.extended.rmse_mm, two.extended.rmse_mm);
+  EXPECT_EQ(one.extended.rmse_mm, one.recalibrated.rmse_mm);
+  EXPECT_EQ(one.mean_mm, 6.5);
+  EXPECT_EQ(one.amplitude_mm, 3.5);
+}
+
+}  // namespace
+}  // namespace softgrip::tools

@@ -1,0 +1,76 @@
+// Fuzz target of what is read back from a recording and from the daemon: run.json of a recording's folder,
+// and the same bytes as a status and as an event that came over the socket. Whatever they are, reading ends
+// without harm.
+//
+//   scripts/fuzz.sh recording_fuzz 30
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/client/event_text.h"
+#include "tools/client/status_view.h"
+#include "tools/recordings/recording.h"
+
+namespace {
+
+using namespace softgrip;
+
+/// A recording's folder in memory, whose run.json is what the fuzzer says.
+class Folder {
+ public:
+  Folder() : path_("/dev/shm/softgrip_recording_fuzz_" + std::to_string(getpid())) {
+    std::filesystem::create_directories(path_);
+    std::ofstream(path_ + "/run.csv") << "time_s,channel,pressure_command_kpa,displacement_mm\n"
+                                         "0,left,0,0\n0.005,left,1,0.1\n0.01,left,2,0.2\n";
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  Folder(Folder&&) = delete;
+  Folder& operator=(Folder&&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+void show(const nlohmann::ordered_json& json) {
+  if (!json.is_object()) return;
+  // A daemon that says nonsense ends the program with a sentence; it must not do more than that.
+  try {
+    for (const std::string& line : tools::view_of(json, {80, true, true})) {
+      if (line.find('\n') != std::string::npos) std::abort();
+    }
+  } catch (const nlohmann::json::exception&) {
+  }
+  try {
+    (void)tools::line_of_status(json);
+    (void)tools::line_of_event(json);
+  } catch (const nlohmann::json::exception&) {
+  }
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Folder folder;
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  std::ofstream(folder.path() + "/run.json", std::ios::binary) << text;
+  document::Problems problems;
+  const auto recording = tools::read_recording(folder.path(), problems);
+  // The rows are whole, so the recording opens, whatever its story is.
+  if (!recording || recording->channels.size() != 1 || recording->channels.front().size() != 3) std::abort();
+  show(nlohmann::ordered_json::parse(text, nullptr, false));
+  return 0;
+}

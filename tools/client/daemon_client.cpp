@@ -1,0 +1,139 @@
+#include "tools/client/daemon_client.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The daemon answers within a second whatever happens; then something is wrong.
+constexpr std::size_t longest_line = std::size_t{8} << 20U;
+
+constexpr const char* how_to_start =
+    "start the service ('systemctl start softgripd') or a daemon of your own ('softgripd --config RIG'), "
+    "or name its socket with --socket";
+
+ClientFailure cannot_connect(const std::string& path, int error) {
+  switch (error) {
+    case ENOENT:
+      return {ExitCode::io, "no daemon is running: there is no socket " + path + "; " + how_to_start, true};
+    case ECONNREFUSED:
+      return {ExitCode::io, "no daemon is running: nobody listens on " + path + "; " + how_to_start, true};
+    case EACCES:
+      return {ExitCode::io,
+              "you may not open " + path + ": who may move the gripper is decided by that file's group"};
+    default:
+      return {ExitCode::io, "cannot connect to " + path + ": " + std::strerror(error)};
+  }
+}
+
+}  // namespace
+
+std::string listed(const Json& problems) {
+  std::string text;
+  for (const Json& problem : problems) {
+    text += "\n" + problem.value("file", "") + ":" + std::to_string(problem.value("line", 0)) + ":" +
+            std::to_string(problem.value("column", 0)) + ": " + problem.value("message", "");
+    if (const std::string hint = problem.value("hint", ""); !hint.empty()) text += " (" + hint + ")";
+  }
+  return text;
+}
+
+namespace {
+
+ClientFailure failure_of(const Json& error) {
+  const std::string code = error.value("code", "");
+  const std::string message = error.value("message", "the daemon gives no reason");
+  if (code == "sequence_refused") {
+    return {ExitCode::input_refused, message + listed(error.value("problems", Json::array()))};
+  }
+  if (code == "refused") {
+    const Json refusal = error.value("refusal", Json::object());
+    return {ExitCode::state_refused, "refused: " + message + " (" + refusal.value("code", "?") + ")"};
+  }
+  if (code == "busy" || code == "abandoned") return {ExitCode::state_refused, message};
+  return {ExitCode::failed, message};
+}
+
+}  // namespace
+
+std::string default_socket_path() {
+  const char* named = std::getenv("SOFTGRIP_SOCKET");
+  return named != nullptr && *named != '\0' ? named : "/run/softgrip/softgripd.sock";
+}
+
+tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    return tl::unexpected{ClientFailure{ExitCode::io, "the path " + path + " is too long for a socket"}};
+  }
+  std::memcpy(address.sun_path, path.data(), path.size());
+  Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    return tl::unexpected{cannot_connect(path, errno)};
+  }
+  return DaemonClient{std::move(socket), path};
+}
+
+tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request, std::chrono::milliseconds patience) {
+  std::string line = request.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  for (std::size_t sent = 0; sent < line.size();) {
+    const ssize_t count = ::send(socket_.get(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
+    if (count < 0 && errno == EINTR) continue;
+    // The reason stands in the answer, if the daemon gave one before it hung up.
+    if (count < 0) break;
+    sent += static_cast<std::size_t>(count);
+  }
+  const auto answer = next_line(patience);
+  if (!answer) return tl::unexpected{answer.error()};
+  if (!*answer)
+    return tl::unexpected{ClientFailure{ExitCode::io, "the daemon at " + path_ + " does not answer"}};
+  if (!(*answer)->value("ok", false))
+    return tl::unexpected{failure_of((*answer)->value("error", Json::object()))};
+  return (*answer)->value("result", Json::object());
+}
+
+tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::chrono::milliseconds patience) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point end = Clock::now() + patience;
+  std::size_t line_end = 0;
+  while ((line_end = pending_.find('\n')) == std::string::npos) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
+    pollfd watched{socket_.get(), POLLIN, 0};
+    const int ready = ::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
+    if (ready < 0 && errno == EINTR) return std::optional<Json>{};
+    if (ready == 0) return std::optional<Json>{};
+    std::array<char, 16384> buffer;
+    const ssize_t count = ::recv(socket_.get(), buffer.data(), buffer.size(), 0);
+    if (count <= 0 || pending_.size() > longest_line) return tl::unexpected{gone()};
+    pending_.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+  Json line =
+      Json::parse(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(line_end), nullptr, false);
+  pending_.erase(0, line_end + 1);
+  if (!line.is_object()) {
+    return tl::unexpected{ClientFailure{ExitCode::failed, "what answers at " + path_ + " is no softgripd"}};
+  }
+  return std::optional<Json>{std::move(line)};
+}
+
+ClientFailure DaemonClient::gone() const {
+  return {ExitCode::io, "the daemon at " + path_ + " closed the connection"};
+}
+
+bool daemon_runs(const std::string& path) {
+  const auto client = DaemonClient::connect(path);
+  return client.has_value() || !client.error().nobody_listens;
+}
+
+}  // namespace softgrip::tools

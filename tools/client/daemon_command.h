@@ -1,0 +1,35 @@
+#pragma once
+// What all subcommands have in common that talk to the daemon.
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/client/daemon_client.h"
+#include "tools/command_line/command.h"
+
+namespace softgrip::tools {
+
+struct DaemonOptions {
+  std::string socket;
+  bool json = false;
+};
+
+/// Adds --socket and --json.
+void add_daemon_options(CLI::App& command, DaemonOptions& options);
+
+/// Connects, asks once and returns the result; prints what went wrong.
+[[nodiscard]] tl::expected<nlohmann::ordered_json, ExitCode> ask_daemon(
+    const DaemonOptions& options, const nlohmann::ordered_json& request);
+
+/// Adds a subcommand that is one request without arguments: `name` is also the daemon's command. Once it was
+/// accepted, `done` is printed, or the result as JSON.
+void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
+                       const std::string& meaning, std::string done);
+
+/// One line of JSON on the standard output; bytes that are not UTF-8 are replaced.
+void print_json(const nlohmann::ordered_json& json);
+
+}  // namespace softgrip::tools

@@ -1,0 +1,30 @@
+#include "tools/command_line/command.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "document/problem.h"
+
+namespace softgrip::tools {
+
+ExitCode fail(ExitCode code, std::string_view message) {
+  std::fprintf(stderr, "%s: %.*s\n", program_invocation_short_name, static_cast<int>(message.size()),
+               message.data());
+  return code;
+}
+
+ExitCode refuse(const document::Problems& problems) {
+  std::fputs(problems.format().c_str(), stderr);
+  std::fprintf(stderr, "%zu %s\n", problems.size(), problems.size() == 1 ? "error" : "errors");
+  return ExitCode::input_refused;
+}
+
+std::optional<ExitCode> unreadable(const std::string& path) {
+  if (::access(path.c_str(), R_OK) == 0) return std::nullopt;
+  return fail(ExitCode::io, "cannot read " + path + ": " + std::strerror(errno));
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,37 @@
+#pragma once
+// One subcommand of `softgrip`. A command is one file under commands/ that defines
+//
+//   void add_NAME(CLI::App& program, ExitCode& outcome);
+//
+// and one line in commands.h. The function adds its subcommand to `program`; when the user chose it, its
+// callback runs the command and leaves the exit code in `outcome`.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/exit_code.h"
+
+namespace CLI {
+class App;
+}
+
+namespace softgrip::document {
+class Problems;
+}
+
+namespace softgrip::tools {
+
+using AddCommand = void (*)(CLI::App& program, ExitCode& outcome);
+
+/// Prints "PROGRAM: message" to the standard error and returns `code`: `return fail(ExitCode::io, ...)`.
+ExitCode fail(ExitCode code, std::string_view message);
+
+/// Prints all problems of the inputs to the standard error, each with its place, and how many they are.
+/// Returns ExitCode::input_refused.
+ExitCode refuse(const document::Problems& problems);
+
+/// ExitCode::io, and a sentence on the standard error, if a file that is to be read cannot be opened.
+[[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);
+
+}  // namespace softgrip::tools

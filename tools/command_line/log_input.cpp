@@ -1,0 +1,60 @@
+#include "tools/command_line/log_input.h"
+
+#include <CLI/CLI.hpp>
+
+#include "document/problem.h"
+#include "tools/command_line/command.h"
+
+namespace softgrip::tools {
+
+sysid::RecordOptions LogInput::record_options() const {
+  sysid::RecordOptions options;
+  options.drive = drive == "measured" ? sysid::Drive::measured : sysid::Drive::command;
+  options.start = begin == "rest"      ? sysid::Start::rest
+                  : begin == "unknown" ? sysid::Start::unknown
+                                       : sysid::Start::automatic;
+  options.held = held;
+  return options;
+}
+
+void add_log_options(CLI::App& command, LogInput& input) {
+  command.add_option("--channel", input.channel, "Which channel of logs with several");
+  command
+      .add_option("--drive", input.drive,
+                  "What drives the model: the command, or the measured pressure past the valve")
+      ->check(CLI::IsMember({"command", "measured"}))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--begin", input.begin,
+          "How logs begin: at rest, in an unknown state that is estimated, or as their first sample looks")
+      ->check(CLI::IsMember({"auto", "rest", "unknown"}))
+      ->capture_default_str();
+  command.add_flag("--held", input.held, "The command keeps its value until the next sample");
+}
+
+tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std::string>& paths,
+                                                          const LogInput& input) {
+  document::Problems problems;
+  sysid::LogOptions options;
+  options.channel = input.channel;
+  sysid::Campaign campaign = sysid::read_campaign(paths, problems, options);
+  for (const sysid::Log& log : campaign.logs) {
+    if (input.drive == "measured" && log.pressure_kpa.empty()) {
+      problems.add({log.path, {1, 1}, {}, "no column 'pressure_kpa', which --drive measured needs", {}});
+    }
+  }
+  if (problems.empty()) return std::move(campaign.logs);
+  const ExitCode refused = refuse(problems);
+  return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);
+}
+
+tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path) {
+  if (const auto code = unreadable(path)) return tl::unexpected(*code);
+  document::Problems problems;
+  auto gauge = sysid::read_gauge(path, problems);
+  if (!gauge) return tl::unexpected(refuse(problems));
+  return std::move(*gauge);
+}
+
+}  // namespace softgrip::tools

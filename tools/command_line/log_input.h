@@ -1,0 +1,40 @@
+#pragma once
+// Reading logs as the desk's commands take them.
+
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "base/exit_code.h"
+#include "sysid/diagnosis/gauge/gauge_file.h"
+#include "sysid/logs/log.h"
+#include "sysid/logs/record.h"
+
+namespace CLI {
+class App;
+}
+
+namespace softgrip::tools {
+
+/// How the logs of a command are to be understood.
+struct LogInput {
+  std::string channel;
+  std::string drive = "command";
+  std::string begin = "auto";
+  bool held = false;
+
+  [[nodiscard]] sysid::RecordOptions record_options() const;
+};
+
+/// Adds --channel, --drive, --begin and --held to a command.
+void add_log_options(CLI::App& command, LogInput& input);
+
+/// Reads all logs; where one is refused, prints all problems and returns the exit code.
+[[nodiscard]] tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std::string>& paths,
+                                                                        const LogInput& input);
+
+/// Reads a gauge file; where it is refused, prints all problems and returns the exit code.
+[[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path);
+
+}  // namespace softgrip::tools

@@ -1,0 +1,22 @@
+#pragma once
+// Checks of options that CLI11 leaves to be desired.
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <string>
+
+#include "base/numbers.h"
+
+namespace softgrip::tools {
+
+/// A number in [lower, upper]. CLI::Range lets nan pass, which is on no side of either.
+[[nodiscard]] inline CLI::Validator number_between(double lower, double upper) {
+  const std::string range = "a number from " + significant(lower) + " to " + significant(upper);
+  const auto check = [=](const std::string& text) {
+    const auto value = to_number(text);
+    return value && *value >= lower && *value <= upper ? std::string() : "'" + text + "' is not " + range;
+  };
+  return CLI::Validator(check, "");
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,36 @@
+#pragma once
+// The list of subcommands, in the order of `softgrip --help`: one line each, and the only such list.
+
+#include "tools/command_line/command.h"
+
+// clang-format off
+#define SOFTGRIP_COMMANDS(X) \
+  X(check)                   \
+  X(doctor)                  \
+  X(calibrate)               \
+  X(simulate)                \
+  X(plot)                    \
+  X(identify)                \
+  X(validate)                \
+  X(diagnose)                \
+  X(investigate)             \
+  X(run)                     \
+  X(tune)                    \
+  X(study)                   \
+  X(status)                  \
+  X(watch)                   \
+  X(start)                   \
+  X(stop)                    \
+  X(vent)                    \
+  X(acknowledge)             \
+  X(events)                  \
+  // end of the list
+// clang-format on
+
+namespace softgrip::tools {
+
+#define SOFTGRIP_DECLARE(name) void add_##name(CLI::App& program, ExitCode& outcome);
+SOFTGRIP_COMMANDS(SOFTGRIP_DECLARE)
+#undef SOFTGRIP_DECLARE
+
+}  // namespace softgrip::tools

@@ -1,0 +1,171 @@
+#include "tools/commissioning/daemon_examination.h"
+
+#include <nlohmann/json.hpp>
+
+#include <fmt/format.h>
+
+namespace softgrip::tools::doctor {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string{};
+}
+
+double number_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number() ? found->get<double>() : 0;
+}
+
+bool is_set(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_boolean() && found->get<bool>();
+}
+
+Json part(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_object() ? *found : Json::object();
+}
+
+Json list_in(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_array() ? *found : Json::array();
+}
+
+void judge_state(const Json& status, const std::string& rig, Findings& findings) {
+  if (text_in(status, "rig") != rig) {
+    findings.warn("daemon",
+                  fmt::format("it runs the rig `{}`, the file is of `{}`", text_in(status, "rig"), rig),
+                  "name the rig file that it was started with");
+  } else {
+    findings.ok("daemon",
+                fmt::format("softgripd {}, {}", text_in(status, "version"), text_in(status, "state")));
+  }
+  const Json fault = part(status, "fault");
+  if (fault.empty()) return;
+  findings.fail(
+      "fault",
+      fmt::format("{} {}: {}", text_in(fault, "code"), text_in(fault, "name"), text_in(fault, "meaning")),
+      fmt::format("usually {}. {} Then `softgrip acknowledge`", text_in(fault, "cause"),
+                  text_in(fault, "remedy")));
+}
+
+void judge_real_time(const Json& status, Findings& findings) {
+  const Json real_time = part(status, "real_time");
+  for (const Json& step : list_in(real_time, "steps")) {
+    const std::string name = text_in(step, "name");
+    const std::string detail = text_in(step, "detail");
+    const bool slow_kernel = name == "kernel" && detail.find("no PREEMPT_RT") != std::string::npos;
+    if (text_in(step, "outcome") == "failed") {
+      findings.warn(name, detail, "grant it, or accept that " + text_in(step, "cost"));
+    } else if (slow_kernel) {
+      findings.warn(name, detail, "install linux-image-rt-amd64 (Debian) and boot it");
+    } else {
+      findings.ok(name, detail.empty() ? text_in(step, "outcome") : detail);
+    }
+  }
+}
+
+void judge_loop(const Json& status, const Json& statistics, Findings& findings) {
+  const Json loop = part(statistics, "loop");
+  const double ticks = number_in(loop, "ticks");
+  const double slips = number_in(loop, "slips_woken_late") + number_in(loop, "slips_took_long");
+  const double period_us = 1e6 / std::max(number_in(status, "rate_hz"), 1e-3);
+  const double p99_us = number_in(part(loop, "wake_up"), "p99_us");
+  const std::string text = fmt::format("{:.0f} ticks, {:.0f} slips, wake-up p99 {:.0f} us, max {:.0f} us",
+                                       ticks, slips, p99_us, number_in(part(loop, "wake_up"), "max_us"));
+  if (slips > 1e-2 * ticks) {
+    findings.fail("loop", text,
+                  "cycles are lost: see scheduling above, lower rate_hz, or free the processor");
+  } else if (slips > 0 || p99_us > period_us / 10) {
+    findings.warn("loop", text, "a cycle was lost or late now and then: see scheduling above");
+  } else {
+    findings.ok("loop", text);
+  }
+}
+
+void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
+  const Json bus = part(status, "bus");
+  const Json counts = part(statistics, "bus");
+  const double exchanges = number_in(counts, "exchanges");
+  const double failures = number_in(counts, "failures");
+  const std::string text =
+      fmt::format("{}: {:.0f} exchanges, {:.0f} failed, p99 {:.3g} ms", text_in(bus, "board"), exchanges,
+                  failures, number_in(part(counts, "exchange"), "p99_us") * 1e-3);
+  if (!is_set(bus, "connected")) {
+    findings.fail("board", text + "; not connected",
+                  "power, cable and address of the board; softgripd reconnects");
+  } else if (failures > 1e-3 * exchanges) {
+    findings.warn("board", text,
+                  "the bus loses exchanges: cable, termination, a second master, a rate too high");
+  } else {
+    findings.ok("board", text);
+  }
+}
+
+void judge_channel(const Json& channel, bool has_run, Findings& findings) {
+  const std::string name = text_in(channel, "name");
+  const std::string validity = text_in(channel, "validity");
+  const std::string text = fmt::format("{:.3f} mm at {:.2f} kPa", number_in(channel, "displacement_mm"),
+                                       number_in(channel, "command_kpa"));
+  if (validity == "valid") {
+    findings.ok("sensor " + name, text);
+  } else {
+    findings.fail("sensor " + name, "readings are not valid: " + validity,
+                  "look at the sensor's own display, its wire and its window");
+  }
+  const std::string health = text_in(channel, "health");
+  const std::string residual =
+      fmt::format("{}, residual {:.2f} mm RMS", health, number_in(channel, "health_rms_mm"));
+  if (health == "unfit" && !has_run) {
+    findings.warn(
+        "model " + name, residual,
+        "no sequence has run since softgripd started: the finger was probably not at rest then. Run one");
+  } else if (health == "unfit") {
+    findings.fail("model " + name, residual,
+                  "record tp1 and identify again; look for wear, leaks, a moved sensor");
+  } else if (health == "suspect") {
+    findings.warn("model " + name, residual, "calibrate and identify again soon");
+  } else {
+    findings.ok("model " + name, health == "unknown" ? "not judged yet: nothing has moved" : residual);
+  }
+}
+
+void judge_rest(const Json& status, Findings& findings) {
+  const Json recording = part(status, "recording");
+  if (const std::string error = text_in(recording, "error"); !error.empty()) {
+    findings.fail("recording", error, "free space, rights of the folder");
+  } else if (number_in(recording, "dropped_rows") > 0) {
+    findings.warn("recording", fmt::format("{:.0f} rows were lost", number_in(recording, "dropped_rows")),
+                  "the disk is too slow: another disk, or recorder: decimation");
+  }
+  const Json gpio = part(status, "gpio");
+  if (gpio.empty()) return;
+  if (is_set(gpio, "lost")) {
+    findings.fail("gpio", "the digital lines cannot be read", "restore the chip and restart softgripd");
+  } else if (is_set(gpio, "emergency_stop")) {
+    findings.warn("gpio", "the emergency stop is pressed, or was not yet seen released",
+                  "release it, then `softgrip acknowledge`");
+  } else {
+    findings.ok("gpio",
+                fmt::format("emergency stop released, enable {}", is_set(gpio, "enable") ? "on" : "off"));
+  }
+}
+
+}  // namespace
+
+void examine_daemon(const Json& status, const Json& statistics, const std::string& rig, Findings& findings) {
+  judge_state(status, rig, findings);
+  judge_real_time(status, findings);
+  judge_loop(status, statistics, findings);
+  judge_bus(status, statistics, findings);
+  const bool has_run = !part(status, "sequence").empty();
+  for (const Json& channel : list_in(status, "channels")) {
+    judge_channel(channel, has_run, findings);
+  }
+  judge_rest(status, findings);
+}
+
+}  // namespace softgrip::tools::doctor

@@ -1,0 +1,210 @@
+#include "tools/commissioning/machine.h"
+
+#include <pwd.h>
+#include <sys/statvfs.h>
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "base/clock.h"
+#include "base/grid.h"
+#include "daemon/loop/histogram.h"
+#include "daemon/loop/real_time.h"
+#include "rig/rig_file.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+using daemon::RealTimeStep;
+
+constexpr double us_per_ns = 1e-3;
+constexpr double probe_s = 1;
+/// Bytes of a row of run.csv and its line break, as the shipped rigs write them.
+constexpr double bytes_per_row = 125;
+constexpr double s_per_hour = 3600;
+constexpr double least_hours = 1;
+constexpr double good_hours = 24;
+
+std::string user() {
+  const passwd* const entry = ::getpwuid(::geteuid());
+  return entry == nullptr ? std::to_string(::geteuid()) : entry->pw_name;
+}
+
+/// A step of the daemon's own preparation as a finding: what it needs to refuse to start is a failure.
+void take(const RealTimeStep& step, bool required, Findings& findings) {
+  switch (step.outcome) {
+    case RealTimeStep::Outcome::verified:
+      return findings.ok(step.name, step.detail);
+    case RealTimeStep::Outcome::not_asked:
+      return findings.ok(step.name, "not asked for in the rig file");
+    case RealTimeStep::Outcome::failed:
+      break;
+  }
+  const std::string who = " (as user " + user() + ")";
+  if (required) {
+    findings.fail(step.name, step.detail + who,
+                  "softgripd will not start: real_time: required. Without it " + step.cost);
+  } else {
+    findings.warn(step.name, step.detail + who, "grant it, or accept that " + step.cost);
+  }
+}
+
+/// Wake-ups on a grid of the rig's period, as the loop would have them.
+void probe_timer(const rig::RigFile& rig, daemon::Histogram& wake_up) {
+  const MonotonicClock clock;
+  const Nanoseconds period = nanoseconds(1 / rig.settings.rate_hz);
+  const Nanoseconds begin = clock.now() + period;
+  for (Grid grid(begin, period); grid.due() - begin < nanoseconds(probe_s);) {
+    const Nanoseconds due = grid.due();
+    sleep_until(due);
+    const Nanoseconds woken = clock.now();
+    wake_up.add(woken - due);
+    grid.advance(woken);
+  }
+}
+
+void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Findings& findings) {
+  timespec resolution{};
+  ::clock_getres(CLOCK_MONOTONIC, &resolution);
+  const daemon::Histogram::Summary summary = wake_up.summary();
+  const double period_us = 1e6 / rig.settings.rate_hz;
+  const double p99_us = static_cast<double>(summary.p99_ns) * us_per_ns;
+  const double max_us = static_cast<double>(summary.max_ns) * us_per_ns;
+  const std::string text =
+      fmt::format("{} wake-ups at {:g} Hz: p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us; resolution {} ns",
+                  summary.count, rig.settings.rate_hz, static_cast<double>(summary.p50_ns) * us_per_ns,
+                  p99_us, max_us, resolution.tv_sec * ns_per_s + resolution.tv_nsec);
+  if (resolution.tv_sec > 0 || resolution.tv_nsec > 1000) {
+    findings.fail("timer", text, "this kernel has no high-resolution timers (CONFIG_HIGH_RES_TIMERS)");
+  } else if (static_cast<double>(wake_up.quantile_ns(0.95)) * us_per_ns > period_us / 2) {
+    // One late wake-up in a second is the machine's; one in twenty is the set-up's.
+    findings.fail("timer", text, "cycles will be lost: get SCHED_FIFO, lower rate_hz, or free the processor");
+  } else if (p99_us > period_us / 10 || max_us > period_us / 2) {
+    findings.warn(
+        "timer", text,
+        "a wake-up was late by a good part of a cycle: see `kernel` and `scheduling`, and what else "
+        "this computer does");
+  } else {
+    findings.ok("timer", text);
+  }
+}
+
+/// The nearest folder above that exists: where a new one would come to be.
+std::filesystem::path existing(std::filesystem::path path) {
+  std::error_code error;
+  path = std::filesystem::absolute(path, error);
+  while (!std::filesystem::exists(path, error) && path.has_relative_path()) path = path.parent_path();
+  return path;
+}
+
+/// A file of 4 KiB that really reaches the disk.
+int try_writing(const std::filesystem::path& folder) {
+  std::string path = (folder / ".softgrip-doctor-XXXXXX").string();
+  const int file = ::mkstemp(path.data());
+  if (file < 0) return errno;
+  const std::string bytes(4096, '\0');
+  errno = 0;
+  const bool written =
+      ::write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()) && ::fsync(file) == 0;
+  const int error = written ? 0 : (errno == 0 ? ENOSPC : errno);
+  ::close(file);
+  ::unlink(path.c_str());
+  return error;
+}
+
+}  // namespace
+
+void examine_machine(const rig::RigFile& rig, Findings& findings) {
+  const rig::RealTimeSettings& wanted = rig.real_time;
+  const RealTimeStep kernel = daemon::kernel_step();
+  if (kernel.detail.find("no PREEMPT_RT") == std::string::npos) {
+    findings.ok("kernel", kernel.detail);
+  } else {
+    findings.warn("kernel", kernel.detail, "install linux-image-rt-amd64 (Debian) and boot it");
+  }
+  daemon::RealTimeReport report;
+  daemon::Histogram wake_up;
+  {
+    daemon::RealTimeReport process;
+    const auto latency = daemon::prepare_process(wanted, process);
+    for (std::size_t i = 1; i < process.steps().size(); ++i) report.add(process.steps()[i]);
+    std::thread probe([&] {
+      daemon::prepare_thread(wanted, wanted.priority, "the loop", report);
+      probe_timer(rig, wake_up);
+    });
+    probe.join();
+  }
+  for (const RealTimeStep& step : report.steps()) take(step, wanted.required, findings);
+  judge_timer(rig, wake_up, findings);
+}
+
+void examine_clock(Findings& findings) {
+  timex state{};
+  const int status = ::adjtimex(&state);
+  const std::time_t now = std::time(nullptr);
+  std::tm date{};
+  ::gmtime_r(&now, &date);
+  char text[32] = "";
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &date);
+  constexpr int year_of_the_software = 2025;
+  if (date.tm_year + 1900 < year_of_the_software) {
+    findings.fail(
+        "clock", fmt::format("{}: the clock is wrong", text),
+        "set it (timedatectl set-time, or a time server): recordings and calibrations carry its date");
+  } else if (status < 0 || status == TIME_ERROR || (state.status & STA_UNSYNC) != 0) {
+    findings.warn("clock", fmt::format("{}, not synchronised", text),
+                  "recordings may carry a wrong date: install chrony or systemd-timesyncd, or compare with a "
+                  "watch. Control uses the monotonic clock and does not mind");
+  } else {
+    findings.ok("clock", fmt::format("{}, synchronised", text));
+  }
+}
+
+void examine_disk(const rig::RigFile& rig, Findings& findings) {
+  const rig::RecorderSettings& recorder = rig.recorder;
+  if (recorder.mode == rig::RecorderSettings::Mode::off) {
+    return findings.ok("disk", "nothing is recorded (recorder: mode: off)");
+  }
+  const std::filesystem::path folder = existing(recorder.directory);
+  const bool there = std::filesystem::exists(recorder.directory);
+  std::error_code error;
+  if (there && !std::filesystem::is_directory(recorder.directory, error)) {
+    return findings.fail("disk", recorder.directory + " is no folder", "change recorder: directory");
+  }
+  if (const int failed = try_writing(folder); failed != 0) {
+    return findings.fail(
+        "disk",
+        fmt::format("{} cannot be written as user {}: {}", recorder.directory, user(), std::strerror(failed)),
+        failed == ENOSPC ? "free space, or move recorder: directory"
+                         : "give the folder to the user of softgripd");
+  }
+  struct statvfs space {};
+  if (::statvfs(folder.c_str(), &space) != 0) {
+    return findings.fail("disk", fmt::format("{}: {}", folder.string(), std::strerror(errno)),
+                         "change recorder: directory");
+  }
+  const double free_bytes = static_cast<double>(space.f_bavail) * static_cast<double>(space.f_frsize);
+  const double rows_per_s = rig.settings.rate_hz * static_cast<double>(rig.settings.channels.size()) /
+                            static_cast<double>(std::max<std::uint32_t>(recorder.decimation, 1));
+  const double hours = free_bytes / (rows_per_s * bytes_per_row) / s_per_hour;
+  const std::string text = fmt::format("{}: {:.3g} GB free, about {:.3g} h of recording", recorder.directory,
+                                       free_bytes * 1e-9, hours);
+  if (hours < least_hours) {
+    findings.fail("disk", text, "free space, or move recorder: directory, or raise recorder: decimation");
+  } else if (hours < good_hours) {
+    findings.warn("disk", text, "less than a day: move old recordings away");
+  } else {
+    findings.ok("disk", text);
+  }
+}
+
+}  // namespace softgrip::tools::doctor

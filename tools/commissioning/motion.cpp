@@ -1,0 +1,177 @@
+#include "tools/commissioning/motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/grid.h"
+#include "control/feedforward/running_model.h"
+#include "daemon/recording/csv_row.h"
+#include "rig/rig_file.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+/// A finger has moved when it went at least so many times the noise of a reading ...
+constexpr double noises = 6;
+/// ... and at least this share of what its model moved.
+constexpr double share_of_model = 0.2;
+/// A monitor may differ from the command by this share of the step: linearity of ordinary valves and boards.
+constexpr double share_of_step = 0.1;
+/// The step must be so large that the valve's uncontrollable bottom is left behind.
+constexpr double pressure_floor_kpa = 1;
+
+/// The model beside the finger, from rest.
+class Beside {
+ public:
+  Beside(const control::ChannelSettings& channel, double tick_s, double rest_mm)
+      : model_(channel.model, tick_s, 0, tick_s),
+        tick_s_(tick_s),
+        rest_mm_(rest_mm),
+        held_kpa_(channel.limits.pressure_min_kpa) {
+    model_.reset(held_kpa_);
+    origin_mm_ = model_.reading_mm(0);
+  }
+
+  /// After an exchange: the reading was taken before the command was written.
+  void take(const model::Reading& reading, double command_kpa) {
+    pass_time(reading.sampled_at);
+    const double moved_mm = model_.reading_mm(0) - origin_mm_;
+    sum_mm_ += moved_mm;
+    ++taken_;
+    if (reading.validity == model::Validity::valid) {
+      const double residual = reading.displacement_mm - rest_mm_ - moved_mm;
+      squares_ += residual * residual;
+      ++count_;
+    }
+    held_kpa_ = command_kpa;
+  }
+  /// From here on mean_mm() averages.
+  void begin_mean() {
+    sum_mm_ = 0;
+    taken_ = 0;
+  }
+  /// How far the model stood from its rest, as an average.
+  [[nodiscard]] double mean_mm() const { return taken_ > 0 ? sum_mm_ / static_cast<double>(taken_) : 0; }
+  [[nodiscard]] double rms_mm() const {
+    return count_ > 0 ? std::sqrt(squares_ / static_cast<double>(count_)) : 0;
+  }
+
+ private:
+  /// The command was held for as long as it really was: a busy computer stretches a step.
+  void pass_time(Nanoseconds now) {
+    if (first_ == 0) first_ = now;
+    const auto due = std::llround(seconds(now - first_) / tick_s_);
+    for (; ticks_ < due; ++ticks_) model_.advance(held_kpa_);
+  }
+
+  control::RunningModel model_;
+  double tick_s_;
+  double rest_mm_;
+  double held_kpa_;
+  Nanoseconds first_ = 0;
+  long long ticks_ = 0;
+  double origin_mm_ = 0;
+  double sum_mm_ = 0;
+  std::size_t taken_ = 0;
+  double squares_ = 0;
+  std::size_t count_ = 0;
+};
+
+void judge_model(const control::ChannelSettings& channel, const Motion& motion, Findings& findings) {
+  const control::ModelHealthSettings& health = channel.health;
+  const double healthy_mm = 2 * std::hypot(health.model_error_mm, health.noise_mm);
+  const std::string text =
+      fmt::format("{:.2f} mm RMS beside the motion; healthy is below {:.2f}, unfit above {:.2f}",
+                  motion.residual_rms_mm, healthy_mm, health.unfit_mm);
+  const std::string name = "model " + channel.name;
+  if (motion.residual_rms_mm > health.unfit_mm) {
+    findings.fail(name, text,
+                  "another finger, wear, leak or a moved sensor: look, calibrate, then identify again");
+  } else if (motion.residual_rms_mm > healthy_mm) {
+    findings.warn(name, text, "grip detection loses margin: record tp1 and identify again soon");
+  } else {
+    findings.ok(name, text);
+  }
+}
+
+}  // namespace
+
+HandDrive::Expected<Motion> move_and_watch(const rig::RigFile& rig, HandDrive& drive, std::size_t channel,
+                                           const ChannelSample& rest, const MoveSettings& settings) {
+  const control::ChannelSettings& of = rig.settings.channels[channel];
+  const double lowest = of.limits.pressure_min_kpa;
+  const double step = settings.share * (of.limits.pressure_max_kpa - lowest);
+  const double speed = step / settings.duration_s;
+  Beside beside(of, seconds(drive.period()), rest.displacement_mm.mean);
+  const HandDrive::Watch watch = [&](const std::vector<double>& commands,
+                                     const std::vector<model::Reading>& readings) {
+    beside.take(readings[channel], commands[channel]);
+  };
+  Motion motion;
+  motion.command_kpa = lowest + step;
+  if (const auto up = drive.ramp(channel, motion.command_kpa, speed, watch); !up)
+    return tl::unexpected(up.error());
+  const auto settling = drive.sample(settings.settle_s / 2, watch);
+  if (!settling) return tl::unexpected(settling.error());
+  beside.begin_mean();
+  const auto there = drive.sample(settings.settle_s / 2, watch);
+  if (!there) return tl::unexpected(there.error());
+  motion.up = (*there)[channel];
+  motion.model_mm = beside.mean_mm();
+  if (const auto down = drive.ramp(channel, lowest, speed, watch); !down) return tl::unexpected(down.error());
+  const auto after = drive.sample(settings.settle_s, watch);
+  if (!after) return tl::unexpected(after.error());
+  motion.residual_rms_mm = beside.rms_mm();
+  return motion;
+}
+
+void judge_motion(const rig::RigFile& rig, std::size_t channel, const ChannelSample& rest,
+                  const Motion& motion, Findings& findings) {
+  const control::ChannelSettings& of = rig.settings.channels[channel];
+  const double step_kpa = motion.command_kpa - of.limits.pressure_min_kpa;
+  const std::string name = "valve " + of.name;
+  bool valve_follows = true;
+  if (motion.up.pressure_kpa.count > 0) {
+    const double off = motion.up.pressure_kpa.mean - motion.command_kpa;
+    valve_follows = std::abs(off) <= std::max(share_of_step * step_kpa, pressure_floor_kpa);
+    const std::string text = fmt::format("{:.2f} kPa were asked for, the monitor shows {:.2f}",
+                                         motion.command_kpa, motion.up.pressure_kpa.mean);
+    if (valve_follows) {
+      findings.ok(name, text);
+    } else {
+      findings.fail(name, text,
+                    "supply pressure, valve power, a leak or a kinked line; if all is well there, "
+                    "calibrate valve and monitor");
+    }
+  } else {
+    findings.ok(name, "no pressure monitor: judged by the finger alone");
+  }
+  if (!of.displacement_used) return;
+  const double moved_mm = motion.up.displacement_mm.mean - rest.displacement_mm.mean;
+  const double least_mm =
+      std::max(noises * rest.displacement_mm.deviation, share_of_model * std::abs(motion.model_mm));
+  const std::string text = fmt::format("moved {:.2f} mm at {:.1f} kPa, the model {:.2f} mm", moved_mm,
+                                       motion.command_kpa, motion.model_mm);
+  if (motion.up.displacement_mm.invalid > 0) {
+    findings.fail(
+        "finger " + of.name,
+        fmt::format("readings were not valid on the way: {}", daemon::name_of(motion.up.displacement_mm.why)),
+        "the finger leaves the sensor's range, or its beam is cut");
+  } else if (std::abs(moved_mm) < least_mm) {
+    findings.fail(
+        "finger " + of.name, text,
+        motion.up.pressure_kpa.count > 0 && valve_follows
+            ? "the pressure is there: a sensor that is stuck, a burst finger, or a line blocked behind "
+              "the valve"
+            : "no supply, a blocked line, or a sensor that is stuck: move the finger by hand and watch");
+  } else if (moved_mm * motion.model_mm < 0) {
+    findings.fail("finger " + of.name, text, "the sensor's sign is wrong: calibrate it");
+  } else {
+    findings.ok("finger " + of.name, text);
+    judge_model(of, motion, findings);
+  }
+}
+
+}  // namespace softgrip::tools::doctor

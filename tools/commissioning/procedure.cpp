@@ -1,0 +1,358 @@
+#include "tools/commissioning/procedure.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "daemon/recording/csv_row.h"
+#include "rig/rig_file.h"
+
+namespace softgrip::tools::calibrate {
+namespace {
+
+/// Of the span that the limits allow: closer points make a line that says little about the rest.
+constexpr double least_share_of_span = 0.1;
+constexpr double least_share_of_signal = 0.02;
+constexpr int questions_at_most = 5;
+/// From one end of the valid electrical range: a signal that stands there has hit its end.
+constexpr double share_of_end = 0.002;
+/// Of the pressure range, per second: slow enough that the line follows.
+constexpr double share_per_s = 0.2;
+/// Of the pressure range: how far the ramp of the dead zone goes.
+constexpr double ramp_share = 0.3;
+
+Refusal nonsense(std::string text) {
+  return {ExitCode::not_acceptable, std::move(text)};
+}
+
+Refusal refusal_of(const DriveFailure& failure) {
+  switch (failure.kind) {
+    case DriveFailure::Kind::stopped:
+      return {ExitCode::failed, failure.text};
+    case DriveFailure::Kind::bus:
+      return {ExitCode::io, failure.text};
+    case DriveFailure::Kind::beyond:
+      return {ExitCode::not_acceptable, failure.text};
+  }
+  return {};
+}
+
+std::optional<double> number_in(std::string text) {
+  std::replace(text.begin(), text.end(), ',', '.');
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return std::nullopt;
+  const auto last = text.find_last_not_of(" \t\r");
+  const char* const begin = text.data() + first + (text[first] == '+' ? 1 : 0);
+  const char* const end = text.data() + last + 1;
+  double value = 0;
+  const auto result = std::from_chars(begin, end, value);
+  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Asks; meanwhile the board is talked to, or its watchdog would trip.
+Expected<std::string> ask(HandDrive& drive, Operator& person, const std::string& question) {
+  person.ask(question);
+  std::optional<std::string> answer;
+  const auto waited = drive.wait([&] { return (answer = person.answer()).has_value() || person.gone(); });
+  if (!waited) return tl::unexpected(refusal_of(waited.error()));
+  if (!answer) return tl::unexpected(Refusal{ExitCode::input_refused, "no answer to: " + question});
+  return *answer;
+}
+
+/// Asks until a number comes.
+Expected<double> ask_number(HandDrive& drive, Operator& person, const std::string& question) {
+  for (int i = 0; i < questions_at_most; ++i) {
+    const auto answer = ask(drive, person, question);
+    if (!answer) return tl::unexpected(answer.error());
+    if (const auto value = number_in(*answer)) return *value;
+    if (!person.patient()) {
+      return tl::unexpected(Refusal{ExitCode::input_refused, "`" + *answer + "` is no number: " + question});
+    }
+    person.tell("A number, please, like 12.34");
+  }
+  return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given"});
+}
+
+/// Enter says that the target is where it was asked for, a number where it is instead, `-` leaves it out.
+Expected<std::optional<double>> ask_position(HandDrive& drive, Operator& person, const std::string& question,
+                                             double asked_mm) {
+  for (int i = 0; i < questions_at_most; ++i) {
+    const auto answer = ask(drive, person, question);
+    if (!answer) return tl::unexpected(answer.error());
+    const auto first = answer->find_first_not_of(" \t\r");
+    if (first == std::string::npos) return std::optional<double>(asked_mm);
+    if (answer->substr(first) == "-") return std::optional<double>();
+    if (const auto value = number_in(*answer)) return std::optional<double>(*value);
+    if (!person.patient()) {
+      return tl::unexpected(
+          Refusal{ExitCode::input_refused, "`" + *answer + "` is no position: " + question});
+    }
+    person.tell("Enter if it is there, a number if it is elsewhere (mm), - to leave it out");
+  }
+  return tl::unexpected(Refusal{ExitCode::input_refused, "no position was given"});
+}
+
+Expected<void> move_to(const rig::RigFile& rig, HandDrive& drive, Operator& person, const Settings& settings,
+                       double kpa) {
+  if (drive.command_kpa(settings.channel) == kpa) return {};  // and it rests there
+  const control::LimitSettings& limits = rig.settings.channels[settings.channel].limits;
+  const double speed = share_per_s * (limits.pressure_max_kpa - limits.pressure_min_kpa);
+  person.tell(fmt::format("moving `{}` to {:.4g} kPa", rig.settings.channels[settings.channel].name, kpa));
+  if (const auto moved = drive.ramp(settings.channel, kpa, speed); !moved) {
+    return tl::unexpected(refusal_of(moved.error()));
+  }
+  if (const auto settled = drive.sample(settings.settle_s); !settled) {
+    return tl::unexpected(refusal_of(settled.error()));
+  }
+  return {};
+}
+
+/// Both halves of an average: their difference is the drift.
+struct Halves {
+  ChannelSample first;
+  ChannelSample second;
+};
+
+Expected<Halves> average(HandDrive& drive, const Settings& settings) {
+  const auto first = drive.sample(settings.average_s / 2);
+  if (!first) return tl::unexpected(refusal_of(first.error()));
+  const auto second = drive.sample(settings.average_s / 2);
+  if (!second) return tl::unexpected(refusal_of(second.error()));
+  return Halves{(*first)[settings.channel], (*second)[settings.channel]};
+}
+
+/// Two halves of one input as a visit, in electrical units: what the board reads is scaled back.
+Visit visit_of(const Sample& first, const Sample& second, const drivers::TwoPoints& scaling, bool upper) {
+  Visit visit;
+  visit.upper = upper;
+  visit.electrical = scaling.x_at((first.mean + second.mean) / 2);
+  const double per_unit = std::abs(scaling.x_at(1) - scaling.x_at(0));
+  visit.noise = std::hypot(first.deviation, second.deviation) / std::sqrt(2.0) * per_unit;
+  visit.drift = std::abs(second.mean - first.mean) * per_unit;
+  visit.count = first.count + second.count;
+  return visit;
+}
+
+std::optional<std::string> invalid(const Sample& sample) {
+  if (sample.invalid == 0) return std::nullopt;
+  return fmt::format(
+      "{} of {} readings are not valid ({}): the signal is outside its valid range, or the sensor "
+      "says that it cannot measure",
+      sample.invalid, sample.invalid + sample.count, daemon::name_of(sample.why));
+}
+
+std::optional<std::string> at_an_end(const Visit& visit, const drivers::InputWiring& wiring) {
+  const double slack = share_of_end * (wiring.valid_max - wiring.valid_min);
+  if (visit.electrical > wiring.valid_min + slack && visit.electrical < wiring.valid_max - slack)
+    return std::nullopt;
+  return fmt::format("saturated: the signal stands at {:.4g} {}, an end of its valid range ({:g} to {:g})",
+                     visit.electrical, drivers::name_of(wiring.unit), wiring.valid_min, wiring.valid_max);
+}
+
+Expected<Visit> visit_sensor(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+                             const Settings& settings, bool upper) {
+  const drivers::InputWiring& wiring = rig.wiring[settings.channel].displacement;
+  if (settings.may_move) {
+    // Always from below: the hysteresis of the finger must not become one of the sensor.
+    for (const double kpa : {rig.settings.channels[settings.channel].limits.pressure_min_kpa,
+                             upper ? settings.high_kpa : settings.low_kpa}) {
+      if (const auto moved = move_to(rig, drive, person, settings, kpa); !moved)
+        return tl::unexpected(moved.error());
+    }
+  }
+  const std::string place = upper ? "second" : "first";
+  const auto reference = ask_number(
+      drive, person,
+      settings.may_move ? fmt::format("gauge at the {} position, mm", place)
+                        : fmt::format("put the target at the {} position; gauge there, mm", place));
+  if (!reference) return tl::unexpected(reference.error());
+  const auto halves = average(drive, settings);
+  if (!halves) return tl::unexpected(halves.error());
+  for (const Sample* half : {&halves->first.displacement_mm, &halves->second.displacement_mm}) {
+    if (const auto why = invalid(*half)) return tl::unexpected(nonsense(*why));
+  }
+  Visit visit =
+      visit_of(halves->first.displacement_mm, halves->second.displacement_mm, wiring.scaling, upper);
+  visit.reference = *reference;
+  if (const auto why = at_an_end(visit, wiring)) return tl::unexpected(nonsense(*why));
+  person.tell(fmt::format("{:.5g} {}, noise {:.2g}, at {:.5g} mm", visit.electrical,
+                          drivers::name_of(wiring.unit), visit.noise, visit.reference));
+  return visit;
+}
+
+Demands demands_of(const rig::RigFile& rig, std::size_t channel, const drivers::InputWiring& wiring,
+                   bool displacement) {
+  const control::LimitSettings& limits = rig.settings.channels[channel].limits;
+  const double span = displacement ? limits.displacement_max_mm - limits.displacement_min_mm
+                                   : limits.pressure_max_kpa - limits.pressure_min_kpa;
+  return {least_share_of_span * span, least_share_of_signal * (wiring.valid_max - wiring.valid_min)};
+}
+
+/// What was seen of the valve at one command.
+struct ValveVisit {
+  Visit valve;
+  std::optional<Visit> monitor;
+};
+
+Expected<ValveVisit> visit_valve(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+                                 const Settings& settings, bool by_monitor, bool upper) {
+  const drivers::ChannelWiring& wiring = rig.wiring[settings.channel];
+  const double lowest = rig.settings.channels[settings.channel].limits.pressure_min_kpa;
+  for (const double kpa : {lowest, upper ? settings.high_kpa : settings.low_kpa}) {
+    if (const auto moved = move_to(rig, drive, person, settings, kpa); !moved)
+      return tl::unexpected(moved.error());
+  }
+  double reference = 0;
+  if (!by_monitor) {
+    const auto shown = ask_number(
+        drive, person, fmt::format("manometer at the {} pressure, kPa", upper ? "second" : "first"));
+    if (!shown) return tl::unexpected(shown.error());
+    reference = *shown;
+  }
+  const auto halves = average(drive, settings);
+  if (!halves) return tl::unexpected(halves.error());
+  ValveVisit visit;
+  const Sample& first = halves->first.pressure_kpa;
+  const Sample& second = halves->second.pressure_kpa;
+  if (wiring.pressure && first.count > 0 && second.count > 0) {
+    visit.monitor = visit_of(first, second, wiring.pressure->scaling, upper);
+    visit.monitor->reference = reference;
+  }
+  visit.valve.upper = upper;
+  visit.valve.electrical = wiring.valve.scaling.x_at(drive.command_kpa(settings.channel));
+  visit.valve.reference = by_monitor ? (first.mean + second.mean) / 2 : reference;
+  visit.valve.count = 1;
+  if (by_monitor) {
+    // The noise of the reference, as if it were one of the output.
+    const double per_unit = std::abs(wiring.valve.scaling.x_at(1) - wiring.valve.scaling.x_at(0));
+    visit.valve.noise = std::hypot(first.deviation, second.deviation) / std::sqrt(2.0) * per_unit;
+    visit.valve.drift = std::abs(second.mean - first.mean) * per_unit;
+    visit.valve.count = first.count + second.count;
+  }
+  person.tell(fmt::format("{:.5g} {} give {:.5g} kPa", visit.valve.electrical,
+                          drivers::name_of(wiring.valve.unit), visit.valve.reference));
+  return visit;
+}
+
+}  // namespace
+
+Expected<Line> calibrate_sensor(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+                                const Settings& settings) {
+  std::vector<Visit> visits;
+  for (std::size_t i = 0; i < settings.repeats; ++i) {
+    for (const bool upper : {false, true}) {
+      auto visit = visit_sensor(rig, drive, person, settings, upper);
+      if (!visit) return tl::unexpected(visit.error());
+      visits.push_back(*visit);
+    }
+  }
+  const drivers::InputWiring& wiring = rig.wiring[settings.channel].displacement;
+  auto line = fit_line(visits, demands_of(rig, settings.channel, wiring, true), "mm",
+                       std::string(drivers::name_of(wiring.unit)));
+  if (!line) return tl::unexpected(nonsense("sensor: " + line.error()));
+  return *line;
+}
+
+Expected<std::vector<GaugeVisit>> read_positions(HandDrive& drive, Operator& person, const Settings& settings,
+                                                 const std::vector<double>& positions_mm) {
+  std::vector<GaugeVisit> visits;
+  for (std::size_t i = 0; i < positions_mm.size(); ++i) {
+    const auto where = ask_position(
+        drive, person,
+        fmt::format("{} of {}: target at {:g} mm, then Enter", i + 1, positions_mm.size(), positions_mm[i]),
+        positions_mm[i]);
+    if (!where) return tl::unexpected(where.error());
+    if (!*where) continue;
+    const auto halves = average(drive, settings);
+    if (!halves) return tl::unexpected(halves.error());
+    const Sample& first = halves->first.displacement_mm;
+    const Sample& second = halves->second.displacement_mm;
+    const auto why = invalid(first.invalid > 0 ? first : second);
+    if (why || first.count + second.count == 0) {
+      person.tell("left out: " + why.value_or("nothing was read"));
+      continue;
+    }
+    const auto count = static_cast<double>(first.count + second.count);
+    const double mean =
+        (first.mean * static_cast<double>(first.count) + second.mean * static_cast<double>(second.count)) /
+        count;
+    visits.push_back({**where, mean, first.count + second.count});
+    person.tell(fmt::format("{:.5g} mm read at {:.5g} mm", mean, **where));
+  }
+  return visits;
+}
+
+Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+                                      const Settings& settings, bool by_monitor) {
+  const drivers::ChannelWiring& wiring = rig.wiring[settings.channel];
+  std::vector<Visit> of_valve;
+  std::vector<Visit> of_monitor;
+  for (std::size_t i = 0; i < settings.repeats; ++i) {
+    for (const bool upper : {false, true}) {
+      const auto visit = visit_valve(rig, drive, person, settings, by_monitor, upper);
+      if (!visit) return tl::unexpected(visit.error());
+      of_valve.push_back(visit->valve);
+      if (visit->monitor) of_monitor.push_back(*visit->monitor);
+    }
+  }
+  ValveResult result;
+  result.by_monitor = by_monitor;
+  Demands demands;
+  const control::LimitSettings& limits = rig.settings.channels[settings.channel].limits;
+  demands.least_span = least_share_of_span * (limits.pressure_max_kpa - limits.pressure_min_kpa);
+  const auto valve = fit_line(of_valve, demands, "kPa", std::string(drivers::name_of(wiring.valve.unit)));
+  if (!valve) return tl::unexpected(nonsense("valve: " + valve.error()));
+  result.valve = *valve;
+  if (by_monitor || of_monitor.size() != of_valve.size()) return result;
+  const auto monitor = fit_line(of_monitor, demands_of(rig, settings.channel, *wiring.pressure, false), "kPa",
+                                std::string(drivers::name_of(wiring.pressure->unit)));
+  if (!monitor) return tl::unexpected(nonsense("pressure monitor: " + monitor.error()));
+  result.monitor = *monitor;
+  return result;
+}
+
+Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+                                          const Settings& settings) {
+  const control::ChannelSettings& channel = rig.settings.channels[settings.channel];
+  const double lowest = channel.limits.pressure_min_kpa;
+  if (const auto moved = move_to(rig, drive, person, settings, lowest); !moved)
+    return tl::unexpected(moved.error());
+  DeadZoneResult result;
+  result.by_pressure = channel.pressure_measured;
+  result.highest_kpa = lowest + ramp_share * (channel.limits.pressure_max_kpa - lowest);
+  person.tell(fmt::format("a slow ramp to {:.4g} kPa, {:g} s", result.highest_kpa, settings.ramp_s));
+  std::vector<double> command;
+  std::vector<double> response;
+  const auto watch = [&](const std::vector<double>& commands, const std::vector<model::Reading>& readings) {
+    const model::Reading& reading = readings[settings.channel];
+    const double value = result.by_pressure ? reading.pressure_kpa : reading.displacement_mm;
+    const bool good = result.by_pressure || reading.validity == model::Validity::valid;
+    if (!good || !std::isfinite(value)) return;
+    command.push_back(commands[settings.channel]);
+    response.push_back(value);
+  };
+  const double speed = (result.highest_kpa - lowest) / settings.ramp_s;
+  if (const auto up = drive.ramp(settings.channel, result.highest_kpa, speed, watch); !up) {
+    return tl::unexpected(refusal_of(up.error()));
+  }
+  result.zone = find_dead_zone(command, response);
+  // A falling sensor falls.
+  if (!result.zone && !result.by_pressure) {
+    for (double& value : response) value = -value;
+    result.zone = find_dead_zone(command, response);
+  }
+  if (!result.zone)
+    return tl::unexpected(nonsense("dead zone: nothing followed the ramp: supply, line, sensor?"));
+  return result;
+}
+
+double share_of_valve(const rig::RigFile& rig, std::size_t channel) {
+  const control::LimitSettings& limits = rig.settings.channels[channel].limits;
+  const rig::ValveFacts& valve = rig.valves[channel];
+  return (limits.pressure_max_kpa - limits.pressure_min_kpa) / (valve.range_max_kpa - valve.range_min_kpa);
+}
+
+}  // namespace softgrip::tools::calibrate

@@ -1,0 +1,229 @@
+#include "tools/commissioning/rig_examination.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "daemon/recording/csv_row.h"
+#include "rig/rig_file.h"
+#include "tools/commissioning/motion.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+constexpr double ms_per_s = 1e3;
+
+/// To so many decimals, and never as "-0.00".
+std::string fixed(double value, int decimals) {
+  const double scale = std::pow(10, decimals);
+  return fmt::format("{:.{}f}", std::round(value * scale) / scale + 0.0, decimals);
+}
+
+std::string advice_for_silence(const rig::RigFile& rig) {
+  const bool simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
+  return simulated
+             ? "look at `events` of the rig file"
+             : "check power and cable of the board, its address in the rig file, and that no other master "
+               "holds it";
+}
+
+/// True if a look at the sensors, which writes the lowest pressures, could drop a part that is still held.
+bool may_hold_a_part(const rig::RigFile& rig) {
+  const auto& safety = rig.settings.safety;
+  const bool holds =
+      std::any_of(safety.safe_action.begin(), safety.safe_action.end(),
+                  [](control::SafeAction action) { return action == control::SafeAction::hold; });
+  return holds && !safety.board_vents_when_silent;
+}
+
+void judge_bus(const rig::RigFile& rig, std::vector<double> times_s, Findings& findings) {
+  if (times_s.empty()) return;
+  std::sort(times_s.begin(), times_s.end());
+  const auto at = [&](double q) {
+    return times_s[std::min(times_s.size() - 1,
+                            static_cast<std::size_t>(q * static_cast<double>(times_s.size())))];
+  };
+  const double period_s = 1 / rig.settings.rate_hz;
+  const std::string text =
+      fmt::format("{} exchanges: p50 {:.3g} ms, p99 {:.3g} ms, a cycle is {:.3g} ms", times_s.size(),
+                  at(0.5) * ms_per_s, at(0.99) * ms_per_s, period_s * ms_per_s);
+  if (at(0.5) > period_s) {
+    findings.fail("bus time", text, "the bus is slower than the loop: lower rate_hz");
+  } else if (at(0.99) > 0.8 * period_s) {
+    findings.warn("bus time", text,
+                  "late exchanges leave cycles without one: lower rate_hz, or find what delays");
+  } else {
+    findings.ok("bus time", text);
+  }
+}
+
+std::string sensor_advice(model::Validity why) {
+  switch (why) {
+    case model::Validity::out_of_range:
+      return "target out of the sensor's distance, a broken wire, or another range: look at the sensor's "
+             "display";
+    case model::Validity::sensor_error:
+      return "the sensor or its input card says that it cannot measure: target, window, supply";
+    default:
+      return "look at the sensor's display and its wire";
+  }
+}
+
+void judge_displacement(const control::ChannelSettings& channel, const Sample& sample, Findings& findings) {
+  const std::string name = "sensor " + channel.name;
+  const std::size_t all = sample.count + sample.invalid;
+  if (!channel.displacement_used) {
+    return findings.ok(name, "not used (displacement_used: false)");
+  }
+  if (sample.invalid > 0) {
+    return findings.fail(
+        name,
+        fmt::format("{} of {} readings are not valid: {}", sample.invalid, all, daemon::name_of(sample.why)),
+        sensor_advice(sample.why));
+  }
+  const std::string text =
+      fmt::format("{} mm, noise {:.3f} mm, {} readings", fixed(sample.mean, 3), sample.deviation, all);
+  if (control::displacement_beyond(channel.limits, sample.mean)) {
+    findings.fail(name,
+                  text + fmt::format("; the limits are {:g} to {:g} mm", channel.limits.displacement_min_mm,
+                                     channel.limits.displacement_max_mm),
+                  "the finger or the sensor is not where it was: look, then calibrate the sensor");
+  } else if (sample.lowest == sample.highest) {
+    findings.warn(name, text + "; all the same",
+                  "very quiet, or frozen (hold mode, blocked beam): --move tells which");
+  } else {
+    findings.ok(name, text);
+  }
+}
+
+void judge_rest(const control::ChannelSettings& channel, const control::FaultSettings& faults,
+                const ChannelSample& sample, double command_kpa, Findings& findings) {
+  judge_displacement(channel, sample.displacement_mm, findings);
+  const double span = channel.limits.pressure_max_kpa - channel.limits.pressure_min_kpa;
+  const double off = std::abs(sample.readback_kpa.mean - command_kpa);
+  if (sample.readback_kpa.count > 0 && off > faults.readback_tolerance_kpa) {
+    findings.fail(
+        "output " + channel.name,
+        fmt::format("{:.2f} kPa were written, the board outputs {:.2f}", command_kpa,
+                    sample.readback_kpa.mean),
+        "another master writes too, a latched trip or manual mode of the board, or a wrong scaling");
+  }
+  if (sample.pressure_kpa.count == 0) return;
+  const std::string text = fmt::format("{} kPa at rest, noise {:.2f} kPa", fixed(sample.pressure_kpa.mean, 2),
+                                       sample.pressure_kpa.deviation);
+  if (std::abs(sample.pressure_kpa.mean - command_kpa) > 0.05 * span) {
+    findings.warn("pressure " + channel.name, text + fmt::format("; {:.2f} were written", command_kpa),
+                  "the monitor is off, or the line does not vent: calibrate, or look at the exhaust");
+  } else {
+    findings.ok("pressure " + channel.name, text);
+  }
+}
+
+void failed(const DriveFailure& failure, const rig::RigFile& rig, const std::string& name,
+            Findings& findings) {
+  switch (failure.kind) {
+    case DriveFailure::Kind::stopped:
+      return findings.fail(name, failure.text, "run it again to the end");
+    case DriveFailure::Kind::bus:
+      return findings.fail(name, failure.text, advice_for_silence(rig));
+    case DriveFailure::Kind::beyond:
+      return findings.fail(name, failure.text,
+                           "look at the finger; calibrate the sensor; compare with the limits");
+  }
+}
+
+}  // namespace
+
+void examine_description(const rig::RigFile& rig, const drivers::Board& board, Findings& findings) {
+  const drivers::Board::Budget budget = board.budget();
+  const double period_s = 1 / rig.settings.rate_hz;
+  const std::string text = fmt::format("{}; a cycle is {:.3g} ms", budget.explanation, period_s * ms_per_s);
+  if (budget.exchange_s > period_s && rig.accept_over_budget) {
+    findings.warn("bus budget", text,
+                  "beyond the budget, as the rig file accepts: cycles may have no exchange");
+  } else if (budget.exchange_s > period_s) {
+    findings.fail("bus budget", text,
+                  fmt::format("lower rate_hz to {:.0f} or less", 0.9 / budget.exchange_s));
+  } else if (budget.exchange_s > 0.8 * period_s) {
+    findings.warn("bus budget", text, "little is left for a slow reply: lower rate_hz");
+  } else {
+    findings.ok("bus budget", text);
+  }
+  if (rig.settings.safety.board_vents_when_silent) {
+    findings.ok("watchdog", "the board vents by itself when nobody talks to it");
+  } else {
+    findings.warn(
+        "watchdog", fmt::format("none that vents; the rig file accepts: \"{}\"", rig.accept_no_watchdog),
+        "set the board's watchdog and safe value, or keep a dump valve in the emergency-stop circuit");
+  }
+}
+
+void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, bool move,
+                 const MoveSettings& settings, Findings& findings) {
+  HandDrive drive(rig, board, pace);
+  if (const auto connected = drive.connect(); !connected) {
+    return findings.fail("board", connected.error().text, advice_for_silence(rig));
+  }
+  if (!move && may_hold_a_part(rig)) {
+    findings.ok("board", board.describe() + " answers");
+    return findings.warn("sensors",
+                         "not read: that writes the lowest pressures, and a part may still be held",
+                         "take the part out, then run it with --move");
+  }
+  const auto rest = drive.sample(settings.look_s);
+  if (!rest) return failed(rest.error(), rig, "board", findings);
+  findings.ok("board", board.describe() + " answers");
+  judge_bus(rig, drive.exchange_times_s(), findings);
+  for (std::size_t i = 0; i < rest->size(); ++i) {
+    judge_rest(rig.settings.channels[i], rig.settings.faults, (*rest)[i], drive.command_kpa(i), findings);
+  }
+  for (std::size_t i = 0; move && i < rest->size(); ++i) {
+    const auto motion = move_and_watch(rig, drive, i, (*rest)[i], settings);
+    if (motion) {
+      judge_motion(rig, i, (*rest)[i], *motion, findings);
+      continue;
+    }
+    failed(motion.error(), rig, "motion " + rig.settings.channels[i].name, findings);
+    break;
+  }
+  if (!drive.leave()) {
+    findings.fail("safe state", "the board did not confirm the lowest pressures",
+                  "look at the fingers before you reach in; vent by hand");
+  } else if (move) {
+    findings.ok("safe state", "all channels at their lowest pressure, confirmed by the board");
+  }
+}
+
+void examine_gpio(const rig::RigFile& rig, Findings& findings) {
+  if (!rig.gpio) return;
+  const auto lines = drivers::open_gpio_lines(rig.gpio->lines);
+  if (!lines) {
+    const drivers::GpioFailure& failure = lines.error();
+    const document::Problem& place = rig.gpio->places[failure.line];
+    return findings.fail(
+        "gpio", fmt::format("{}:{}:{}: {}", place.file, place.at.line, place.at.column, failure.message),
+        failure.hint);
+  }
+  for (const drivers::GpioLineSettings& line : rig.gpio->lines) {
+    const std::string name = "gpio " + std::string(drivers::name_of(line.role));
+    if (!drivers::is_input(line.role)) {
+      findings.ok(name, drivers::text_of(line) + ": can be driven");
+      continue;
+    }
+    const auto active = (*lines)->read(line.role);
+    const bool stop = line.role == drivers::GpioRole::emergency_stop;
+    if (!active) {
+      findings.fail(name, drivers::text_of(line) + ": cannot be read", "look at the chip and its driver");
+    } else if (stop && *active) {
+      findings.warn(name, drivers::text_of(line) + ": pressed",
+                    "release it; if it is released, its wire is broken");
+    } else {
+      findings.ok(name, drivers::text_of(line) + (stop      ? ": released"
+                                                  : *active ? ": a part is there"
+                                                            : ": no part"));
+    }
+  }
+}
+
+}  // namespace softgrip::tools::doctor

@@ -1,0 +1,130 @@
+#include "tools/commissioning/snippet.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "document/number.h"
+#include "rig/rig_file.h"
+
+namespace softgrip::tools::calibrate {
+namespace {
+
+using document::written;
+
+/// To so many decimals, without zeros that say nothing.
+std::string rounded(double value, int decimals) {
+  const double scale = std::pow(10, decimals);
+  return written(std::round(value * scale) / scale + 0.0);
+}
+
+std::string suffix(drivers::ElectricalUnit unit) {
+  return unit == drivers::ElectricalUnit::volt ? "v" : "ma";
+}
+
+std::string pair(double first, double second, int decimals) {
+  return "[" + rounded(first, decimals) + ", " + rounded(second, decimals) + "]";
+}
+
+/// `at_v: [1.2, 7.8], is_mm: [3, 21]`
+std::string scaling(const drivers::TwoPoints& points, const std::string& electrical,
+                    const std::string& unit) {
+  return fmt::format("at_{}: {}, is_{}: {}", electrical, pair(points.x0, points.x1, 5), unit,
+                     pair(points.y0, points.y1, 4));
+}
+
+std::string error_codes(const drivers::InputWiring& wiring) {
+  if (wiring.error_codes.empty()) return {};
+  const std::string electrical = suffix(wiring.unit);
+  std::string text = ", error_codes: [";
+  for (std::size_t i = 0; i < wiring.error_codes.size(); ++i) {
+    text += fmt::format("{}{{at_{}: {}, tolerance_{}: {}}}", i == 0 ? "" : ", ", electrical,
+                        written(wiring.error_codes[i].electrical), electrical,
+                        written(wiring.error_codes[i].tolerance));
+  }
+  return text + "]";
+}
+
+/// Which module of a board that has several.
+std::string module_of(const rig::RigFile& rig, std::size_t module) {
+  const auto* const board = std::get_if<drivers::ModbusSettings>(&rig.board);
+  if (board == nullptr || board->modules.size() < 2 || module >= board->modules.size()) return {};
+  return "module: " + board->modules[module].name + ", ";
+}
+
+std::string input(const rig::RigFile& rig, const std::string& key, const drivers::InputWiring& wiring,
+                  const drivers::TwoPoints& points, const std::string& unit) {
+  const std::string electrical = suffix(wiring.unit);
+  return fmt::format("{}: {{{}input: {}, {}, valid_{}: {}{}}}\n", key, module_of(rig, wiring.module),
+                     wiring.input, scaling(points, electrical, unit), electrical,
+                     pair(wiring.valid_min, wiring.valid_max, 5), error_codes(wiring));
+}
+
+std::string findings(const std::string& what, const Line& line, const std::string& unit) {
+  std::string residuals;
+  for (const double residual : line.residuals)
+    residuals += (residuals.empty() ? "" : ", ") + rounded(residual, 4);
+  return fmt::format(
+      "# {}: error {} {} between the points besides the reference's own, noise of a reading {} {},\n"
+      "#   residuals [{}] {}, repeat spread {}\n",
+      what, rounded(line.error, 4), unit, rounded(line.noise, 4), unit, residuals, unit,
+      line.repeat_spread ? rounded(*line.repeat_spread, 4) + " " + unit
+                         : "not known (one visit to each point)");
+}
+
+std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drivers::TwoPoints& points) {
+  const drivers::OutputWiring& wiring = rig.wiring[channel].valve;
+  const rig::ValveFacts& facts = rig.valves[channel];
+  return fmt::format("valve: {{{}output: {}, {}, range_kpa: {}, on_power_loss: {}}}\n",
+                     module_of(rig, wiring.module), wiring.output,
+                     scaling(points, suffix(wiring.unit), "kpa"),
+                     pair(facts.range_min_kpa, facts.range_max_kpa, 4),
+                     facts.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
+}
+
+std::string dead_zone_lines(const DeadZoneResult& result, double lowest_kpa) {
+  const DeadZone& zone = *result.zone;
+  const std::string by =
+      result.by_pressure ? "the pressure monitor" : "the finger (weaker: its own hysteresis counts)";
+  if (!zone.significant) {
+    return fmt::format("# dead zone: none to be seen up to {} kPa, by {}\n", rounded(result.highest_kpa, 3),
+                       by);
+  }
+  return fmt::format("# dead zone: nothing follows below a command of {} kPa ({} above the lowest), by {}\n",
+                     rounded(zone.end, 2), rounded(zone.end - lowest_kpa, 2), by);
+}
+
+}  // namespace
+
+std::string snippet(const rig::RigFile& rig, const Results& results) {
+  const std::size_t channel = results.channel;
+  const drivers::ChannelWiring& wiring = rig.wiring[channel];
+  const control::ChannelSettings& settings = rig.settings.channels[channel];
+  std::string text =
+      fmt::format("# softgrip calibrate, {}: rig {}, channel {}\n", results.date, rig.name, settings.name);
+  if (results.sensor) {
+    text += findings("sensor", *results.sensor, "mm");
+    text +=
+        fmt::format("#   the signal {} with displacement\n", results.sensor->slope > 0 ? "rises" : "falls");
+    text += input(rig, "sensor", wiring.displacement, results.sensor->points, "mm");
+  }
+  if (results.valve) {
+    text += findings(
+        results.valve->by_monitor ? "valve, against the pressure monitor" : "valve, against a manometer",
+        results.valve->valve, "kPa");
+    text += valve_line(rig, channel, results.valve->valve.points);
+    if (results.valve->monitor) {
+      text += findings("pressure monitor, against a manometer", *results.valve->monitor, "kPa");
+      text += input(rig, "pressure_monitor", *wiring.pressure, results.valve->monitor->points, "kpa");
+    }
+  }
+  if (results.dead_zone) text += dead_zone_lines(*results.dead_zone, settings.limits.pressure_min_kpa);
+  const double share = share_of_valve(rig, channel);
+  text += fmt::format("# the limits use {:.0f} % of the valve's range{}\n", 100 * share,
+                      share < least_share_of_valve
+                          ? ": less than a fifth, resolution and linearity suffer; take a smaller valve"
+                          : "");
+  return text;
+}
+
+}  // namespace softgrip::tools::calibrate

@@ -1,0 +1,47 @@
+#include "tools/commissioning/terminal_operator.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace softgrip::tools::calibrate {
+
+TerminalOperator::TerminalOperator() : interactive_(::isatty(STDIN_FILENO) == 1) {}
+
+void TerminalOperator::tell(const std::string& text) {
+  std::fprintf(stderr, "  %s\n", text.c_str());
+}
+
+void TerminalOperator::ask(const std::string& question) {
+  std::fprintf(stderr, "? %s: ", question.c_str());
+  std::fflush(stderr);
+}
+
+std::optional<std::string> TerminalOperator::answer() {
+  if (!prepared_.empty()) {
+    std::string next = prepared_.front();
+    prepared_.pop_front();
+    std::fprintf(stderr, "%s\n", next.c_str());
+    return next;
+  }
+  if (auto line = take_line()) return line;
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (closed_ || ::poll(&input, 1, 0) <= 0) return std::nullopt;
+  char bytes[256];
+  const ssize_t count = ::read(STDIN_FILENO, bytes, sizeof bytes);
+  closed_ = count <= 0;
+  if (count > 0) pending_.append(bytes, static_cast<std::size_t>(count));
+  return take_line();
+}
+
+std::optional<std::string> TerminalOperator::take_line() {
+  const std::size_t end = pending_.find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  std::string line = pending_.substr(0, end);
+  pending_.erase(0, end + 1);
+  if (!interactive_) std::fprintf(stderr, "%s\n", line.c_str());
+  return line;
+}
+
+}  // namespace softgrip::tools::calibrate

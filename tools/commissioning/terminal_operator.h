@@ -1,0 +1,35 @@
+#pragma once
+// A person at the terminal, or a script behind the standard input.
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/commissioning/procedure.h"
+
+namespace softgrip::tools::calibrate {
+
+/// Questions go to the standard error. Answers come from what was prepared first, then line by line from the
+/// standard input.
+class TerminalOperator final : public Operator {
+ public:
+  TerminalOperator();
+
+  void prepare(const std::vector<std::string>& answers) { prepared_.assign(answers.begin(), answers.end()); }
+  void tell(const std::string& text) override;
+  void ask(const std::string& question) override;
+  std::optional<std::string> answer() override;
+  [[nodiscard]] bool gone() const override { return closed_ && pending_.find('\n') == std::string::npos; }
+  [[nodiscard]] bool patient() const override { return interactive_; }
+
+ private:
+  std::optional<std::string> take_line();
+
+  bool interactive_;
+  bool closed_ = false;
+  std::string pending_;
+  std::deque<std::string> prepared_;
+};
+
+}  // namespace softgrip::tools::calibrate

@@ -1,0 +1,53 @@
+#pragma once
+// What an extension is worth in closed loop: the same reference tracked on a simulated rig with the
+// recalibrated and with the extended model in the feedforward, gains from the same search for each.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "control/elements/pid.h"
+#include "model/model.h"
+
+namespace softgrip::tools {
+
+/// The question.
+struct ClosedLoopQuestion {
+  model::Model recalibrated;
+  model::Model extended;  ///< also the rig, with other parameters within `rig_scatter`
+  double noise_mm = 0.03;
+  double span_mm = 0;  ///< of the logs: the reference is scaled to it where 13 +- 7 mm is too much
+  double pressure_max_kpa = 60;
+  double frequency_hz = 0.2;
+  double rig_scatter = 0.02;  ///< no model is exact: the rig's parameters differ from the extended model's
+  std::uint64_t seed = 1;
+};
+
+/// One controller on that rig.
+struct ClosedLoopScheme {
+  double rmse_mm = 0;  ///< median over rigs
+  control::PidSettings pid;
+  std::string refused;  ///< why its feedforward does not exist; then this is the PID alone
+};
+
+struct ClosedLoopGain {
+  ClosedLoopScheme pid_alone;
+  ClosedLoopScheme recalibrated;
+  ClosedLoopScheme extended;
+  double mean_mm = 13;
+  double amplitude_mm = 7;
+  double frequency_hz = 0.2;
+  double rig_scatter = 0;
+  int rigs = 0;
+  double wall_s = 0;
+
+  [[nodiscard]] std::string reference() const;           ///< "13 +- 7 mm at 0.2 Hz"
+  [[nodiscard]] std::vector<std::string> notes() const;  ///< what must be known beside the numbers
+};
+
+[[nodiscard]] ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question);
+
+/// diagnosis.json with "closed_loop" filled in.
+[[nodiscard]] std::string with_closed_loop(const std::string& diagnosis_json, const ClosedLoopGain& gain);
+
+}  // namespace softgrip::tools

@@ -1,0 +1,101 @@
+#include "tools/investigation/diagnosis_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/files.h"
+#include "base/numbers.h"
+#include "model/file/model_file.h"
+
+namespace softgrip::tools {
+namespace {
+
+constexpr const char* experiment_file = "next_experiment.yaml";
+
+std::string listed(const std::vector<std::string>& ids) {
+  std::string text;
+  for (const std::string& id : ids) text += (text.empty() ? "" : ", ") + id;
+  return text;
+}
+
+}  // namespace
+
+ClosedLoopQuestion closed_loop_question(const sysid::Diagnosis& diagnosis, std::uint64_t seed) {
+  ClosedLoopQuestion question;
+  question.recalibrated = diagnosis.recalibrated_model;
+  question.extended = diagnosis.extended_model;
+  question.noise_mm = diagnosis.noise_mm;
+  question.pressure_max_kpa = 0;
+  question.seed = seed;
+  for (const sysid::Record& record : diagnosis.records) {
+    question.span_mm = std::max(question.span_mm, record.span_mm);
+    question.pressure_max_kpa = std::max(question.pressure_max_kpa, record.largest_kpa);
+  }
+  return question;
+}
+
+Consequences consequences_of(const sysid::Diagnosis& diagnosis, const ConsequenceOptions& options) {
+  Consequences consequences;
+  consequences.experiment = sysid::design_experiment(diagnosis, options.experiment);
+  const bool extended = diagnosis.extended_model.blocks.size() > diagnosis.recalibrated_model.blocks.size();
+  if (options.closed_loop && extended)
+    consequences.closed_loop = measure_closed_loop(closed_loop_question(diagnosis, options.seed));
+  return consequences;
+}
+
+std::string complete_json(const sysid::Diagnosis& diagnosis, const Consequences& consequences) {
+  std::string json = with_experiment(sysid::to_json(diagnosis), consequences.experiment, experiment_file);
+  if (consequences.closed_loop) json = with_closed_loop(json, *consequences.closed_loop);
+  return json;
+}
+
+tl::expected<void, std::string> write_diagnosis_folder(const std::string& folder,
+                                                       const sysid::Diagnosis& diagnosis,
+                                                       const Consequences& consequences,
+                                                       const std::string& channel) {
+  const std::filesystem::path out(folder);
+  std::vector<std::pair<const char*, std::string>> files{
+      {"diagnosis.json", complete_json(diagnosis, consequences)},
+      {"model.yaml", model::to_yaml(diagnosis.extended_model)}};
+  std::error_code ignored;
+  if (consequences.experiment.best) {
+    files.emplace_back(experiment_file, sysid::sequence_yaml(consequences.experiment, channel));
+  } else {
+    std::filesystem::remove(out / experiment_file, ignored);
+  }
+  // One that stands there may have been filled in by now: never overwritten, never removed.
+  if (const auto& check = consequences.experiment.gauge_check;
+      check && !std::filesystem::exists(out / sysid::gauge_positions_file, ignored)) {
+    files.emplace_back(sysid::gauge_positions_file, sysid::positions_csv(check->positions_mm));
+  }
+  for (const auto& [name, text] : files) {
+    if (auto written = write_file((out / name).string(), text); !written) return written;
+  }
+  return {};
+}
+
+std::string text_of(const Consequences& consequences, const std::string& folder) {
+  std::string text;
+  const sysid::NextExperiment& next = consequences.experiment;
+  if (next.best) {
+    text += "next experiment: " + next.best->waveform.name + ", " + significant(next.best->minutes, 2) +
+            " minutes, tells " + listed(next.separates) + " apart by " +
+            significant(next.predicted_separation_sigma, 3) +
+            " standard deviations: " + (std::filesystem::path(folder) / experiment_file).string() + "\n";
+  }
+  for (const std::string& sentence : next.advice) text += "to tell more: " + sentence + "\n";
+  if (consequences.closed_loop) {
+    const ClosedLoopGain& gain = *consequences.closed_loop;
+    text += "in closed loop, " + gain.reference() + ": recalibrated " +
+            significant(gain.recalibrated.rmse_mm, 3) + " mm, extended " +
+            significant(gain.extended.rmse_mm, 3) + " mm, PID alone " +
+            significant(gain.pid_alone.rmse_mm, 3) + " mm\n";
+    for (const std::string& note : gain.notes()) text += "  " + note + "\n";
+  }
+  return text;
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,194 @@
+#include "tools/investigation/experiment_rig.h"
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <variant>
+
+#include "base/files.h"
+#include "base/numbers.h"
+#include "daemon/service/daemon.h"
+#include "daemon/socket/sequence_loader.h"
+
+namespace softgrip::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the displacement range, what the finger may reach as the logs' gain predicts.
+constexpr double range_share = 0.95;
+
+tl::unexpected<NotPlayed> failed(std::string why) {
+  return tl::unexpected(NotPlayed{false, std::move(why)});
+}
+tl::unexpected<NotPlayed> stopped(std::string why) {
+  return tl::unexpected(NotPlayed{true, std::move(why)});
+}
+
+std::string what_moves(const sysid::NextExperiment& experiment, const std::string& rig) {
+  const sysid::JudgedWaveform& best = experiment.best.value();
+  double largest_kpa = 0;
+  for (const sysid::Corner& corner : best.waveform.corners)
+    largest_kpa = std::max(largest_kpa, corner.pressure_kpa);
+  return rig + " will move: " + best.waveform.name + ", up to " + significant(largest_kpa, 3) + " kPa, " +
+         significant(best.minutes, 2) + " minutes";
+}
+
+tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::string& channel) {
+  document::Problems problems;
+  sysid::LogOptions options;
+  options.channel = channel;
+  sysid::Campaign campaign = sysid::read_campaign({path}, problems, options);
+  if (campaign.logs.empty()) return failed("the log of the experiment was refused:\n" + problems.format());
+  return std::move(campaign.logs.front());
+}
+
+/// A word of a shell's command line.
+std::string quoted(const std::string& text) {
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+/// Calls `command IN OUT` and waits for it.
+tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
+                                   const std::string& out) {
+  std::fflush(nullptr);
+  const int status = std::system((command + " " + quoted(in) + " " + quoted(out)).c_str());
+  const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
+  if (by_signal) return stopped("the rig's command was stopped by a signal");
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    return failed("the rig's command failed with exit code " + std::to_string(WEXITSTATUS(status)));
+  return {};
+}
+
+tl::expected<sysid::GaugeFile, NotPlayed> gauge_at(const std::string& path) {
+  document::Problems problems;
+  auto gauge = sysid::read_gauge(path, problems);
+  if (!gauge) return failed("the gauge file was refused:\n" + problems.format());
+  return std::move(*gauge);
+}
+
+std::string command_csv(const sysid::Waveform& waveform, double interval_s) {
+  std::string csv = "time_s,pressure_command_kpa\n";
+  const std::vector<double> samples = sysid::sampled_kpa(waveform, interval_s);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    // On a grid of a microsecond: times that others print with six digits are the same times.
+    const double time_s = std::round(1e6 * static_cast<double>(i) * interval_s) / 1e6;
+    csv += shortest(time_s) + "," + shortest(samples[i]) + "\n";
+  }
+  return csv;
+}
+
+}  // namespace
+
+sysid::RigLimits ExperimentRig::limits(double gain_mm_per_kpa) const {
+  const control::LimitSettings& own = rig.settings.channels[channel].limits;
+  double largest_kpa = std::min(own.pressure_max_kpa, rig.valves[channel].range_max_kpa);
+  if (gain_mm_per_kpa > 0)
+    largest_kpa = std::min(largest_kpa, range_share * own.displacement_max_mm / gain_mm_per_kpa);
+  return {largest_kpa, std::min(own.slew_up_kpa_per_s, own.slew_down_kpa_per_s)};
+}
+
+tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const std::string& channel) {
+  ExperimentRig result{std::move(rig), 0, false};
+  const auto& channels = result.rig.settings.channels;
+  if (channel.empty() && channels.size() > 1)
+    return tl::unexpected("the rig has " + std::to_string(channels.size()) +
+                          " channels: name one with --channel");
+  if (!channel.empty()) {
+    const auto at = std::find_if(channels.begin(), channels.end(),
+                                 [&](const control::ChannelSettings& c) { return c.name == channel; });
+    if (at == channels.end()) return tl::unexpected("the rig has no channel '" + channel + "'");
+    result.channel = static_cast<std::size_t>(at - channels.begin());
+  }
+  if (channels[result.channel].limits.pressure_min_kpa > 0) {
+    return tl::unexpected("channel '" + result.channel_name() +
+                          "' never goes down to 0 kPa: experiments begin and end there");
+  }
+  result.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(result.rig.board);
+  return result;
+}
+
+tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std::string& name,
+                                            const std::string& sequence_yaml, const std::string& folder) {
+  auto sequence = daemon::SequenceLoader(rig.rig.settings, "").load_text(name + ".yaml", sequence_yaml);
+  if (!sequence) return failed("the rig does not take the sequence:\n" + sequence.error().format());
+  daemon::DaemonOptions options;
+  options.virtual_time = rig.simulated;
+  options.sequence = std::move(*sequence);
+  options.record_folder = (fs::path(folder) / name).string();
+  options.listen = false;
+  options.on_event = [](const daemon::EventEntry&) {};
+  auto daemon = daemon::Daemon::create(rig.rig, options);
+  if (!daemon) return failed(daemon.error());
+  const daemon::Outcome outcome = (*daemon)->run();
+  if (outcome.ending == daemon::Ending::asked) return stopped("stopped by the user; the rig is vented");
+  if (outcome.ending != daemon::Ending::sequence_ended || !outcome.sequence_end ||
+      *outcome.sequence_end != control::SequenceEnd::done) {
+    return failed("the experiment did not run to its end" +
+                  (outcome.message.empty() ? std::string() : ": " + outcome.message));
+  }
+  if (!outcome.left_safely) return failed("the board did not confirm the safe outputs");
+  return options.record_folder;
+}
+
+Player rig_player(ExperimentRig rig, Consent consent) {
+  return [rig = std::move(rig), consent = std::move(consent)](
+             const sysid::NextExperiment& experiment,
+             const std::string& folder) -> tl::expected<sysid::Log, NotPlayed> {
+    if (!rig.simulated &&
+        !consent(what_moves(experiment, "channel '" + rig.channel_name() + "' of " + rig.rig.name)))
+      return stopped("not allowed to move the rig");
+    const auto recording =
+        run_on(rig, "recording", sysid::sequence_yaml(experiment, rig.channel_name()), folder);
+    if (!recording) return tl::unexpected(recording.error());
+    return log_of(*recording, rig.channel_name());
+  };
+}
+
+Player command_player(std::string command, double interval_s, Consent consent) {
+  return [command = std::move(command), interval_s, consent = std::move(consent)](
+             const sysid::NextExperiment& experiment,
+             const std::string& folder) -> tl::expected<sysid::Log, NotPlayed> {
+    if (!consent(what_moves(experiment, "the rig behind '" + command + "'")))
+      return stopped("not allowed to move the rig");
+    const std::string in = (fs::path(folder) / "command.csv").string();
+    const std::string out = (fs::path(folder) / "log.csv").string();
+    if (const auto written = write_file(in, command_csv(experiment.best->waveform, interval_s)); !written)
+      return failed(written.error());
+    if (const auto called = call(command, in, out); !called) return tl::unexpected(called.error());
+    return log_of(out, "");
+  };
+}
+
+tl::expected<sysid::GaugeFile, NotPlayed> gauge_file_of(const std::vector<sysid::GaugeReading>& readings,
+                                                        const std::string& folder) {
+  const std::string path = (fs::path(folder) / "gauge.csv").string();
+  if (const auto written = write_file(path, sysid::format_gauge(readings)); !written)
+    return failed(written.error());
+  return gauge_at(path);
+}
+
+GaugeTaker command_gauge(std::string command, Consent consent) {
+  return [command = std::move(command), consent = std::move(consent)](
+             const std::vector<double>& positions_mm,
+             const std::string& folder) -> tl::expected<sysid::GaugeFile, NotPlayed> {
+    if (!consent("'" + command + "' will put the sensor's target at " + std::to_string(positions_mm.size()) +
+                 " positions"))
+      return stopped("not allowed to check the sensor");
+    const std::string in = (fs::path(folder) / "gauge_asked.csv").string();
+    const std::string out = (fs::path(folder) / "gauge.csv").string();
+    if (const auto written = write_file(in, sysid::positions_csv(positions_mm)); !written)
+      return failed(written.error());
+    if (const auto called = call(command, in, out); !called) return tl::unexpected(called.error());
+    return gauge_at(out);
+  };
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,206 @@
+#include "tools/investigation/investigation.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "base/numbers.h"
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using sysid::Verdict;
+
+/// Beyond any menu: a bound on what a loop can do.
+constexpr std::size_t most_steps = 20;
+
+InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& folder) {
+  InvestigationStep step;
+  step.folder = folder;
+  step.verdict = diagnosis.verdict;
+  for (const sysid::NamedCause& named : diagnosis.causes) {
+    step.causes.emplace_back(named.cause.id);
+    step.alternatives.emplace_back();
+    for (const sysid::Cause& rival : named.rivals) step.alternatives.back().emplace_back(rival.id);
+  }
+  return step;
+}
+
+class Investigator {
+ public:
+  explicit Investigator(const InvestigationOptions& options) : options_(options), plan_(options.experiment) {
+    result_.logs = options.logs;
+    result_.budget_minutes = options.budget_minutes;
+    result_.gauge = options.diagnosis.gauge;
+  }
+
+  tl::expected<Investigation, std::string> run() {
+    while (result_.steps.size() < most_steps) {
+      const auto goes_on = step();
+      if (!goes_on) return tl::unexpected(goes_on.error());
+      if (!*goes_on) return std::move(result_);
+    }
+    end(InvestigationEnd::nothing_left, "the menu of experiments is used up");
+    return std::move(result_);
+  }
+
+ private:
+  /// One diagnosis and, where it asks for one, one experiment. False: it is over.
+  tl::expected<bool, std::string> step() {
+    const std::string name = "step_" + std::to_string(result_.steps.size() + 1);
+    sysid::DiagnosisOptions how = options_.diagnosis;
+    how.gauge = result_.gauge;
+    auto diagnosis = sysid::diagnose(result_.logs, options_.given, how);
+    if (!diagnosis) return tl::unexpected(diagnosis.error());
+    result_.last = std::move(*diagnosis);
+    result_.steps.push_back(step_of(result_.last, name));
+    tell(name + ": " + sysid::verdict_sentence(result_.last));
+
+    Consequences consequences;
+    plan_.most_minutes = result_.budget_minutes - result_.spent_minutes;
+    consequences.experiment = sysid::design_experiment(result_.last, plan_);
+    const std::string folder = (std::filesystem::path(options_.out) / name).string();
+    if (auto written = write_diagnosis_folder(folder, result_.last, consequences, options_.channel); !written)
+      return tl::unexpected(written.error());
+    if (result_.last.verdict == Verdict::unexplained)
+      return end(InvestigationEnd::unexplained, "structure is left that no cause of the library explains");
+    if (result_.last.verdict != Verdict::ambiguous) return end(InvestigationEnd::settled, "");
+    const auto& gauge_check = consequences.experiment.gauge_check;
+    if (!consequences.experiment.best && gauge_check && options_.take_gauge)
+      return check_sensor(*gauge_check, folder);
+    if (!consequences.experiment.best) return end_without_experiment(consequences.experiment);
+    return play(consequences.experiment, folder);
+  }
+
+  bool end(InvestigationEnd how, const std::string& why) {
+    result_.end = how;
+    result_.why = why;
+    return false;
+  }
+
+  /// Nothing separates the rivals: within the budget, or at all?
+  bool end_without_experiment(const sysid::NextExperiment& none) {
+    sysid::ExperimentOptions unbounded = plan_;
+    unbounded.most_minutes = 1e9;
+    if (sysid::design_experiment(result_.last, unbounded).best) {
+      return end(InvestigationEnd::budget_spent,
+                 "what would tell them apart takes longer than the minutes left");
+    }
+    std::string why = "no experiment of the menu that was not played yet would tell the rivals apart";
+    for (const std::string& sentence : none.advice) why += "; " + sentence;
+    return end(InvestigationEnd::nothing_left, why);
+  }
+
+  bool play(const sysid::NextExperiment& experiment, const std::string& folder) {
+    InvestigationStep& step = result_.steps.back();
+    const sysid::JudgedWaveform& best = *experiment.best;
+    tell("playing " + best.waveform.name + ", " + significant(best.minutes, 2) + " minutes: " +
+         significant(experiment.predicted_separation_sigma, 3) + " standard deviations are predicted");
+    auto log = options_.play(experiment, folder);
+    if (!log) {
+      return end(log.error().stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, log.error().why);
+    }
+    step.experiment = best.waveform.name;
+    step.predicted_separation_sigma = experiment.predicted_separation_sigma;
+    step.minutes = best.minutes;
+    step.log = log->path;
+    result_.spent_minutes += best.minutes;
+    plan_.done.push_back(best.waveform.name);
+    result_.logs.push_back(std::move(*log));
+    return true;
+  }
+
+  /// No waveform tells the rivals apart, and they make different sensors.
+  bool check_sensor(const sysid::ProposedGaugeCheck& check, const std::string& folder) {
+    if (check.minutes > result_.budget_minutes - result_.spent_minutes) {
+      return end(InvestigationEnd::budget_spent,
+                 "the sensor would have to be checked against a gauge, which takes longer than the minutes "
+                 "left");
+    }
+    tell("the sensor against a gauge: " + std::to_string(check.positions_mm.size()) + " readings, " +
+         significant(check.minutes, 2) + " minutes");
+    auto gauge = options_.take_gauge(check.positions_mm, folder);
+    if (!gauge) {
+      return end(gauge.error().stopped ? InvestigationEnd::stopped : InvestigationEnd::failed,
+                 gauge.error().why);
+    }
+    InvestigationStep& step = result_.steps.back();
+    step.experiment = gauge_check_name;
+    step.minutes = check.minutes;
+    step.log = gauge->path;
+    result_.spent_minutes += check.minutes;
+    result_.gauge = std::move(*gauge);
+    return true;
+  }
+
+  void tell(const std::string& line) const {
+    if (options_.tell) options_.tell(line);
+  }
+
+  const InvestigationOptions& options_;
+  sysid::ExperimentOptions plan_;
+  Investigation result_;
+};
+
+}  // namespace
+
+const char* name_of(InvestigationEnd end) {
+  switch (end) {
+    case InvestigationEnd::settled:
+      return "settled";
+    case InvestigationEnd::unexplained:
+      return "unexplained";
+    case InvestigationEnd::nothing_left:
+      return "nothing_left";
+    case InvestigationEnd::budget_spent:
+      return "budget_spent";
+    case InvestigationEnd::stopped:
+      return "stopped";
+    case InvestigationEnd::failed:
+      return "failed";
+  }
+  return "failed";
+}
+
+tl::expected<Investigation, std::string> investigate(const InvestigationOptions& options) {
+  return Investigator(options).run();
+}
+
+std::string to_json(const Investigation& investigation, const std::string& rig) {
+  Json json{{"schema", 1},
+            {"rig", rig},
+            {"end", name_of(investigation.end)},
+            {"why", investigation.why},
+            {"verdict", sysid::name_of(investigation.last.verdict)},
+            {"budget_minutes", investigation.budget_minutes},
+            {"spent_minutes", investigation.spent_minutes}};
+  json["causes"] =
+      investigation.steps.empty() ? std::vector<std::string>{} : investigation.steps.back().causes;
+  json["steps"] = Json::array();
+  for (const InvestigationStep& step : investigation.steps) {
+    Json one{{"folder", step.folder},
+             {"verdict", sysid::name_of(step.verdict)},
+             {"causes", step.causes},
+             {"alternatives", step.alternatives}};
+    one["experiment"] = nullptr;
+    if (!step.experiment.empty()) {
+      one["experiment"] = {{"waveform", step.experiment},
+                           {"predicted_separation_sigma", step.predicted_separation_sigma},
+                           {"minutes", step.minutes},
+                           {"log", step.log}};
+      if (step.experiment == gauge_check_name) one["experiment"]["predicted_separation_sigma"] = nullptr;
+    }
+    json["steps"].push_back(std::move(one));
+  }
+  json["logs"] = Json::array();
+  for (const sysid::Log& log : investigation.logs)
+    json["logs"].push_back({{"path", log.path}, {"sha256", log.sha256}});
+  json["gauge"] = nullptr;
+  if (const auto& gauge = investigation.gauge)
+    json["gauge"] = {{"path", gauge->path}, {"sha256", gauge->sha256}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace softgrip::tools

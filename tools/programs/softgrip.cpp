@@ -1,0 +1,43 @@
+// softgrip: the command line.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "base/version.h"
+#include "tools/commands/commands.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App program{"Soft pneumatic grippers: run them, and keep their model honest.", "softgrip"};
+  program.set_version_flag("--version", std::string{"softgrip "}.append(softgrip::software_version()));
+  program.require_subcommand(1);
+  program.footer(
+      "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or input refused, 4 I/O,\n"
+      "5 refused by the daemon's state, 6 finished but the result is not acceptable.");
+
+  softgrip::ExitCode outcome = softgrip::ExitCode::done;
+#define SOFTGRIP_ADD(name) softgrip::tools::add_##name(program, outcome);
+  SOFTGRIP_COMMANDS(SOFTGRIP_ADD)
+#undef SOFTGRIP_ADD
+
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : static_cast<int>(softgrip::ExitCode::usage);
+  }
+  return static_cast<int>(outcome);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softgrip: %s\n", error.what());
+  }
+  return static_cast<int>(softgrip::ExitCode::failed);
+}

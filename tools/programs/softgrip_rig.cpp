@@ -1,0 +1,203 @@
+// softgrip-rig: the emulator of a rig on Modbus TCP or RTU.
+
+#include <sched.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <csignal>
+#include <cstddef>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "base/version.h"
+#include "simulation/emulator/listener.h"
+#include "simulation/emulator/server.h"
+#include "simulation/emulator/truth_log.h"
+#include "tools/command_line/command.h"
+#include "tools/command_line/option_check.h"
+#include "tools/programs/softgrip_rig_options.h"
+
+namespace softgrip::tools {
+namespace {
+
+void add_options(CLI::App& program, Options& options) {
+  program.set_version_flag("--version", std::string{"softgrip-rig "}.append(software_version()));
+  program
+      .add_option("--model", options.models, "What the fingers are: a model file for all, or one per channel")
+      ->required();
+  program
+      .add_option("--board", options.boards,
+                  "Board map: a file, or a name in config/boards; several for several modules")
+      ->capture_default_str();
+  auto* tcp = program.add_option("--tcp", options.port, "Port; 0 takes a free one [1502, or the rig file's]");
+  program
+      .add_option("--rtu", options.rtu,
+                  "Modbus RTU on this serial device; a path that does not exist becomes a pseudo-terminal")
+      ->excludes(tcp);
+  program.add_option("--baud", options.baud, "Of the line [9600, or the rig file's]")
+      ->check(number_between(1200, 1000000));
+  program.add_option("--format", options.format,
+                     "Of the line: 8N1, 8E1, 8O1, 8N2, 8E2 [8N1, or the rig file's]");
+  program
+      .add_option("--turnaround-s", options.turnaround_s,
+                  "What a module on the line needs to answer [0, or the rig file's]")
+      ->check(number_between(0, 10));
+  program.add_option("--bind", options.bind, "Numeric address to listen on")->capture_default_str();
+  program.add_flag("--allow-network", options.allow_network, "Listen on an address that others can reach");
+  program.add_option("--unit", options.unit, "Unit id of the first module (default 1, or the rig file's)");
+  auto* channels =
+      program.add_option("--channels", options.channels, "Number of fingers")->capture_default_str();
+  program
+      .add_option("--rig", options.rig,
+                  "Rig file: board, unit id, channels and their scaling as softgripd has them")
+      ->excludes(channels);
+  program.add_option("--object", options.object,
+                     "Between the fingers: stone, screw or POSITION_MM[:YIELDING]");
+  program
+      .add_option("--object-out-at", options.object_out_at_s,
+                  "Pull it out so many seconds after the first command")
+      ->check(number_between(0, 86400));
+  program.add_option("--faults", options.faults, "What goes wrong, and when (YAML)");
+  program.add_option("--watchdog-s", options.watchdog_s, "The board's communication watchdog; 0: none")
+      ->check(number_between(0, 86400));
+  program.add_option("--noise-mm", options.noise_mm, "Standard deviation of the displacement sensor")
+      ->capture_default_str()
+      ->check(number_between(0, 1000));
+  program
+      .add_option("--pressure-noise-kpa", options.pressure_noise_kpa,
+                  "Standard deviation of the pressure monitor")
+      ->capture_default_str()
+      ->check(number_between(0, 1000));
+  program.add_option("--seed", options.seed, "Of all noise")->capture_default_str();
+  program.add_option("--truth", options.truth, "Write what really happened to this CSV file");
+  program.add_option("--truth-rate-hz", options.truth_rate_hz, "Rows per second and channel of --truth")
+      ->capture_default_str()
+      ->check(number_between(0.1, 1000));
+  program.add_option("--control", options.control,
+                     "Take control commands on this Unix socket ('-': standard input)");
+  program.footer(
+      "Control commands: status, fault NAME, clear NAME, object out|back|stone|screw|POSITION_MM[:YIELDING], "
+      "quit.\n"
+      "SIGUSR1 pulls the object out. Ready once 'listening on ADDRESS:PORT' or 'listening on DEVICE' is "
+      "printed.");
+}
+
+/// All signals that the server takes, as a descriptor; blocked for the whole process.
+Descriptor take_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) sigaddset(&set, signal);
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+  // A client that left is found out by the write that fails.
+  std::signal(SIGPIPE, SIG_IGN);
+  return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
+}
+
+/// A board answers in time however busy the machine is. Who may not ask for that gets an ordinary process.
+/// Bound to one processor: a real-time thread that may wander waited 49 ms on a busy one (Linux 6.18, the
+/// fair server's share), a bound one 1.4 ms at most.
+void ask_for_real_time() {
+  constexpr int below_the_daemon = 40;
+  sched_param parameters{};
+  parameters.sched_priority = below_the_daemon;
+  if (::sched_setscheduler(0, SCHED_FIFO, &parameters) != 0) return;
+  cpu_set_t allowed;
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
+  std::size_t first = 0;
+  while (first < CPU_SETSIZE && !CPU_ISSET(first, &allowed)) ++first;
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(first, &one);
+  (void)::sched_setaffinity(0, sizeof one, &one);
+}
+
+/// Opens what the modules answer on; `told` says where.
+ExitCode listen(const Setup& setup, simulation::ServerSockets& sockets, std::string& told) {
+  if (setup.line) {
+    auto end = simulation::SerialEnd::open(*setup.line);
+    if (!end) return fail(ExitCode::io, end.error());
+    sockets.line = setup.line;
+    sockets.end = std::move(*end);
+    told += "listening on " + setup.line->device + "\n";
+    return ExitCode::done;
+  }
+  for (const softgrip::drivers::TcpAddress& address : setup.addresses) {
+    auto listener = simulation::listen_tcp(address.host, address.port);
+    if (!listener) return fail(ExitCode::io, listener.error());
+    told += "listening on " + address.host + ":" + std::to_string(listener->port) + "\n";
+    sockets.modbus.push_back(std::move(listener->socket));
+  }
+  return ExitCode::done;
+}
+
+ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator& emulator,
+               simulation::TruthLog* truth) {
+  simulation::ServerSockets sockets;
+  std::string told;
+  if (const ExitCode code = listen(setup, sockets, told); code != ExitCode::done) return code;
+  sockets.signals = take_signals();
+  sockets.standard_input = options.control == "-";
+  const bool control_socket = !options.control.empty() && !sockets.standard_input;
+  if (control_socket) {
+    auto control = simulation::listen_unix(options.control);
+    if (!control) return fail(ExitCode::io, control.error());
+    sockets.control = std::move(*control);
+  }
+  simulation::Server server(emulator, std::move(sockets));
+  ask_for_real_time();
+  std::fputs(told.c_str(), stdout);
+  std::fflush(stdout);
+  server.run([&] {
+    if (truth != nullptr) truth->flush();
+  });
+  if (control_socket) ::unlink(options.control.c_str());
+  if (truth != nullptr && !truth->good()) return fail(ExitCode::io, "cannot write " + options.truth);
+  return ExitCode::done;
+}
+
+ExitCode run(const Options& options) {
+  if (!simulation::is_loopback(options.bind) && !options.allow_network) {
+    return fail(ExitCode::usage, "others could reach " + options.bind +
+                                     ", and Modbus knows no password: add --allow-network if that is wanted");
+  }
+  auto setup = make_setup(options);
+  if (!setup) return setup.error();
+  simulation::Emulator emulator(setup->emulator);
+  std::optional<simulation::TruthLog> truth;
+  if (!options.truth.empty()) {
+    const double decimation =
+        std::round(1e9 / static_cast<double>(simulation::Emulator::grid) / options.truth_rate_hz);
+    truth.emplace(options.truth, static_cast<std::uint32_t>(decimation));
+    if (!truth->good()) return fail(ExitCode::io, "cannot write " + options.truth);
+    truth->add(emulator);
+    emulator.on_grid([&] { truth->add(emulator); });
+  }
+  return serve(options, *setup, emulator, truth ? &*truth : nullptr);
+}
+
+}  // namespace
+}  // namespace softgrip::tools
+
+int main(int argc, char** argv) {
+  using namespace softgrip;
+  using namespace softgrip::tools;
+  try {
+    CLI::App program{"A rig in real time behind a Modbus board: valve, fingers, object, watchdog, faults.",
+                     "softgrip-rig"};
+    Options options;
+    add_options(program, options);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    }
+    return static_cast<int>(run(options));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softgrip-rig: %s\n", error.what());
+  }
+  return static_cast<int>(ExitCode::failed);
+}

@@ -1,0 +1,144 @@
+#include "tools/recordings/recording_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/numbers.h"
+#include "sysid/pages/chart.h"
+#include "tools/recordings/recording_tracking.h"
+
+namespace softgrip::tools {
+namespace {
+
+using sysid::Chart;
+using sysid::Colour;
+using sysid::Mark;
+using sysid::Series;
+
+constexpr int picture_width = 960;
+constexpr int tall = 230;
+constexpr int low = 190;
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+Series line(std::string label, const sysid::Log& log, std::vector<double> y, Colour colour) {
+  Series series;
+  series.label = std::move(label);
+  series.x = log.time_s;
+  series.y = std::move(y);
+  series.colour = colour;
+  return series;
+}
+
+bool any_number(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+std::string title_of(const std::string& what, const sysid::Log& log) {
+  return log.channel.empty() ? what : log.channel + ": " + what;
+}
+
+Chart chart(std::string title, std::string y_label, int height) {
+  Chart chart;
+  chart.title = std::move(title);
+  chart.x.label = "time [s]";
+  chart.y.label = std::move(y_label);
+  chart.width = picture_width;
+  chart.height = height;
+  return chart;
+}
+
+/// Grip results and faults that concern a channel, as lines across its charts.
+std::vector<Mark> marks_of(const Recording& recording, const std::string& channel) {
+  std::vector<Mark> marks;
+  for (const RecordedEvent& event : recording.events) {
+    const bool told = event.kind == "grip_result" || event.kind == "fault_latched";
+    if (!told || (!event.channel.empty() && event.channel != channel)) continue;
+    marks.push_back({Mark::Direction::vertical, event.time_s, event.code});
+  }
+  return marks;
+}
+
+Chart pressure_chart(const sysid::Log& log) {
+  Chart pressure = chart(title_of("pressure", log), "pressure [kPa]", tall);
+  Series command = line("command", log, log.pressure_command_kpa, Colour::model);
+  command.style = Series::Style::steps;
+  if (any_number(log.pressure_kpa)) {
+    pressure.series.push_back(line("measured", log, log.pressure_kpa, Colour::measured));
+  }
+  pressure.series.push_back(std::move(command));
+  return pressure;
+}
+
+Chart displacement_chart(const Recording& recording, const sysid::Log& log) {
+  Chart displacement = chart(title_of("displacement", log), "displacement [mm]", tall);
+  displacement.series.push_back(line("measured", log, log.displacement_mm, Colour::measured));
+  if (std::vector<double> reference = numbers_of(log, "reference_mm"); any_number(reference)) {
+    Series wanted = line("reference", log, std::move(reference), Colour::model);
+    wanted.dashed = true;
+    displacement.series.push_back(std::move(wanted));
+  }
+  displacement.marks = marks_of(recording, log.channel);
+  return displacement;
+}
+
+Chart error_chart(const sysid::Log& log, const std::vector<double>& errors) {
+  const Tracking tracking = tracking_of(log);
+  const std::string rated = tracking.grips_known ? ", in free motion" : "";
+  const std::string figures = tracking.free_samples > 0
+                                  ? rated + " RMSE " + significant(tracking.free_rmse_mm, 3) +
+                                        " mm, largest " + significant(tracking.free_largest_mm, 3) + " mm"
+                                  : std::string();
+  Chart error = chart(title_of("reference minus displacement" + figures, log), "error [mm]", low);
+  const std::vector<char> gripping = gripping_of(log);
+  std::vector<double> free = errors;
+  std::vector<double> held = errors;
+  for (std::size_t i = 0; i < errors.size(); ++i) (gripping[i] != 0 ? free : held)[i] = nothing;
+  const bool both = tracking.gripping_samples > 0;
+  if (both) error.series.push_back(line("gripping", log, std::move(held), Colour::faint));
+  error.series.push_back(line(both ? "free motion" : "", log, std::move(free), Colour::error));
+  return error;
+}
+
+/// A column of words as steps between named levels, in the order in which they first came.
+void add_words(Chart& chart, const sysid::Log& log, const std::string& column) {
+  const std::vector<std::string> words = texts_of(log, column);
+  if (words.empty()) return;
+  std::vector<double> levels(words.size(), nothing);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    auto& names = chart.y.categories;
+    auto place = std::find(names.begin(), names.end(), words[i]);
+    if (place == names.end()) place = names.insert(names.end(), words[i]);
+    levels[i] = static_cast<double>(place - names.begin());
+  }
+  Series steps = line("", log, std::move(levels), Colour::other);
+  steps.style = Series::Style::steps;
+  chart.series.push_back(std::move(steps));
+}
+
+void add_states(const Recording& recording, std::vector<Chart>& charts) {
+  Chart states = chart("state", "", low);
+  add_words(states, recording.channels.front(), "state");
+  if (!states.series.empty()) charts.push_back(std::move(states));
+}
+
+}  // namespace
+
+std::string picture_of(const Recording& recording) {
+  std::vector<Chart> charts;
+  for (const sysid::Log& log : recording.channels) {
+    charts.push_back(pressure_chart(log));
+    charts.push_back(displacement_chart(recording, log));
+    if (const std::vector<double> errors = errors_of(log); any_number(errors)) {
+      charts.push_back(error_chart(log, errors));
+    }
+  }
+  add_states(recording, charts);
+  const std::string what =
+      recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
+  charts.front().title = what + " · " + charts.front().title;
+  return sysid::to_svg(charts);
+}
+
+}  // namespace softgrip::tools

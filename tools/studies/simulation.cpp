@@ -1,0 +1,60 @@
+#include "tools/studies/simulation.h"
+
+#include <cmath>
+
+#include "base/random.h"
+#include "model/chain.h"
+
+namespace softgrip::tools {
+namespace {
+
+// The model's own noise and the noise that is added must not be the same numbers.
+constexpr std::uint64_t added_noise = 1;
+
+/// The interval of a regular log, 0 of an irregular one.
+double sample_time_of(const sysid::Log& log) {
+  if (log.size() < 2) return 0;
+  const sysid::Sampling sampling = sysid::sampling_of(log);
+  return sampling.regular ? sampling.median_interval_s : 0;
+}
+
+model::Surroundings surroundings_at(const sysid::Log& log, std::size_t i) {
+  model::Surroundings surroundings;
+  surroundings.time_s = log.time_s[i];
+  if (!log.supply_kpa.empty()) surroundings.supply_kpa = log.supply_kpa[i];
+  if (!log.temperature_c.empty()) surroundings.temperature_c = log.temperature_c[i];
+  return surroundings;
+}
+
+}  // namespace
+
+sysid::Log sampled_signal(model::SignalName signal, double rate_hz) {
+  sysid::Log log;
+  log.name = model::name_of(signal);
+  // The last sample may lie a rounding error behind the end.
+  const auto intervals = static_cast<std::size_t>(std::floor(model::duration_s(signal) * rate_hz + 1e-6));
+  for (std::size_t i = 0; i <= intervals; ++i) {
+    const double time_s = static_cast<double>(i) / rate_hz;
+    log.time_s.push_back(time_s);
+    log.pressure_command_kpa.push_back(model::value_kpa(signal, time_s));
+  }
+  return log;
+}
+
+void simulate(const model::Model& model, const SimulationSettings& settings, sysid::Log& log) {
+  log.displacement_mm.assign(log.size(), 0);
+  if (log.size() == 0) return;
+  model::Chain<double> chain(model, {}, sample_time_of(log), settings.seed);
+  const std::uint64_t noise_seed = derived_seed(settings.seed, added_noise);
+  chain.reset(log.pressure_command_kpa.front());
+  double previous_s = log.time_s.front();
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    const double reading_mm =
+        chain.step(log.time_s[i] - previous_s, log.pressure_command_kpa[i], surroundings_at(log, i));
+    previous_s = log.time_s[i];
+    const double noise_mm = settings.noise_mm > 0 ? settings.noise_mm * normal_at(noise_seed, i) : 0;
+    log.displacement_mm[i] = reading_mm + noise_mm;
+  }
+}
+
+}  // namespace softgrip::tools
