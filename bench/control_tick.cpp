@@ -49,12 +49,15 @@ struct Tape {
     (void)reference.ramp_for(6, 2);
     (void)reference.sine(13, 7, 0.1, 3);
     control::ChannelController controller(settings, tick_s);
+    control::ChannelOutput output;
+    controller.start(0, output);
     model::Chain<double> finger(settings.model, {}, tick_s);
     input.demand.mode = control::ChannelDemand::Mode::displacement;
     input.demand.reference = &reference;
     for (int k = 1; k * tick_s < reference.end_s(); ++k) {
       next(k, finger.reading_mm());
-      const double command = controller.tick(input).command_kpa;
+      controller.tick(input, output);
+      const double command = output.command_kpa;
       finger.step(0, command);
       readings_mm.push_back(finger.reading_mm());
       finger.step(tick_s, command);
@@ -77,16 +80,19 @@ void channel(benchmark::State& state) {
   const auto settings = settings_for(static_cast<control::FeedforwardKind>(state.range(0)));
   Tape tape(settings);
   control::ChannelController controller(settings, tick_s);
+  control::ChannelOutput output;
+  controller.start(0, output);
   int k = 1;
   while (state.KeepRunning()) {
     if (k == static_cast<int>(tape.readings_mm.size())) {
       state.PauseTiming();
-      controller.start(0);
+      controller.start(0, output);
       k = 1;
       state.ResumeTiming();
     }
     tape.next(k, tape.readings_mm[static_cast<std::size_t>(k)]);
-    benchmark::DoNotOptimize(controller.tick(tape.input));
+    controller.tick(tape.input, output);
+    benchmark::DoNotOptimize(output);
     ++k;
   }
 }
@@ -98,17 +104,23 @@ void two_channels_percentiles(benchmark::State& state) {
   Tape tape(settings);
   std::array<control::ChannelController, 2> controllers{control::ChannelController(settings, tick_s),
                                                         control::ChannelController(settings, tick_s)};
+  std::array<control::ChannelOutput, 2> outputs;
+  const auto start_all = [&] {
+    for (std::size_t i = 0; i < 2; ++i) controllers[i].start(0, outputs[i]);
+  };
+  start_all();
   std::vector<double> times_ns;
   times_ns.reserve(1 << 22);
   int k = 1;
   while (state.KeepRunning()) {
     if (k == static_cast<int>(tape.readings_mm.size())) {
-      for (auto& controller : controllers) controller.start(0);
+      start_all();
       k = 1;
     }
     tape.next(k, tape.readings_mm[static_cast<std::size_t>(k)]);
     const auto start = std::chrono::steady_clock::now();
-    for (auto& controller : controllers) benchmark::DoNotOptimize(controller.tick(tape.input));
+    for (std::size_t i = 0; i < 2; ++i) controllers[i].tick(tape.input, outputs[i]);
+    benchmark::DoNotOptimize(outputs);
     const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - start;
     if (times_ns.size() < times_ns.capacity()) times_ns.push_back(took.count());
     ++k;

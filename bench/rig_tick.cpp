@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "control/tick/rig_controller.h"
 #include "model/chain.h"
@@ -60,7 +61,7 @@ void rig_tick(benchmark::State& state) {
   std::vector<model::Chain<double>> fingers(2, model::Chain<double>(rig.channels[0].model, {}, period_s));
   std::vector<model::Reading> readings(2);
   control::TickInput input;
-  control::TickOutput output;
+  const control::TickOutput& output = controller.output();
   input.readings = readings;
   input.bus.connected = true;
   std::vector<double> times_ns;
@@ -77,7 +78,7 @@ void rig_tick(benchmark::State& state) {
     input.request = {};
     if (output.state == control::State::idle) input.request = {control::Request::Kind::start, 1, &track};
     const auto start = std::chrono::steady_clock::now();
-    controller.tick(input, output);
+    controller.tick(input);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
     for (std::size_t i = 0; i < 2; ++i) {
       fingers[i].step(0, output.channels[i].command_kpa);

@@ -17,11 +17,12 @@ softgrip_room(model/file USES base document model)
 
 # What a tick runs.
 softgrip_room(control/elements USES base model)
-softgrip_room(control/feedforward USES base model control/elements LIBRARIES Eigen3::Eigen)
+softgrip_room(control/feedforward USES base model control/elements)
 softgrip_room(control/tick USES base document model control/elements control/feedforward)
 # What is done before it.
-softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick)
-softgrip_room(control/tuning USES base model control/elements control/feedforward control/tick)
+softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick
+  LIBRARIES Eigen3::Eigen)
+softgrip_room(control/tuning USES base model control/elements control/feedforward control/tick control/sequences)
 
 # Boards.
 softgrip_room(drivers/board USES base model)

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"

@@ -114,9 +114,7 @@ std::span<const FaultInfo> all_faults() noexcept {
 
 const FaultInfo& info_of(FaultCode code) noexcept {
   for (const FaultInfo& info : faults) {
-    if (info.code == code) {
-      return info;
-    }
+    if (info.code == code) return info;
   }
   return no_fault;
 }

@@ -4,10 +4,8 @@
 
 namespace softgrip::control {
 
-void Contact::observe(const ChannelView& view) noexcept {
-  if (view.valid && std::isfinite(view.deficit_mm)) {
-    touching_ = view.deficit_mm >= (touching_ ? 0.5 * margin_mm_ : margin_mm_);
-  }
+void Contact::observe(double deficit_mm) noexcept {
+  if (std::isfinite(deficit_mm)) touching_ = deficit_mm >= (touching_ ? 0.5 * margin_mm_ : margin_mm_);
 }
 
 void EvidenceWindow::start(double time_s, double window_s) noexcept {
@@ -28,9 +26,7 @@ EvidenceWindow::Verdict EvidenceWindow::observe(double time_s, bool usable, bool
     evidence_ = evidence;
     since_s_ = time_s;
   }
-  if (time_s - since_s_ < window_s_) {
-    return Verdict::pending;
-  }
+  if (time_s - since_s_ < window_s_) return Verdict::pending;
   return evidence_ ? Verdict::verified : Verdict::refuted;
 }
 
@@ -47,9 +43,7 @@ bool HoldWatch::observe(double time_s, bool usable, double evidence) noexcept {
     sum_ += evidence;
     ++count_;
   }
-  if (time_s < end_s_) {
-    return false;
-  }
+  if (time_s < end_s_) return false;
   const bool lost = count_ > 0 && sum_ < least_ * count_;
   start(time_s, interval_s_, least_);
   return lost;

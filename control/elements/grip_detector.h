@@ -8,25 +8,14 @@
 
 namespace softgrip::control {
 
-/// What a channel knows in one tick, as far as sequences need it.
-struct ChannelView {
-  bool sighted = true;         ///< the channel uses its displacement at all
-  bool valid = false;          ///< the reading of the displacement can be used
-  double displacement_mm = 0;  ///< the last valid one
-  double deficit_mm = 0;       ///< running free model minus reading, at the time of the reading; NaN: unknown
-  double pressure_kpa = 0;     ///< measured, or NaN
-  double command_kpa = 0;      ///< last sent
-  double lowest_kpa = 0;       ///< lowest command
-  double preview_s = 0;        ///< how far ahead the feedforward has used the reference
-};
-
 /// Whether a finger touches something, with hysteresis: from a deficit of `margin_mm` on, until it is below
 /// half of that.
 class Contact {
  public:
   explicit Contact(double margin_mm) noexcept : margin_mm_(margin_mm) {}
   void reset() noexcept { touching_ = false; }
-  void observe(const ChannelView& view) noexcept;
+  /// A deficit that is not known (NaN) changes nothing.
+  void observe(double deficit_mm) noexcept;
   [[nodiscard]] bool touching() const noexcept { return touching_; }
 
  private:

@@ -5,14 +5,16 @@
 
 namespace softgrip::control {
 
+double in_range(const LimitSettings& limits, double pressure_kpa) noexcept {
+  return std::clamp(pressure_kpa, limits.pressure_min_kpa, limits.pressure_max_kpa);
+}
+
 LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
                      double elapsed_s) noexcept {
-  const double lower = limits.pressure_min_kpa;
-  const double upper = limits.pressure_max_kpa;
   // Without a usable last command only the lowest pressure is known to do no harm.
-  const double last = std::isfinite(last_kpa) ? std::clamp(last_kpa, lower, upper) : lower;
+  const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : limits.pressure_min_kpa;
   if (std::isnan(wanted_kpa)) return {last, false, false, true};
-  const double inside = std::clamp(wanted_kpa, lower, upper);
+  const double inside = in_range(limits, wanted_kpa);
   const double reached = std::clamp(inside, last - limits.slew_down_kpa_per_s * elapsed_s,
                                     last + limits.slew_up_kpa_per_s * elapsed_s);
   return {reached, inside != wanted_kpa, reached != inside, false};

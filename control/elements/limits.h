@@ -1,5 +1,8 @@
 #pragma once
-// What a command may be. limit() is the only place where a pressure is clamped or slowed down.
+// What a command may be. limit() is the only place where a pressure that a tick commands is kept within its
+// range and slowed down to the slew limits; a feedforward that plans ahead asks the same functions what they
+// would let through. One thing is not slowed down: the safe output (ChannelOutput::safe_kpa), which is
+// written when the loop leaves or falls silent, is the lowest pressure at once, or the last command.
 
 namespace softgrip::control {
 
@@ -21,6 +24,9 @@ struct LimitedCommand {
   bool slewing = false;    ///< what was wanted is further from the last command than the slew limits allow
   bool invalid = false;    ///< what was wanted is not a number: the last command is held
 };
+
+/// A pressure within the range.
+[[nodiscard]] double in_range(const LimitSettings& limits, double pressure_kpa) noexcept;
 
 /// The command for `wanted_kpa` when `last_kpa` went out `elapsed_s` (>= 0) ago. It is always inside the
 /// pressure range, even when the last one was not; inside the range the slew limits hold as well.

@@ -137,8 +137,4 @@ double ModelHealth::rms_mm() const noexcept {
   return std::sqrt(mean_square_mm2_);
 }
 
-double ModelHealth::drift() const noexcept {
-  return std::max(up_, down_) / threshold_;
-}
-
 }  // namespace softgrip::control

@@ -79,9 +79,6 @@ class ModelHealth {
   [[nodiscard]] HealthState state() const noexcept { return state_; }
   /// Root mean square of the interval averages over about unfit_window_s [mm].
   [[nodiscard]] double rms_mm() const noexcept;
-  /// The larger CUSUM as a share of its threshold: 1 is suspect.
-  [[nodiscard]] double drift() const noexcept;
-  [[nodiscard]] double threshold_sigma() const noexcept { return threshold_; }
 
  private:
   bool judge_interval() noexcept;

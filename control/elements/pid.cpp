@@ -9,9 +9,7 @@ Pid::Pid(const PidSettings& settings, double tick_s) noexcept : settings_(settin
 }
 
 void Pid::align(double command_kpa) noexcept {
-  align_ = true;
-  held_ = false;
-  fresh_ = true;
+  memory_ = Memory::aligning;
   rate_mm_per_s_ = 0;
   align_to_kpa_ = command_kpa;
 }
@@ -24,20 +22,19 @@ double Pid::immediate_kpa(double reference_mm, double measurement_mm) const noex
 double Pid::step(double error_reference_mm, double measurement_mm, double feedforward_kpa) noexcept {
   const double error_mm = error_reference_mm - measurement_mm;
   increment_kpa_ = 0;
-  if (!fresh_) {
+  if (memory_ == Memory::measured) {
     const double rate = (measurement_mm - last_measurement_mm_) / tick_s_;
     rate_mm_per_s_ = filter_keep_ * rate_mm_per_s_ + (1 - filter_keep_) * rate;
     increment_kpa_ = settings_.ki_kpa_per_mm_s * tick_s_ * 0.5 * (error_mm + last_error_mm_);
   }
   const double immediate = immediate_kpa(error_reference_mm, measurement_mm);
-  if (align_) {
+  if (aligns()) {
     integral_kpa_ = align_to_kpa_ - feedforward_kpa - immediate;
     increment_kpa_ = 0;
-    align_ = false;
   } else {
     integral_kpa_ += increment_kpa_;
   }
-  fresh_ = false;
+  memory_ = Memory::measured;
   last_error_mm_ = error_mm;
   last_reference_mm_ = error_reference_mm;
   last_measurement_mm_ = measurement_mm;
@@ -47,18 +44,19 @@ double Pid::step(double error_reference_mm, double measurement_mm, double feedfo
 }
 
 double Pid::hold(double feedforward_kpa) noexcept {
-  if (align_ && !held_) {
+  if (memory_ == Memory::aligning) {
     feedback_kpa_ = align_to_kpa_ - feedforward_kpa;
-    held_ = true;
+    memory_ = Memory::aligned_ahead;
+  } else if (memory_ == Memory::measured) {
+    memory_ = Memory::none;
   }
   increment_kpa_ = 0;
-  fresh_ = true;
   request_kpa_ = feedforward_kpa + feedback_kpa_;
   return feedback_kpa_;
 }
 
 void Pid::sent(double command_kpa) noexcept {
-  if (align_) align_to_kpa_ = command_kpa;
+  if (aligns()) align_to_kpa_ = command_kpa;
   const double cut_kpa = command_kpa - request_kpa_;
   // Without an integral part nothing would ever bring back what the anti-windup put in.
   if (cut_kpa == 0 || settings_.ki_kpa_per_mm_s == 0) return;

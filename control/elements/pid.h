@@ -57,6 +57,9 @@ class Pid {
   [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }
 
  private:
+  [[nodiscard]] bool aligns() const noexcept {
+    return memory_ == Memory::aligning || memory_ == Memory::aligned_ahead;
+  }
   [[nodiscard]] double immediate_kpa(double reference_mm, double measurement_mm) const noexcept;
 
   PidSettings settings_;
@@ -72,9 +75,14 @@ class Pid {
   double request_kpa_ = 0;
   double increment_kpa_ = 0;  ///< what the integrator gained in the last step
   double align_to_kpa_ = 0;
-  bool align_ = false;
-  bool held_ = false;  ///< hold() has taken up what align() wants
-  bool fresh_ = true;  ///< there is no last measurement to differentiate or integrate from
+  /// What the next step() goes on from.
+  enum class Memory : std::uint8_t {
+    none,           ///< the integral; there is no last measurement to differentiate or integrate from
+    measured,       ///< the last measurement
+    aligning,       ///< the command of align()
+    aligned_ahead,  ///< the same, which hold() has taken up already
+  };
+  Memory memory_ = Memory::none;
 };
 
 }  // namespace softgrip::control

@@ -211,7 +211,7 @@ FeedforwardStep PlannedFeedforward::step(const FeedforwardQuery& query) noexcept
   }
   const double faded = source + difference_kpa_ * fade_left_s_ / plan_fade_s;
   fade_left_s_ = std::max(0.0, fade_left_s_ - tick_s_);
-  last_kpa_ = std::clamp(faded, limits_.pressure_min_kpa, limits_.pressure_max_kpa);
+  last_kpa_ = in_range(limits_, faded);
   const bool missed = on_plan_ && plan_->miss_mm(then_s - origin_s_) > missed_mm;
   return {last_kpa_, missed || std::abs(faded - last_kpa_) > late_kpa};
 }

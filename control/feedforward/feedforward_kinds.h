@@ -8,7 +8,7 @@
 #include "control/elements/limits.h"
 #include "control/elements/reference.h"
 #include "control/feedforward/actuator_inverse.h"
-#include "control/feedforward/planned_feedforward.h"
+#include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
 #include "model/model.h"
 
@@ -101,7 +101,7 @@ class FullModelFeedforward {
   Reference fade_;  ///< of the difference after enter() or a jump, on the reference's clock
 };
 
-/// A plan that was made before the run (control/feedforward/planned_feedforward.h), read ahead by all dead
+/// A plan that was made before the run (control/sequences/planner.h), read ahead by all dead
 /// time and the hold's half tick. A finger that stands off its model (offset_mm) is not in the plan: the
 /// difference is added at the settled gain. Where there is no plan, or the reference begins more than 1 mm
 /// from where the plan does, the settled gain alone follows the reference until the next step. Whenever the
@@ -113,7 +113,7 @@ class PlannedFeedforward {
   void enter(const RunningModel& running, const FeedforwardQuery& query, double command_kpa) noexcept;
   FeedforwardStep step(const FeedforwardQuery& query) noexcept;
   /// More than the dead time: a plan acts before its reference does.
-  [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + Planner::lead_s; }
+  [[nodiscard]] double preview_s() const noexcept { return ahead_s_ + plan_lead_s; }
 
  private:
   [[nodiscard]] double unplanned_mm(const FeedforwardQuery& query, double wanted_mm,

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "control/feedforward/planned_feedforward.h"
+#include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
 #include "model/chain.h"
 #include "model/dual.h"

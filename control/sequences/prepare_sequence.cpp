@@ -1,14 +1,12 @@
-// Fits a sequence to a rig: prepare() of control/tick/sequence.h.
+#include "control/sequences/prepare_sequence.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "control/sequences/sequence_plans.h"
-#include "control/tick/sequence.h"
 #include "document/node.h"
 
 namespace softgrip::control {
@@ -23,9 +21,7 @@ using document::Problems;
 std::string text_of(double value) {
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') {
-    text.pop_back();
-  }
+  if (text.back() == '.') text.pop_back();
   return text;
 }
 
@@ -89,14 +85,10 @@ class Fitting {
 
   std::uint32_t mask_of(const std::vector<std::string>& names, document::Location at,
                         std::uint32_t if_empty) {
-    if (names.empty()) {
-      return if_empty;
-    }
+    if (names.empty()) return if_empty;
     std::uint32_t mask = 0;
     std::vector<std::string> known;
-    for (const ChannelSettings& channel : settings_.channels) {
-      known.push_back(channel.name);
-    }
+    for (const ChannelSettings& channel : settings_.channels) known.push_back(channel.name);
     for (const std::string& name : names) {
       const auto found = std::find(known.begin(), known.end(), name);
       if (found == known.end()) {
@@ -112,9 +104,7 @@ class Fitting {
 
   void check(const Step& step, std::uint32_t channels) {
     for (std::size_t i = 0; i < settings_.channels.size(); ++i) {
-      if ((channels >> i & 1U) != 0) {
-        check_channel(step, settings_.channels[i], i);
-      }
+      if ((channels >> i & 1U) != 0) check_channel(step, settings_.channels[i], i);
     }
     check_times(step);
     if (step.kind == StepKind::grip) {
@@ -143,9 +133,7 @@ class Fitting {
       case StepKind::hold:
         break;
     }
-    if (step.kind == StepKind::grip) {
-      check_verify(step, channel);
-    }
+    if (step.kind == StepKind::grip) check_verify(step, channel);
   }
 
   void check_target(const Step& step, const ChannelSettings& channel) {
@@ -209,9 +197,7 @@ class Fitting {
         see(value_at(step.profile, cycle_s(step.profile) * i / samples));
       }
     }
-    for (const Point& point : step.profile.points) {
-      see(point.pressure_kpa);
-    }
+    for (const Point& point : step.profile.points) see(point.pressure_kpa);
     check_pressure(step, channel, lowest, highest);
   }
 
@@ -245,9 +231,7 @@ class Fitting {
     auto next = static_cast<std::uint16_t>(steps.size());
     for (std::size_t i = steps.size(); i-- > 0;) {
       steps[i].release_step = next;
-      if (steps[i].step.kind == StepKind::release) {
-        next = static_cast<std::uint16_t>(i);
-      }
+      if (steps[i].step.kind == StepKind::release) next = static_cast<std::uint16_t>(i);
     }
   }
 
@@ -260,62 +244,15 @@ class Fitting {
   std::vector<double> follows_mm_ = std::vector<double>(settings_.channels.size(), unknown);
 };
 
-/// FNV-1a over the bytes of what a prepared sequence depends on.
-class Key {
- public:
-  void add(double value) { add_bits(std::bit_cast<std::uint64_t>(value)); }
-  void add(const std::string& text) {
-    add_bits(text.size());
-    for (const char c : text) {
-      add_bits(static_cast<unsigned char>(c));
-    }
-  }
-  void add_bits(std::uint64_t bits) {
-    for (int i = 0; i < 8; ++i) {
-      value_ = (value_ ^ (bits >> 8 * i & 0xff)) * 1099511628211ULL;
-    }
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ULL;
-};
-
 }  // namespace
-
-std::uint64_t rig_key(const RigSettings& settings) noexcept {
-  Key key;
-  key.add(settings.rate_hz);
-  for (const ChannelSettings& channel : settings.channels) {
-    key.add(channel.name);
-    key.add(channel.limits.pressure_min_kpa);
-    key.add(channel.limits.pressure_max_kpa);
-    key.add(channel.limits.displacement_min_mm);
-    key.add(channel.limits.displacement_max_mm);
-    key.add_bits((channel.pressure_measured ? 1U : 0U) | (channel.displacement_used ? 2U : 0U));
-    if (channel.feedforward.kind != FeedforwardKind::planned) continue;
-    key.add(channel.limits.slew_up_kpa_per_s);
-    key.add(channel.limits.slew_down_kpa_per_s);
-    key.add(channel.feedforward.extra_latency_s);
-    for (const model::BlockSpec& block : channel.model.blocks) {
-      key.add_bits(block.type);
-      for (const double value : block.values) key.add(value);
-    }
-  }
-  return key.value();
-}
 
 std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
                                         document::Problems& problems, const std::stop_token& stop) {
   const std::size_t before = problems.size();
   Fitting fitting(sequence, settings, problems);
   PreparedSequence result = fitting.run();
-  if (problems.size() == before) {
-    fitting.plan(result, stop);
-  }
-  if (problems.size() != before) {
-    return std::nullopt;
-  }
+  if (problems.size() == before) fitting.plan(result, stop);
+  if (problems.size() != before) return std::nullopt;
   return result;
 }
 

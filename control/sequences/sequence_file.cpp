@@ -30,9 +30,7 @@ constexpr std::size_t most_points = 5000;
 template <class Enum>
 std::vector<std::string> names(std::initializer_list<Enum> values) {
   std::vector<std::string> list;
-  for (const Enum value : values) {
-    list.emplace_back(name_of(value));
-  }
+  for (const Enum value : values) list.emplace_back(name_of(value));
   return list;
 }
 
@@ -68,9 +66,7 @@ class FileReader {
  private:
   std::vector<std::string> channel_names(MapReader& map) {
     std::vector<std::string> list;
-    if (!map.has("channels")) {
-      return list;
-    }
+    if (!map.has("channels")) return list;
     for (const Node* item : map.sequence("channels", true)) {
       if (item->kind != Node::Kind::scalar || item->scalar.empty()) {
         problems_.add(document_.problem(item->at, "expected the name of a channel"));
@@ -185,9 +181,7 @@ class FileReader {
   /// A move can only fail when it has a tolerance; then it says how.
   void tolerance(MapReader& map, Step& step) {
     step.tolerance_mm = map.optional_number("tolerance_mm", {0.01, 50});
-    if (!step.tolerance_mm) {
-      return;
-    }
+    if (!step.tolerance_mm) return;
     if (step.target.quantity != Target::Quantity::displacement_mm) {
       map.report("tolerance_mm", "tolerance_mm belongs to a target in displacement_mm");
     }
@@ -199,9 +193,7 @@ class FileReader {
   Verify verify(MapReader& map) {
     Verify result;
     const Node* node = map.child("verify", true);
-    if (node == nullptr) {
-      return result;
-    }
+    if (node == nullptr) return result;
     MapReader inner(document_, *node, problems_, "verify");
     result.by = static_cast<VerifyBy>(
         inner.choice("by", names({VerifyBy::detection, VerifyBy::position, VerifyBy::pressure})));
@@ -263,9 +255,7 @@ class FileReader {
       profile.signal = model::all_signals()[map.choice("signal", signals)];
       profile.scale = map.optional_number("scale", {0.01, 20}).value_or(1);
     }
-    if (has_points || !has_signal) {
-      points(map, profile.points);
-    }
+    if (has_points || !has_signal) points(map, profile.points);
     profile.cycles = static_cast<std::uint32_t>(map.optional_integer("cycles", 1, 10'000).value_or(1));
     if (profile.cycles > 1 && !profile.points.empty() &&
         profile.points.front().pressure_kpa != profile.points.back().pressure_kpa) {
@@ -309,18 +299,14 @@ bool refused(const Document& document, const Problems& problems) {
 std::optional<Sequence> read_sequence(const document::Document& document, document::Problems& problems) {
   const std::size_t before = problems.size();
   Sequence sequence = FileReader(document, problems).sequence();
-  if (problems.size() != before || refused(document, problems)) {
-    return std::nullopt;
-  }
+  if (problems.size() != before || refused(document, problems)) return std::nullopt;
   return sequence;
 }
 
 std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems) {
   const std::size_t before = problems.size();
   const document::Document document = document::parse_file(path, problems);
-  if (document.root.kind == document::Node::Kind::null) {
-    return std::nullopt;
-  }
+  if (document.root.kind == document::Node::Kind::null) return std::nullopt;
   auto sequence = read_sequence(document, problems);
   return problems.size() == before ? std::move(sequence) : std::nullopt;
 }

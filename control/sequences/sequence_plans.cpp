@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "control/feedforward/feedforward_kinds.h"
+#include "control/sequences/planner.h"
 #include "control/tick/channel_player.h"
 
 namespace softgrip::control {
@@ -30,7 +31,7 @@ class Walk {
       : planned_(planned(channel)),
         lowest_kpa_(channel.limits.pressure_min_kpa),
         ahead_s_(planned_ ? plan_ahead_s(channel.model, channel.feedforward, tick_s) : 0),
-        player_(margin_mm) {
+        player_({margin_mm, lowest_kpa_, planned_ ? ahead_s_ + plan_lead_s : 0}) {
     if (planned_ && plans) planner_.emplace(channel.model, channel.limits, tick_s);
   }
 
@@ -39,13 +40,11 @@ class Walk {
     if (step.step.kind == StepKind::hold) return time_s + step.step.hold_s;
     step_ = &step;
     since_s_ = time_s;
-    ChannelView view;
-    view.valid = true;
-    view.lowest_kpa = lowest_kpa_;
-    view.command_kpa = planner_ ? planner_->command_kpa() : lowest_kpa_;
-    view.displacement_mm = planner_ ? planner_->displacement_mm() : 0;
-    view.preview_s = planned_ ? ahead_s_ + Planner::lead_s : 0;
-    player_.begin(step.step, nullptr, time_s, view);
+    ChannelOutput seen;
+    seen.validity = model::Validity::valid;
+    seen.command_kpa = planner_ ? planner_->command_kpa() : lowest_kpa_;
+    seen.displacement_mm = planner_ ? planner_->displacement_mm() : 0;
+    player_.begin(step.step, nullptr, time_s, seen);
     const bool grips = step.step.kind == StepKind::grip;
     return player_.motion_end_s() + step.step.settle_s + (grips ? step.step.verify.window_s : 0) +
            step.step.purge_s;

@@ -4,10 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "control/elements/plausibility.h"
-#include "control/feedforward/feedforward_kinds.h"
 #include "control/feedforward/invertibility.h"
-#include "control/feedforward/running_model.h"
 
 namespace softgrip::control {
 namespace {
@@ -36,218 +33,164 @@ FeedforwardSettings accepted(const ChannelSettings& settings, double tick_s) {
 
 }  // namespace
 
-struct ChannelController::Parts {
-  Parts(const ChannelSettings& from, double tick)
-      : tick_s(tick),
-        limits(from.limits),
-        noise_mm(from.health.noise_mm),
-        displacement_used(from.displacement_used),
-        running(from.model, tick, from.feedforward.extra_latency_s, from.plausibility.max_age_s),
-        feedforward(from.model, accepted(from, tick), from.limits, tick),
-        pid(from.pid, tick),
-        plausibility(from.plausibility),
-        health(from.health, tick) {}
+ChannelController::ChannelController(const ChannelSettings& settings, double tick_s)
+    : tick_s_(tick_s),
+      limits_(settings.limits),
+      noise_mm_(settings.health.noise_mm),
+      displacement_used_(settings.displacement_used),
+      running_(settings.model, tick_s, settings.feedforward.extra_latency_s, settings.plausibility.max_age_s),
+      feedforward_(settings.model, accepted(settings, tick_s), settings.limits, tick_s),
+      pid_(settings.pid, tick_s),
+      plausibility_(settings.plausibility),
+      health_(settings.health, tick_s) {}
 
-  void advance(Nanoseconds now) noexcept;
-  void take_reading(const ChannelInput& input, ChannelStep& out) noexcept;
-  void follow_finger(bool wanted, ChannelStep& out) noexcept;
-  void watch_model(const ChannelInput& input, ChannelStep& out) noexcept;
-  double request(const ChannelDemand& demand, ChannelStep& out) noexcept;
-  double track(const ChannelDemand& demand, ChannelStep& out) noexcept;
-
-  double tick_s;
-  LimitSettings limits;
-  double noise_mm;
-  bool displacement_used;
-  RunningModel running;
-  Feedforward feedforward;
-  Pid pid;
-  Plausibility plausibility;
-  ModelHealth health;
-
-  bool ticked = false;
-  Nanoseconds last_now = 0;
-  std::int64_t ticks = 1;  ///< since the tick before
-  double command_kpa = 0;
-  bool tracking = false;
-  bool feedback_held = false;
-
-  double displacement_mm = 0;  ///< the last valid reading
-  double age_s = 0;
-  bool reading_valid = false;
-  bool reading_new = false;
-  std::uint32_t sequence = 0;
-  double predicted_mm = 0;  ///< by the model without offset, when the reading was sampled
-  double offset_mm = 0;
-  bool following = false;
-  std::int64_t settled_ticks = 0;
-};
-
-void ChannelController::Parts::advance(Nanoseconds now) noexcept {
-  ticks = 1;
-  if (ticked) {
-    ticks = std::max<std::int64_t>(1, std::llround(static_cast<double>(now - last_now) * 1e-9 / tick_s));
-    if (ticks > most_ticks) {
-      running.reset(command_kpa);
-    } else {
-      for (std::int64_t i = 0; i < ticks; ++i) running.advance(command_kpa);
-    }
-    if (ticks > most_planned_ticks) tracking = false;
-  }
-  ticked = true;
-  last_now = now;
+void ChannelController::start(double command_kpa, ChannelOutput& channel) noexcept {
+  channel = {};
+  channel.command_kpa = limit(limits_, command_kpa, command_kpa, 0).command_kpa;
+  channel.safe_kpa = channel.command_kpa;
+  running_.reset(channel.command_kpa);
+  plausibility_.reset();
+  health_.reset();
+  loop_ = Loop::stopped;
+  sequence_ = 0;
+  offset_mm_ = 0;
+  settled_ticks_.reset();
 }
 
-void ChannelController::Parts::take_reading(const ChannelInput& input, ChannelStep& out) noexcept {
-  out.validity = plausibility.judge(input.reading, input.now, command_kpa);
-  reading_valid = out.validity == model::Validity::valid;
-  age_s = std::max(0.0, static_cast<double>(input.now - input.reading.sampled_at) * 1e-9);
-  if (input.reading.validity == model::Validity::none_yet) age_s = 0;
-  out.age_s = age_s;
-  predicted_mm = running.reading_mm(age_s);
-  reading_new = reading_valid && input.reading.sequence != sequence;
-  sequence = input.reading.sequence;
-  if (reading_valid) displacement_mm = input.reading.displacement_mm;
-  out.displacement_mm = displacement_mm;
-  out.displacement_beyond =
-      displacement_used && reading_valid && displacement_beyond(limits, displacement_mm);
+void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) noexcept {
+  const std::int64_t ticks = advance(input.now, channel.command_kpa);
+  const bool is_new = input.reading.sequence != sequence_;
+  sequence_ = input.reading.sequence;
+  const bool sighted = displacement_used_ && channel.validity == model::Validity::valid;
+  const double predicted_mm = take_reading(input, channel);
+  follow_finger(input.resynchronise, predicted_mm, channel);
+  watch_model(input, predicted_mm, is_new, channel);
+  channel.deficit_mm = sighted ? -channel.residual_mm : not_known;
+  const LimitedCommand limited =
+      limit(limits_, request(input.demand, ticks, channel), channel.command_kpa, tick_s_);
+  if (tracking()) pid_.sent(limited.command_kpa);
+  channel.command_kpa = limited.command_kpa;
+  channel.saturated = limited.saturated;
+  channel.slewing = limited.slewing;
+  channel.request_invalid = limited.invalid;
 }
 
-void ChannelController::Parts::follow_finger(bool wanted, ChannelStep& out) noexcept {
-  if (!wanted) {
-    following = false;
-    return;
-  }
-  if (!displacement_used) {
-    out.synchronised = true;
-    return;
-  }
-  if (!reading_valid) {
-    settled_ticks = 0;
-    return;
-  }
-  const double difference_mm = displacement_mm - predicted_mm;
-  if (!following) {
-    following = true;
-    offset_mm = difference_mm;
-    settled_ticks = 0;
-  }
-  const double gap_mm = difference_mm - offset_mm;
-  offset_mm += -std::expm1(-tick_s / follow_time_s) * gap_mm;
-  settled_ticks = std::abs(gap_mm) <= settled_sigma * noise_mm ? settled_ticks + 1 : 0;
-  out.synchronised = static_cast<double>(settled_ticks) * tick_s >= settled_after_s;
-}
-
-void ChannelController::Parts::watch_model(const ChannelInput& input, ChannelStep& out) noexcept {
-  out.residual_mm = reading_valid ? displacement_mm - predicted_mm - offset_mm : not_known;
-  const bool counts = displacement_used && reading_new && input.free_motion && !input.resynchronise;
-  out.health_changed = counts ? health.observe(out.residual_mm) : health.skip();
-  out.health = health.state();
-  out.health_rms_mm = health.rms_mm();
-}
-
-double ChannelController::Parts::track(const ChannelDemand& demand, ChannelStep& out) noexcept {
-  const bool entering = !tracking;
-  FeedforwardQuery query{demand.reference, demand.time_s, offset_mm, demand.plan, demand.plan_origin_s};
-  if (entering) {
-    feedforward.enter(running, query, command_kpa);
-    ticks = 1;
-  }
-  FeedforwardStep planned;
-  for (std::int64_t late = ticks - 1; late >= 0; --late) {
-    query.time_s = demand.time_s - static_cast<double>(late) * tick_s;
-    planned = feedforward.step(query);
-  }
-  tracking = true;
-  out.feedforward_kpa = planned.pressure_kpa;
-  out.out_of_reach = planned.out_of_reach;
-
-  const LimitedReference now = limit_reference(limits, demand.reference->at(demand.time_s).value);
-  out.reference_mm = now.reference_mm;
-  out.reference_clamped = now.clamped;
-  if (entering || (feedback_held && !demand.feedback_held)) pid.align(command_kpa);
-  feedback_held = demand.feedback_held;
-  if (reading_valid && displacement_used && !feedback_held) {
-    // The error is taken where the reading was: against the reference of that time, not of now.
-    const double then_mm =
-        limit_reference(limits, demand.reference->at(demand.time_s - age_s).value).reference_mm;
-    out.feedback_kpa = pid.step(then_mm, displacement_mm, planned.pressure_kpa);
+/// Returns how many ticks it is since the last one.
+std::int64_t ChannelController::advance(Nanoseconds now, double command_kpa) noexcept {
+  std::int64_t ticks = 1;
+  if (loop_ == Loop::stopped) {
+    loop_ = Loop::open;
   } else {
-    out.feedback_kpa = pid.hold(planned.pressure_kpa);
+    ticks = std::max<std::int64_t>(1, std::llround(static_cast<double>(now - last_now_) * 1e-9 / tick_s_));
+    if (ticks > most_ticks) {
+      running_.reset(command_kpa);
+    } else {
+      for (std::int64_t i = 0; i < ticks; ++i) running_.advance(command_kpa);
+    }
+    if (ticks > most_planned_ticks) loop_ = Loop::open;
   }
-  return out.feedforward_kpa + out.feedback_kpa;
+  last_now_ = now;
+  return ticks;
 }
 
-double ChannelController::Parts::request(const ChannelDemand& demand, ChannelStep& out) noexcept {
-  out.reference_mm = not_known;
+/// Returns what the model without offset expects of it [mm].
+double ChannelController::take_reading(const ChannelInput& input, ChannelOutput& channel) noexcept {
+  const model::Reading& reading = input.reading;
+  channel.validity = plausibility_.judge(reading, input.now, channel.command_kpa);
+  const bool none_yet = reading.validity == model::Validity::none_yet;
+  channel.age_s = none_yet ? 0 : std::max(0.0, static_cast<double>(input.now - reading.sampled_at) * 1e-9);
+  const bool valid = channel.validity == model::Validity::valid;
+  if (valid) channel.displacement_mm = reading.displacement_mm;
+  channel.pressure_kpa = reading.pressure_kpa;
+  channel.displacement_beyond =
+      displacement_used_ && valid && displacement_beyond(limits_, channel.displacement_mm);
+  return running_.reading_mm(channel.age_s);
+}
+
+void ChannelController::follow_finger(bool wanted, double predicted_mm, ChannelOutput& channel) noexcept {
+  channel.synchronised = wanted && !displacement_used_;
+  if (!wanted) {
+    settled_ticks_.reset();
+    return;
+  }
+  if (!displacement_used_) return;
+  if (channel.validity != model::Validity::valid) {
+    if (settled_ticks_) settled_ticks_ = 0;
+    return;
+  }
+  const double difference_mm = channel.displacement_mm - predicted_mm;
+  if (!settled_ticks_) {
+    offset_mm_ = difference_mm;
+    settled_ticks_ = 0;
+  }
+  const double gap_mm = difference_mm - offset_mm_;
+  offset_mm_ += -std::expm1(-tick_s_ / follow_time_s) * gap_mm;
+  settled_ticks_ = std::abs(gap_mm) <= settled_sigma * noise_mm_ ? *settled_ticks_ + 1 : 0;
+  channel.synchronised = static_cast<double>(*settled_ticks_) * tick_s_ >= settled_after_s;
+}
+
+void ChannelController::watch_model(const ChannelInput& input, double predicted_mm, bool is_new,
+                                    ChannelOutput& channel) noexcept {
+  const bool valid = channel.validity == model::Validity::valid;
+  channel.residual_mm = valid ? channel.displacement_mm - predicted_mm - offset_mm_ : not_known;
+  const bool counts = displacement_used_ && valid && is_new && input.free_motion && !input.resynchronise;
+  channel.health_changed = counts ? health_.observe(channel.residual_mm) : health_.skip();
+  channel.health = health_.state();
+  channel.health_rms_mm = health_.rms_mm();
+}
+
+/// The command that is wanted [kPa].
+double ChannelController::request(const ChannelDemand& demand, std::int64_t ticks,
+                                  ChannelOutput& channel) noexcept {
   const bool tracks = demand.mode == DemandMode::displacement && demand.reference != nullptr;
-  if (tracks) return track(demand, out);
-  tracking = false;
-  feedback_held = false;
+  if (tracks) return track(demand, ticks, channel);
+  loop_ = Loop::open;
+  channel.reference_mm = not_known;
+  channel.feedforward_kpa = channel.feedback_kpa = 0;
+  channel.reference_clamped = channel.out_of_reach = false;
   switch (demand.mode) {
     case DemandMode::vent:
-      return limits.pressure_min_kpa;
+      return limits_.pressure_min_kpa;
     case DemandMode::pressure:
       return demand.pressure_kpa;
     case DemandMode::hold:
     case DemandMode::displacement:
       break;
   }
-  return command_kpa;
+  return channel.command_kpa;
 }
 
-ChannelController::ChannelController(const ChannelSettings& settings, double tick_s)
-    : parts_(std::make_unique<Parts>(settings, tick_s)) {
-  start(settings.limits.pressure_min_kpa);
-}
-ChannelController::ChannelController(ChannelController&&) noexcept = default;
-ChannelController& ChannelController::operator=(ChannelController&&) noexcept = default;
-ChannelController::~ChannelController() = default;
+double ChannelController::track(const ChannelDemand& demand, std::int64_t ticks,
+                                ChannelOutput& channel) noexcept {
+  const bool entering = !tracking();
+  FeedforwardQuery query{demand.reference, demand.time_s, offset_mm_, demand.plan, demand.plan_origin_s};
+  if (entering) {
+    feedforward_.enter(running_, query, channel.command_kpa);
+    ticks = 1;
+  }
+  FeedforwardStep planned;
+  for (std::int64_t late = ticks - 1; late >= 0; --late) {
+    query.time_s = demand.time_s - static_cast<double>(late) * tick_s_;
+    planned = feedforward_.step(query);
+  }
+  channel.feedforward_kpa = planned.pressure_kpa;
+  channel.out_of_reach = planned.out_of_reach;
 
-void ChannelController::start(double command_kpa) noexcept {
-  Parts& p = *parts_;
-  p.command_kpa = limit(p.limits, command_kpa, command_kpa, 0).command_kpa;
-  p.running.reset(p.command_kpa);
-  p.plausibility.reset();
-  p.health.reset();
-  p.ticked = p.tracking = p.feedback_held = p.following = false;
-  p.reading_valid = p.reading_new = false;
-  p.sequence = 0;
-  p.offset_mm = p.displacement_mm = 0;
-}
-
-ChannelStep ChannelController::tick(const ChannelInput& input) noexcept {
-  Parts& p = *parts_;
-  ChannelStep out;
-  p.advance(input.now);
-  p.take_reading(input, out);
-  p.follow_finger(input.resynchronise, out);
-  p.watch_model(input, out);
-  const double wanted_kpa = p.request(input.demand, out);
-  const LimitedCommand limited = limit(p.limits, wanted_kpa, p.command_kpa, p.tick_s);
-  p.command_kpa = limited.command_kpa;
-  if (p.tracking) p.pid.sent(limited.command_kpa);
-  out.command_kpa = limited.command_kpa;
-  out.saturated = limited.saturated;
-  out.slewing = limited.slewing;
-  out.request_invalid = limited.invalid;
-  return out;
-}
-
-double ChannelController::command_kpa() const noexcept {
-  return parts_->command_kpa;
-}
-double ChannelController::preview_s() const noexcept {
-  return parts_->feedforward.preview_s();
-}
-double ChannelController::free_displacement_mm() const noexcept {
-  return parts_->predicted_mm + parts_->offset_mm;
-}
-double ChannelController::offset_mm() const noexcept {
-  return parts_->offset_mm;
-}
-void ChannelController::change_gains(const PidSettings& settings) noexcept {
-  parts_->pid.change(settings);
+  const LimitedReference now = limit_reference(limits_, demand.reference->at(demand.time_s).value);
+  channel.reference_mm = now.reference_mm;
+  channel.reference_clamped = now.clamped;
+  const bool released = loop_ == Loop::held && !demand.feedback_held;
+  if (entering || released) pid_.align(channel.command_kpa);
+  loop_ = demand.feedback_held ? Loop::held : Loop::closed;
+  if (loop_ == Loop::closed && displacement_used_ && channel.validity == model::Validity::valid) {
+    // The error is taken where the reading was: against the reference of that time, not of now.
+    const double then_mm =
+        limit_reference(limits_, demand.reference->at(demand.time_s - channel.age_s).value).reference_mm;
+    channel.feedback_kpa = pid_.step(then_mm, channel.displacement_mm, planned.pressure_kpa);
+  } else {
+    channel.feedback_kpa = pid_.hold(planned.pressure_kpa);
+  }
+  return channel.feedforward_kpa + channel.feedback_kpa;
 }
 
 }  // namespace softgrip::control

@@ -2,13 +2,17 @@
 // One finger in one tick: reading and reference in, command out. Feedforward plus PID through the limits,
 // with the model running alongside on the command that was really sent.
 
-#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <optional>
 
 #include "control/elements/model_health.h"
+#include "control/elements/pid.h"
+#include "control/elements/plausibility.h"
+#include "control/feedforward/feedforward_kinds.h"
+#include "control/feedforward/running_model.h"
 #include "control/tick/channel_demand.h"
 #include "control/tick/channel_settings.h"
+#include "control/tick/tick.h"
 #include "model/reading.h"
 
 namespace softgrip::control {
@@ -18,35 +22,10 @@ struct ChannelInput {
   model::Reading reading;  ///< as the driver gave it
   ChannelDemand demand;    ///< what the player or the supervisor asks
   /// Follow the finger to where it is: the difference between reading and model becomes the model's offset.
-  /// Only at rest, before motion starts; see ChannelStep::synchronised.
+  /// Only at rest, before motion starts; see ChannelOutput::synchronised.
   bool resynchronise = false;
   /// The finger moves without touching anything, as far as is known: only then is the residual the model's.
   bool free_motion = true;
-};
-
-/// What one tick gave. Every field is that of this tick.
-struct ChannelStep {
-  double command_kpa = 0;      ///< clamped and slew-limited: what goes to the board
-  double feedforward_kpa = 0;  ///< 0 outside mode displacement
-  double feedback_kpa = 0;     ///< 0 outside mode displacement
-  double reference_mm = 0;     ///< clamped, for now; NaN outside mode displacement
-  double displacement_mm = 0;  ///< the reading used: the last valid one
-  double residual_mm = 0;      ///< reading minus (model + offset), both at the time the reading was sampled;
-                               ///< NaN while there is no valid reading
-  double age_s = 0;            ///< of the reading
-  model::Validity validity = model::Validity::none_yet;
-
-  bool saturated = false;            ///< the request was outside the pressure range
-  bool slewing = false;              ///< the request was further away than the slew limits allow
-  bool request_invalid = false;      ///< the request was not a number: the command was held
-  bool reference_clamped = false;    ///< the reference was outside the displacement range
-  bool out_of_reach = false;         ///< the feedforward cannot reach the reference within the limits
-  bool displacement_beyond = false;  ///< the reading is beyond the displacement range and its margin
-  bool synchronised = false;         ///< resynchronise was asked and residual_mm has settled
-
-  HealthState health = HealthState::unknown;
-  bool health_changed = false;
-  double health_rms_mm = 0;  ///< root mean square of the residual, by which a model is unfit
 };
 
 /// Settings must hold what their headers say, and check_feedforward() (control/feedforward/invertibility.h)
@@ -54,33 +33,58 @@ struct ChannelStep {
 class ChannelController {
  public:
   ChannelController(const ChannelSettings& settings, double tick_s);
-  ChannelController(ChannelController&&) noexcept;
-  ChannelController& operator=(ChannelController&&) noexcept;
-  ~ChannelController();
 
-  /// Starts from rest with `command_kpa` at the board (the safe output of the phase idle, clamped).
-  void start(double command_kpa) noexcept;
+  /// Starts from rest with `command_kpa` (clamped) at the board.
+  void start(double command_kpa, ChannelOutput& channel) noexcept;
 
-  /// One period. Calls that are more than one period apart (slipped ticks) make the model catch up.
-  [[nodiscard]] ChannelStep tick(const ChannelInput& input) noexcept;
+  /// One period. `channel` is what start() or the tick before left there, and becomes what this tick gives,
+  /// but for what belongs to the sequence and to leaving: result, evidence, step, safe_kpa. Calls that are
+  /// more than one period apart (slipped ticks) make the model catch up.
+  void tick(const ChannelInput& input, ChannelOutput& channel) noexcept;
 
-  /// The command of the last tick.
-  [[nodiscard]] double command_kpa() const noexcept;
   /// How far ahead of now the feedforward asks the reference. A reference that changes its mind does so
   /// without a step when it is cut at now + preview_s().
-  [[nodiscard]] double preview_s() const noexcept;
-  /// Where the free finger would be by the model, offset included, with the commands sent so far, at the
-  /// time of the last reading.
-  [[nodiscard]] double free_displacement_mm() const noexcept;
+  [[nodiscard]] double preview_s() const noexcept { return feedforward_.preview_s(); }
   /// What resynchronising added to the model [mm].
-  [[nodiscard]] double offset_mm() const noexcept;
+  [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 
   /// New gains without a step of the command.
-  void change_gains(const PidSettings& settings) noexcept;
+  void change_gains(const PidSettings& settings) noexcept { pid_.change(settings); }
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  /// Who makes the command.
+  enum class Loop : std::uint8_t {
+    stopped,  ///< no tick since start()
+    open,     ///< the demand by itself: hold, vent, pressure
+    closed,   ///< feedforward and feedback
+    held,     ///< the same, with the feedback as it is
+  };
+  [[nodiscard]] bool tracking() const noexcept { return loop_ == Loop::closed || loop_ == Loop::held; }
+
+  [[nodiscard]] std::int64_t advance(Nanoseconds now, double command_kpa) noexcept;
+  double take_reading(const ChannelInput& input, ChannelOutput& channel) noexcept;
+  void follow_finger(bool wanted, double predicted_mm, ChannelOutput& channel) noexcept;
+  void watch_model(const ChannelInput& input, double predicted_mm, bool is_new,
+                   ChannelOutput& channel) noexcept;
+  double request(const ChannelDemand& demand, std::int64_t ticks, ChannelOutput& channel) noexcept;
+  double track(const ChannelDemand& demand, std::int64_t ticks, ChannelOutput& channel) noexcept;
+
+  double tick_s_;
+  LimitSettings limits_;
+  double noise_mm_;
+  bool displacement_used_;
+  RunningModel running_;
+  Feedforward feedforward_;
+  Pid pid_;
+  Plausibility plausibility_;
+  ModelHealth health_;
+
+  Loop loop_ = Loop::stopped;
+  Nanoseconds last_now_ = 0;
+  std::uint32_t sequence_ = 0;  ///< of the last reading
+  double offset_mm_ = 0;
+  /// While following the finger: since how many ticks it is settled.
+  std::optional<std::int64_t> settled_ticks_;
 };
 
 }  // namespace softgrip::control

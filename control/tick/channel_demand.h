@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "control/elements/reference.h"
-#include "control/feedforward/planned_feedforward.h"
+#include "control/feedforward/pressure_plan.h"
 
 namespace softgrip::control {
 

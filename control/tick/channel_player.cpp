@@ -13,12 +13,8 @@ using Mode = ChannelDemand::Mode;
 
 /// False when the reference is full.
 bool append_ramp(Reference& reference, const Target& target, double value) noexcept {
-  if (target.speed > 0) {
-    return reference.ramp_to(value, target.speed);
-  }
-  if (target.duration_s > 0) {
-    return reference.ramp_for(value, target.duration_s);
-  }
+  if (target.speed > 0) return reference.ramp_to(value, target.speed);
+  if (target.duration_s > 0) return reference.ramp_for(value, target.duration_s);
   reference.start(reference.end_s(), value);
   return true;
 }
@@ -45,27 +41,24 @@ void ChannelPlayer::answer_holding(double time_s) noexcept {
 }
 
 GripEvidence ChannelPlayer::evidence_of(VerifyBy by) const noexcept {
-  if (by == VerifyBy::pressure) {
-    return GripEvidence::pressure;
-  }
-  return sighted_ ? GripEvidence::displacement : GripEvidence::none;
+  if (by == VerifyBy::pressure) return GripEvidence::pressure;
+  return traits_.sighted ? GripEvidence::displacement : GripEvidence::none;
 }
 
 void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double time_s,
-                          const ChannelView& view) noexcept {
+                          const ChannelOutput& seen) noexcept {
   step_ = &step;
   if (step.kind != StepKind::hold) {
     plan_ = plan;
     plan_origin_s_ = plan != nullptr ? time_s - plan->begin_s : 0;
   }
-  sighted_ = view.sighted;
   failure_ = GripResult::error;
   deadline_s_ = step.timeout_s ? time_s + *step.timeout_s : infinite;
   switch (step.kind) {
     case StepKind::move:
     case StepKind::grip:
     case StepKind::release:
-      go_to(step.target, step.target.lowest ? view.lowest_kpa : step.target.value, time_s, view);
+      go_to(step.target, step.target.lowest ? traits_.lowest_kpa : step.target.value, time_s, seen);
       stage_ = Stage::ramp;
       break;
     case StepKind::hold:
@@ -75,7 +68,7 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       break;
     case StepKind::track:
       displacement_.forget_before(time_s - kept_s);
-      displacement_.cut(time_s + view.preview_s);
+      displacement_.cut(time_s + traits_.preview_s);
       displacement_.sine(step.sine.mean_mm, step.sine.amplitude_mm, step.sine.frequency_hz, step.sine.cycles);
       stage_end_s_ = displacement_.end_s();
       stage_ = Stage::profile;
@@ -93,21 +86,21 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
 /// Starts the ramp of a target. A displacement goes on from the reference that is followed, else from where
 /// the finger is; a pressure from the last command.
 void ChannelPlayer::go_to(const Target& target, double value, double time_s,
-                          const ChannelView& view) noexcept {
+                          const ChannelOutput& seen) noexcept {
   Reference& reference = target.quantity == Target::Quantity::displacement_mm ? displacement_ : pressure_;
   if (target.quantity == Target::Quantity::pressure_kpa) {
-    reference.start(time_s, view.command_kpa);
-    start_value_ = view.command_kpa;
+    reference.start(time_s, seen.command_kpa);
+    start_value_ = seen.command_kpa;
     mode_ = Mode::pressure;
-    pressure_kpa_ = view.command_kpa;
+    pressure_kpa_ = seen.command_kpa;
   } else if (mode_ == Mode::displacement) {
     reference.forget_before(time_s - kept_s);
     start_value_ = reference.at(time_s).value;
-    reference.cut(time_s + view.preview_s);
+    reference.cut(time_s + traits_.preview_s);
   } else {
-    reference.start(time_s, view.displacement_mm);
-    reference.hold_for(view.preview_s);
-    start_value_ = view.displacement_mm;
+    reference.start(time_s, seen.displacement_mm);
+    reference.hold_for(traits_.preview_s);
+    start_value_ = seen.displacement_mm;
     mode_ = Mode::displacement;
   }
   if (!append_ramp(reference, target, value)) {
@@ -117,18 +110,26 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
   ramp_end_s_ = reference.end_s();
 }
 
-void ChannelPlayer::back_off(double time_s, const ChannelView& view) noexcept {
+void ChannelPlayer::back_off(double time_s, const ChannelOutput& seen) noexcept {
   const double value = start_value_;
   plan_ = nullptr;
-  go_to(step_->target, value, time_s, view);
+  go_to(step_->target, value, time_s, seen);
   deadline_s_ = infinite;
   stage_ = Stage::back;
 }
 
-Progress ChannelPlayer::tick(double time_s, const ChannelView& view) noexcept {
-  contact_.observe(view);
-  deficit_mm_ = view.deficit_mm;
-  Progress progress = advance(time_s, view);
+bool ChannelPlayer::valid(const ChannelOutput& seen) const noexcept {
+  return traits_.sighted && seen.validity == model::Validity::valid;
+}
+
+void ChannelPlayer::take(const ChannelOutput& seen) noexcept {
+  deficit_mm_ = valid(seen) ? -seen.residual_mm : std::numeric_limits<double>::quiet_NaN();
+}
+
+Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept {
+  take(seen);
+  contact_.observe(deficit_mm_);
+  Progress progress = advance(time_s, seen);
   if (mode_ == Mode::pressure) pressure_kpa_ = pressure_at(time_s);
   if (progress == Progress::pending && time_s >= deadline_s_) {
     // Nobody who could not look may say that there is nothing.
@@ -136,9 +137,7 @@ Progress ChannelPlayer::tick(double time_s, const ChannelView& view) noexcept {
     failure_ = looked ? GripResult::no_part : GripResult::error;
     progress = Progress::failed;
   }
-  if (progress == Progress::failed) {
-    stage_ = Stage::done;
-  }
+  if (progress == Progress::failed) stage_ = Stage::done;
   return progress;
 }
 
@@ -147,22 +146,20 @@ double ChannelPlayer::pressure_at(double time_s) const noexcept {
   return pressure_.at(time_s).value;
 }
 
-Progress ChannelPlayer::advance(double time_s, const ChannelView& view) noexcept {
+Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexcept {
   switch (stage_) {
     case Stage::ramp:
-      return time_s >= ramp_end_s_ ? after_ramp(time_s, view) : Progress::pending;
+      return time_s >= ramp_end_s_ ? after_ramp(time_s, seen) : Progress::pending;
     case Stage::settle:
-      return settle(time_s, view);
+      return settle(time_s, seen);
     case Stage::verify:
-      return verify(time_s, view);
+      return verify(time_s, seen);
     case Stage::watch:
-      if (watch(time_s, view)) {
-        return Progress::failed;
-      }
+      if (watch(time_s, seen)) return Progress::failed;
       return time_s >= stage_end_s_ ? pass() : Progress::pending;
     case Stage::purge:
     case Stage::free:
-      return release(time_s, view);
+      return release(time_s);
     case Stage::profile:
       return time_s >= stage_end_s_ ? pass() : Progress::pending;
     case Stage::back:
@@ -178,7 +175,7 @@ Progress ChannelPlayer::pass() noexcept {
   return Progress::passed;
 }
 
-Progress ChannelPlayer::after_ramp(double time_s, const ChannelView& view) noexcept {
+Progress ChannelPlayer::after_ramp(double time_s, const ChannelOutput& seen) noexcept {
   if (step_->kind == StepKind::release) {
     stage_ = Stage::purge;
     mode_ = Mode::vent;
@@ -188,49 +185,38 @@ Progress ChannelPlayer::after_ramp(double time_s, const ChannelView& view) noexc
   stage_ = Stage::settle;
   stage_end_s_ = time_s + step_->settle_s;
   within_ = false;
-  return settle(time_s, view);
+  return settle(time_s, seen);
 }
 
-Progress ChannelPlayer::settle(double time_s, const ChannelView& view) noexcept {
+Progress ChannelPlayer::settle(double time_s, const ChannelOutput& seen) noexcept {
   if (step_->tolerance_mm) {
     const double target = step_->target.value;
-    const bool within = view.valid && std::abs(view.displacement_mm - target) <= *step_->tolerance_mm;
-    if (within && !within_) {
-      stage_end_s_ = time_s + step_->settle_s;
-    }
+    const bool within = valid(seen) && std::abs(seen.displacement_mm - target) <= *step_->tolerance_mm;
+    if (within && !within_) stage_end_s_ = time_s + step_->settle_s;
     within_ = within;
-    if (!within) {
-      return Progress::pending;
-    }
+    if (!within) return Progress::pending;
   }
-  if (time_s < stage_end_s_) {
-    return Progress::pending;
-  }
-  if (step_->kind != StepKind::grip) {
-    return pass();
-  }
+  if (time_s < stage_end_s_) return Progress::pending;
+  if (step_->kind != StepKind::grip) return pass();
   stage_ = Stage::verify;
   window_.start(time_s, step_->verify.window_s);
-  return verify(time_s, view);
+  return verify(time_s, seen);
 }
 
-bool ChannelPlayer::usable(const Verify& verify, const ChannelView& view) const noexcept {
-  return verify.by == VerifyBy::pressure ? std::isfinite(view.pressure_kpa)
-                                         : view.valid && std::isfinite(view.deficit_mm);
+bool ChannelPlayer::usable(const Verify& verify, const ChannelOutput& seen) const noexcept {
+  return verify.by == VerifyBy::pressure ? std::isfinite(seen.pressure_kpa) : std::isfinite(deficit_mm_);
 }
 
-bool ChannelPlayer::evident(const Verify& verify, const ChannelView& view) const noexcept {
-  if (verify.by == VerifyBy::pressure) {
-    return view.pressure_kpa >= verify.pressure_min_kpa;
-  }
-  const bool inside = view.displacement_mm >= verify.displacement_min_mm &&
-                      view.displacement_mm <= verify.displacement_max_mm;
-  return inside && (verify.by == VerifyBy::position || view.deficit_mm >= margin_mm_);
+bool ChannelPlayer::evident(const Verify& verify, const ChannelOutput& seen) const noexcept {
+  if (verify.by == VerifyBy::pressure) return seen.pressure_kpa >= verify.pressure_min_kpa;
+  const bool inside = seen.displacement_mm >= verify.displacement_min_mm &&
+                      seen.displacement_mm <= verify.displacement_max_mm;
+  return inside && (verify.by == VerifyBy::position || deficit_mm_ >= traits_.margin_mm);
 }
 
-Progress ChannelPlayer::verify(double time_s, const ChannelView& view) noexcept {
+Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcept {
   const Verify& verify = step_->verify;
-  switch (window_.observe(time_s, usable(verify, view), evident(verify, view))) {
+  switch (window_.observe(time_s, usable(verify, seen), evident(verify, seen))) {
     case EvidenceWindow::Verdict::verified:
       return pass();
     case EvidenceWindow::Verdict::refuted:
@@ -243,35 +229,34 @@ Progress ChannelPlayer::verify(double time_s, const ChannelView& view) noexcept 
 }
 
 /// Purges, then waits until the finger is where the free model says. A channel without sight cannot know.
-Progress ChannelPlayer::release(double time_s, const ChannelView& view) noexcept {
-  if (time_s < stage_end_s_) {
-    return Progress::pending;
-  }
+Progress ChannelPlayer::release(double time_s) noexcept {
+  if (time_s < stage_end_s_) return Progress::pending;
   stage_ = Stage::free;
-  const bool free = view.valid && std::isfinite(view.deficit_mm) && !contact_.touching();
-  return !view.sighted || free ? pass() : Progress::pending;
+  const bool free = std::isfinite(deficit_mm_) && !contact_.touching();
+  return !traits_.sighted || free ? pass() : Progress::pending;
 }
 
 void ChannelPlayer::watch_from(double time_s, double interval_s) noexcept {
   const bool pressure = held_by_.by == VerifyBy::pressure;
   const bool position = held_by_.by == VerifyBy::position;
-  hold_.start(time_s, interval_s, pressure ? held_by_.pressure_min_kpa : position ? 0.5 : 0.5 * margin_mm_);
+  hold_.start(time_s, interval_s,
+              pressure   ? held_by_.pressure_min_kpa
+              : position ? 0.5
+                         : 0.5 * traits_.margin_mm);
 }
 
-bool ChannelPlayer::watch(double time_s, const ChannelView& view) noexcept {
-  deficit_mm_ = view.deficit_mm;
-  if (result_ != GripResult::holding) {
-    return false;
-  }
-  const bool inside = view.displacement_mm >= held_by_.displacement_min_mm &&
-                      view.displacement_mm <= held_by_.displacement_max_mm;
-  double evidence = inside ? view.deficit_mm : 0;
+bool ChannelPlayer::watch(double time_s, const ChannelOutput& seen) noexcept {
+  take(seen);
+  if (result_ != GripResult::holding) return false;
+  const bool inside = seen.displacement_mm >= held_by_.displacement_min_mm &&
+                      seen.displacement_mm <= held_by_.displacement_max_mm;
+  double evidence = inside ? deficit_mm_ : 0;
   if (held_by_.by == VerifyBy::pressure) {
-    evidence = view.pressure_kpa;
+    evidence = seen.pressure_kpa;
   } else if (held_by_.by == VerifyBy::position) {
     evidence = inside ? 1 : 0;
   }
-  return hold_.observe(time_s, usable(held_by_, view), evidence);
+  return hold_.observe(time_s, usable(held_by_, seen), evidence);
 }
 
 ChannelDemand ChannelPlayer::demand(double time_s) const noexcept {

@@ -8,27 +8,38 @@
 #include "control/elements/reference.h"
 #include "control/tick/channel_demand.h"
 #include "control/tick/sequence.h"
+#include "control/tick/tick.h"
 
 namespace softgrip::control {
 
 /// How far a channel is with its step.
 enum class Progress : std::uint8_t { pending, passed, failed };
 
+/// What does not change of a channel.
+struct ChannelTraits {
+  double margin_mm = 0;   ///< of grip detection
+  double lowest_kpa = 0;  ///< the lowest command
+  double preview_s = 0;   ///< how far ahead the feedforward uses the reference
+  bool sighted = true;    ///< the channel uses its displacement
+};
+
+/// `seen` is everywhere what the last tick left behind.
 class ChannelPlayer {
  public:
-  explicit ChannelPlayer(double margin_mm) noexcept : margin_mm_(margin_mm), contact_(margin_mm) {}
+  explicit ChannelPlayer(const ChannelTraits& traits) noexcept
+      : traits_(traits), contact_(traits.margin_mm) {}
 
   /// Before the first step: keeps its command, touches nothing, forgets the last answer.
   void reset() noexcept;
   /// The first or another attempt at a step. `step` and `plan` (nullptr: none) outlive it. A hold step goes
   /// on with the plan of the step before.
-  void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelView& view) noexcept;
+  void begin(const Step& step, const PressurePlan* plan, double time_s, const ChannelOutput& seen) noexcept;
   /// Back to where the attempt started, as fast as it went.
-  void back_off(double time_s, const ChannelView& view) noexcept;
+  void back_off(double time_s, const ChannelOutput& seen) noexcept;
   /// One tick of the step, or of backing off (passed: there).
-  Progress tick(double time_s, const ChannelView& view) noexcept;
+  Progress tick(double time_s, const ChannelOutput& seen) noexcept;
   /// Outside a sequence: true once when what is held is lost.
-  bool watch(double time_s, const ChannelView& view) noexcept;
+  bool watch(double time_s, const ChannelOutput& seen) noexcept;
 
   /// Of the last tick; `reference` points into this object.
   [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
@@ -44,7 +55,7 @@ class ChannelPlayer {
   void answer_holding(double time_s) noexcept;
   /// On what a verification of this channel rests.
   [[nodiscard]] GripEvidence evidence_of(VerifyBy by) const noexcept;
-  /// Of the last tick, for the events [mm].
+  /// How much less than its free-motion envelope the finger moved, in the last tick; NaN: unknown [mm].
   [[nodiscard]] double deficit_mm() const noexcept { return deficit_mm_; }
 
   /// Keeps the command where it is.
@@ -62,18 +73,20 @@ class ChannelPlayer {
  private:
   enum class Stage : std::uint8_t { ramp, settle, verify, watch, purge, free, profile, back, done };
 
-  void go_to(const Target& target, double value, double time_s, const ChannelView& view) noexcept;
-  Progress advance(double time_s, const ChannelView& view) noexcept;
-  Progress after_ramp(double time_s, const ChannelView& view) noexcept;
-  Progress settle(double time_s, const ChannelView& view) noexcept;
-  Progress verify(double time_s, const ChannelView& view) noexcept;
-  Progress release(double time_s, const ChannelView& view) noexcept;
+  void go_to(const Target& target, double value, double time_s, const ChannelOutput& seen) noexcept;
+  Progress advance(double time_s, const ChannelOutput& seen) noexcept;
+  Progress after_ramp(double time_s, const ChannelOutput& seen) noexcept;
+  Progress settle(double time_s, const ChannelOutput& seen) noexcept;
+  Progress verify(double time_s, const ChannelOutput& seen) noexcept;
+  Progress release(double time_s) noexcept;
   Progress pass() noexcept;
-  [[nodiscard]] bool usable(const Verify& verify, const ChannelView& view) const noexcept;
-  [[nodiscard]] bool evident(const Verify& verify, const ChannelView& view) const noexcept;
+  [[nodiscard]] bool valid(const ChannelOutput& seen) const noexcept;
+  [[nodiscard]] bool usable(const Verify& verify, const ChannelOutput& seen) const noexcept;
+  [[nodiscard]] bool evident(const Verify& verify, const ChannelOutput& seen) const noexcept;
+  void take(const ChannelOutput& seen) noexcept;
   void watch_from(double time_s, double interval_s) noexcept;
 
-  double margin_mm_;
+  ChannelTraits traits_;
   const Step* step_ = nullptr;
   Stage stage_ = Stage::done;
   ChannelDemand::Mode mode_ = ChannelDemand::Mode::hold;
@@ -88,7 +101,6 @@ class ChannelPlayer {
   double stage_end_s_ = 0;
   double deadline_s_ = 0;
   double deficit_mm_ = 0;
-  bool sighted_ = true;  ///< the channel uses its displacement
   bool within_ = false;  ///< the tolerance
   Contact contact_;
   EvidenceWindow window_;

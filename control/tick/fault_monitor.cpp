@@ -55,14 +55,13 @@ FaultMonitor::FaultMonitor(const RigSettings& settings)
   }
 }
 
-Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelStep> steps,
+Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelOutput> seen,
                             bool starting) noexcept {
+  remember(seen);
   cause_present_ = input.emergency_stop || input.inputs_lost;
   Fault first;
   const auto note = [&first](const Fault& fault) {
-    if (first.code == FaultCode::none) {
-      first = fault;
-    }
+    if (first.code == FaultCode::none) first = fault;
   };
   if (input.emergency_stop) {
     note({FaultCode::emergency_stop, whole_rig, 0});
@@ -71,9 +70,7 @@ Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelStep>
     note({FaultCode::inputs_lost, whole_rig, 0});
   }
   note(bus(input.bus, starting));
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
-    note(channel(i, input, steps[i], starting));
-  }
+  for (std::size_t i = 0; i < channels_.size(); ++i) note(channel(i, input, seen[i], starting));
   if (settings_.slipped_cycles > 0 && input.slipped_cycles >= settings_.slipped_cycles) {
     note({FaultCode::cycles_lost, whole_rig, static_cast<double>(input.slipped_cycles)});
   }
@@ -94,14 +91,14 @@ Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
   return {};
 }
 
-Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const ChannelStep& step,
+Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const ChannelOutput& seen,
                             bool starting) noexcept {
   Channel& channel = channels_[index];
   const auto number = static_cast<std::uint8_t>(index);
-  if (step.request_invalid) {
+  if (seen.request_invalid) {
     return {FaultCode::not_finite, number, 0};
   }
-  const Fault of_reading = sighted_[index] ? reading(channel, number, step, starting) : Fault{};
+  const Fault of_reading = sighted_[index] ? reading(channel, number, seen, starting) : Fault{};
   const double readback = input.readings[index].command_readback_kpa;
   const bool readback_off = bus_good() && std::isfinite(readback) &&
                             off(channel, readback, readback_window_, settings_.readback_tolerance_kpa);
@@ -109,34 +106,32 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   const bool pressure_off = pressure_due(channel, input.readings[index].pressure_kpa, starting);
   cause_present_ = cause_present_ || channel.invalid_cycles > 0 || channel.beyond_cycles > 0 ||
                    readback_off || channel.pressure_cycles > 0;
-  if (of_reading.code != FaultCode::none) {
-    return of_reading;
-  }
+  if (of_reading.code != FaultCode::none) return of_reading;
   if (readback_off && channel.readback_cycles >= settings_.readback_cycles) {
     return {FaultCode::readback_mismatch, number, readback};
   }
   if (pressure_off) {
     return {FaultCode::pressure_not_followed, number, input.readings[index].pressure_kpa};
   }
-  if (settings_.model_unfit_is_fault && step.health_changed && step.health == HealthState::unfit) {
-    return {FaultCode::model_unfit, number, step.health_rms_mm};
+  if (settings_.model_unfit_is_fault && seen.health_changed && seen.health == HealthState::unfit) {
+    return {FaultCode::model_unfit, number, seen.health_rms_mm};
   }
   return {};
 }
 
-Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelStep& step,
+Fault FaultMonitor::reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
                             bool starting) const noexcept {
-  const bool silent = step.validity == model::Validity::none_yet || step.validity == model::Validity::stale;
+  const bool silent = seen.validity == model::Validity::none_yet || seen.validity == model::Validity::stale;
   // While the bus is down, silence is its fault, and the reading is still old in the tick in which it is
   // back.
-  const bool invalid = step.validity != model::Validity::valid && !(silent && (starting || !bus_good()));
+  const bool invalid = seen.validity != model::Validity::valid && !(silent && (starting || !bus_good()));
   channel.invalid_cycles = invalid ? channel.invalid_cycles + 1 : 0;
-  channel.beyond_cycles = step.displacement_beyond ? channel.beyond_cycles + 1 : 0;
+  channel.beyond_cycles = seen.displacement_beyond ? channel.beyond_cycles + 1 : 0;
   if (invalid && channel.invalid_cycles >= settings_.invalid_reading_cycles) {
-    return {code_of(step.validity), index, step.age_s};
+    return {code_of(seen.validity), index, seen.age_s};
   }
   if (channel.beyond_cycles >= settings_.displacement_cycles) {
-    return {FaultCode::displacement_beyond_limits, index, step.displacement_mm};
+    return {FaultCode::displacement_beyond_limits, index, seen.displacement_mm};
   }
   return {};
 }
@@ -175,14 +170,9 @@ bool FaultMonitor::off(const Channel& channel, double kpa, std::size_t window,
   return true;
 }
 
-void FaultMonitor::sent(std::size_t channel, double command_kpa) noexcept {
-  channels_[channel].sent_kpa[ring_at_] = command_kpa;
-}
-
-void FaultMonitor::end_tick() noexcept {
-  if (!channels_.empty() && ++ring_at_ == channels_.front().sent_kpa.size()) {
-    ring_at_ = 0;
-  }
+void FaultMonitor::remember(std::span<const ChannelOutput> seen) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].sent_kpa[ring_at_] = seen[i].command_kpa;
+  if (!channels_.empty() && ++ring_at_ == channels_.front().sent_kpa.size()) ring_at_ = 0;
 }
 
 }  // namespace softgrip::control

@@ -8,10 +8,8 @@
 #include <vector>
 
 #include "control/elements/fault.h"
-#include "control/tick/channel_controller.h"
-#include "control/tick/event_list.h"
-#include "control/tick/rig_controller.h"
 #include "control/tick/settings.h"
+#include "control/tick/tick.h"
 
 namespace softgrip::control {
 
@@ -25,19 +23,15 @@ class FaultMonitor {
  public:
   explicit FaultMonitor(const RigSettings& settings);
 
-  /// One tick. `steps` are those of the tick before. While `starting`, silence is no fault: nobody has
-  /// answered yet. Returns the gravest fault that is due now, in the order of the checks below.
-  Fault observe(const TickInput& input, std::span<const ChannelStep> steps, bool starting) noexcept;
+  /// One tick. `seen` is what the tick before left behind; the read-back is compared with its commands and
+  /// earlier ones. While `starting`, silence is no fault: nobody has answered yet. Returns the gravest fault
+  /// that is due now, in the order of the checks below.
+  Fault observe(const TickInput& input, std::span<const ChannelOutput> seen, bool starting) noexcept;
 
   /// Something that is or grows to a fault is there in this tick: acknowledging would not last.
   [[nodiscard]] bool cause_present() const noexcept { return cause_present_; }
   /// No bus fault is there in this tick.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
-
-  /// What was sent in this tick; the read-back is compared with it.
-  void sent(std::size_t channel, double command_kpa) noexcept;
-  /// To be called after the commands of all channels of a tick.
-  void end_tick() noexcept;
 
  private:
   struct Channel {
@@ -48,9 +42,11 @@ class FaultMonitor {
     std::uint32_t pressure_grace = 0;  ///< cycles for which the pressure may still be what it was before
     std::vector<double> sent_kpa;      ///< ring of the past commands, as far back as anything looks
   };
+  void remember(std::span<const ChannelOutput> seen) noexcept;
   Fault bus(const BusHealth& bus, bool starting) noexcept;
-  Fault channel(std::size_t index, const TickInput& input, const ChannelStep& step, bool starting) noexcept;
-  Fault reading(Channel& channel, std::uint8_t index, const ChannelStep& step, bool starting) const noexcept;
+  Fault channel(std::size_t index, const TickInput& input, const ChannelOutput& seen, bool starting) noexcept;
+  Fault reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
+                bool starting) const noexcept;
   bool pressure_due(Channel& channel, double pressure_kpa, bool starting) const noexcept;
   /// Farther than the tolerance from every command of the newest `window`.
   [[nodiscard]] bool off(const Channel& channel, double kpa, std::size_t window,

@@ -2,26 +2,23 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <limits>
+#include <optional>
+#include <string_view>
 #include <utility>
-#include <vector>
-
-#include "control/elements/rest_watch.h"
-#include "control/tick/channel_controller.h"
-#include "control/tick/fault_monitor.h"
-#include "control/tick/sequence_player.h"
-#include "control/tick/supervisor.h"
 
 namespace softgrip::control {
 
 namespace {
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::string_view, 6> state_names{"starting", "idle",     "resynchronising",
                                                       "running",  "stopping", "faulted"};
 constexpr std::array<std::string_view, 4> end_names{"done", "failed", "stopped", "faulted"};
 constexpr std::uint32_t bit(std::size_t channel) noexcept {
   return 1U << channel;
+}
+
+ChannelPlayer player_of(const RigSettings& rig, const ChannelSettings& channel, double preview_s) {
+  return ChannelPlayer(
+      {rig.detection.margin_mm, channel.limits.pressure_min_kpa, preview_s, channel.displacement_used});
 }
 }  // namespace
 
@@ -32,247 +29,162 @@ std::string_view name_of(SequenceEnd end) noexcept {
   return end_names[static_cast<std::size_t>(end)];
 }
 
-struct RigController::Parts {
-  explicit Parts(const RigSettings& rig)
-      : settings(rig),
-        monitor(rig),
-        supervisor(rig),
-        player(rig),
-        steps(rig.channels.size()),
-        views(rig.channels.size()),
-        valid_before(rig.channels.size(), true),
-        rest(rig.channels.size(), RestWatch(rig.rest_band_mm, rig.rest_time_s)) {
-    for (std::size_t i = 0; i < rig.channels.size(); ++i) {
-      controllers.emplace_back(rig.channels[i], 1 / rig.rate_hz);
-      controllers[i].start(rig.channels[i].limits.pressure_min_kpa);
-      steps[i].command_kpa = controllers[i].command_kpa();
-    }
-  }
+RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& settings)
+    : controller(settings, 1 / rig.rate_hz),
+      // Without sight a finger is at rest when its command has not been changed.
+      rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
+      lowest_kpa(settings.limits.pressure_min_kpa),
+      sighted(settings.displacement_used) {}
 
-  [[nodiscard]] std::size_t count() const noexcept { return controllers.size(); }
-
-  void tick(const TickInput& input, TickOutput& output) noexcept {
-    if (!started) {
-      started = true;
-      began = input.now;
-    }
-    const double time_s = static_cast<double>(input.now - began) * 1e-9;
-    EventList events(output);
-    view();
-    carry_out(supervisor.tick(facts(input, time_s), input.request, events), time_s, events);
-    play(time_s, events);
-    for (std::size_t i = 0; i < count(); ++i) {
-      control(i, input, time_s, events);
-    }
-    monitor.end_tick();
-    fill(output);
-  }
-
-  /// What the last tick left behind, for the player.
-  void view() noexcept {
-    for (std::size_t i = 0; i < count(); ++i) {
-      const ChannelSettings& channel = settings.channels[i];
-      ChannelView& to = views[i];
-      to.sighted = channel.displacement_used;
-      to.valid = to.sighted && steps[i].validity == model::Validity::valid;
-      to.displacement_mm = steps[i].displacement_mm;
-      to.deficit_mm = to.valid ? -steps[i].residual_mm : unknown;
-      to.pressure_kpa = pressures[i];
-      to.command_kpa = controllers[i].command_kpa();
-      to.lowest_kpa = channel.limits.pressure_min_kpa;
-      to.preview_s = controllers[i].preview_s();
-    }
-  }
-
-  Facts facts(const TickInput& input, double time_s) noexcept {
-    Facts facts;
-    facts.fault = monitor.observe(input, steps, supervisor.state() == State::starting);
-    facts.cause_present = monitor.cause_present();
-    facts.bus_good = monitor.bus_good();
-    facts.emergency_stop = input.emergency_stop;
-    facts.interlock_open = input.interlock_open;
-    facts.phase = player.phase();
-    for (std::size_t i = 0; i < count(); ++i) {
-      facts.ready |= views[i].valid || !views[i].sighted ? bit(i) : 0;
-      facts.lowest |= views[i].command_kpa <= views[i].lowest_kpa ? bit(i) : 0;
-    }
-    facts.answers = player.has_answers();
-    if (supervisor.state() == State::resynchronising) {
-      facts.rest = look_for_rest(*supervisor.sequence(), time_s);
-    }
-    return facts;
-  }
-
-  /// All channels of the sequence at rest; those that are vented, and so free, also followed to where they
-  /// are, by no more than grip detection can stand.
-  Rest look_for_rest(const PreparedSequence& sequence, double time_s) noexcept {
-    bool all = true;
-    for (std::size_t i = 0; i < count(); ++i) {
-      resynchronise[i] = false;
-      if ((sequence.channels & bit(i)) == 0) {
-        continue;
-      }
-      const bool still = rest[i].observe(time_s, views[i]);
-      resynchronise[i] = still && follows(i);
-      const bool followed = !follows(i) || (still && steps[i].synchronised && !too_far(sequence, i));
-      all = all && still && followed;
-    }
-    if (all) {
-      return Rest::at_rest;
-    }
-    return time_s - seeking_since_s >= settings.rest_timeout_s ? Rest::timed_out : Rest::pending;
-  }
-
-  [[nodiscard]] bool follows(std::size_t i) const noexcept {
-    return views[i].sighted && views[i].command_kpa <= views[i].lowest_kpa;
-  }
-
-  /// What of the offset is creep that is still on its way out would later look like an object.
-  [[nodiscard]] bool too_far(const PreparedSequence& sequence, std::size_t i) const noexcept {
-    return (sequence.needs_detection & bit(i)) != 0 &&
-           std::abs(controllers[i].offset_mm()) > settings.detection.margin_mm;
-  }
-
-  void carry_out(const Orders& orders, double time_s, EventList& events) noexcept {
-    if (orders.interrupt) {
-      player.interrupt(orders.end, supervisor.venting(), events);
-    }
-    if (orders.clear_answers) {
-      player.acknowledge(orders.acknowledged_by, events);
-    }
-    if (orders.vented != 0) {
-      player.vented(orders.vented, events);
-    }
-    if (orders.no_rest != 0) {
-      player.refuse(orders.no_rest, events);
-    }
-    if (orders.seek_rest) {
-      seeking_since_s = time_s;
-      for (RestWatch& watch : rest) {
-        watch.start();
-      }
-    }
-    if (supervisor.state() != State::resynchronising) {
-      resynchronise.fill(false);
-    }
-    if (orders.begin != nullptr) {
-      player.start(*orders.begin, time_s, views, events);
-    }
-  }
-
-  void play(double time_s, EventList& events) noexcept {
-    if (supervisor.state() != State::running) {
-      if (supervisor.state() == State::idle) {
-        player.idle_tick(time_s, views, events);
-      }
-      return;
-    }
-    const Phase phase = player.phase();
-    const SequencePlayer::Outcome outcome = player.tick(time_s, views, events);
-    if (outcome.finished) {
-      supervisor.sequence_ended(outcome.end, outcome.action, phase, events);
-    }
-  }
-
-  [[nodiscard]] ChannelDemand demand(std::size_t i, double time_s) const noexcept {
-    if (supervisor.state() == State::running) {
-      return player.demand(i, time_s);
-    }
-    ChannelDemand demand;
-    demand.time_s = time_s;
-    demand.mode =
-        (supervisor.venting() & bit(i)) != 0 ? ChannelDemand::Mode::vent : ChannelDemand::Mode::hold;
-    return demand;
-  }
-
-  void control(std::size_t i, const TickInput& input, double time_s, EventList& events) noexcept {
-    ChannelInput channel;
-    channel.now = input.now;
-    channel.reading = input.readings[i];
-    channel.demand = demand(i, time_s);
-    channel.resynchronise = resynchronise[i];
-    channel.free_motion = supervisor.state() != State::faulted && supervisor.state() != State::starting &&
-                          player.free_motion(i);
-    steps[i] = controllers[i].tick(channel);
-    pressures[i] = input.readings[i].pressure_kpa;
-    monitor.sent(i, steps[i].command_kpa);
-    tell_changes(i, events);
-  }
-
-  void tell_changes(std::size_t i, EventList& events) noexcept {
-    const ChannelStep& step = steps[i];
-    const bool valid = step.validity == model::Validity::valid;
-    if (valid != valid_before[i]) {
-      events.add_of_channel(i, valid ? Event::Kind::reading_valid : Event::Kind::reading_invalid,
-                            step.validity, 0, step.age_s);
-      valid_before[i] = valid;
-    }
-    if (step.health_changed) {
-      events.add_of_channel(i, Event::Kind::model_health_changed, step.health, 0, step.health_rms_mm);
-    }
-  }
-
-  void fill(TickOutput& output) const noexcept {
-    output.state = supervisor.state();
-    output.first_fault = supervisor.first_fault();
-    output.channel_count = count();
-    for (std::size_t i = 0; i < count(); ++i) {
-      const ChannelStep& from = steps[i];
-      const ChannelPlayer& played = player.channel(i);
-      ChannelOutput& to = output.channels[i];
-      to.command_kpa = from.command_kpa;
-      to.reference_mm = from.reference_mm;
-      to.displacement_mm = from.displacement_mm;
-      to.pressure_kpa = pressures[i];
-      to.feedforward_kpa = from.feedforward_kpa;
-      to.feedback_kpa = from.feedback_kpa;
-      to.residual_mm = from.residual_mm;
-      to.age_s = from.age_s;
-      to.validity = from.validity;
-      to.result = played.result();
-      to.evidence = played.evidence();
-      to.deficit_mm = views[i].valid ? -from.residual_mm : unknown;
-      to.step = player.step();
-      to.saturated = from.saturated;
-      to.slewing = from.slewing;
-      to.health = from.health;
-      to.health_rms_mm = from.health_rms_mm;
-    }
-  }
-
-  RigSettings settings;
-  FaultMonitor monitor;
-  Supervisor supervisor;
-  SequencePlayer player;
-  std::vector<ChannelController> controllers;
-  std::vector<ChannelStep> steps;  ///< of the last tick
-  std::vector<ChannelView> views;
-  std::vector<bool> valid_before;
-  std::vector<RestWatch> rest;
-  std::array<double, max_channels> pressures{};
-  std::array<bool, max_channels> resynchronise{};
-  double seeking_since_s = 0;
-  Nanoseconds began = 0;
-  bool started = false;
-};
-
-RigController::RigController(const RigSettings& settings) : parts_(std::make_unique<Parts>(settings)) {}
-RigController::RigController(RigController&&) noexcept = default;
-RigController& RigController::operator=(RigController&&) noexcept = default;
-RigController::~RigController() = default;
-
-void RigController::tick(const TickInput& input, TickOutput& output) noexcept {
-  output.event_count = 0;
-  output.events_lost = 0;
-  parts_->tick(input, output);
+bool RigController::Channel::valid(const ChannelOutput& seen) const noexcept {
+  return sighted && seen.validity == model::Validity::valid;
 }
 
-void RigController::safe_commands(std::span<double> commands_kpa) const noexcept {
-  const Parts& parts = *parts_;
-  const std::uint32_t venting = parts.supervisor.venting_on_leaving(parts.player.phase());
-  for (std::size_t i = 0; i < parts.count() && i < commands_kpa.size(); ++i) {
-    commands_kpa[i] = (venting & bit(i)) != 0 ? parts.settings.channels[i].limits.pressure_min_kpa
-                                              : parts.controllers[i].command_kpa();
+bool RigController::Channel::lowest(const ChannelOutput& seen) const noexcept {
+  return seen.command_kpa <= lowest_kpa;
+}
+
+bool RigController::Channel::rests(double time_s, const ChannelOutput& seen) noexcept {
+  if (!sighted) return rest.observe(time_s, seen.command_kpa);
+  return rest.observe(time_s, valid(seen) ? std::optional(seen.displacement_mm) : std::nullopt);
+}
+
+RigController::RigController(const RigSettings& settings)
+    : rest_timeout_s_(settings.rest_timeout_s),
+      margin_mm_(settings.detection.margin_mm),
+      monitor_(settings),
+      supervisor_(settings) {
+  std::vector<ChannelPlayer> players;
+  for (const ChannelSettings& channel : settings.channels) {
+    channels_.emplace_back(settings, channel);
+    ChannelController& controller = channels_.back().controller;
+    controller.start(channel.limits.pressure_min_kpa, output_.channels[output_.channel_count++]);
+    players.push_back(player_of(settings, channel, controller.preview_s()));
+  }
+  player_ = SequencePlayer(std::move(players));
+}
+
+const TickOutput& RigController::tick(const TickInput& input) noexcept {
+  if (began_ == no_tick) began_ = input.now;
+  const double time_s = static_cast<double>(input.now - began_) * 1e-9;
+  output_.events.clear();
+  carry_out(supervisor_.tick(input, facts(input, time_s), output_.events), time_s);
+  play(time_s);
+  for (std::size_t i = 0; i < channels_.size(); ++i) control(i, input, time_s);
+  conclude();
+  output_.state = supervisor_.state();
+  output_.first_fault = supervisor_.first_fault();
+  return output_;
+}
+
+Facts RigController::facts(const TickInput& input, double time_s) noexcept {
+  Facts facts;
+  facts.fault = monitor_.observe(input, output_.channels, supervisor_.state() == State::starting);
+  facts.cause_present = monitor_.cause_present();
+  facts.bus_good = monitor_.bus_good();
+  facts.phase = player_.phase();
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const ChannelOutput& seen = output_.channels[i];
+    facts.ready |= channels_[i].valid(seen) || !channels_[i].sighted ? bit(i) : 0;
+    facts.lowest |= channels_[i].lowest(seen) ? bit(i) : 0;
+  }
+  facts.answers = player_.has_answers();
+  if (supervisor_.state() == State::resynchronising) {
+    facts.rest = look_for_rest(*supervisor_.sequence(), time_s);
+  }
+  return facts;
+}
+
+/// All channels of the sequence at rest; those that are vented, and so free, also followed to where they are,
+/// by no more than grip detection can stand: what of the offset is creep that is still on its way out would
+/// later look like an object.
+Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_s) noexcept {
+  bool all = true;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    Channel& channel = channels_[i];
+    const ChannelOutput& seen = output_.channels[i];
+    channel.resynchronise = false;
+    if ((sequence.channels & bit(i)) == 0) continue;
+    const bool still = channel.rests(time_s, seen);
+    const bool follows = channel.sighted && channel.lowest(seen);
+    channel.resynchronise = still && follows;
+    const bool too_far =
+        (sequence.needs_detection & bit(i)) != 0 && std::abs(channel.controller.offset_mm()) > margin_mm_;
+    all = all && still && (!follows || (seen.synchronised && !too_far));
+  }
+  if (all) return Rest::at_rest;
+  return time_s - seeking_since_s_ >= rest_timeout_s_ ? Rest::timed_out : Rest::pending;
+}
+
+void RigController::carry_out(const Orders& orders, double time_s) noexcept {
+  EventList& events = output_.events;
+  if (orders.interrupt) player_.interrupt(*orders.interrupt, supervisor_.venting(), events);
+  if (orders.acknowledged_by) player_.acknowledge(*orders.acknowledged_by, events);
+  if (orders.vented != 0) player_.vented(orders.vented, events);
+  if (orders.no_rest != 0) player_.refuse(orders.no_rest, events);
+  if (orders.seek_rest) {
+    seeking_since_s_ = time_s;
+    for (Channel& channel : channels_) channel.rest.start();
+  }
+  if (supervisor_.state() != State::resynchronising) {
+    for (Channel& channel : channels_) channel.resynchronise = false;
+  }
+  if (orders.begin != nullptr) player_.start(*orders.begin, time_s, output_.channels, events);
+}
+
+void RigController::play(double time_s) noexcept {
+  if (supervisor_.state() == State::idle) player_.idle_tick(time_s, output_.channels, output_.events);
+  if (supervisor_.state() != State::running) return;
+  const Phase phase = player_.phase();
+  const SequencePlayer::Outcome outcome = player_.tick(time_s, output_.channels, output_.events);
+  if (outcome.finished) {
+    supervisor_.sequence_ended(outcome.end, outcome.action, phase, output_.events);
+  }
+}
+
+void RigController::control(std::size_t index, const TickInput& input, double time_s) noexcept {
+  Channel& channel = channels_[index];
+  const State state = supervisor_.state();
+  const bool free_motion = state != State::faulted && state != State::starting && player_.free_motion(index);
+  channel.controller.tick(
+      {input.now, input.readings[index], demand(index, time_s), channel.resynchronise, free_motion},
+      output_.channels[index]);
+  tell_changes(index);
+}
+
+ChannelDemand RigController::demand(std::size_t index, double time_s) const noexcept {
+  if (supervisor_.state() == State::running) return player_.demand(index, time_s);
+  ChannelDemand demand;
+  demand.time_s = time_s;
+  const bool vents = (supervisor_.venting() & bit(index)) != 0;
+  demand.mode = vents ? ChannelDemand::Mode::vent : ChannelDemand::Mode::hold;
+  return demand;
+}
+
+void RigController::tell_changes(std::size_t index) noexcept {
+  const ChannelOutput& seen = output_.channels[index];
+  const bool valid = seen.validity == model::Validity::valid;
+  if (valid != channels_[index].valid_before) {
+    output_.events.add_of_channel(index, valid ? Event::Kind::reading_valid : Event::Kind::reading_invalid,
+                                  seen.validity, 0, seen.age_s);
+    channels_[index].valid_before = valid;
+  }
+  if (seen.health_changed) {
+    output_.events.add_of_channel(index, Event::Kind::model_health_changed, seen.health, 0,
+                                  seen.health_rms_mm);
+  }
+}
+
+/// What the sequence says of the channels, and what each shall do should the loop be left now.
+void RigController::conclude() noexcept {
+  const std::uint32_t venting = supervisor_.venting_on_leaving(player_.phase());
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const ChannelPlayer& played = player_.channel(i);
+    ChannelOutput& channel = output_.channels[i];
+    channel.result = played.result();
+    channel.evidence = played.evidence();
+    channel.step = player_.step();
+    channel.safe_kpa = (venting & bit(i)) != 0 ? channels_[i].lowest_kpa : channel.command_kpa;
   }
 }
 

@@ -6,12 +6,11 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "control/feedforward/planned_feedforward.h"
+#include "control/feedforward/pressure_plan.h"
 #include "control/tick/settings.h"
 #include "document/problem.h"
 #include "model/signals.h"
@@ -160,13 +159,5 @@ struct PreparedSequence {
 
 /// Distinguishes rigs as far as a prepared sequence depends on them.
 [[nodiscard]] std::uint64_t rig_key(const RigSettings& settings) noexcept;
-
-/// Fits a sequence to a rig, and plans its motion for the channels that want it
-/// (control/sequences/sequence_plans.h). What does not fit is added to `problems`, each at its step; nothing
-/// is returned then. What is planned but out of reach is a warning. Planning can be asked to stop; then
-/// nothing is returned, for that reason.
-[[nodiscard]] std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
-                                                      document::Problems& problems,
-                                                      const std::stop_token& stop = {});
 
 }  // namespace softgrip::control

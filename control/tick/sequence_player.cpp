@@ -10,96 +10,82 @@ constexpr std::uint32_t bit(std::size_t channel) noexcept {
 }
 }  // namespace
 
-SequencePlayer::SequencePlayer(const RigSettings& settings)
-    : channels_(settings.channels.size(), ChannelPlayer(settings.detection.margin_mm)) {}
-
 template <class Do>
 void SequencePlayer::for_each_of_step(Do&& act) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((now().channels & bit(i)) != 0) {
-      act(i);
-    }
+    if ((now().channels & bit(i)) != 0) act(i);
   }
 }
 
 void SequencePlayer::start(const PreparedSequence& sequence, double time_s,
-                           std::span<const ChannelView> views, EventList& events) noexcept {
+                           std::span<const ChannelOutput> seen, EventList& events) noexcept {
   sequence_ = &sequence;
-  failed_ = false;
+  end_ = SequenceEnd::done;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((sequence.channels & bit(i)) != 0) {
-      channels_[i].reset();
-    }
+    if ((sequence.channels & bit(i)) != 0) channels_[i].reset();
   }
   attempts_ = 0;
-  begin_step(0, time_s, views, events);
+  begin_step(0, time_s, seen, events);
 }
 
-void SequencePlayer::begin_step(std::uint16_t index, double time_s, std::span<const ChannelView> views,
+void SequencePlayer::begin_step(std::uint16_t index, double time_s, std::span<const ChannelOutput> seen,
                                 EventList& events) noexcept {
   step_ = index;
-  backing_off_ = false;
+  play_ = Play::step;
   done_ = 0;
   refused_ = 0;
-  for_each_of_step(
-      [&](std::size_t i) { channels_[i].begin(now().step, now().plan_of(i), time_s, views[i]); });
+  for_each_of_step([&](std::size_t i) { channels_[i].begin(now().step, now().plan_of(i), time_s, seen[i]); });
   events.add(Event::Kind::step_started, index, 0, attempts_);
 }
 
-SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const ChannelView> views,
+SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const ChannelOutput> seen,
                                              EventList& events) noexcept {
   const bool holds = now().step.kind == StepKind::hold;
   for_each_of_step([&](std::size_t i) {
-    const Progress progress = channels_[i].tick(time_s, views[i]);
-    if ((done_ & bit(i)) != 0 || progress == Progress::pending) {
-      return;
-    }
+    const Progress progress = channels_[i].tick(time_s, seen[i]);
+    if ((done_ & bit(i)) != 0 || progress == Progress::pending) return;
     done_ |= bit(i);
     if (progress == Progress::failed) {
       refused_ |= bit(i);
-      if (holds) {
-        lose(i, events);
-      }
+      if (holds) lose(i, events);
     }
   });
   // A lost part is acted on at once; every other answer waits for the other fingers.
   if (done_ != now().channels && !(holds && refused_ != 0)) {
     return {};
   }
-  if (backing_off_) {
-    begin_step(step_, time_s, views, events);
+  if (play_ == Play::backing_off) {
+    begin_step(step_, time_s, seen, events);
     return {};
   }
-  if (refused_ != 0) {
-    return failed(time_s, views, events);
-  }
+  if (refused_ != 0) return failed(time_s, seen, events);
   for_each_of_step([&](std::size_t i) { answer_passed(i, time_s, events); });
-  return next_step(step_ + std::size_t{1}, time_s, views, events);
+  return next_step(step_ + std::size_t{1}, time_s, seen, events);
 }
 
 SequencePlayer::Outcome SequencePlayer::next_step(std::size_t index, double time_s,
-                                                  std::span<const ChannelView> views,
+                                                  std::span<const ChannelOutput> seen,
                                                   EventList& events) noexcept {
   if (index < sequence_->steps.size()) {
     attempts_ = 0;
-    begin_step(static_cast<std::uint16_t>(index), time_s, views, events);
+    begin_step(static_cast<std::uint16_t>(index), time_s, seen, events);
     return {};
   }
   return finished(OnFail::hold, events);
 }
 
-SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const ChannelView> views,
+SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const ChannelOutput> seen,
                                                EventList& events) noexcept {
   const Step& step = now().step;
   if (attempts_ < step.retries) {
     ++attempts_;
-    backing_off_ = true;
+    play_ = Play::backing_off;
     done_ = 0;
     refused_ = 0;
-    for_each_of_step([&](std::size_t i) { channels_[i].back_off(time_s, views[i]); });
+    for_each_of_step([&](std::size_t i) { channels_[i].back_off(time_s, seen[i]); });
     return {};
   }
-  failed_ = true;
+  end_ = SequenceEnd::failed;
   for_each_of_step([&](std::size_t i) {
     if ((refused_ & bit(i)) == 0) {
       answer_passed(i, time_s, events);
@@ -108,10 +94,10 @@ SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const Ch
     }
   });
   if (step.on_fail == OnFail::carry_on) {
-    return next_step(step_ + std::size_t{1}, time_s, views, events);
+    return next_step(step_ + std::size_t{1}, time_s, seen, events);
   }
   if (step.on_fail == OnFail::release && now().release_step < sequence_->steps.size()) {
-    return next_step(now().release_step, time_s, views, events);
+    return next_step(now().release_step, time_s, seen, events);
   }
   return finished(step.on_fail == OnFail::release ? OnFail::vent : step.on_fail, events);
 }
@@ -146,11 +132,9 @@ void SequencePlayer::lose(std::size_t channel, EventList& events) noexcept {
 }
 
 SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& events) noexcept {
-  if (failed_) {
-    answer_the_rest(events);
-  }
+  if (end_ == SequenceEnd::failed) answer_the_rest(events);
   stop_playing();
-  return {true, failed_ ? SequenceEnd::failed : SequenceEnd::done, action};
+  return {true, end_, action};
 }
 
 /// Nobody who took part stays without an answer when something went wrong.
@@ -163,18 +147,14 @@ void SequencePlayer::answer_the_rest(EventList& events) noexcept {
 }
 
 void SequencePlayer::stop_playing() noexcept {
-  for (std::size_t i = 0; i < channels_.size(); ++i) {
-    channels_[i].freeze();
-  }
+  for (std::size_t i = 0; i < channels_.size(); ++i) channels_[i].freeze();
   sequence_ = nullptr;
+  play_ = Play::nothing;
 }
 
 void SequencePlayer::interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept {
-  const bool releasing = sequence_ != nullptr && now().step.kind == StepKind::release;
-  const std::uint32_t half_released = releasing ? now().channels & ~venting : 0;
-  if (sequence_ != nullptr) {
-    answer_the_rest(events);
-  }
+  const std::uint32_t half_released = plays(StepKind::release) ? now().channels & ~venting : 0;
+  if (play_ != Play::nothing) answer_the_rest(events);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const bool unsure = end == SequenceEnd::faulted || (half_released & bit(i)) != 0;
     if (unsure && channels_[i].result() == GripResult::holding) {
@@ -184,12 +164,10 @@ void SequencePlayer::interrupt(SequenceEnd end, std::uint32_t venting, EventList
   stop_playing();
 }
 
-void SequencePlayer::idle_tick(double time_s, std::span<const ChannelView> views,
+void SequencePlayer::idle_tick(double time_s, std::span<const ChannelOutput> seen,
                                EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if (channels_[i].watch(time_s, views[i])) {
-      lose(i, events);
-    }
+    if (channels_[i].watch(time_s, seen[i])) lose(i, events);
   }
 }
 
@@ -203,9 +181,7 @@ void SequencePlayer::vented(std::uint32_t channels, EventList& events) noexcept 
 
 void SequencePlayer::refuse(std::uint32_t channels, EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((channels & bit(i)) != 0) {
-      answer(i, GripResult::error, GripEvidence::none, events);
-    }
+    if ((channels & bit(i)) != 0) answer(i, GripResult::error, GripEvidence::none, events);
   }
 }
 
@@ -230,26 +206,18 @@ ChannelDemand SequencePlayer::demand(std::size_t channel, double time_s) const n
 }
 
 Phase SequencePlayer::phase() const noexcept {
-  if (sequence_ != nullptr && now().step.kind == StepKind::release) {
-    return Phase::releasing;
-  }
+  if (plays(StepKind::release)) return Phase::releasing;
   const bool holding = std::any_of(channels_.begin(), channels_.end(), [](const ChannelPlayer& channel) {
     return channel.result() == GripResult::holding;
   });
-  if (holding) {
-    return Phase::holding;
-  }
-  return sequence_ != nullptr ? Phase::closing : Phase::idle;
+  if (holding) return Phase::holding;
+  return play_ != Play::nothing ? Phase::closing : Phase::idle;
 }
 
 bool SequencePlayer::free_motion(std::size_t channel) const noexcept {
   const ChannelPlayer& player = channels_[channel];
-  if (player.result() == GripResult::holding) {
-    return false;
-  }
-  const bool may_touch =
-      sequence_ != nullptr && (now().step.kind == StepKind::grip || now().step.kind == StepKind::hold ||
-                               now().step.kind == StepKind::release);
+  if (player.result() == GripResult::holding) return false;
+  const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
   return !(may_touch && player.touching());
 }
 

@@ -5,20 +5,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "control/tick/channel_player.h"
-#include "control/tick/event_list.h"
-#include "control/tick/settings.h"
+#include "control/tick/tick.h"
 
 namespace softgrip::control {
 
 class SequencePlayer {
  public:
-  explicit SequencePlayer(const RigSettings& settings);
+  explicit SequencePlayer(std::vector<ChannelPlayer> channels = {}) : channels_(std::move(channels)) {}
 
   /// From rest: clears the answers of the sequence's channels and begins the first step.
-  void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelView> views,
+  void start(const PreparedSequence& sequence, double time_s, std::span<const ChannelOutput> seen,
              EventList& events) noexcept;
 
   /// How the sequence stands after a tick.
@@ -28,13 +28,13 @@ class SequencePlayer {
     OnFail action = OnFail::hold;  ///< of a finished one: vent, hold or abort
   };
   /// One tick of the running sequence.
-  Outcome tick(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
+  Outcome tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
   /// The sequence ends from outside. Channels without an answer get ERROR. So do those that were HOLDING,
   /// when nobody can vouch for it any more: after a fault, or half released and not `venting`.
   void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
   /// No sequence runs: re-verifies what is still held.
-  void idle_tick(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
+  void idle_tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
   /// What these channels held was let go by a vent: HOLDING becomes RELEASED.
   void vented(std::uint32_t channels, EventList& events) noexcept;
   /// The sequence could not start: ERROR for its channels.
@@ -56,11 +56,15 @@ class SequencePlayer {
   template <class Do>
   void for_each_of_step(Do&& act) noexcept;
   [[nodiscard]] const PreparedStep& now() const noexcept { return sequence_->steps[step_]; }
-  void begin_step(std::uint16_t index, double time_s, std::span<const ChannelView> views,
+  /// A step of this kind is under way.
+  [[nodiscard]] bool plays(StepKind kind) const noexcept {
+    return play_ != Play::nothing && now().step.kind == kind;
+  }
+  void begin_step(std::uint16_t index, double time_s, std::span<const ChannelOutput> seen,
                   EventList& events) noexcept;
-  Outcome next_step(std::size_t index, double time_s, std::span<const ChannelView> views,
+  Outcome next_step(std::size_t index, double time_s, std::span<const ChannelOutput> seen,
                     EventList& events) noexcept;
-  Outcome failed(double time_s, std::span<const ChannelView> views, EventList& events) noexcept;
+  Outcome failed(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
   void answer_passed(std::size_t channel, double time_s, EventList& events) noexcept;
   void answer(std::size_t channel, GripResult result, GripEvidence evidence, EventList& events) noexcept;
   void tell(std::size_t channel, EventList& events) const noexcept;
@@ -69,14 +73,20 @@ class SequencePlayer {
   void answer_the_rest(EventList& events) noexcept;
   void stop_playing() noexcept;
 
+  enum class Play : std::uint8_t {
+    nothing,      ///< no sequence runs
+    step,         ///< an attempt at the present step is under way
+    backing_off,  ///< back to where the attempt started, for another one
+  };
+
   std::vector<ChannelPlayer> channels_;
+  Play play_ = Play::nothing;
   const PreparedSequence* sequence_ = nullptr;  ///< while one runs
   std::uint16_t step_ = 0;
-  std::uint32_t attempts_ = 0;  ///< at the present step
-  bool backing_off_ = false;
-  bool failed_ = false;        ///< some step failed
-  std::uint32_t done_ = 0;     ///< channels with an answer to the step
-  std::uint32_t refused_ = 0;  ///< those whose answer is a failure
+  std::uint32_t attempts_ = 0;           ///< at the present step
+  SequenceEnd end_ = SequenceEnd::done;  ///< failed as soon as some step did
+  std::uint32_t done_ = 0;               ///< channels with an answer to the step
+  std::uint32_t refused_ = 0;            ///< those whose answer is a failure
 };
 
 }  // namespace softgrip::control

@@ -10,9 +10,7 @@ namespace {
 using Texts = std::vector<std::string>;
 
 void require(bool holds, Texts& problems, std::string sentence) {
-  if (!holds) {
-    problems.push_back(std::move(sentence));
-  }
+  if (!holds) problems.push_back(std::move(sentence));
 }
 
 bool positive(double value) {

@@ -29,7 +29,7 @@ inline constexpr std::size_t phase_count = 4;
 
 /// What the outputs do when motion must end.
 enum class SafeAction : std::uint8_t {
-  vent,  ///< down to the lowest command, at the limits' slew down
+  vent,  ///< down to the lowest command: at the slew limit while the loop runs, at once when it leaves
   hold,  ///< stay at the last command
 };
 /// "vent", "hold"

@@ -14,15 +14,11 @@ void Supervisor::go(State state, std::uint32_t request, EventList& events) noexc
   events.add(Event::Kind::state_changed, state, request);
 }
 
-Orders Supervisor::tick(const Facts& facts, const Request& request, EventList& events) noexcept {
+Orders Supervisor::tick(const TickInput& input, const Facts& facts, EventList& events) noexcept {
   Orders orders;
-  if (facts.fault.code != FaultCode::none) {
-    latch(facts, orders, events);
-  }
-  if (request.kind != Request::Kind::none) {
-    answer(facts, request, orders, events);
-  }
-  if (facts.interlock_open && playing() && sequence_->interlock == Interlock::always) {
+  if (facts.fault.code != FaultCode::none) latch(facts, orders, events);
+  answer(input, facts, orders, events);
+  if (input.interlock_open && playing() && sequence_->interlock == Interlock::always) {
     stop(facts, 0, orders, events);
   }
   move_on(facts, orders, events);
@@ -34,48 +30,33 @@ void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) no
   const Fault& fault = facts.fault;
   std::uint32_t place = 1;
   for (const FaultInfo& info : all_faults()) {
-    if (info.code == fault.code) {
-      break;
-    }
+    if (info.code == fault.code) break;
     place <<= 1U;
   }
-  if (state_ == State::faulted && (told_ & place) != 0) {
-    return;
-  }
+  if (state_ == State::faulted && (told_ & place) != 0) return;
   told_ |= place;
   events.add(Event{Event::Kind::fault_latched, fault.channel, static_cast<std::uint16_t>(fault.code), 0,
                    fault.value, GripEvidence::none});
   // Later faults find the rig idle, but what it holds it holds because of the phase in which the first one
   // came.
   const bool first = state_ != State::faulted;
-  if (first) {
-    fault_phase_ = facts.phase;
-  }
-  if (action_for(fault.code, fault_phase_) == SafeAction::vent) {
-    venting_ = all_;
-  }
-  if (!first) {
-    return;
-  }
+  if (first) fault_phase_ = facts.phase;
+  if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;
+  if (!first) return;
   first_fault_ = fault.code;
-  orders.interrupt = true;
-  orders.end = SequenceEnd::faulted;
+  orders.interrupt = SequenceEnd::faulted;
   end_sequence(SequenceEnd::faulted, events);
   go(State::faulted, 0, events);
 }
 
 SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   const auto number = static_cast<unsigned>(code);
-  if (code == FaultCode::board_watchdog_tripped) {
-    return SafeAction::vent;
-  }
+  if (code == FaultCode::board_watchdog_tripped) return SafeAction::vent;
   // Inputs that cannot be read may hide an emergency stop.
   if (code == FaultCode::emergency_stop || code == FaultCode::inputs_lost) {
     return safety_.on_emergency_stop;
   }
-  if (number / 100 == 1 && safety_.board_vents_when_silent) {
-    return SafeAction::vent;
-  }
+  if (number / 100 == 1 && safety_.board_vents_when_silent) return SafeAction::vent;
   return safety_.safe_action[static_cast<std::size_t>(phase)];
 }
 
@@ -85,13 +66,14 @@ std::uint32_t Supervisor::venting_on_leaving(Phase phase) const noexcept {
   return !decided && vents ? all_ : venting_;
 }
 
-void Supervisor::answer(const Facts& facts, const Request& request, Orders& orders,
+void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orders,
                         EventList& events) noexcept {
+  const Request& request = input.request;
   switch (request.kind) {
     case Request::Kind::none:
       break;
     case Request::Kind::start:
-      answer_start(facts, request, orders, events);
+      answer_start(input, facts, orders, events);
       break;
     case Request::Kind::stop:
       if (playing()) {
@@ -111,34 +93,26 @@ void Supervisor::answer(const Facts& facts, const Request& request, Orders& orde
   }
 }
 
-RefusalCode Supervisor::refusal_of_start(const Facts& facts, const Request& request) const noexcept {
-  if (state_ == State::faulted) {
-    return RefusalCode::faulted;
-  }
-  if (facts.emergency_stop) {
-    return RefusalCode::emergency_stop;
-  }
-  if (state_ == State::starting) {
-    return RefusalCode::no_valid_reading;
-  }
-  if (state_ != State::idle) {
-    return RefusalCode::not_idle;
-  }
-  if (facts.interlock_open) {
-    return RefusalCode::interlock_open;
-  }
-  if (request.sequence == nullptr || request.sequence->rig != rig_ || request.sequence->steps.empty()) {
+RefusalCode Supervisor::refusal_of_start(const TickInput& input, const Facts& facts) const noexcept {
+  if (state_ == State::faulted) return RefusalCode::faulted;
+  if (input.emergency_stop) return RefusalCode::emergency_stop;
+  if (state_ == State::starting) return RefusalCode::no_valid_reading;
+  if (state_ != State::idle) return RefusalCode::not_idle;
+  if (input.interlock_open) return RefusalCode::interlock_open;
+  const PreparedSequence* const sequence = input.request.sequence;
+  if (sequence == nullptr || sequence->rig != rig_ || sequence->steps.empty()) {
     return RefusalCode::sequence_unfit;
   }
-  if (!facts.bus_good || (request.sequence->channels & ~facts.ready) != 0) {
+  if (!facts.bus_good || (sequence->channels & ~facts.ready) != 0) {
     return RefusalCode::no_valid_reading;
   }
   return RefusalCode::none;
 }
 
-void Supervisor::answer_start(const Facts& facts, const Request& request, Orders& orders,
+void Supervisor::answer_start(const TickInput& input, const Facts& facts, Orders& orders,
                               EventList& events) noexcept {
-  const RefusalCode refusal = refusal_of_start(facts, request);
+  const Request& request = input.request;
+  const RefusalCode refusal = refusal_of_start(input, facts);
   if (refusal != RefusalCode::none) {
     events.add(Event::Kind::request_refused, refusal, request.id);
     return;
@@ -158,8 +132,7 @@ void Supervisor::answer_vent(const Request& request, Orders& orders, EventList& 
     return;
   }
   if (playing()) {
-    orders.interrupt = true;
-    orders.end = SequenceEnd::stopped;
+    orders.interrupt = SequenceEnd::stopped;
     end_sequence(SequenceEnd::stopped, events);
   }
   go(State::stopping, request.id, events);
@@ -175,11 +148,9 @@ void Supervisor::answer_acknowledge(const Facts& facts, const Request& request, 
     events.add(Event::Kind::fault_acknowledged, first_fault_, request.id);
     first_fault_ = FaultCode::none;
     told_ = 0;
-    orders.clear_answers = true;
     orders.acknowledged_by = request.id;
     go(State::starting, request.id, events);
   } else if (facts.answers) {
-    orders.clear_answers = true;
     orders.acknowledged_by = request.id;
   } else {
     events.add(Event::Kind::request_refused, RefusalCode::nothing_to_acknowledge, request.id);
@@ -190,8 +161,7 @@ void Supervisor::stop(const Facts& facts, std::uint32_t request, Orders& orders,
   if (safety_.safe_action[static_cast<std::size_t>(facts.phase)] == SafeAction::vent) {
     venting_ |= sequence_->channels;
   }
-  orders.interrupt = true;
-  orders.end = SequenceEnd::stopped;
+  orders.interrupt = SequenceEnd::stopped;
   end_sequence(SequenceEnd::stopped, events);
   go(State::stopping, request, events);
 }
@@ -200,17 +170,13 @@ void Supervisor::sequence_ended(SequenceEnd end, OnFail action, Phase phase, Eve
   const bool vents =
       action == OnFail::vent ||
       (action == OnFail::abort && safety_.safe_action[static_cast<std::size_t>(phase)] == SafeAction::vent);
-  if (vents) {
-    venting_ |= sequence_->channels;
-  }
+  if (vents) venting_ |= sequence_->channels;
   end_sequence(end, events);
   go(vents ? State::stopping : State::idle, 0, events);
 }
 
 void Supervisor::end_sequence(SequenceEnd end, EventList& events) noexcept {
-  if (playing()) {
-    events.add(Event::Kind::sequence_finished, end, start_request_);
-  }
+  if (playing()) events.add(Event::Kind::sequence_finished, end, start_request_);
   sequence_ = nullptr;
 }
 

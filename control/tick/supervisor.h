@@ -7,24 +7,22 @@
 //   any -> faulted -> (acknowledge) starting
 
 #include <cstdint>
+#include <optional>
 
-#include "control/tick/event_list.h"
 #include "control/tick/fault_monitor.h"
-#include "control/tick/rig_controller.h"
 #include "control/tick/sequence.h"
 #include "control/tick/settings.h"
+#include "control/tick/tick.h"
 
 namespace softgrip::control {
 
 /// Where the search for rest stands.
 enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 
-/// What the supervisor must know of a tick. Masks: bit i is channel i.
+/// What the supervisor must know of a tick beside its input. Masks: bit i is channel i.
 struct Facts {
   Fault fault;                 ///< due now
   bool cause_present = false;  ///< something that is or grows to a fault
-  bool emergency_stop = false;
-  bool interlock_open = false;
   bool bus_good = false;
   std::uint32_t ready = 0;    ///< channels with a valid reading, or that use none
   std::uint32_t lowest = 0;   ///< channels whose command is the lowest
@@ -35,27 +33,24 @@ struct Facts {
 
 /// What is to be done in this tick because of what the supervisor decided.
 struct Orders {
-  bool seek_rest = false;                   ///< a start was accepted: look for rest from now on
-  const PreparedSequence* begin = nullptr;  ///< at rest: play it
-  bool interrupt = false;                   ///< the player stops ...
-  SequenceEnd end = SequenceEnd::stopped;   ///< ... for this reason
-  std::uint32_t no_rest = 0;                ///< channels that get ERROR: they did not come to rest
-  bool clear_answers = false;               ///< acknowledged ...
-  std::uint32_t acknowledged_by = 0;        ///< ... by this request
-  std::uint32_t vented = 0;                 ///< channels that a stop has vented
+  std::optional<SequenceEnd> interrupt;          ///< the player stops, for this reason
+  std::optional<std::uint32_t> acknowledged_by;  ///< answers are cleared, because of this request
+  std::uint32_t vented = 0;                      ///< channels that a stop has vented
+  std::uint32_t no_rest = 0;                     ///< channels that get ERROR: they did not come to rest
+  bool seek_rest = false;                        ///< a start was accepted: look for rest from now on
+  const PreparedSequence* begin = nullptr;       ///< at rest: play it
 };
 
 class Supervisor {
  public:
   explicit Supervisor(const RigSettings& settings);
 
-  Orders tick(const Facts& facts, const Request& request, EventList& events) noexcept;
+  Orders tick(const TickInput& input, const Facts& facts, EventList& events) noexcept;
   /// The player came to the end of the sequence.
   void sequence_ended(SequenceEnd end, OnFail action, Phase phase, EventList& events) noexcept;
 
   [[nodiscard]] State state() const noexcept { return state_; }
   [[nodiscard]] FaultCode first_fault() const noexcept { return first_fault_; }
-  [[nodiscard]] std::uint32_t start_request() const noexcept { return start_request_; }
   /// Outside `running`: the channels that go to their lowest command; the others stay where they are.
   [[nodiscard]] std::uint32_t venting() const noexcept { return venting_; }
   /// The channels that must be vented when the loop is left now, in the given phase of the player.
@@ -66,9 +61,9 @@ class Supervisor {
   void go(State state, std::uint32_t request, EventList& events) noexcept;
   void latch(const Facts& facts, Orders& orders, EventList& events) noexcept;
   [[nodiscard]] SafeAction action_for(FaultCode code, Phase phase) const noexcept;
-  void answer(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
-  void answer_start(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
-  [[nodiscard]] RefusalCode refusal_of_start(const Facts& facts, const Request& request) const noexcept;
+  void answer(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
+  void answer_start(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
+  [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input, const Facts& facts) const noexcept;
   void answer_vent(const Request& request, Orders& orders, EventList& events) noexcept;
   void answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,
                           EventList& events) noexcept;

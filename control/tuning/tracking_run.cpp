@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "control/feedforward/invertibility.h"
 #include "control/feedforward/running_model.h"
+#include "control/sequences/planner.h"
 #include "control/tick/channel_controller.h"
 #include "model/chain.h"
 #include "model/dual.h"
@@ -126,7 +127,8 @@ TrackingResult track(const TrackingRun& run) {
   const auto tick_ns = static_cast<Nanoseconds>(std::llround(1e9 * tick_s));
   const Reference reference = reference_of(run);
   ChannelController controller(run.settings, tick_s);
-  controller.start(0);
+  ChannelOutput step;
+  controller.start(0, step);
   Bench bench(run);
   ChannelInput input;
   input.demand.mode = ChannelDemand::Mode::displacement;
@@ -145,7 +147,7 @@ TrackingResult track(const TrackingRun& run) {
   for (std::int64_t k = 0; static_cast<double>(k) * tick_s < end_s; ++k) {
     input.now = k * tick_ns;
     input.demand.time_s = static_cast<double>(k) * tick_s;
-    const ChannelStep step = controller.tick(input);
+    controller.tick(input, step);
     input.reading.displacement_mm = bench.exchange(step.command_kpa);
     input.reading.sampled_at = input.now + static_cast<Nanoseconds>(1e9 * bench.exchange_s());
     input.reading.sequence = static_cast<std::uint32_t>(k + 1);

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "control/feedforward/planned_feedforward.h"
+#include "control/feedforward/pressure_plan.h"
 #include "control/tick/channel_settings.h"
 #include "model/model.h"
 

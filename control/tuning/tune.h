@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "control/feedforward/planned_feedforward.h"
+#include "control/feedforward/pressure_plan.h"
 #include "control/tick/channel_settings.h"
 #include "control/tuning/tracking_run.h"
 #include "model/model.h"

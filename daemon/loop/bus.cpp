@@ -86,30 +86,37 @@ void Bus::step(Nanoseconds due) noexcept {
 }
 
 bool Bus::fetch_commands() noexcept {
-  if (wires_.commands.fetch()) {
-    commanded_ = true;
-    unheard_ = 0;
-    // What the safe outputs did in the meantime the loop did not know; its motion must end first.
-    if (silent_ && !wires_.commands.value().moving) {
-      silent_ = false;
+  const bool fetched = wires_.commands.fetch();
+  const Commands& commands = wires_.commands.value();
+  if (fetched) unheard_ = 0;
+  switch (hearing_) {
+    case Hearing::nothing_yet:
+      if (fetched) hearing_ = Hearing::commands;
+      break;
+    case Hearing::commands:
+      if (fetched || commands.last || ++unheard_ != loop_.max_missed_commands) break;
+      hearing_ = Hearing::silence;
+      tell(BusEvent::Kind::loop_silent, BusStatus::ok);
+      break;
+    case Hearing::silence:
+      if (!fetched) ++unheard_;
+      // What the safe outputs did in the meantime the loop did not know; its motion must end first.
+      if (!fetched || commands.moving) break;
+      hearing_ = Hearing::commands;
       tell(BusEvent::Kind::loop_back, BusStatus::ok);
-    }
-  } else if (commanded_ && !wires_.commands.value().last && ++unheard_ == loop_.max_missed_commands) {
-    silent_ = true;
-    tell(BusEvent::Kind::loop_silent, BusStatus::ok);
+      break;
   }
-  return commanded_;
+  return hearing_ != Hearing::nothing_yet;
 }
 
 bool Bus::ensure_session() noexcept {
-  if (session_) return true;
+  if (session_ != Session::none) return true;
   if (clock_.now() < next_attempt_) return false;
   report_.health.connected = false;
   publish();  // connect() may take its time; the loop shall know meanwhile
   const BusStatus status = board_.connect(reconnect_.connect_deadline);
   if (status == BusStatus::ok) {
-    session_ = true;
-    proven_ = false;
+    session_ = Session::opened;
     statistics_.sessions.add();
     tell(BusEvent::Kind::connected, status);
     return true;
@@ -126,7 +133,8 @@ void Bus::put_off_next_attempt() noexcept {
 
 void Bus::exchange() noexcept {
   const Commands& commands = wires_.commands.value();
-  const auto& outputs = silent_ ? commands.safe_kpa : commands.command_kpa;
+  const bool silent = hearing_ == Hearing::silence;
+  const auto& outputs = silent ? commands.safe_kpa : commands.command_kpa;
   const Nanoseconds begin = clock_.now();
   const BusStatus status =
       board_.exchange(std::span(outputs).first(channels_), std::span(report_.readings).first(channels_),
@@ -134,18 +142,18 @@ void Bus::exchange() noexcept {
   statistics_.exchanges.add();
   if (status != BusStatus::ok) {
     if (loses_session(status)) {
-      session_ = false;
       // A board whose every session fails at its first exchange must not be connected to in every cycle.
-      if (!proven_) put_off_next_attempt();
+      if (session_ == Session::opened) put_off_next_attempt();
+      session_ = Session::none;
     }
     ++report_.health.consecutive_failures;
     note_failure(status);
     return;
   }
-  proven_ = true;
+  session_ = Session::proven;
   pause_ = reconnect_.first_pause.count();
   statistics_.exchange.add(clock_.now() - begin);
-  report_.health = {true, silent_ ? FaultCode::cycles_lost : FaultCode::none, silent_ ? unheard_ : 0};
+  report_.health = {true, silent ? FaultCode::cycles_lost : FaultCode::none, silent ? unheard_ : 0};
   if (repeats_ > 0) {
     --repeats_;
     report_.health.fault = said_;
@@ -161,7 +169,7 @@ void Bus::note_failure(BusStatus status) noexcept {
     repeats_ = reports_of_a_refusal;
   }
   statistics_.failures.add();
-  report_.health.connected = session_;
+  report_.health.connected = session_ != Session::none;
   report_.health.fault = fault_of(status);
   if (told_failed_) return;
   told_failed_ = true;

@@ -56,15 +56,26 @@ class Bus {
   BusStatistics& statistics_;
   std::size_t channels_;
 
+  /// With the board.
+  enum class Session : std::uint8_t {
+    none,    // to be opened when the next attempt is due
+    opened,  // connect() succeeded
+    proven,  // and an exchange in it was good
+  };
+  /// Whose outputs are written.
+  enum class Hearing : std::uint8_t {
+    nothing_yet,  // nobody's: the loop has not sent anything
+    commands,     // the loop's
+    silence,      // the safe ones that came with the loop's last commands
+  };
+
   BusReport report_;
-  bool commanded_ = false;                              // the loop has sent something
-  bool session_ = false;                                // connect() succeeded and nothing poisoned it since
-  bool proven_ = false;                                 // ... and an exchange in it was good
+  Session session_ = Session::none;
+  Hearing hearing_ = Hearing::nothing_yet;
+  std::uint32_t unheard_ = 0;                           // steps since the loop's last commands
   bool told_failed_ = false;                            // the log knows about the present failure
   control::FaultCode said_ = control::FaultCode::none;  // by the board, and still to be reported ...
   std::uint32_t repeats_ = 0;                           // ... so often
-  bool silent_ = false;                                 // the loop is not heard; safe outputs are written
-  std::uint32_t unheard_ = 0;                           // steps since its last commands
   Nanoseconds pause_ = 0;                               // before the attempt after the next
   Nanoseconds next_attempt_ = 0;
 };

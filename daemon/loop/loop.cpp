@@ -1,20 +1,13 @@
 #include "daemon/loop/loop.h"
 
 #include <algorithm>
-#include <array>
 #include <span>
+
+#include "control/tick/rig_controller.h"
 
 namespace softgrip::daemon {
 
 namespace {
-
-/// Places of the recorder's ring that rows may not take, so that events always find one.
-constexpr std::size_t places_for_events = 256;
-
-bool moves(control::State state) noexcept {
-  return state == control::State::resynchronising || state == control::State::running ||
-         state == control::State::stopping;
-}
 
 /// The loop is the only writer; a locked addition is not needed.
 void add(std::atomic<std::uint64_t>& counter, std::uint64_t amount) noexcept {
@@ -23,13 +16,14 @@ void add(std::atomic<std::uint64_t>& counter, std::uint64_t amount) noexcept {
 
 }  // namespace
 
-Loop::Loop(control::RigController& controller, std::size_t channels, std::uint32_t decimation,
-           const Clock& clock, Wires& wires, LoopStatistics& statistics) noexcept
+Loop::Loop(control::RigController& controller, std::uint32_t decimation, const Clock& clock, Wires& wires,
+           LoopStatistics& statistics) noexcept
     : controller_(controller),
       clock_(clock),
       wires_(wires),
       statistics_(statistics),
-      channels_(std::min(channels, control::max_channels)),
+      output_(controller.output()),
+      channels_(output_.channel_count),
       decimation_(std::max<std::uint32_t>(decimation, 1)) {}
 
 void Loop::run(Grid grid) noexcept {
@@ -48,10 +42,10 @@ void Loop::tick(Nanoseconds due) noexcept {
   input.now = woken_;
   read(input);
 
-  controller_.tick(input, output_);
-  command();
-  record_events();
-  if (ticks_ % decimation_ == 0) record_rows();
+  controller_.tick(input);
+  command(false);
+  tell_events();
+  if (ticks_ % decimation_ == 0) record_rows(false);
   ++ticks_;
   show(input.bus);
 
@@ -88,40 +82,31 @@ bool Loop::inputs_lost(Nanoseconds now) const noexcept {
          now - inputs.looked_at.load(std::memory_order_relaxed) > inputs.longest_silence;
 }
 
-void Loop::command() noexcept {
+void Loop::command(bool last) noexcept {
   Commands& commands = wires_.commands.draft();
   commands.at = woken_;
-  for (std::size_t i = 0; i < channels_; ++i) commands.command_kpa[i] = output_.channels[i].command_kpa;
-  controller_.safe_commands(std::span(commands.safe_kpa).first(channels_));
-  commands.moving = moves(output_.state);
-  commands.last = false;
+  for (std::size_t i = 0; i < channels_; ++i) {
+    const control::ChannelOutput& channel = output_.channels[i];
+    commands.command_kpa[i] = last ? channel.safe_kpa : channel.command_kpa;
+    commands.safe_kpa[i] = channel.safe_kpa;
+  }
+  commands.moving = !last && control::moves(output_.state);
+  commands.last = last;
   wires_.commands.publish();
 }
 
-void Loop::record_events() noexcept {
-  for (std::size_t i = 0; i < output_.event_count; ++i) {
-    const StampedEvent event{woken_, output_.events[i]};
-    if (!wires_.events.push(event)) add(wires_.events_dropped, 1);
-    Record record;
-    record.at = woken_;
-    record.state = output_.state;
-    record.is_event = true;
-    record.event = event.event;
-    if (!wires_.records.push(record)) add(wires_.records_dropped, 1);
-  }
-  add(wires_.events_dropped, output_.events_lost);
+void Loop::tell_events() noexcept {
+  for (const control::Event& event : output_.events) wires_.events.push({woken_, event});
+  if (output_.events.lost() > 0) add(wires_.events_dropped, output_.events.lost());
 }
 
-void Loop::record_rows() noexcept {
-  for (std::size_t i = 0; i < channels_; ++i) {
-    rows_[i].at = woken_;
-    rows_[i].state = output_.state;
-    rows_[i].channel = static_cast<std::uint8_t>(i);
-    rows_[i].output = output_.channels[i];
-  }
-  if (!wires_.records.push(std::span<const Record>(rows_).first(channels_), places_for_events)) {
-    add(wires_.records_dropped, channels_);
-  }
+void Loop::record_rows(bool last) noexcept {
+  const bool room = wires_.records.push(channels_, [&](Record& row, std::size_t i) {
+    row = {woken_, output_.state, static_cast<std::uint8_t>(i), output_.channels[i]};
+    // The recording ends with what the board was left with.
+    if (last) row.output.command_kpa = row.output.safe_kpa;
+  });
+  if (!room) add(wires_.records_dropped, channels_);
 }
 
 void Loop::show(const control::BusHealth& bus) noexcept {
@@ -144,18 +129,8 @@ void Loop::count_slips(std::uint64_t skipped, bool woken_late) noexcept {
 
 void Loop::leave() noexcept {
   woken_ = clock_.now();
-  Commands& commands = wires_.commands.draft();
-  commands.at = woken_;
-  controller_.safe_commands(std::span(commands.safe_kpa).first(channels_));
-  commands.command_kpa = commands.safe_kpa;
-  commands.moving = false;
-  commands.last = true;
-
-  wires_.commands.publish();
-
-  // The recording ends with what the board was left with.
-  for (std::size_t i = 0; i < channels_; ++i) output_.channels[i].command_kpa = commands.safe_kpa[i];
-  record_rows();
+  command(true);
+  record_rows(true);
 }
 
 }  // namespace softgrip::daemon

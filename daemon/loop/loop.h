@@ -1,25 +1,27 @@
 #pragma once
 // The loop: wake, read, control, command, record, sleep.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "base/clock.h"
 #include "base/grid.h"
-#include "control/tick/rig_controller.h"
+#include "control/tick/tick.h"
 #include "daemon/loop/statistics.h"
 #include "daemon/loop/wires.h"
+
+namespace softgrip::control {
+class RigController;
+}
 
 namespace softgrip::daemon {
 
 /// Nothing in here allocates, locks, logs, throws or enters the kernel but for the clock and the sleep.
 class Loop {
  public:
-  /// `channels` of the rig, at most control::max_channels. A row is recorded every `decimation` ticks, at
-  /// least 1. All references outlive the loop.
-  Loop(control::RigController& controller, std::size_t channels, std::uint32_t decimation, const Clock& clock,
-       Wires& wires, LoopStatistics& statistics) noexcept;
+  /// A row is recorded every `decimation` ticks, at least 1. All references outlive the loop.
+  Loop(control::RigController& controller, std::uint32_t decimation, const Clock& clock, Wires& wires,
+       LoopStatistics& statistics) noexcept;
 
   /// Ticks on the grid until wires.leave is set; then leave().
   void run(Grid grid) noexcept;
@@ -33,9 +35,9 @@ class Loop {
  private:
   void read(control::TickInput& input) noexcept;
   [[nodiscard]] bool inputs_lost(Nanoseconds now) const noexcept;
-  void command() noexcept;
-  void record_events() noexcept;
-  void record_rows() noexcept;
+  void command(bool last) noexcept;
+  void tell_events() noexcept;
+  void record_rows(bool last) noexcept;
   void show(const control::BusHealth& bus) noexcept;
   void count_slips(std::uint64_t skipped, bool woken_late) noexcept;
 
@@ -43,6 +45,7 @@ class Loop {
   const Clock& clock_;
   Wires& wires_;
   LoopStatistics& statistics_;
+  const control::TickOutput& output_;  // the controller's, of the last tick
   std::size_t channels_;
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
@@ -50,8 +53,6 @@ class Loop {
   std::uint32_t slipped_ = 0;     // told to the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;
-  control::TickOutput output_;
-  std::array<Record, control::max_channels> rows_;
 };
 
 }  // namespace softgrip::daemon

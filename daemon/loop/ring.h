@@ -20,18 +20,20 @@ class Ring {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return items_.size(); }
 
-  /// Producer: all of `items` in one piece, or none (false). Leaves room for `reserve` more, so that what
-  /// matters more still finds a place when what matters less does not.
-  bool push(std::span<const T> items, std::size_t reserve = 0) noexcept {
+  /// Producer: `count` items in one piece, each made where it lies by fill(item, index), or none (false).
+  template <class Fill>
+  bool push(std::size_t count, Fill&& fill) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
-    const std::size_t needed = items.size() + reserve;
-    if (needed > capacity() - (tail - known_head_)) {
+    if (count > capacity() - (tail - known_head_)) {
       known_head_ = head_.load(std::memory_order_acquire);
-      if (needed > capacity() - (tail - known_head_)) return false;
+      if (count > capacity() - (tail - known_head_)) return false;
     }
-    for (std::size_t i = 0; i < items.size(); ++i) items_[(tail + i) & mask_] = items[i];
-    tail_.store(tail + items.size(), std::memory_order_release);
+    for (std::size_t i = 0; i < count; ++i) fill(items_[(tail + i) & mask_], i);
+    tail_.store(tail + count, std::memory_order_release);
     return true;
+  }
+  bool push(std::span<const T> items) noexcept {
+    return push(items.size(), [items](T& item, std::size_t i) { item = items[i]; });
   }
   bool push(const T& item) noexcept { return push(std::span<const T>(&item, 1)); }
 

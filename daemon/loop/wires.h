@@ -1,11 +1,13 @@
 #pragma once
-// What runs between the loop and the threads around it. Every wire has one writer and one reader.
+// What runs between the loop and the threads around it. Every wire has one writer and one reader, but for the
+// events of the loop, which log and recorder both read.
 
 #include <array>
 #include <atomic>
 #include <cstdint>
 
-#include "control/tick/rig_controller.h"
+#include "control/tick/tick.h"
+#include "daemon/loop/broadcast.h"
 #include "daemon/loop/latest.h"
 #include "daemon/loop/ring.h"
 #include "drivers/board/board.h"
@@ -44,17 +46,15 @@ struct BusEvent {
   std::array<char, 120> detail{};  ///< what the board said, ended by 0
 };
 
-/// From the loop to the recorder: a row of one channel, or an event; in the order in which they happened.
+/// From the loop to the recorder: a row of one channel.
 struct Record {
   Nanoseconds at = 0;
   control::State state = control::State::starting;
   std::uint8_t channel = 0;
-  bool is_event = false;
-  control::ChannelOutput output;  ///< of a row
-  control::Event event;           ///< of an event
+  control::ChannelOutput output;
 };
 
-/// From the loop to the log.
+/// From the loop to the log and to the recorder. Those of a tick are pushed before its rows.
 struct StampedEvent {
   Nanoseconds at = 0;
   control::Event event;
@@ -106,16 +106,16 @@ struct Wires {
   Latest<Snapshot> snapshot;
   Ring<BusEvent> bus_events{256};
   Ring<Record> records;
-  Ring<StampedEvent> events{1024};
+  Broadcast<StampedEvent> events{4096};
   Ring<PanelEvent> panel_events{64};
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< of the last tick
   std::atomic<bool> enable_on{false};                           ///< the enable output, as it was written
   InputLevels inputs;
   std::atomic<std::uint64_t> records_dropped{0};  ///< no room: the recorder lagged
-  std::atomic<std::uint64_t> events_dropped{0};
-  std::atomic<bool> leave{false};        ///< to the loop: end after a last, safe tick
-  std::atomic<bool> left_safely{false};  ///< from the bus: the board confirmed the last commands
+  std::atomic<std::uint64_t> events_dropped{0};   ///< more in a tick than it has room for
+  std::atomic<bool> leave{false};                 ///< to the loop: end after a last, safe tick
+  std::atomic<bool> left_safely{false};           ///< from the bus: the board confirmed the last commands
 };
 
 }  // namespace softgrip::daemon

@@ -126,23 +126,10 @@ void CsvRows::append(std::string& text, const Record& record, Nanoseconds begin)
 }
 
 std::string_view name_of(model::Validity validity) noexcept {
-  switch (validity) {
-    case model::Validity::valid:
-      return "valid";
-    case model::Validity::none_yet:
-      return "none_yet";
-    case model::Validity::out_of_range:
-      return "out_of_range";
-    case model::Validity::sensor_error:
-      return "sensor_error";
-    case model::Validity::jumped:
-      return "jumped";
-    case model::Validity::frozen:
-      return "frozen";
-    case model::Validity::stale:
-      return "stale";
-  }
-  return "?";
+  constexpr std::array<std::string_view, 7> names{"valid",  "none_yet", "out_of_range", "sensor_error",
+                                                  "jumped", "frozen",   "stale"};
+  static_assert(static_cast<std::size_t>(model::Validity::stale) + 1 == names.size());
+  return names[static_cast<std::size_t>(validity)];
 }
 
 }  // namespace softgrip::daemon

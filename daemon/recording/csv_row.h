@@ -28,7 +28,7 @@ class CsvRows {
   CsvRows(std::vector<std::string> channel_names, bool with_pressure);
 
   [[nodiscard]] std::string header() const;
-  /// Appends the row of a record that is no event; `begin` is the recording's time 0.
+  /// Appends a row; `begin` is the recording's time 0.
   void append(std::string& text, const Record& record, Nanoseconds begin) const;
 
  private:

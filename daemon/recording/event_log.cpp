@@ -1,6 +1,7 @@
 #include "daemon/recording/event_log.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,7 +17,54 @@ namespace {
 using control::Event;
 using Kind = control::Event::Kind;
 
-constexpr std::uint8_t whole_rig = 0xff;
+/// In the order of control::Event::Kind.
+constexpr std::array<std::string_view, 11> kind_names{
+    "state_changed",        "fault_latched",   "fault_acknowledged", "sequence_started",
+    "sequence_finished",    "step_started",    "grip_result",        "request_refused",
+    "model_health_changed", "reading_invalid", "reading_valid"};
+static_assert(static_cast<std::size_t>(Kind::reading_valid) + 1 == kind_names.size());
+
+/// An event that needs no numbers to be told.
+struct Words {
+  std::string_view kind;
+  Severity severity;
+  std::string_view text;
+};
+using enum Severity;
+
+/// In the order of BusEvent::Kind.
+constexpr std::array<Words, 5> bus_words{{
+    {"bus_connected", information, "A session with the board is up."},
+    {"bus_failed", error, ""},
+    {"bus_recovered", information, "The board answers again."},
+    {"loop_silent", error, "No commands from the loop: the safe outputs are written."},
+    {"loop_back", information, "The loop's commands are written again."},
+}};
+static_assert(static_cast<std::size_t>(BusEvent::Kind::loop_back) + 1 == bus_words.size());
+
+/// In the order of PanelEvent::Kind.
+constexpr std::array<Words, 8> panel_words{{
+    {"emergency_stop_pressed", warning, "The emergency stop is pressed."},
+    {"emergency_stop_released", information,
+     "The emergency stop is released; acknowledge to make the rig ready."},
+    {"part_in_position", information, "A part is in position."},
+    {"part_away", information, "No part is in position."},
+    {"enable_on", information, "The enable output is on."},
+    {"enable_off", information, "The enable output is off."},
+    {"loop_hangs", error, "The loop does not tick: the enable output was dropped."},
+    {"gpio_lost", error, "The GPIO chip failed: its lines are lost until the daemon starts again."},
+}};
+static_assert(static_cast<std::size_t>(PanelEvent::Kind::gpio_lost) + 1 == panel_words.size());
+
+template <class Table, class Which>
+EventEntry entry_of(const Table& table, Which which) {
+  const Words& words = table[static_cast<std::size_t>(which)];
+  EventEntry entry;
+  entry.kind = words.kind;
+  entry.severity = words.severity;
+  entry.text = words.text;
+  return entry;
+}
 
 void describe_state(const Event& event, EventEntry& entry) {
   entry.code = control::name_of(static_cast<control::State>(event.detail));
@@ -86,11 +134,10 @@ void describe_end(const Event& event, const control::PreparedSequence* sequence,
 EventEntry describe(const Event& event, const std::vector<std::string>& channel_names,
                     const control::PreparedSequence* sequence) {
   EventEntry entry;
-  entry.kind = name_of(event.kind);
+  entry.kind = kind_names[static_cast<std::size_t>(event.kind)];
   entry.request = event.request;
   entry.value = event.value;
-  if (event.channel != whole_rig && event.channel < channel_names.size())
-    entry.channel = channel_names[event.channel];
+  if (event.channel < channel_names.size()) entry.channel = channel_names[event.channel];
   switch (event.kind) {
     case Kind::state_changed:
       describe_state(event, entry);
@@ -133,87 +180,22 @@ EventEntry describe(const Event& event, const std::vector<std::string>& channel_
 }
 
 EventEntry describe(const BusEvent& event) {
-  EventEntry entry;
-  entry.kind = name_of(event.kind);
+  EventEntry entry = entry_of(bus_words, event.kind);
+  if (event.kind != BusEvent::Kind::failed) return entry;
   const std::string_view detail(event.detail.data());
-  const std::string_view separator = detail.empty() ? "" : ": ";
-  switch (event.kind) {
-    case BusEvent::Kind::connected:
-      entry.text = "A session with the board is up.";
-      break;
-    case BusEvent::Kind::failed:
-      entry.code = drivers::name_of(event.status);
-      entry.text = fmt::format("The exchange with the board failed: {}{}{}.", entry.code, separator, detail);
-      entry.severity = Severity::error;
-      break;
-    case BusEvent::Kind::recovered:
-      entry.text = "The board answers again.";
-      break;
-    case BusEvent::Kind::loop_silent:
-      entry.text = "No commands from the loop: the safe outputs are written.";
-      entry.severity = Severity::error;
-      break;
-    case BusEvent::Kind::loop_back:
-      entry.text = "The loop's commands are written again.";
-      break;
-  }
+  entry.code = drivers::name_of(event.status);
+  entry.text = fmt::format("The exchange with the board failed: {}{}{}.", entry.code,
+                           detail.empty() ? "" : ": ", detail);
   return entry;
 }
 
-std::string_view name_of(Kind kind) noexcept {
-  switch (kind) {
-    case Kind::state_changed:
-      return "state_changed";
-    case Kind::fault_latched:
-      return "fault_latched";
-    case Kind::fault_acknowledged:
-      return "fault_acknowledged";
-    case Kind::sequence_started:
-      return "sequence_started";
-    case Kind::sequence_finished:
-      return "sequence_finished";
-    case Kind::step_started:
-      return "step_started";
-    case Kind::grip_result:
-      return "grip_result";
-    case Kind::request_refused:
-      return "request_refused";
-    case Kind::model_health_changed:
-      return "model_health_changed";
-    case Kind::reading_invalid:
-      return "reading_invalid";
-    case Kind::reading_valid:
-      return "reading_valid";
-  }
-  return "?";
-}
-
-std::string_view name_of(BusEvent::Kind kind) noexcept {
-  switch (kind) {
-    case BusEvent::Kind::connected:
-      return "bus_connected";
-    case BusEvent::Kind::failed:
-      return "bus_failed";
-    case BusEvent::Kind::recovered:
-      return "bus_recovered";
-    case BusEvent::Kind::loop_silent:
-      return "loop_silent";
-    case BusEvent::Kind::loop_back:
-      return "loop_back";
-  }
-  return "?";
+EventEntry describe(const PanelEvent& event) {
+  return entry_of(panel_words, event.kind);
 }
 
 std::string_view name_of(Severity severity) noexcept {
-  switch (severity) {
-    case Severity::information:
-      return "information";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
-  }
-  return "?";
+  constexpr std::array<std::string_view, 3> names{"information", "warning", "error"};
+  return names[static_cast<std::size_t>(severity)];
 }
 
 std::uint64_t EventLog::add(EventEntry entry) {

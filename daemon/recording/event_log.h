@@ -37,10 +37,6 @@ struct EventEntry {
 [[nodiscard]] EventEntry describe(const BusEvent& event);
 /// Describes an event of the digital lines.
 [[nodiscard]] EventEntry describe(const PanelEvent& event);
-/// "fault_latched" ...
-[[nodiscard]] std::string_view name_of(control::Event::Kind kind) noexcept;
-[[nodiscard]] std::string_view name_of(BusEvent::Kind kind) noexcept;
-[[nodiscard]] std::string_view name_of(PanelEvent::Kind kind) noexcept;
 /// "information", "warning", "error"
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 

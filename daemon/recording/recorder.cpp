@@ -1,5 +1,6 @@
 #include "daemon/recording/recorder.h"
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <filesystem>
@@ -25,15 +26,6 @@ constexpr Nanoseconds retry_pause = 60 * ns_per_s;
 constexpr std::size_t events_per_file = 10'000;
 
 using Kind = control::Event::Kind;
-
-bool moves(const Record& record) {
-  return record.state == control::State::resynchronising || record.state == control::State::running ||
-         record.state == control::State::stopping;
-}
-
-bool is_event(const Record& record, Kind kind) {
-  return record.is_event && record.event.kind == kind;
-}
 
 Nanoseconds read_clock(clockid_t clock) {
   timespec time{};
@@ -87,6 +79,7 @@ Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& prov
       always_(!only_folder_.empty() || settings.mode == rig::RecorderSettings::Mode::always),
       origin_(origin),
       wires_(wires),
+      loop_events_(wires.events),
       events_(events),
       shelf_(shelf),
       rows_(provenance.channel_names, provenance.measures_pressure),
@@ -105,40 +98,55 @@ void Recorder::drain() {
 
 void Recorder::finish() {
   drain();
+  take_events(std::numeric_limits<Nanoseconds>::max());
   if (recording_) end("complete");
   show();
 }
 
-void Recorder::take(const Record& record) {
-  now_ = record.at;
-  if (recording_ && ends_with(record)) end("complete");
-  if (!recording_ && begins_with(record)) begin(record);
-  if (!recording_) {
-    remember(record);
-  } else if (record.is_event) {
-    take_event(record);
-  } else {
-    take_row(record);
+void Recorder::take_events(Nanoseconds until) {
+  for (;;) {
+    if (StampedEvent next; !waiting_ && loop_events_.pop(next)) waiting_ = next;
+    if (recording_) recording_->story.events_left_out += loop_events_.lost() - events_lost_;
+    events_lost_ = loop_events_.lost();
+    if (!waiting_ || waiting_->at > until) return;
+    take(*std::exchange(waiting_, std::nullopt));
   }
 }
 
-bool Recorder::begins_with(const Record& record) const {
-  if (record.at < blocked_) return false;
-  if (always_) return true;
-  if (settings_.mode == rig::RecorderSettings::Mode::off) return false;
-  return is_event(record, Kind::sequence_started) || is_event(record, Kind::fault_latched) ||
-         (!record.is_event && moves(record));
+void Recorder::take(const Record& row) {
+  take_events(row.at);
+  now_ = row.at;
+  const bool moves = control::moves(row.state);
+  if (recording_ && !always_ && !moves && row.at - recording_->last_motion > tail) end("complete");
+  if (!recording_ && may_begin(row.at) && (always_ || moves)) begin(row.at, nullptr);
+  if (recording_) return write(row);
+  past_rows_.push_back(row);
+  forget_before(row.at - nanoseconds(settings_.history_s));
 }
 
-bool Recorder::ends_with(const Record& record) const {
-  if (always_) return false;
+void Recorder::take(const StampedEvent& event) {
+  now_ = event.at;
+  const bool starts = event.event.kind == Kind::sequence_started;
   // A start within the tail of the last run begins a recording of its own.
-  if (is_event(record, Kind::sequence_started)) return recording_->story.sequence != nullptr;
-  return !record.is_event && !moves(record) && record.at - recording_->last_motion > tail;
+  if (recording_ && !always_ && starts && recording_->story.sequence != nullptr) end("complete");
+  const bool opens = always_ || starts || event.event.kind == Kind::fault_latched;
+  if (!recording_ && may_begin(event.at) && opens) begin(event.at, &event.event);
+  if (recording_) return write(event);
+  past_events_.push_back(event);
+  forget_before(event.at - nanoseconds(settings_.history_s));
 }
 
-void Recorder::begin(const Record& record) {
-  const std::string path = folder_for(record);
+bool Recorder::may_begin(Nanoseconds at) const {
+  return at >= blocked_ && (always_ || settings_.mode != rig::RecorderSettings::Mode::off);
+}
+
+void Recorder::forget_before(Nanoseconds at) {
+  while (!past_rows_.empty() && past_rows_.front().at < at) past_rows_.pop_front();
+  while (!past_events_.empty() && past_events_.front().at < at) past_events_.pop_front();
+}
+
+void Recorder::begin(Nanoseconds at, const control::Event* event) {
+  const std::string path = folder_for(at, event);
   auto folder = RunFolder::create(path, rows_.header(), !provenance_.virtual_time);
   if (!folder) {
     block();
@@ -150,32 +158,34 @@ void Recorder::begin(const Record& record) {
   ++recordings_;
   recording_ = std::make_unique<Recording>(std::move(*folder));
   Recording& now = *recording_;
-  now.begin = record.at;
-  now.last_motion = record.at;
+  now.begin = at;
+  now.last_motion = at;
   now.dropped_before = wires_.records_dropped.load(std::memory_order_relaxed);
-  now.synced_at = record.at;
+  now.synced_at = at;
   now.text.reserve(2 * text_bytes);
-  const bool fault = !always_ && is_event(record, Kind::fault_latched);
+  const bool fault = !always_ && event != nullptr && event->kind == Kind::fault_latched;
   now.story.reason = always_ ? "always" : fault ? "fault" : "sequence";
-  if (fault && !history_.empty()) now.begin = history_.front().at;
+  if (fault && !past_rows_.empty()) now.begin = past_rows_.front().at;
+  if (fault && !past_events_.empty()) now.begin = std::min(now.begin, past_events_.front().at);
   if (!provenance_.virtual_time) now.story.started_at = utc_text(now.begin);
   if (fault) {
-    for (const Record& old : history_) old.is_event ? take_event(old) : take_row(old);
+    for (const Record& row : past_rows_) write(row);
+    for (const StampedEvent& past : past_events_) write(past);
   }
-  history_.clear();
+  past_rows_.clear();
+  past_events_.clear();
   write_json();
   tell("recording_started", Severity::information, fmt::format("Recording to {}.", path));
 }
 
-std::string Recorder::folder_for(const Record& record) const {
+std::string Recorder::folder_for(Nanoseconds at, const control::Event* event) const {
   if (!only_folder_.empty()) return only_folder_;
-  std::string name =
-      provenance_.virtual_time ? fmt::format("run-{:04}", recordings_ + 1) : utc_text(record.at);
+  std::string name = provenance_.virtual_time ? fmt::format("run-{:04}", recordings_ + 1) : utc_text(at);
   for (char& c : name) c = c == ':' ? '-' : c;
-  if (is_event(record, Kind::sequence_started)) {
-    const auto sequence = shelf_.find(record.event.request);
+  if (event != nullptr && event->kind == Kind::sequence_started) {
+    const auto sequence = shelf_.find(event->request);
     if (sequence) name += "_" + file_name_of(sequence->prepared.name);
-  } else if (is_event(record, Kind::fault_latched) && !always_) {
+  } else if (event != nullptr && event->kind == Kind::fault_latched && !always_) {
     name += "_fault";
   }
   const std::string first = settings_.directory + "/" + name;
@@ -186,35 +196,29 @@ std::string Recorder::folder_for(const Record& record) const {
   return path;
 }
 
-void Recorder::take_row(const Record& record) {
+void Recorder::write(const Record& row) {
   Recording& now = *recording_;
-  if (moves(record)) now.last_motion = record.at;
-  now.story.duration_s = seconds(record.at - now.begin);
+  if (control::moves(row.state)) now.last_motion = row.at;
+  now.story.duration_s = seconds(row.at - now.begin);
   ++now.story.rows;
-  rows_.append(now.text, record, now.begin);
+  rows_.append(now.text, row, now.begin);
 }
 
-void Recorder::take_event(const Record& record) {
+void Recorder::write(const StampedEvent& event) {
   Recording& now = *recording_;
-  if (record.event.kind == Kind::sequence_started) {
-    now.story.sequence = shelf_.find(record.event.request);
-    now.story.request = record.event.request;
+  if (event.event.kind == Kind::sequence_started) {
+    now.story.sequence = shelf_.find(event.event.request);
+    now.story.request = event.event.request;
   }
   if (now.story.events.size() == events_per_file) {
     ++now.story.events_left_out;
     return;
   }
   const control::PreparedSequence* sequence = now.story.sequence ? &now.story.sequence->prepared : nullptr;
-  EventEntry entry = describe(record.event, provenance_.channel_names, sequence);
-  entry.time_s = seconds(record.at - now.begin);
+  EventEntry entry = describe(event.event, provenance_.channel_names, sequence);
+  entry.time_s = seconds(event.at - now.begin);
   now.story.events.push_back(std::move(entry));
   now.json_due = true;
-}
-
-void Recorder::remember(const Record& record) {
-  history_.push_back(record);
-  const Nanoseconds oldest = record.at - nanoseconds(settings_.history_s);
-  while (history_.front().at < oldest) history_.pop_front();
 }
 
 void Recorder::flush(bool last) {

@@ -1,10 +1,11 @@
 #pragma once
-// The recorder: takes what the loop left in its ring and makes recordings of it.
+// The recorder: takes what the loop left for it, rows and events, and makes recordings of them.
 
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,14 +56,17 @@ class Recorder {
  private:
   struct Recording;
 
-  void take(const Record& record);
-  void take_row(const Record& record);
-  void take_event(const Record& record);
-  void remember(const Record& record);
-  [[nodiscard]] bool begins_with(const Record& record) const;
-  [[nodiscard]] bool ends_with(const Record& record) const;
-  void begin(const Record& record);
-  [[nodiscard]] std::string folder_for(const Record& record) const;
+  /// Those of the loop up to and with this moment.
+  void take_events(Nanoseconds until);
+  void take(const Record& row);
+  void take(const StampedEvent& event);
+  void write(const Record& row);
+  void write(const StampedEvent& event);
+  [[nodiscard]] bool may_begin(Nanoseconds at) const;
+  void forget_before(Nanoseconds at);
+  /// `event`: what it begins with; nullptr: with a row.
+  void begin(Nanoseconds at, const control::Event* event);
+  [[nodiscard]] std::string folder_for(Nanoseconds at, const control::Event* event) const;
   void end(const char* state);
   void flush(bool last);
   bool write_json();
@@ -76,11 +80,15 @@ class Recorder {
   bool always_;  // one recording from start to stop
   Nanoseconds origin_;
   Wires& wires_;
+  Broadcast<StampedEvent>::Reader loop_events_;
+  std::optional<StampedEvent> waiting_;  // newer than the newest row
+  std::uint64_t events_lost_ = 0;        // told so far
   EventLog& events_;
   const SequenceShelf& shelf_;
   CsvRows rows_;
   std::vector<Record> batch_;
-  std::deque<Record> history_;  // while nothing is recorded
+  std::deque<Record> past_rows_;  // while nothing is recorded
+  std::deque<StampedEvent> past_events_;
   std::unique_ptr<Recording> recording_;
   std::uint32_t recordings_ = 0;
   Nanoseconds now_ = 0;      // of the newest record

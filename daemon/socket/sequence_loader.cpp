@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/sha256.h"
+#include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "control/sequences/sequence_plans.h"
 

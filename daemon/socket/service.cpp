@@ -12,7 +12,12 @@ using Kind = control::Event::Kind;
 
 Service::Service(std::vector<std::string> channel_names, Nanoseconds origin, Wires& wires, EventLog& log,
                  SequenceShelf& shelf)
-    : channel_names_(std::move(channel_names)), origin_(origin), wires_(wires), log_(log), shelf_(shelf) {}
+    : channel_names_(std::move(channel_names)),
+      origin_(origin),
+      wires_(wires),
+      events_(wires.events),
+      log_(log),
+      shelf_(shelf) {}
 
 std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
                                              std::shared_ptr<const LoadedSequence> sequence) {
@@ -38,8 +43,8 @@ void Service::pump() {
     entry.time_s = seconds(event.at - origin_);
     log_.add(std::move(entry));
   }
-  for (StampedEvent event; wires_.events.pop(event);) take(event);
-  const std::uint64_t dropped = wires_.events_dropped.load(std::memory_order_relaxed);
+  for (StampedEvent event; events_.pop(event);) take(event);
+  const std::uint64_t dropped = wires_.events_dropped.load(std::memory_order_relaxed) + events_.lost();
   if (dropped != events_dropped_) {
     EventEntry entry;
     entry.kind = "events_lost";

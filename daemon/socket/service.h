@@ -57,6 +57,7 @@ class Service {
   std::vector<std::string> channel_names_;
   Nanoseconds origin_;
   Wires& wires_;
+  Broadcast<StampedEvent>::Reader events_;
   EventLog& log_;
   SequenceShelf& shelf_;
   std::uint32_t last_request_ = 0;

@@ -90,12 +90,11 @@ const TickOutput& SimulatedRig::tick() {
   request_ = {};
   const TickOutput before = output_;
   around_tick(true);
-  controller_.tick(input, output_);
+  output_ = controller_.tick(input);
   around_tick(false);
   check_commands(before);
-  EXPECT_EQ(output_.events_lost, 0U);
-  events.insert(events.end(), output_.events.begin(),
-                output_.events.begin() + static_cast<long>(output_.event_count));
+  EXPECT_EQ(output_.events.lost(), 0U);
+  events.insert(events.end(), output_.events.begin(), output_.events.end());
   first_ = false;
   return output_;
 }

@@ -61,7 +61,6 @@ class SimulatedRig {
   bool run_until_step(std::uint16_t step, double seconds);
 
   [[nodiscard]] const TickOutput& output() const { return output_; }
-  [[nodiscard]] const RigController& controller() const { return controller_; }
   [[nodiscard]] double time_s() const { return static_cast<double>(now_) * 1e-9; }
   [[nodiscard]] double plant_mm(std::size_t channel) const { return plants_[channel].true_mm; }
   [[nodiscard]] double board_kpa(std::size_t channel) const { return plants_[channel].board_kpa; }

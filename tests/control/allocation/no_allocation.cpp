@@ -47,6 +47,8 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
     ChannelSettings settings = sim::twin_settings();
     settings.feedforward.kind = kind;
     ChannelController controller(settings, sim::tick_s);
+    ChannelOutput output;
+    controller.start(0, output);
     sim::SimulatedFinger finger(settings.model, 0.02, 3);
     ChannelInput input;
     Reference reference;
@@ -62,13 +64,13 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
         reference.start(k * sim::tick_s, 3);
         (void)reference.ramp_to(15, 20);
       }
-      if (k % 3000 == 0) controller.start(0);
+      if (k % 3000 == 0) controller.start(0, output);
       if (k % 1000 == 0) controller.change_gains(settings.pid);
       if (k % 700 == 0) input.now += 7 * sim::tick_ns;
       input.demand.time_s = k * sim::tick_s;
-      const double command = controller.tick(input).command_kpa;
+      controller.tick(input, output);
       armed = false;  // the finger is not what is tested
-      input.reading = finger.write(command, input.now);
+      input.reading = finger.write(output.command_kpa, input.now);
       armed = true;
     }
     armed = false;

@@ -12,32 +12,22 @@ namespace {
 
 constexpr double tick_s = 0.005;
 
-ChannelView deficit(double mm) {
-  ChannelView view;
-  view.valid = true;
-  view.deficit_mm = mm;
-  return view;
-}
-
 TEST(Contact, HasHysteresis) {
   Contact contact(1);
-  contact.observe(deficit(0.99));
+  contact.observe(0.99);
   EXPECT_FALSE(contact.touching());
-  contact.observe(deficit(1));
+  contact.observe(1);
   EXPECT_TRUE(contact.touching());
-  contact.observe(deficit(0.5));
+  contact.observe(0.5);
   EXPECT_TRUE(contact.touching());
-  contact.observe(deficit(0.49));
+  contact.observe(0.49);
   EXPECT_FALSE(contact.touching());
 }
 
-TEST(Contact, LearnsNothingFromInvalidReadings) {
+TEST(Contact, LearnsNothingFromADeficitThatIsNotKnown) {
   Contact contact(1);
-  contact.observe(deficit(2));
-  ChannelView invalid = deficit(0);
-  invalid.valid = false;
-  contact.observe(invalid);
-  contact.observe(deficit(std::nan("")));
+  contact.observe(2);
+  contact.observe(std::nan(""));
   EXPECT_TRUE(contact.touching());
 }
 

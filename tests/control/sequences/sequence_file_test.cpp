@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "control/sequences/prepare_sequence.h"
 #include "tests/control/settings_fixture.h"
 
 namespace softgrip::control {

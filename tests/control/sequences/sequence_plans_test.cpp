@@ -2,6 +2,7 @@
 // with them when all goes as planned and when it does not.
 
 #include "control/sequences/sequence_plans.h"
+#include "control/sequences/prepare_sequence.h"
 
 #include <gtest/gtest.h>
 

@@ -24,16 +24,16 @@ class Rig {
       : Rig(settings, settings.model, noise_mm, seed) {}
   Rig(const ChannelSettings& settings, const model::Model& truth, double noise_mm, std::uint64_t seed)
       : controller(settings, tick_s), finger(truth, noise_mm, seed) {
-    controller.start(0);
+    controller.start(0, last);
     exchange();
   }
 
   /// One tick with what is demanded; the exchange follows at once, as on the rig.
-  ChannelStep tick() {
+  ChannelOutput tick() {
     now += tick_ns;
     input.now = now;
     input.demand.time_s = time_s();
-    last = controller.tick(input);
+    controller.tick(input, last);
     exchange();
     return last;
   }
@@ -61,11 +61,11 @@ class Rig {
   ChannelController controller;
   sim::SimulatedFinger finger;
   ChannelInput input;
-  ChannelStep last;
+  ChannelOutput last;
   Nanoseconds now = 1'000'000'000'000;
 
  private:
-  void exchange() { input.reading = finger.write(controller.command_kpa(), now); }
+  void exchange() { input.reading = finger.write(last.command_kpa, now); }
 };
 
 Reference ramp_and_sine(double from_s) {
@@ -245,7 +245,7 @@ TEST(ChannelController, ResynchronisingFollowsAFingerThatIsNotWhereTheModelIs) {
   Rig rig(settings, 0.02);
   rig.press(30);
   rig.run(5);
-  rig.controller.start(rig.last.command_kpa);
+  rig.controller.start(rig.last.command_kpa, rig.last);
   rig.input.demand.mode = Mode::hold;
   rig.tick();
   const double off = rig.last.residual_mm;
@@ -297,7 +297,7 @@ TEST(ChannelController, SlippedTicksAreCaughtUp) {
   // Three periods pass without a tick: the board holds its output.
   for (int i = 0; i < 3; ++i) {
     rig.now += tick_ns;
-    rig.input.reading = rig.finger.write(rig.controller.command_kpa(), rig.now);
+    rig.input.reading = rig.finger.write(rig.last.command_kpa, rig.now);
   }
   rig.run(0.5);
   EXPECT_LT(std::abs(rig.last.residual_mm), 2e-3);

@@ -222,13 +222,12 @@ TEST_F(Requests, LeavingTheLoopIsSafeInEveryPhase) {
   SimulatedRig rig(settings);
   rig.stone(12);
   start(rig, pick);
-  std::array<double, 2> safe{};
   for (std::uint16_t step = 0; step < 4; ++step) {
     ASSERT_TRUE(rig.run_until_step(step, 20));
     rig.run(0.1);
-    rig.controller().safe_commands(safe);
     const bool holds = step == 2;
-    EXPECT_EQ(safe[0], holds ? rig.output().channels[0].command_kpa : 0) << "step " << step;
+    const ChannelOutput& left = rig.output().channels[0];
+    EXPECT_EQ(left.safe_kpa, holds ? left.command_kpa : 0) << "step " << step;
   }
 }
 

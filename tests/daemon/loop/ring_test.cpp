@@ -86,14 +86,6 @@ TEST(Ring, TakesABatchWholeOrNotAtAll) {
   EXPECT_EQ(ring.pop(out), 0U);
 }
 
-TEST(Ring, KeepsAReserveForWhatMattersMore) {
-  Ring<int> ring(4);
-  const std::array<int, 2> batch{1, 2};
-  EXPECT_TRUE(ring.push(batch, 2));
-  EXPECT_FALSE(ring.push(batch, 2));
-  EXPECT_TRUE(ring.push(batch));
-}
-
 TEST(Ring, KeepsOrderOverManyWraps) {
   const unsigned seed = 20251120;
   SCOPED_TRACE(seed);

@@ -50,13 +50,12 @@ class RecorderTest : public ::testing::Test {
   }
 
   void event(Event::Kind kind, std::uint16_t detail = 0, std::uint32_t request = 0) {
-    Record record;
-    record.at = now_;
-    record.is_event = true;
-    record.event.kind = kind;
-    record.event.detail = detail;
-    record.event.request = request;
-    wires_.records.push(record);
+    StampedEvent event;
+    event.at = now_;
+    event.event.kind = kind;
+    event.event.detail = detail;
+    event.event.request = request;
+    wires_.events.push(event);
   }
 
   void ticks(int count, State state) {

@@ -1,4 +1,4 @@
-#include "control/feedforward/planned_feedforward.h"
+#include "control/sequences/planner.h"
 
 #include <algorithm>
 #include <array>
@@ -34,11 +34,6 @@ constexpr int most_iterations_of_window = 60;
 constexpr double good_mm = 0.01;
 /// A window is done when an iteration lowers its cost by less than this share.
 constexpr double done_share = 2e-3;
-
-bool without_dead_time(const model::BlockInfo& info) {
-  return info.station != model::Station::sensor && info.inverse != model::Inverse::preview &&
-         info.inverse != model::Inverse::ignored;
-}
 
 /// One window: the chain where it begins, the command before it, what is wanted.
 class Window {
@@ -201,39 +196,8 @@ Vector best_of(Window& window, const Vector& guess, const Vector& proportional) 
 
 }  // namespace
 
-double PressurePlan::at(double time_s) const noexcept {
-  if (pressure_kpa.empty()) return 0;
-  const double place = (time_s - start_s) / step_s;
-  if (!(place > 0)) return pressure_kpa.front();
-  const auto whole = static_cast<std::size_t>(place);
-  if (whole + 1 >= pressure_kpa.size()) return pressure_kpa.back();
-  const double share = place - static_cast<double>(whole);
-  return pressure_kpa[whole] + share * (pressure_kpa[whole + 1] - pressure_kpa[whole]);
-}
-
-double PressurePlan::miss_mm(double time_s) const noexcept {
-  if (displacement_mm.empty()) return 0;
-  const double last = static_cast<double>(displacement_mm.size() - 1);
-  const double place = std::round(std::clamp((time_s - start_s) / step_s, 0.0, last));
-  return std::abs(displacement_mm[static_cast<std::size_t>(place)] -
-                  reference.at(start_s + place * step_s).value);
-}
-
-SettledLine settled_line(const model::Model& model, const LimitSettings& limits) {
-  const model::Model finger = model::only(model, without_dead_time);
-  model::Chain<double> chain(finger);
-  SettledLine line;
-  line.lowest_kpa = limits.pressure_min_kpa;
-  chain.reset(limits.pressure_min_kpa);
-  line.at_lowest_mm = chain.after(model::Station::load);
-  chain.reset(limits.pressure_max_kpa);
-  line.gain_mm_per_kpa = (chain.after(model::Station::load) - line.at_lowest_mm) /
-                         (limits.pressure_max_kpa - limits.pressure_min_kpa);
-  return line;
-}
-
 Planner::Planner(const model::Model& model, const LimitSettings& limits, double tick_s)
-    : model_(model::only(model, without_dead_time)),
+    : model_(without_dead_time(model)),
       limits_(limits),
       step_s_(std::max(tick_s, finest_step_s)),
       settled_(settled_line(model, limits)) {}
@@ -285,8 +249,7 @@ PressurePlan Planner::plan(const Reference& reference, double from_s, double to_
         .reference_mm;
   };
   const auto in_proportion = [&](double displacement_mm) {
-    return std::clamp(settled_.pressure_kpa(displacement_mm), limits_.pressure_min_kpa,
-                      limits_.pressure_max_kpa);
+    return in_range(limits_, settled_.pressure_kpa(displacement_mm));
   };
   const auto points = static_cast<std::size_t>(std::ceil((to_s - from_s) / step_s_ - 1e-9)) + 1;
   const auto keep = static_cast<std::size_t>(std::lround(decided_s / step_s_));

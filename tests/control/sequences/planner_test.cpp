@@ -1,4 +1,4 @@
-#include "control/feedforward/planned_feedforward.h"
+#include "control/sequences/planner.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ constexpr LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
 Reference sine_reference(double frequency_hz, double cycles) {
   Reference reference;
   reference.start(0, 0);
-  (void)reference.hold_for(Planner::lead_s);
+  (void)reference.hold_for(plan_lead_s);
   (void)reference.ramp_for(6, 3);
   (void)reference.hold_for(1);
   (void)reference.sine(13, 7, frequency_hz, cycles);

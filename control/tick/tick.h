@@ -1,0 +1,165 @@
+#pragma once
+// The values of one tick: what goes into RigController (control/tick/rig_controller.h) and what comes out of
+// it. Plain values without memory of their own; they cross between threads as they are.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "control/elements/fault.h"
+#include "control/elements/grip_result.h"
+#include "control/elements/model_health.h"
+#include "control/tick/settings.h"
+#include "model/reading.h"
+
+namespace softgrip::control {
+
+struct PreparedSequence;  // control/tick/sequence.h
+
+/// States of the supervisor, as status and recordings name them.
+enum class State : std::uint8_t {
+  starting,  ///< no valid reading from every channel yet; commands at the lowest, or where a fault left them
+  idle,      ///< ready; nothing moves
+  resynchronising,  ///< following the fingers to where they are before motion starts
+  running,          ///< a sequence runs
+  stopping,         ///< a sequence was stopped; the stop action is being carried out
+  faulted,          ///< latched; outputs as the rig file says for the phase in which the fault came
+};
+[[nodiscard]] std::string_view name_of(State state) noexcept;
+/// The rig moves because it was asked to: resynchronising, running or stopping.
+[[nodiscard]] constexpr bool moves(State state) noexcept {
+  return state == State::resynchronising || state == State::running || state == State::stopping;
+}
+
+/// How a sequence ended.
+enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
+[[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
+
+/// What the outside may ask of the controller; at most one per tick (the loop queues them).
+struct Request {
+  enum class Kind : std::uint8_t { none, start, stop, vent, acknowledge };
+  Kind kind = Kind::none;
+  std::uint32_t id = 0;                        ///< echoed in the events that answer it
+  const PreparedSequence* sequence = nullptr;  ///< for start; outlives its run
+};
+
+/// What the bus did since the last tick, as far as control must know.
+struct BusHealth {
+  bool connected = false;             ///< a session is up
+  FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
+  std::uint32_t consecutive_failures = 0;
+};
+
+struct TickInput {
+  Nanoseconds now = 0;
+  std::span<const model::Reading> readings;  ///< one per channel
+  BusHealth bus;
+  Request request;
+  bool emergency_stop = false;       ///< the level of the input, true = stop
+  bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence
+  bool inputs_lost = false;          ///< the digital inputs cannot be read: nobody knows what they say
+  std::uint32_t slipped_cycles = 0;  ///< cycles that the loop lost just before this tick
+};
+
+/// One channel in one tick. It is written in place: what the tick before left here is what this tick's
+/// decisions are made from. Commands, a row of the recording and the status are taken from it.
+struct ChannelOutput {
+  double command_kpa = 0;      ///< what goes to the board: clamped and slew-limited
+  double safe_kpa = 0;         ///< what to write instead when the loop sends no more, by the phase it is in
+  double reference_mm = 0;     ///< clamped, for now; NaN while nothing is tracked
+  double displacement_mm = 0;  ///< the reading used: the last valid one
+  double pressure_kpa = 0;     ///< measured, or NaN
+  double feedforward_kpa = 0;  ///< 0 while nothing is tracked
+  double feedback_kpa = 0;     ///< 0 while nothing is tracked
+  double residual_mm = 0;      ///< reading minus (model + offset), both at the time the reading was sampled;
+                               ///< NaN while there is no valid reading
+  double deficit_mm = 0;       ///< how much less than its free-motion envelope the finger moved; NaN without
+                               ///< sight and until the second valid reading in a row
+  double age_s = 0;            ///< of the reading
+  double health_rms_mm = 0;    ///< root mean square of the residual, by which a model is unfit
+  std::uint16_t step = 0;      ///< index in the sequence
+  model::Validity validity = model::Validity::none_yet;
+  GripResult result = GripResult::none;
+  GripEvidence evidence = GripEvidence::none;  ///< on what the result rests
+  HealthState health = HealthState::unknown;   ///< of the model
+  bool health_changed = false;
+  bool saturated = false;            ///< the request was outside the pressure range
+  bool slewing = false;              ///< the request was further away than the slew limits allow
+  bool request_invalid = false;      ///< the request was not a number: the command was held
+  bool reference_clamped = false;    ///< the reference was outside the displacement range
+  bool out_of_reach = false;         ///< the feedforward cannot reach the reference within the limits
+  bool displacement_beyond = false;  ///< the reading is beyond the displacement range and its margin
+  bool synchronised = false;         ///< resynchronising was asked and residual_mm has settled
+};
+
+/// `Event::channel` of what concerns the whole rig.
+inline constexpr std::uint8_t whole_rig = 0xff;
+
+/// Something worth telling, at most a few per tick.
+struct Event {
+  enum class Kind : std::uint8_t {
+    state_changed,
+    fault_latched,
+    fault_acknowledged,
+    sequence_started,
+    sequence_finished,
+    step_started,
+    grip_result,
+    request_refused,
+    model_health_changed,
+    reading_invalid,
+    reading_valid,
+  };
+  Kind kind = Kind::state_changed;
+  std::uint8_t channel = whole_rig;
+  /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity or SequenceEnd, by kind.
+  std::uint16_t detail = 0;
+  std::uint32_t request = 0;                   ///< the id of the request it answers, or 0
+  double value = 0;                            ///< a number that goes with it (a deficit, an age), or 0
+  GripEvidence evidence = GripEvidence::none;  ///< of grip_result: on what it rests
+};
+
+/// The events of one tick. Those that do not fit are counted.
+class EventList {
+ public:
+  void add(const Event& event) noexcept {
+    if (count_ < events_.size()) {
+      events_[count_++] = event;
+    } else {
+      ++lost_;
+    }
+  }
+  /// `detail` is one of the enumerations that Event::detail names.
+  template <class Detail>
+  void add(Event::Kind kind, Detail detail, std::uint32_t request = 0, double value = 0) noexcept {
+    add_of_channel(whole_rig, kind, detail, request, value);
+  }
+  template <class Detail>
+  void add_of_channel(std::size_t channel, Event::Kind kind, Detail detail, std::uint32_t request = 0,
+                      double value = 0) noexcept {
+    add({kind, static_cast<std::uint8_t>(channel), static_cast<std::uint16_t>(detail), request, value,
+         GripEvidence::none});
+  }
+  void clear() noexcept { count_ = lost_ = 0; }
+
+  [[nodiscard]] const Event* begin() const noexcept { return events_.data(); }
+  [[nodiscard]] const Event* end() const noexcept { return events_.data() + count_; }
+  [[nodiscard]] std::uint32_t lost() const noexcept { return lost_; }
+
+ private:
+  std::uint32_t count_ = 0;
+  std::uint32_t lost_ = 0;
+  std::array<Event, 16> events_{};
+};
+
+struct TickOutput {
+  State state = State::starting;
+  FaultCode first_fault = FaultCode::none;  ///< the first that latched
+  std::size_t channel_count = 0;
+  std::array<ChannelOutput, max_channels> channels{};
+  EventList events;
+};
+
+}  // namespace softgrip::control

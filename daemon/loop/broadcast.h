@@ -1,0 +1,108 @@
+#pragma once
+// A history of small values from one thread to several, without a lock: the events of the loop.
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+namespace softgrip::daemon {
+
+/// Tests put something else into the middle of every copy.
+struct NoInterruption {
+  static void halfway() noexcept {}
+};
+
+/// One thread pushes and never waits: the oldest item makes room. Any number of readers, each of its own
+/// thread and at its own pace; one that lags behind by more than the capacity loses items, counted, and holds
+/// up nobody. Memory is allocated at construction only. T is a plain value.
+template <class T, class Interruption = NoInterruption>
+class Broadcast {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  /// Room for at least `capacity` items (rounded up to a power of two).
+  explicit Broadcast(std::size_t capacity) : slots_(std::bit_ceil(capacity)) {}
+
+  [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
+
+  void push(const T& item) noexcept {
+    Words words{};
+    std::memcpy(words.data(), &item, sizeof(T));
+    Slot& slot = slot_of(pushed_);
+    slot.turn.store(writing, std::memory_order_relaxed);
+    // Whoever sees one of the new words sees before it that the slot is being written.
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      if (i == words.size() / 2) Interruption::halfway();
+      slot.words[i].store(words[i], std::memory_order_release);
+    }
+    slot.turn.store(++pushed_, std::memory_order_release);
+    newest_.store(pushed_, std::memory_order_release);
+  }
+
+  /// Begins with the oldest item that is still there.
+  class Reader {
+   public:
+    explicit Reader(const Broadcast& from) noexcept : from_(&from) {}
+
+    /// Takes the next item, if there is one.
+    bool pop(T& item) noexcept {
+      for (;;) {
+        const std::uint64_t newest = from_->newest_.load(std::memory_order_acquire);
+        if (taken_ == newest) return false;
+        if (newest - taken_ > from_->capacity()) lose(newest - from_->capacity());
+        const Slot& slot = from_->slot_of(taken_);
+        Words words{};
+        const std::uint64_t before = slot.turn.load(std::memory_order_acquire);
+        for (std::size_t i = 0; i < words.size(); ++i) {
+          if (i == words.size() / 2) Interruption::halfway();
+          words[i] = slot.words[i].load(std::memory_order_acquire);
+        }
+        const bool whole = before == taken_ + 1 && slot.turn.load(std::memory_order_relaxed) == before;
+        if (!whole) {
+          lose(taken_ + 1);
+          continue;
+        }
+        ++taken_;
+        std::memcpy(static_cast<void*>(&item), words.data(), sizeof(T));
+        return true;
+      }
+    }
+
+    /// Items that were overwritten before they could be taken.
+    [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
+
+   private:
+    void lose(std::uint64_t until) noexcept {
+      lost_ += until - taken_;
+      taken_ = until;
+    }
+
+    const Broadcast* from_;
+    std::uint64_t taken_ = 0;
+    std::uint64_t lost_ = 0;
+  };
+
+ private:
+  using Words = std::array<std::uint64_t, (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t)>;
+  static constexpr std::uint64_t writing = UINT64_MAX;
+
+  struct Slot {
+    std::atomic<std::uint64_t> turn{0};  ///< the number of its item, from 1
+    std::array<std::atomic<std::uint64_t>, std::tuple_size_v<Words>> words{};
+  };
+  [[nodiscard]] Slot& slot_of(std::uint64_t index) noexcept { return slots_[index & (slots_.size() - 1)]; }
+  [[nodiscard]] const Slot& slot_of(std::uint64_t index) const noexcept {
+    return slots_[index & (slots_.size() - 1)];
+  }
+
+  std::vector<Slot> slots_;
+  std::uint64_t pushed_ = 0;  // the writer's
+  alignas(64) std::atomic<std::uint64_t> newest_{0};
+};
+
+}  // namespace softgrip::daemon

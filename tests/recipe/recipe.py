@@ -1,0 +1,73 @@
+"""Carries out a page of docs/how-to in a copy of the source tree, and builds it.
+
+What the page shows is what is done: a fence ```cpp file=PATH is a new file, ```diff file=PATH changes one. What a diff
+leaves or takes away must stand in the file exactly once.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+
+
+class RecipeError(AssertionError):
+    """The page does not fit the source."""
+
+
+FENCE = re.compile(r"^```(\w+) file=(\S+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def change(path, hunk):
+    lines = hunk.splitlines()
+    old = "".join(line[1:] + "\n" for line in lines if line[:1] != "+")
+    new = "".join(line[1:] + "\n" for line in lines if line[:1] != "-")
+    text = path.read_text(encoding="utf-8")
+    if text.count(old) != 1:
+        raise RecipeError(f"{path}: found {text.count(old)} times instead of once:\n{old}")
+    path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+class Tree:
+    """A copy of the source tree in `folder`, with a build of its own."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder) / "softgrip"
+        self.build = self.folder / "build" / "release"
+        listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=SOURCE,
+                                check=True, capture_output=True, text=True).stdout
+        for name in filter(None, listed.split("\0")):
+            if (SOURCE / name).is_file():
+                (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(SOURCE / name, self.folder / name)
+
+    def carry_out(self, page):
+        """Returns how many fences of the page were carried out."""
+        fences = FENCE.findall((SOURCE / page).read_text(encoding="utf-8"))
+        for language, name, body in fences:
+            path = self.folder / name
+            if language == "diff":
+                change(path, body)
+            elif path.exists():
+                raise RecipeError(f"{path} exists already")
+            else:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(body, encoding="utf-8")
+        return len(fences)
+
+    def make(self, *targets):
+        """Builds as the release preset does, with a compiler cache where there is one."""
+        launcher = shutil.which("ccache")
+        options = [f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}"] if launcher else []
+        environment = {**os.environ, "CCACHE_BASEDIR": str(self.folder)}
+        self.run(["cmake", "--preset", "release", "-DSOFTGRIP_TESTS=ON", *options], env=environment)
+        self.run(["cmake", "--build", "build/release", "-j", str(os.cpu_count()), "--target", *targets],
+                 env=environment)
+
+    def run(self, command, **more):
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=False, **more)
+        if done.returncode != 0:
+            raise AssertionError(f"{command}: {done.returncode}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
+        return done.stdout
