@@ -212,15 +212,19 @@ void add_warnings(Identification& result) {
 
 tl::expected<Identification, std::string> identify(const std::vector<Log>& logs, const model::Model& start,
                                                    const IdentifyOptions& options) {
-  const auto began = std::chrono::steady_clock::now();
   if (logs.empty()) return Failure("no logs to identify from");
   for (const Log& log : logs) {
     if (options.record.drive == Drive::measured && log.pressure_kpa.empty()) {
       return Failure(log.name + " has no measured pressure");
     }
   }
-  std::vector<Record> whole = make_records(logs, options.record);
-  std::vector<Record> records = whole;
+  return identify(make_records(logs, options.record), start, options);
+}
+
+tl::expected<Identification, std::string> identify(std::vector<Record> records, const model::Model& start,
+                                                   const IdentifyOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  const std::vector<Record> whole = records;
   if (options.fit_share < 1) {
     for (Record& record : records) hold_out(record, options.fit_share);
   }

@@ -90,5 +90,9 @@ struct Identification {
 [[nodiscard]] tl::expected<Identification, std::string> identify(const std::vector<Log>& logs,
                                                                  const model::Model& start,
                                                                  const IdentifyOptions& options = {});
+/// The same for records that are there already: what is hidden in them stays hidden.
+[[nodiscard]] tl::expected<Identification, std::string> identify(std::vector<Record> records,
+                                                                 const model::Model& start,
+                                                                 const IdentifyOptions& options = {});
 
 }  // namespace softgrip::sysid

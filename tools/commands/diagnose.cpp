@@ -126,10 +126,8 @@ ExitCode run(Options options) {
 
   sysid::examine(*result, options.diagnosis);
   const Consequences consequences = consequences_of(*result, consequence_options(options, *logs));
-  if (const auto written = write_diagnosis_folder(options.out, *result, consequences, options.logs.channel);
-      !written) {
-    return fail(ExitCode::io, written.error());
-  }
+  const auto json = write_diagnosis_folder(options.out, *result, consequences, options.logs.channel);
+  if (!json) return fail(ExitCode::io, json.error());
   const sysid::DiagnosisReport report{*result,
                                       *logs,
                                       *model,
@@ -140,7 +138,7 @@ ExitCode run(Options options) {
   if (const auto written = write_file(page, sysid::diagnosis_html(report)); !written)
     return fail(ExitCode::io, written.error());
   if (options.json) {
-    std::fputs(complete_json(*result, consequences).c_str(), stdout);
+    std::fputs(json->c_str(), stdout);
   } else {
     print_summary(*result, options.out);
     std::fputs(text_of(consequences, options.out).c_str(), stdout);

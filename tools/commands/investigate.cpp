@@ -136,9 +136,10 @@ std::optional<RigTracking> on_rig(const Options& options, const Playground& grou
 
 std::string completed(const Investigation& investigation, const Playground& ground,
                       const std::optional<ClosedLoopGain>& gain, const std::optional<RigTracking>& tracking) {
-  std::string json = to_json(investigation, ground.name);
-  if (gain) json = with_closed_loop(json, *gain);
-  return tracking ? with_rig_tracking(json, *tracking) : json;
+  nlohmann::ordered_json json = json_of(investigation, ground.name);
+  if (gain) add_closed_loop(json, *gain);
+  if (tracking) add_rig_tracking(json, *tracking);
+  return json.dump(2) + "\n";
 }
 
 void print_end(const Investigation& investigation, const std::optional<ClosedLoopGain>& gain,

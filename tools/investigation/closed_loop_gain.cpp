@@ -165,8 +165,7 @@ ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question) {
   return gain;
 }
 
-std::string with_closed_loop(const std::string& diagnosis_json, const ClosedLoopGain& gain) {
-  Json json = Json::parse(diagnosis_json);
+void add_closed_loop(Json& json, const ClosedLoopGain& gain) {
   Json pid = scheme_json(gain.pid_alone);
   pid["feedforward"] = "none";
   json["closed_loop"] = {{"recalibrated_rmse_mm", gain.recalibrated.rmse_mm},
@@ -179,7 +178,6 @@ std::string with_closed_loop(const std::string& diagnosis_json, const ClosedLoop
                            {"pid_alone", std::move(pid)}}},
                          {"notes", gain.notes()},
                          {"wall_s", gain.wall_s}};
-  return json.dump(2) + "\n";
 }
 
 }  // namespace softgrip::tools

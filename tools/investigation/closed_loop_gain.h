@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "control/elements/pid.h"
 #include "model/model.h"
 
@@ -47,7 +49,7 @@ struct ClosedLoopGain {
 
 [[nodiscard]] ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question);
 
-/// diagnosis.json with "closed_loop" filled in.
-[[nodiscard]] std::string with_closed_loop(const std::string& diagnosis_json, const ClosedLoopGain& gain);
+/// Fills in "closed_loop" of a diagnosis.json or investigation.json.
+void add_closed_loop(nlohmann::ordered_json& json, const ClosedLoopGain& gain);
 
 }  // namespace softgrip::tools

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
@@ -19,6 +21,13 @@ std::string listed(const std::vector<std::string>& ids) {
   std::string text;
   for (const std::string& id : ids) text += (text.empty() ? "" : ", ") + id;
   return text;
+}
+
+std::string complete_json(const sysid::Diagnosis& diagnosis, const Consequences& consequences) {
+  nlohmann::ordered_json json = sysid::json_of(diagnosis);
+  add_experiment(json, consequences.experiment, experiment_file);
+  if (consequences.closed_loop) add_closed_loop(json, *consequences.closed_loop);
+  return json.dump(2) + "\n";
 }
 
 }  // namespace
@@ -46,16 +55,10 @@ Consequences consequences_of(const sysid::Diagnosis& diagnosis, const Consequenc
   return consequences;
 }
 
-std::string complete_json(const sysid::Diagnosis& diagnosis, const Consequences& consequences) {
-  std::string json = with_experiment(sysid::to_json(diagnosis), consequences.experiment, experiment_file);
-  if (consequences.closed_loop) json = with_closed_loop(json, *consequences.closed_loop);
-  return json;
-}
-
-tl::expected<void, std::string> write_diagnosis_folder(const std::string& folder,
-                                                       const sysid::Diagnosis& diagnosis,
-                                                       const Consequences& consequences,
-                                                       const std::string& channel) {
+tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
+                                                              const sysid::Diagnosis& diagnosis,
+                                                              const Consequences& consequences,
+                                                              const std::string& channel) {
   const std::filesystem::path out(folder);
   std::vector<std::pair<const char*, std::string>> files{
       {"diagnosis.json", complete_json(diagnosis, consequences)},
@@ -72,9 +75,10 @@ tl::expected<void, std::string> write_diagnosis_folder(const std::string& folder
     files.emplace_back(sysid::gauge_positions_file, sysid::positions_csv(check->positions_mm));
   }
   for (const auto& [name, text] : files) {
-    if (auto written = write_file((out / name).string(), text); !written) return written;
+    if (const auto written = write_file((out / name).string(), text); !written)
+      return tl::unexpected(written.error());
   }
-  return {};
+  return std::move(files.front().second);
 }
 
 std::string text_of(const Consequences& consequences, const std::string& folder) {

@@ -27,15 +27,13 @@ struct ConsequenceOptions {
 [[nodiscard]] Consequences consequences_of(const sysid::Diagnosis& diagnosis,
                                            const ConsequenceOptions& options);
 
-/// diagnosis.json, complete.
-[[nodiscard]] std::string complete_json(const sysid::Diagnosis& diagnosis, const Consequences& consequences);
-
-/// Writes the files into `folder`; a next_experiment.yaml of an earlier diagnosis goes where there is none.
+/// Writes the files into `folder` and returns what diagnosis.json says; a next_experiment.yaml of an earlier
+/// diagnosis goes where there is none.
 /// @param channel  for which the experiment is written; "": all of the rig.
-[[nodiscard]] tl::expected<void, std::string> write_diagnosis_folder(const std::string& folder,
-                                                                     const sysid::Diagnosis& diagnosis,
-                                                                     const Consequences& consequences,
-                                                                     const std::string& channel = "");
+[[nodiscard]] tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
+                                                                            const sysid::Diagnosis& diagnosis,
+                                                                            const Consequences& consequences,
+                                                                            const std::string& channel = "");
 
 /// The question of the closed loop that a diagnosis answers.
 [[nodiscard]] ClosedLoopQuestion closed_loop_question(const sysid::Diagnosis& diagnosis, std::uint64_t seed);

@@ -168,7 +168,7 @@ tl::expected<Investigation, std::string> investigate(const InvestigationOptions&
   return Investigator(options).run();
 }
 
-std::string to_json(const Investigation& investigation, const std::string& rig) {
+Json json_of(const Investigation& investigation, const std::string& rig) {
   Json json{{"schema", 1},
             {"rig", rig},
             {"end", name_of(investigation.end)},
@@ -200,7 +200,7 @@ std::string to_json(const Investigation& investigation, const std::string& rig) 
   json["gauge"] = nullptr;
   if (const auto& gauge = investigation.gauge)
     json["gauge"] = {{"path", gauge->path}, {"sha256", gauge->sha256}};
-  return json.dump(2) + "\n";
+  return json;
 }
 
 }  // namespace softgrip::tools

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
 #include "model/model.h"
@@ -83,6 +84,6 @@ struct Investigation {
 [[nodiscard]] tl::expected<Investigation, std::string> investigate(const InvestigationOptions& options);
 
 /// investigation.json. `rig`: what the experiments were played on.
-[[nodiscard]] std::string to_json(const Investigation& investigation, const std::string& rig);
+[[nodiscard]] nlohmann::ordered_json json_of(const Investigation& investigation, const std::string& rig);
 
 }  // namespace softgrip::tools

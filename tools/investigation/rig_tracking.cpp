@@ -94,13 +94,11 @@ tl::expected<RigTracking, NotPlayed> track_on_rig(const ExperimentRig& rig, cons
   return tracking;
 }
 
-std::string with_rig_tracking(const std::string& json, const RigTracking& tracking) {
-  auto root = nlohmann::ordered_json::parse(json);
-  root["closed_loop"]["on_rig"] = {{"recalibrated_rmse_mm", tracking.recalibrated_rmse_mm},
+void add_rig_tracking(nlohmann::ordered_json& json, const RigTracking& tracking) {
+  json["closed_loop"]["on_rig"] = {{"recalibrated_rmse_mm", tracking.recalibrated_rmse_mm},
                                    {"extended_rmse_mm", tracking.extended_rmse_mm},
                                    {"cycles", tracking.cycles},
                                    {"of", "reading minus reference"}};
-  return root.dump(2) + "\n";
 }
 
 }  // namespace softgrip::tools

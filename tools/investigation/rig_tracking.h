@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
 #include "model/model.h"
@@ -23,7 +24,7 @@ struct RigTracking {
     const ExperimentRig& rig, const model::Model& recalibrated, const model::Model& extended,
     const ClosedLoopGain& gain, const std::string& folder, const Consent& consent);
 
-/// investigation.json with closed_loop.on_rig filled in.
-[[nodiscard]] std::string with_rig_tracking(const std::string& json, const RigTracking& tracking);
+/// Fills in "closed_loop.on_rig" of an investigation.json.
+void add_rig_tracking(nlohmann::ordered_json& json, const RigTracking& tracking);
 
 }  // namespace softgrip::tools

@@ -72,8 +72,8 @@ inline constexpr double separation_needed_sigma = 5;
 /// A sequence file of one pressure step, as softgripd reads it. @param channel  "" for all of the rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
 
-/// diagnosis.json with next_experiment and gauge_check (null without one) and experiment_advice filled in.
-[[nodiscard]] std::string with_experiment(const std::string& diagnosis_json, const NextExperiment& experiment,
-                                          const std::string& file);
+/// Fills in next_experiment and gauge_check (null without one) and experiment_advice of a diagnosis.json.
+void add_experiment(nlohmann::ordered_json& diagnosis_json, const NextExperiment& experiment,
+                    const std::string& file);
 
 }  // namespace softgrip::sysid

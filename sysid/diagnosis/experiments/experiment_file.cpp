@@ -36,9 +36,7 @@ std::string sequence_yaml(const NextExperiment& experiment, const std::string& c
   return yaml;
 }
 
-std::string with_experiment(const std::string& diagnosis_json, const NextExperiment& experiment,
-                            const std::string& file) {
-  Json json = Json::parse(diagnosis_json);
+void add_experiment(Json& json, const NextExperiment& experiment, const std::string& file) {
   json["next_experiment"] = nullptr;
   if (experiment.best) {
     const JudgedWaveform& best = *experiment.best;
@@ -67,7 +65,6 @@ std::string with_experiment(const std::string& diagnosis_json, const NextExperim
   }
   json["experiments_judged"] = std::move(menu);
   json["experiment_advice"] = experiment.advice;
-  return json.dump(2) + "\n";
 }
 
 }  // namespace softgrip::sysid

@@ -104,18 +104,6 @@ Json evidence_json(const Evidence& evidence) {
           {"unphysical_recalibration", std::move(unphysical)}};
 }
 
-Json reference_json(const Reference& r) {
-  Json json{{"structure_mm", r.structural_mm}, {"rmse_before_mm", r.rmse_before_mm}};
-  json["explained_percent"] = r.present ? spread(r.explained_percent) : Json(nullptr);
-  if (!r.present) return json;
-  json["linear_percent"] = r.linear_percent;
-  json["heldout_rmse_mm"] = r.rmse_after_mm;
-  Json groups = Json::object();
-  for (const FeatureGroup& group : r.groups) groups[group.id] = group.importance_percent;
-  json["importance_percent"] = std::move(groups);
-  return json;
-}
-
 Json gauge_json(const GaugeEvidence& gauge) {
   const GaugeCheck& check = gauge.check;
   Json json{{"file", gauge.file.path},
@@ -156,7 +144,7 @@ Json gauge_json(const GaugeEvidence& gauge) {
 
 }  // namespace
 
-std::string to_json(const Diagnosis& d) {
+Json json_of(const Diagnosis& d) {
   Json json;
   json["schema"] = 1;
   json["verdict"] = name_of(d.verdict);
@@ -208,14 +196,12 @@ std::string to_json(const Diagnosis& d) {
   if (!d.rejected.empty()) candidates["none"] = candidates_json(d.rejected);
   json["candidates"] = std::move(candidates);
   if (d.evidence) json["evidence"] = evidence_json(*d.evidence);
-  if (d.reference) json["reference"] = reference_json(*d.reference);
-  if (d.reference_left) json["reference_left"] = reference_json(*d.reference_left);
   json["warnings"] = d.warnings;
   json["wall_s"] = d.wall_s;
   Json stages = Json::object();
   for (const auto& [stage, took_s] : d.stages_s) stages[stage] = took_s;
   json["stages_s"] = std::move(stages);
-  return json.dump(2) + "\n";
+  return json;
 }
 
 }  // namespace softgrip::sysid

@@ -220,44 +220,11 @@ void add_gain(Page& page, const Diagnosis& d) {
   page.figure(gain_chart(d), "Held-out errors beside the readings' noise.");
 }
 
-std::string reference_sentence(const Reference& r, const std::string& whose) {
-  if (!r.present)
-    return "The " + whose + " model's error is the readings' noise: nothing is left to explain.";
-  return "Of the structure in the " + whose + " model's error (" + significant(r.structural_mm, 2) +
-         " mm beyond the noise) a flexible function of the measured signals and their history explains " +
-         range(r.explained_percent, 0) + " on stretches that it did not see, " + fixed(r.linear_percent, 0) +
-         " % with linear terms alone.";
-}
-
 void add_left(Page& page, const Diagnosis& d) {
   page.section("What is left");
   page.paragraph("Share of the structure that stays unexplained: " + fixed(d.unexplained_percent, 1) + " %.");
   if (d.evidence && is_extended(d) && d.structure_left.present)
     page.paragraph("After the extension: " + dependence_sentence(d.evidence->extended));
-  if (!d.reference) return;
-  page.paragraph(reference_sentence(*d.reference, "recalibrated"));
-  if (d.reference_left) page.paragraph(reference_sentence(*d.reference_left, "extended"));
-  const Reference& last = d.reference_left ? *d.reference_left : *d.reference;
-  if (last.present && last.explained_percent.lower > 1) {
-    page.paragraph("A cause that these logs show could therefore still gain at least " +
-                   fixed(last.explained_percent.lower, 0) + " % of that structure.");
-  } else if (last.present) {
-    page.paragraph(
-        "That function finds nothing that predicts what is left. That is no proof that nothing does: a law "
-        "that it would need more logs to learn may still be there.");
-  }
-  const Reference& drawn = last.groups.empty() ? *d.reference : last;
-  if (!drawn.groups.empty() && drawn.groups.front().importance_percent > 0) {
-    page.figure(
-        importance_chart(drawn),
-        "What that function loses of the " +
-            std::string(&drawn == &*d.reference ? "recalibrated" : "extended") +
-            " model's structure when one group of signals is shuffled. Groups that say the same share "
-            "their importance.");
-  }
-  page.paragraph(
-      "The function: ridge regression (Hoerl and Kennard 1970), then gradient-boosted trees (Friedman "
-      "2001).");
 }
 
 void add_limits(Page& page, const DiagnosisReport& report) {

@@ -197,24 +197,4 @@ Chart gain_chart(const Diagnosis& d) {
   return chart;
 }
 
-Chart importance_chart(const Reference& reference) {
-  Chart chart;
-  chart.height = 220;
-  chart.y.label = "lost [% of structure]";
-  Series bars;
-  bars.style = Series::Style::bars;
-  bars.colour = Colour::other;
-  for (const FeatureGroup& group : reference.groups) {
-    std::string name = group.id;
-    std::replace(name.begin(), name.end(), '_', ' ');
-    bars.x.push_back(static_cast<double>(chart.x.categories.size()));
-    bars.y.push_back(group.importance_percent);
-    chart.x.categories.push_back(name);
-  }
-  chart.x.lower = -0.6;
-  chart.x.upper = static_cast<double>(bars.x.size()) - 0.4;
-  chart.series = {bars};
-  return chart;
-}
-
 }  // namespace softgrip::sysid

@@ -20,7 +20,5 @@ namespace softgrip::sysid {
 [[nodiscard]] Chart spectrum_chart(const Diagnosis& diagnosis);
 /// Held-out errors of the three models.
 [[nodiscard]] Chart gain_chart(const Diagnosis& diagnosis);
-/// What the reference draws on.
-[[nodiscard]] Chart importance_chart(const Reference& reference);
 
 }  // namespace softgrip::sysid

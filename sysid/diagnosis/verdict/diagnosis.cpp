@@ -87,22 +87,18 @@ void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vecto
 }
 
 /// The base fitted from the given model and, since recalibration can start far off, from the data's scale.
-tl::expected<StructureFit, std::string> recalibrate(const std::vector<Log>& logs, const SearchData& data,
-                                                    const DiagnosisOptions& options) {
+tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
   IdentifyOptions wide;
   wide.starts = 6;
   wide.seed = options.seed;
   wide.threads = options.threads;
   wide.record = options.record;
-  auto found = identify(logs, data.given.model, wide);
+  auto found = identify(data.records, data.given.model, wide);
   if (found) {
     FitPoint point{found->fitted, rest_starts(found->fitted, data.records)};
-    // What identification found out about unknown starts; a zero that is not free stays where it is.
-    for (std::size_t k = 0; k < data.records.size(); ++k) {
-      point.starts[k] = found->scores[k].start;
-      if (!data.records[k].offset_free) point.starts[k].offset_mm = 0;
-    }
+    // What identification found out about unknown starts.
+    for (std::size_t k = 0; k < data.records.size(); ++k) point.starts[k] = found->scores[k].start;
     StructureFit other = fit_structure(data.records, {}, point);
     if (other.mean_square_mm2 < best.mean_square_mm2 * (1 - 1e-4)) best = std::move(other);
   }
@@ -158,7 +154,7 @@ class Diagnostician {
   tl::expected<Diagnosis, std::string> run() {
     StageClock clock(d_);
     if (auto ready = prepare(); !ready) return Failure(ready.error());
-    auto base = recalibrate(logs_, data_, options_);
+    auto base = recalibrate(data_, options_);
     if (!base) return Failure(base.error());
     hide_more_outliers(*base);
     d_.recalibrated = *base;
@@ -397,6 +393,12 @@ const char* name_of(Verdict verdict) {
       return "unexplained";
   }
   return "unexplained";
+}
+
+void examine(Diagnosis& d, const DiagnosisOptions& options) {
+  StageClock clock(d);
+  d.evidence = examine_fits(d.records, d.as_given, d.recalibrated, d.extended, d.noise_mm, options.seed);
+  clock.ended("evidence");
 }
 
 tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs, const model::Model& given,

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
 #include "model/model.h"
 #include "sysid/diagnosis/evidence/evidence.h"
-#include "sysid/diagnosis/evidence/reference.h"
 #include "sysid/diagnosis/gauge/gauge_verdict.h"
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/diagnosis/search/null_calibration.h"
@@ -83,9 +83,7 @@ struct Diagnosis {
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;
-  std::optional<Evidence> evidence;         ///< where the models are wrong; see examine()
-  std::optional<Reference> reference;       ///< of the recalibrated model's residual
-  std::optional<Reference> reference_left;  ///< of the extended model's residual, where it is another
+  std::optional<Evidence> evidence;  ///< where the models are wrong; see examine()
   double wall_s = 0;
   std::vector<std::pair<std::string, double>> stages_s;  ///< what the wall time went into
 };
@@ -113,13 +111,13 @@ class StageClock {
                                                             const model::Model& given,
                                                             const DiagnosisOptions& options = {});
 
-/// Adds the evidence and the references to a diagnosis.
+/// Adds the evidence to a diagnosis: it describes what the verdict left, and does not change it.
 void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
 
 /// The verdict in one sentence that a technician understands.
 [[nodiscard]] std::string verdict_sentence(const Diagnosis& diagnosis);
 
-/// The contract's JSON. `next_experiment` is null here; the command that designs one fills it in.
-[[nodiscard]] std::string to_json(const Diagnosis& diagnosis);
+/// The contract's JSON. `next_experiment` is null here; add_experiment() fills it in.
+[[nodiscard]] nlohmann::ordered_json json_of(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -27,7 +27,8 @@ TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
   EXPECT_TRUE(gain.extended.refused.empty()) << gain.extended.refused;
   EXPECT_LT(gain.extended.rmse_mm, 0.25 * gain.pid_alone.rmse_mm);
   EXPECT_EQ(gain.reference(), "13 +- 7 mm at 0.2 Hz");
-  const auto json = nlohmann::json::parse(with_closed_loop("{\"schema\": 1}", gain));
+  nlohmann::ordered_json json{{"schema", 1}};
+  add_closed_loop(json, gain);
   EXPECT_EQ(json["schema"], 1);
   EXPECT_EQ(json["closed_loop"]["extended_rmse_mm"], gain.extended.rmse_mm);
   EXPECT_EQ(json["closed_loop"]["gains"]["recalibrated"]["feedforward"], "none");

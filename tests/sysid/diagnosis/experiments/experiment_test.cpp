@@ -140,7 +140,8 @@ TEST(Experiment, NothingIsProposedWithoutRivals) {
   Diagnosis d;
   d.verdict = Verdict::cause_found;
   EXPECT_FALSE(design_experiment(d, {}).best);
-  const auto json = nlohmann::json::parse(with_experiment("{\"next_experiment\": 1}", {}, "x.yaml"));
+  nlohmann::ordered_json json{{"next_experiment", 1}};
+  add_experiment(json, {}, "x.yaml");
   EXPECT_TRUE(json["next_experiment"].is_null());
 }
 
@@ -185,7 +186,8 @@ TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
   const double seen_sigma = std::sqrt(std::max(0.0, misfit("slow_creep") - misfit("stress_softening")));
   EXPECT_GT(seen_sigma, 0.6 * next.predicted_separation_sigma);
 
-  const auto json = nlohmann::json::parse(with_experiment("{}", next, "next_experiment.yaml"));
+  nlohmann::ordered_json json;
+  add_experiment(json, next, "next_experiment.yaml");
   EXPECT_EQ(json["next_experiment"]["file"], "next_experiment.yaml");
   EXPECT_EQ(json["next_experiment"]["separates"].size(), 2U);
   EXPECT_EQ(json["next_experiment"]["predicted_separation_sigma"], next.predicted_separation_sigma);

@@ -196,11 +196,11 @@ TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
 }
 
 TEST(GaugeVerdict, StandsInTheJson) {
-  const auto without = nlohmann::json::parse(to_json(diagnosed(bent_scale, std::nullopt)));
+  const auto without = json_of(diagnosed(bent_scale, std::nullopt));
   ASSERT_TRUE(without.contains("gauge"));
   EXPECT_TRUE(without["gauge"].is_null());
   const GaugeFile gauge = gauge_of(bent_scale);
-  const auto json = nlohmann::json::parse(to_json(diagnosed(bent_scale, gauge)))["gauge"];
+  const auto json = json_of(diagnosed(bent_scale, gauge))["gauge"];
   EXPECT_EQ(json["file"], "gauge.csv");
   EXPECT_EQ(json["readings"].size(), gauge.readings.size());
   EXPECT_EQ(json["ruled_out"], nlohmann::json({"stiffening"}));
@@ -218,7 +218,8 @@ TEST(GaugeVerdict, TheCheckIsProposedOnceWhereItHelps) {
   EXPECT_NEAR(next.gauge_check->minutes, static_cast<double>(next.gauge_check->positions_mm.size()) / 3,
               1e-9);
   EXPECT_NE(next.advice.front().find("--gauge"), std::string::npos) << next.advice.front();
-  const auto json = nlohmann::json::parse(with_experiment(to_json(before), next, "next_experiment.yaml"));
+  nlohmann::ordered_json json = json_of(before);
+  add_experiment(json, next, "next_experiment.yaml");
   EXPECT_TRUE(json["next_experiment"].is_null());
   EXPECT_EQ(json["gauge_check"]["file"], "gauge_positions.csv");
 
