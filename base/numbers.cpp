@@ -9,7 +9,7 @@ namespace softgrip {
 namespace {
 
 template <class... Format>
-std::string written(double value, Format... format) {
+std::string formatted(double value, Format... format) {
   std::array<char, 512> buffer;  // the longest fixed double has 309 digits before the point
   const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format...);
   return error == std::errc{} ? std::string(buffer.data(), end) : std::string("?");
@@ -25,20 +25,28 @@ std::string without_trailing_zeros(std::string text) {
 }  // namespace
 
 std::string shortest(double value) {
-  return written(value);
+  return formatted(value);
+}
+
+std::string written(double value) {
+  constexpr std::size_t short_enough = 10;
+  std::string text = formatted(value, std::chars_format::fixed);
+  return text.size() <= short_enough ? text : shortest(value);
 }
 
 std::string significant(double value, int digits) {
-  if (!std::isfinite(value)) return written(value);
+  if (!std::isfinite(value)) return shortest(value);
   if (value == 0) return "0";
   const double magnitude = std::abs(value);
-  if (magnitude < 1e-4 || magnitude >= 1e7) return written(value, std::chars_format::scientific, digits - 1);
+  if (magnitude < 1e-4 || magnitude >= 1e7)
+    return formatted(value, std::chars_format::scientific, digits - 1);
   const int leading = static_cast<int>(std::floor(std::log10(magnitude)));
-  return without_trailing_zeros(written(value, std::chars_format::fixed, std::max(0, digits - 1 - leading)));
+  return without_trailing_zeros(
+      formatted(value, std::chars_format::fixed, std::max(0, digits - 1 - leading)));
 }
 
 std::string fixed(double value, int decimals) {
-  std::string text = written(value, std::chars_format::fixed, decimals);
+  std::string text = formatted(value, std::chars_format::fixed, decimals);
   const bool only_zeros = text.find_first_not_of("-0.") == std::string::npos;
   if (only_zeros && text.front() == '-') text.erase(0, 1);
   return text;

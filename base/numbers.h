@@ -9,6 +9,8 @@ namespace softgrip {
 
 /// The fewest digits that read back to the same double ("nan", "inf" as such).
 [[nodiscard]] std::string shortest(double value);
+/// The same without an exponent where that is short: for messages that say what a file may hold.
+[[nodiscard]] std::string written(double value);
 /// `digits` significant ones, for people; trailing zeros kept out, no exponent between 1e-4 and 1e7.
 [[nodiscard]] std::string significant(double value, int digits = 4);
 /// `decimals` digits after the point.

@@ -61,7 +61,7 @@ softgrip_room(sysid/pages USES base document model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification USES base document model model/file sysid/logs sysid/pages sysid/fitting
   LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
-softgrip_room(sysid/diagnosis/residual USES base model sysid/logs)
+softgrip_room(sysid/diagnosis/residual USES base model sysid/logs LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/causes USES base model sysid/logs sysid/fitting sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
   USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes)

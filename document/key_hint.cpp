@@ -5,6 +5,7 @@
 #include <charconv>
 #include <optional>
 
+#include "base/numbers.h"
 #include "document/number.h"
 
 namespace softgrip::document {

@@ -1,7 +1,6 @@
 #include "document/number.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <system_error>
 
@@ -147,16 +146,6 @@ std::string found(const Node& node) {
       break;
   }
   return node.scalar.empty() ? "an empty text" : "`" + shown(node.scalar) + "`";
-}
-
-std::string written(double number) {
-  constexpr std::size_t short_enough = 10;
-  std::array<char, 32> buffer{};
-  const auto fixed =
-      std::to_chars(buffer.data(), buffer.data() + short_enough, number, std::chars_format::fixed);
-  if (fixed.ec == std::errc{}) return {buffer.data(), fixed.ptr};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr;
-  return {buffer.data(), end};
 }
 
 Parsed<double> parse_number(const Node& node) {

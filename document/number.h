@@ -28,7 +28,4 @@ struct Parsed {
 /// What a node is, for "found ...": "a list", "a map", "nothing", "`text`".
 [[nodiscard]] std::string found(const Node& node);
 
-/// A number as text that reads back to it, without an exponent where that is short: for messages.
-[[nodiscard]] std::string written(double number);
-
 }  // namespace softgrip::document

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/numbers.h"
 #include "document/characters.h"
 #include "document/key_hint.h"
 #include "document/number.h"

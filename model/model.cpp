@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/text.h"
+#include "base/numbers.h"
 #include "model/catalogue.h"
 
 namespace softgrip::model {
@@ -30,10 +30,10 @@ void check_values(const BlockSpec& block, std::vector<std::string>& wrong) {
     const ParameterSpec& spec = descriptor.spec(i);
     const double value = block.values[i];
     if (!(value >= spec.lower && value <= spec.upper)) {
-      wrong.push_back(id + "." + parameter_name(block, i) + " = " + to_text(value) + " is not in [" +
-                      to_text(spec.lower) + ", " + to_text(spec.upper) + "]");
+      wrong.push_back(id + "." + parameter_name(block, i) + " = " + shortest(value) + " is not in [" +
+                      shortest(spec.lower) + ", " + shortest(spec.upper) + "]");
     } else if (spec.whole && value != std::round(value)) {
-      wrong.push_back(id + "." + parameter_name(block, i) + " = " + to_text(value) +
+      wrong.push_back(id + "." + parameter_name(block, i) + " = " + shortest(value) +
                       " is not a whole number");
     }
   }

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 
+#include "base/numbers.h"
 #include "document/number.h"
 #include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {
 
 namespace {
-
-using document::written;
 
 /// Modbus: the safe value of each output in use is at or below the lowest pressure of its limits.
 bool vents(const Context& context, const drivers::ModbusSettings& board) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/numbers.h"
 #include "document/number.h"
 #include "drivers/modbus/serial_port.h"
 #include "rig/board_map_file.h"
@@ -15,7 +16,6 @@ namespace softgrip::rig {
 namespace {
 
 using document::Node;
-using document::written;
 using drivers::ModbusModuleSettings;
 using drivers::ModbusSettings;
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 
+#include "base/numbers.h"
 #include "document/number.h"
 #include "rig/rig_file_reader.h"
 
@@ -141,7 +142,7 @@ void read_detection(Context& context, MapReader& top) {
   detection.model_rmse_mm = *rmse;
   if (reader.good("margin_mm") && reader.good("model_rmse_mm") && detection.margin_mm < 3 * *rmse) {
     reader.report("margin_mm", "`margin_mm` must be at least three times `model_rmse_mm`",
-                  "at least " + document::written(3 * *rmse) + ", or identify a better model");
+                  "at least " + written(3 * *rmse) + ", or identify a better model");
   }
 }
 
@@ -233,10 +234,9 @@ control::PlausibilitySettings read_plausibility(Context& context, const Node& no
   settings.frozen_band_mm = reader.number("frozen_band_mm", {0, 1000});
   settings.frozen_command_kpa = reader.number("frozen_command_kpa", {0.001, 10'000});
   if (context.rate_known && reader.good("max_age_s") && settings.max_age_s <= context.period_s()) {
-    reader.report(
-        "max_age_s",
-        "`max_age_s` must be longer than a cycle, which is " + document::written(context.period_s()) + " s",
-        "every reading would be stale");
+    reader.report("max_age_s",
+                  "`max_age_s` must be longer than a cycle, which is " + written(context.period_s()) + " s",
+                  "every reading would be stale");
   }
   return settings;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/random.h"
 #include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {
@@ -20,12 +21,9 @@ std::optional<simulation::PlantObject> read_object(Context& context, const Node&
   return object;
 }
 
-/// Distinct seeds per channel from one number, by a step of SplitMix64 (Steele, Lea, Flood 2014).
+/// Distinct seeds per channel from one number: SplitMix64's sequence.
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
-  std::uint64_t z = seed + (channel + 1) * 0x9E3779B97F4A7C15U;
-  z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-  z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-  return z ^ (z >> 31U);
+  return scattered(seed + channel * 0x9e3779b97f4a7c15U);
 }
 
 simulation::PlantSettings read_plant(Context& context, const Node& node, const std::string& name) {

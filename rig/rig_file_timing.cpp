@@ -1,5 +1,6 @@
 // How long exchanges with a board may take, and what becomes of a session that is lost.
 
+#include "base/numbers.h"
 #include "document/number.h"
 #include "rig/rig_file_reader.h"
 
@@ -28,7 +29,7 @@ void read_timing(Context& context, MapReader& reader) {
       rig.loop.exchange_deadline_s >= patience_s) {
     reader.warn("exchange_deadline_s",
                 "a single exchange that misses its deadline is already the fault bus_down",
-                "`bus_down_cycles` are over after " + document::written(patience_s) + " s");
+                "`bus_down_cycles` are over after " + written(patience_s) + " s");
   }
   rig.accept_over_budget = reader.optional_boolean("accept_over_budget").value_or(false);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/numbers.h"
 #include "document/number.h"
 #include "rig/rig_file_reader.h"
 
@@ -11,7 +12,6 @@ namespace softgrip::rig {
 namespace {
 
 using document::Node;
-using document::written;
 using drivers::ElectricalUnit;
 
 /// V and mA of any board there is; tighter limits come from the board map.

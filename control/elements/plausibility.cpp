@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/time.h"
+
 namespace softgrip::control {
 namespace {
 double between_s(Nanoseconds from, Nanoseconds to) {
@@ -12,8 +14,8 @@ double between_s(Nanoseconds from, Nanoseconds to) {
 
 Plausibility::Plausibility(const PlausibilitySettings& settings) noexcept
     : settings_(settings),
-      max_age_(std::llround(settings.max_age_s * 1e9)),
-      frozen_after_(std::llround(settings.frozen_after_s * 1e9)) {}
+      max_age_(nanoseconds(settings.max_age_s)),
+      frozen_after_(nanoseconds(settings.frozen_after_s)) {}
 
 void Plausibility::reset() noexcept {
   known_ = false;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string_view>
 
+#include "base/numbers.h"
 #include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
 #include "model/chain.h"
@@ -23,12 +23,6 @@ using model::Station;
 constexpr std::string_view usual_cause =
     ": the model moves the wrong way first; a latency in the data is the usual cause, run `softgrip "
     "diagnose`";
-
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
 
 /// The smallest slope of displacement over pressure that was met, and where.
 struct Worst {
@@ -82,7 +76,8 @@ std::string wrong_way(const model::Chain<double>& chain, double stiff, std::stri
   const double gain = bouc_wen->alpha_mm_per_kpa() + stiff;
   if (beta < gain) return {};
   return "beta " + std::string(beta > gain ? ">" : "=") + " alpha" + std::string(stiff_name) + " (" +
-         number(beta) + (beta > gain ? " > " : " = ") + number(gain) + " mm/kPa)" + std::string(usual_cause);
+         significant(beta) + (beta > gain ? " > " : " = ") + significant(gain) + " mm/kPa)" +
+         std::string(usual_cause);
 }
 
 tl::expected<void, Refusal> check_gain(const model::Model& model, double pressure_max_kpa, double tick_s,
@@ -91,8 +86,8 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, double pressur
   if (!text.empty()) return tl::unexpected(Refusal{std::move(text)});
   const Worst worst = worst_gain(model, pressure_max_kpa, tick_s);
   if (worst.gain_mm_per_kpa > 0) return {};
-  return tl::unexpected(Refusal{"the instantaneous gain is " + number(worst.gain_mm_per_kpa) + " mm/kPa at " +
-                                number(worst.pressure_kpa) + " kPa while the pressure " +
+  return tl::unexpected(Refusal{"the instantaneous gain is " + significant(worst.gain_mm_per_kpa) +
+                                " mm/kPa at " + significant(worst.pressure_kpa) + " kPa while the pressure " +
                                 (worst.rising ? "rises" : "falls") + std::string(usual_cause)});
 }
 
@@ -133,7 +128,7 @@ tl::expected<void, Refusal> check_planned(const model::Model& model, const Limit
   const double gain = settled_line(model, limits).gain_mm_per_kpa;
   if (gain > 0) return {};
   return tl::unexpected(Refusal{"the model's settled gain between the lowest and the highest command is " +
-                                number(gain) + " mm/kPa: planning needs one above 0"});
+                                significant(gain) + " mm/kPa: planning needs one above 0"});
 }
 
 tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,

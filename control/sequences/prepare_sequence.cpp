@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "base/numbers.h"
 #include "control/sequences/sequence_plans.h"
 #include "document/node.h"
 
@@ -16,14 +17,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 using document::Problems;
-
-/// "12.5" for messages.
-std::string text_of(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
 
 double rounded(double value) {
   return std::round(value * 100) / 100;
@@ -66,15 +59,15 @@ class Fitting {
                                      "step '" + step.name + "': the model of channel '" +
                                          settings_.channels[missed.channel].name +
                                          "' cannot follow within the limits: it stays up to " +
-                                         text_of(rounded(missed.worst_mm)) + " mm from the reference",
+                                         significant(rounded(missed.worst_mm), 6) + " mm from the reference",
                                      "a slower or smaller motion, or wider limits"));
     }
     if (stop.stop_requested()) report(sequence_.steps.front(), "its planning was stopped");
     if (prepared.planned_s > most_planned_s) {
-      report(
-          sequence_.steps.front(),
-          "more than " + text_of(most_planned_s) + " s of motion would have to be planned before the start",
-          "split the sequence, or use another feedforward");
+      report(sequence_.steps.front(),
+             "more than " + significant(most_planned_s, 6) +
+                 " s of motion would have to be planned before the start",
+             "split the sequence, or use another feedforward");
     }
   }
 
@@ -147,9 +140,10 @@ class Fitting {
   void check_displacement(const Step& step, const ChannelSettings& channel, double lowest, double highest) {
     const LimitSettings& limits = channel.limits;
     if (lowest < limits.displacement_min_mm || highest > limits.displacement_max_mm) {
-      report(step, "goes to " + text_of(lowest < limits.displacement_min_mm ? lowest : highest) +
-                       " mm, channel '" + channel.name + "' allows " + text_of(limits.displacement_min_mm) +
-                       " to " + text_of(limits.displacement_max_mm) + " mm");
+      report(step, "goes to " + significant(lowest < limits.displacement_min_mm ? lowest : highest, 6) +
+                       " mm, channel '" + channel.name + "' allows " +
+                       significant(limits.displacement_min_mm, 6) + " to " +
+                       significant(limits.displacement_max_mm, 6) + " mm");
     }
     if (!channel.displacement_used) {
       report(step, "channel '" + channel.name + "' does not use its displacement",
@@ -164,9 +158,10 @@ class Fitting {
   void check_pressure(const Step& step, const ChannelSettings& channel, double lowest, double highest) {
     const LimitSettings& limits = channel.limits;
     if (lowest < limits.pressure_min_kpa || highest > limits.pressure_max_kpa) {
-      report(step, "goes to " + text_of(lowest < limits.pressure_min_kpa ? lowest : highest) +
-                       " kPa, channel '" + channel.name + "' allows " + text_of(limits.pressure_min_kpa) +
-                       " to " + text_of(limits.pressure_max_kpa) + " kPa");
+      report(step, "goes to " + significant(lowest < limits.pressure_min_kpa ? lowest : highest, 6) +
+                       " kPa, channel '" + channel.name + "' allows " +
+                       significant(limits.pressure_min_kpa, 6) + " to " +
+                       significant(limits.pressure_max_kpa, 6) + " kPa");
     }
   }
 
@@ -175,8 +170,8 @@ class Fitting {
     const double start = sine.mean_mm - sine.amplitude_mm;
     check_displacement(step, channel, start, sine.mean_mm + sine.amplitude_mm);
     if (!(std::abs(follows - start) < 1e-9)) {
-      report(step, "starts at " + text_of(start) + " mm (mean_mm - amplitude_mm)",
-             "put a move to displacement_mm: " + text_of(start) + " before it");
+      report(step, "starts at " + significant(start, 6) + " mm (mean_mm - amplitude_mm)",
+             "put a move to displacement_mm: " + significant(start, 6) + " before it");
     }
     if (sine.frequency_hz > settings_.rate_hz / 20) {
       report(step, "frequency_hz is above a twentieth of the rig's rate_hz");
@@ -223,7 +218,7 @@ class Fitting {
     const double least = step.target.duration_s + step.settle_s + step.purge_s +
                          (step.kind == StepKind::grip ? step.verify.window_s : 0);
     if (step.timeout_s && *step.timeout_s <= least) {
-      report(step, "timeout_s is not longer than the step's own times, " + text_of(least) + " s");
+      report(step, "timeout_s is not longer than the step's own times, " + significant(least, 6) + " s");
     }
   }
 

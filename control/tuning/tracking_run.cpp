@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/random.h"
+#include "base/time.h"
 #include "control/feedforward/invertibility.h"
 #include "control/feedforward/running_model.h"
 #include "control/sequences/planner.h"
@@ -124,7 +125,7 @@ PressurePlan plan_for(const TrackingRun& run) {
 
 TrackingResult track(const TrackingRun& run) {
   const double tick_s = 1 / run.rate_hz;
-  const auto tick_ns = static_cast<Nanoseconds>(std::llround(1e9 * tick_s));
+  const Nanoseconds tick_ns = nanoseconds(tick_s);
   const Reference reference = reference_of(run);
   ChannelController controller(run.settings, tick_s);
   ChannelOutput step;

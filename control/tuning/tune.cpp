@@ -1,12 +1,11 @@
 #include "control/tuning/tune.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 
+#include "base/numbers.h"
 #include "base/random.h"
 #include "control/feedforward/running_model.h"
 #include "control/tuning/gain_search.h"
@@ -112,23 +111,18 @@ class Cost {
   std::vector<PressurePlan> plans_;
 };
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
-
 std::string limit_in_words(const TuneTask& task, const Tuned& tuned) {
   std::string text;
   if (tuned.sensitivity > 0.95 * task.most_sensitivity) {
     const auto lag = model::find_path(task.finger, "valve_lag.time_constant_s");
-    text = "the margin: Ms is " + number(tuned.sensitivity) + " of the " + number(task.most_sensitivity) +
-           " that are allowed; " + number(dead_time_s(task.finger)) + " s of dead time" +
-           (lag ? " and " + number(model::flat_values(task.finger)[*lag]) + " s of lag" : "") +
+    text = "the margin: Ms is " + significant(tuned.sensitivity, 3) + " of the " +
+           significant(task.most_sensitivity, 3) + " that are allowed; " +
+           significant(dead_time_s(task.finger), 3) + " s of dead time" +
+           (lag ? " and " + significant(model::flat_values(task.finger)[*lag], 3) + " s of lag" : "") +
            " leave no more feedback";
   } else {
-    text = "no margin (Ms is " + number(tuned.sensitivity) + " of " + number(task.most_sensitivity) +
-           "): more feedback would not lower the error";
+    text = "no margin (Ms is " + significant(tuned.sensitivity, 3) + " of " +
+           significant(task.most_sensitivity, 3) + "): more feedback would not lower the error";
   }
   const double floor = tuned.exact_mm;
   const double by_noise = tuned.noisy_mm - floor;

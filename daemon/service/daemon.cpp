@@ -151,27 +151,30 @@ void DaemonParts::tell(const char* kind, Severity severity, std::string text) {
   events.add(std::move(entry));
 }
 
-int exit_code_of(const Outcome& outcome) noexcept {
-  const int done = !outcome.left_safely ? 1 : outcome.recording_error.empty() ? 0 : 4;
+ExitCode exit_code_of(const Outcome& outcome) noexcept {
+  const ExitCode done = !outcome.left_safely              ? ExitCode::failed
+                        : outcome.recording_error.empty() ? ExitCode::done
+                                                          : ExitCode::io;
   switch (outcome.ending) {
     case Ending::asked:
       return done;
     case Ending::sequence_ended:
       if (outcome.sequence_end == control::SequenceEnd::done) return done;
-      return outcome.sequence_end == control::SequenceEnd::failed ? 6 : 1;
+      return outcome.sequence_end == control::SequenceEnd::failed ? ExitCode::not_acceptable
+                                                                  : ExitCode::failed;
     case Ending::gpio_refused:
-      return 3;
+      return ExitCode::input_refused;
     case Ending::socket_failed:
     case Ending::gpio_failed:
-      return 4;
+      return ExitCode::io;
     case Ending::sequence_refused:
     case Ending::not_idle:
-      return 5;
+      return ExitCode::state_refused;
     case Ending::real_time_refused:
     case Ending::broken:
-      return 1;
+      return ExitCode::failed;
   }
-  return 1;
+  return ExitCode::failed;
 }
 
 tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile rig, DaemonOptions options) {

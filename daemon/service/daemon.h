@@ -13,6 +13,7 @@
 #include <tl/expected.hpp>
 
 #include "base/clock.h"
+#include "base/exit_code.h"
 #include "daemon/loop/statistics.h"
 #include "daemon/loop/wires.h"
 #include "daemon/recording/event_log.h"
@@ -71,7 +72,7 @@ struct Outcome {
 };
 
 /// 0, 1, 3, 4, 5 or 6: see the exit codes of the manual.
-[[nodiscard]] int exit_code_of(const Outcome& outcome) noexcept;
+[[nodiscard]] ExitCode exit_code_of(const Outcome& outcome) noexcept;
 
 /// The board of a rig file, not yet connected. `clock` outlives it.
 [[nodiscard]] std::unique_ptr<drivers::Board> make_board(const rig::RigFile& rig, const Clock& clock);

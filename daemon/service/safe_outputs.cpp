@@ -23,18 +23,18 @@ constexpr int exchanges_that_confirm = 2;
 
 }  // namespace
 
-int exit_code_of(SafeOutputsEnd end) noexcept {
+ExitCode exit_code_of(SafeOutputsEnd end) noexcept {
   switch (end) {
     case SafeOutputsEnd::confirmed:
     case SafeOutputsEnd::board_holds:
     case SafeOutputsEnd::not_needed:
-      return 0;
+      return ExitCode::done;
     case SafeOutputsEnd::daemon_running:
-      return 5;
+      return ExitCode::state_refused;
     case SafeOutputsEnd::board_silent:
-      return 4;
+      return ExitCode::io;
   }
-  return 4;
+  return ExitCode::io;
 }
 
 SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board, const Clock& clock,

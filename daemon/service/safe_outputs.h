@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/clock.h"
+#include "base/exit_code.h"
 #include "drivers/board/board.h"
 #include "rig/rig_file.h"
 
@@ -26,7 +27,7 @@ struct SafeOutputsReport {
 };
 
 /// 0, 4 or 5: see the exit codes of the manual.
-[[nodiscard]] int exit_code_of(SafeOutputsEnd end) noexcept;
+[[nodiscard]] ExitCode exit_code_of(SafeOutputsEnd end) noexcept;
 
 /// Connects and writes pressure_min_kpa of every channel until two exchanges in a row succeeded: in the
 /// second the board repeats what the first one wrote, where its map has a read-back. Tries again until

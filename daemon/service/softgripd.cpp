@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/exit_code.h"
 #include "base/version.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/event_printer.h"
@@ -23,10 +24,6 @@ namespace {
 using namespace softgrip;
 
 // The exit codes of every program of the project.
-constexpr int failed = 1;
-constexpr int usage = 2;
-constexpr int input_refused = 3;
-constexpr int io_failed = 4;
 
 struct Arguments {
   std::string config;
@@ -82,27 +79,27 @@ void complain(const std::string& sentence) {
   std::fputs(("softgripd: " + sentence + "\n").c_str(), stderr);
 }
 
-int refuse(const document::Problems& problems) {
+ExitCode refuse(const document::Problems& problems) {
   std::fputs(problems.format().c_str(), stderr);
-  return input_refused;
+  return ExitCode::input_refused;
 }
 
-int check(const Arguments& arguments) {
+ExitCode check(const Arguments& arguments) {
   std::vector<std::string> files{arguments.config};
   if (!arguments.sequence.empty()) files.push_back(arguments.sequence);
   const rig::CheckReport report = rig::check_files(files);
   std::fputs(report.problems.format().c_str(), stderr);
-  if (!report.accepted()) return input_refused;
+  if (!report.accepted()) return ExitCode::input_refused;
   document::Problems ignored;  // the report has them
   const auto rig = rig::load_rig(arguments.config, ignored);
-  if (!rig) return input_refused;
+  if (!rig) return ExitCode::input_refused;
   const MonotonicClock clock;
   fmt::print("{}{}: fit to run\n", daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr),
              arguments.config);
-  return 0;
+  return ExitCode::done;
 }
 
-int safe_outputs(const Arguments& arguments) {
+ExitCode safe_outputs(const Arguments& arguments) {
   document::Problems problems;
   const auto rig = rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
@@ -127,14 +124,14 @@ bool write_histograms(const std::string& path, const daemon::Daemon& daemon) {
   return file.flush().good();
 }
 
-int run(const Arguments& arguments) {
+ExitCode run(const Arguments& arguments) {
   document::Problems problems;
   auto rig = rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
   std::fputs(problems.format().c_str(), stderr);  // warnings
   if (arguments.seed && !rig::reseed(*rig, *arguments.seed)) {
     complain("--seed needs a simulated board");
-    return usage;
+    return ExitCode::usage;
   }
 
   daemon::DaemonOptions options;
@@ -155,13 +152,13 @@ int run(const Arguments& arguments) {
   auto daemon = daemon::Daemon::create(std::move(*rig), std::move(options));
   if (!daemon) {
     complain(daemon.error());
-    return usage;
+    return ExitCode::usage;
   }
   const daemon::Outcome outcome = (*daemon)->run();
   printer.print_end(outcome);
   if (!arguments.histograms.empty() && !write_histograms(arguments.histograms, **daemon)) {
     complain(fmt::format("{} cannot be written", arguments.histograms));
-    return io_failed;
+    return ExitCode::io;
   }
   return daemon::exit_code_of(outcome);
 }
@@ -175,13 +172,14 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : usage;
+    return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
   }
   try {
-    if (arguments.safe_outputs) return safe_outputs(arguments);
-    return arguments.check ? check(arguments) : run(arguments);
+    return static_cast<int>(arguments.safe_outputs ? safe_outputs(arguments)
+                            : arguments.check      ? check(arguments)
+                                                   : run(arguments));
   } catch (const std::exception& error) {
     complain(error.what());
-    return failed;
+    return static_cast<int>(ExitCode::failed);
   }
 }

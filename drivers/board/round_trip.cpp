@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "base/numbers.h"
+#include "base/statistics.h"
 
 namespace softgrip::drivers {
 namespace {
@@ -21,22 +23,18 @@ bool is_loopback(const std::string& host) {
 
 double RoundTrip::median_s() const noexcept {
   if (count_ == 0) return 0;
-  std::array<Nanoseconds, 32> sorted = durations_;
-  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count_));
-  return static_cast<double>(sorted[count_ / 2]) * 1e-9;
+  std::array<Nanoseconds, 32> all = durations_;
+  return seconds(median_of(std::span(all).first(count_)));
 }
 
 double RoundTrip::slowest_s() const noexcept {
   if (count_ == 0) return 0;
-  return static_cast<double>(*std::max_element(durations_.begin(),
-                                               durations_.begin() + static_cast<std::ptrdiff_t>(count_))) *
-         1e-9;
+  return seconds(
+      *std::max_element(durations_.begin(), durations_.begin() + static_cast<std::ptrdiff_t>(count_)));
 }
 
-std::string milliseconds(double seconds) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g ms", seconds * 1e3);
-  return text.data();
+std::string milliseconds(double duration_s) {
+  return significant(duration_s * 1e3, 3) + " ms";
 }
 
 Board::Budget tcp_cost(std::size_t transactions, const std::string& plan, const std::string& host,

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "base/text.h"
+#include "base/numbers.h"
 #include "document/reader.h"
 #include "model/catalogue.h"
 
@@ -197,7 +197,7 @@ std::string to_yaml(const Model& model) {
       any = true;
       text += "  - " + std::string(info.id) + ":\n";
       for (std::size_t i = 0; i < block.values.size(); ++i) {
-        text += "      " + parameter_name(block, i) + ": " + to_text(block.values[i]) + "\n";
+        text += "      " + parameter_name(block, i) + ": " + shortest(block.values[i]) + "\n";
       }
     }
   }

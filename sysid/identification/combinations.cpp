@@ -1,5 +1,7 @@
 #include "sysid/identification/combinations.h"
 
+#include "base/numbers.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -63,6 +65,20 @@ std::vector<Combination> combinations_of(const Model& model) {
                     }});
   }
   return list;
+}
+
+double beta_over_gain(const model::Model& model) {
+  for (const Combination& c : combinations_of(model)) {
+    if (c.name == "beta_over_instantaneous_gain") return c.value(model);
+  }
+  return 0;
+}
+
+std::string wrong_way_sentence(double beta_over_gain) {
+  return "beta / (alpha + 1/k0) = " + significant(beta_over_gain, 3) +
+         " is above 1: the model moves the wrong way first and cannot be inverted; a latency in the data is "
+         "the "
+         "usual cause";
 }
 
 }  // namespace softgrip::sysid

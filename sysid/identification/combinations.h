@@ -22,4 +22,10 @@ struct Combination {
 /// Those that make sense for the blocks of this model.
 [[nodiscard]] std::vector<Combination> combinations_of(const model::Model& model);
 
+/// beta over the instantaneous gain alpha + 1/k0 of a Bouc-Wen element; 0 without one. From 1 on the model
+/// moves the wrong way first.
+[[nodiscard]] double beta_over_gain(const model::Model& model);
+/// What is said of a model whose ratio is above 1.
+[[nodiscard]] std::string wrong_way_sentence(double beta_over_gain);
+
 }  // namespace softgrip::sysid

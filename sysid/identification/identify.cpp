@@ -6,10 +6,12 @@
 #include <limits>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "model/catalogue.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/search.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
 #include "sysid/identification/profile.h"
 #include "sysid/identification/start_points.h"
@@ -70,9 +72,7 @@ double huber_width_mm(const Residuals& residuals, const std::vector<double>& z) 
   std::vector<double> r(residuals.count());
   if (!residuals.evaluate(z, r, {}) || r.empty()) return std::numeric_limits<double>::infinity();
   for (double& value : r) value = std::abs(value);
-  const auto middle = r.begin() + static_cast<long>(r.size() / 2);
-  std::nth_element(r.begin(), middle, r.end());
-  return std::max(2.5 * *middle / 0.6745, 1e-9);
+  return std::max(2.5 * median_of(std::span(r)) / 0.6745, 1e-9);
 }
 
 /// The work of one exponent.
@@ -179,14 +179,8 @@ model::Model put_back(const model::Model& start, const model::Model& fitted) {
 
 void add_warnings(Identification& result) {
   if (!result.converged) result.warnings.emplace_back("the last minimisation stopped before it converged");
-  for (const Estimate& e : result.combinations) {
-    if (e.name == "beta_over_instantaneous_gain" && e.value > 1) {
-      result.warnings.push_back("beta / (alpha + 1/k0) = " + significant(e.value, 3) +
-                                " is above 1: the model moves the wrong way first and cannot be inverted; a "
-                                "latency in the data is the "
-                                "usual cause, run softgrip diagnose");
-    }
-  }
+  if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
+    result.warnings.push_back(wrong_way_sentence(ratio) + ", run softgrip diagnose");
   for (const Record& record : result.records) {
     if (record.start_unknown) {
       result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");

@@ -5,6 +5,7 @@
 
 #include "base/numbers.h"
 #include "model/file/model_file.h"
+#include "sysid/identification/combinations.h"
 #include "sysid/identification/log_figures.h"
 #include "sysid/pages/page.h"
 #include "sysid/pages/provenance.h"
@@ -18,12 +19,6 @@ constexpr double hardly_correlated = 0.3;
 /// Above this share of the span a fit is bad whatever the noise.
 constexpr double bad_percent = 10;
 
-const Estimate* find(const std::vector<Estimate>& list, std::string_view name) {
-  const auto found =
-      std::find_if(list.begin(), list.end(), [name](const Estimate& e) { return e.name == name; });
-  return found == list.end() ? nullptr : &*found;
-}
-
 double largest_percent(const Identification& r) {
   double largest = 0;
   for (const Score& s : r.scores) largest = std::max(largest, s.rmse_percent_of_span);
@@ -35,14 +30,9 @@ bool is_noise(const Identification& r) {
          std::abs(r.noise.lag1_correlation) < hardly_correlated;
 }
 
-bool moves_the_wrong_way(const Identification& r) {
-  const Estimate* ratio = find(r.combinations, "beta_over_instantaneous_gain");
-  return ratio != nullptr && ratio->value > 1;
-}
-
 Tone tone_of(const Identification& r) {
   if (largest_percent(r) > bad_percent) return Tone::bad;
-  return is_noise(r) && !moves_the_wrong_way(r) && r.converged ? Tone::good : Tone::doubtful;
+  return is_noise(r) && beta_over_gain(r.fitted) <= 1 && r.converged ? Tone::good : Tone::doubtful;
 }
 
 std::string logs_in_words(const Identification& r) {
@@ -205,7 +195,7 @@ std::string verdict_of(const Identification& r) {
       is_noise(r) ? "The model explains " + logs + " to the noise: " + size + "."
                   : "The model follows " + logs + " with an " + size +
                         ", but structure is left that is not noise; softgrip diagnose looks for its cause.";
-  if (moves_the_wrong_way(r)) text += " It moves the wrong way first and cannot be inverted.";
+  if (const double ratio = beta_over_gain(r.fitted); ratio > 1) text += " " + wrong_way_sentence(ratio) + ".";
   if (!r.converged) text += " The search stopped before it converged.";
   return text;
 }

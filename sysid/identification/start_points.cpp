@@ -10,23 +10,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What the data say about sizes.
-struct DataScale {
-  double largest_kpa = 1;
-  double span_mm = 1;
-  double longest_s = 1;
-};
-
-DataScale scale_of(const std::vector<Record>& records) {
-  DataScale scale{0, 0, 0};
-  for (const Record& record : records) {
-    scale.largest_kpa = std::max(scale.largest_kpa, record.largest_kpa);
-    scale.span_mm = std::max(scale.span_mm, record.span_mm);
-    scale.longest_s = std::max(scale.longest_s, record.length_s());
-  }
-  return scale;
-}
-
 std::size_t type_of(std::string_view id) {
   return *model::find_block(id);
 }
@@ -34,7 +17,7 @@ std::size_t type_of(std::string_view id) {
 class Drawer {
  public:
   Drawer(const FitSpace& space, const std::vector<Record>& records, std::uint64_t seed)
-      : space_(space), scale_(scale_of(records)), random_(seed) {}
+      : space_(space), scale_(campaign_size(records)), random_(seed) {}
 
   /// Factors of about two on what is positive by nature, half a typical change or value on the rest.
   FitPoint around(const FitPoint& given) {
@@ -97,12 +80,22 @@ class Drawer {
   }
 
   const FitSpace& space_;
-  DataScale scale_;
+  CampaignSize scale_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
 };
 
 }  // namespace
+
+CampaignSize campaign_size(const std::vector<Record>& records) {
+  CampaignSize extent;
+  for (const Record& record : records) {
+    extent.largest_kpa = std::max(extent.largest_kpa, record.largest_kpa);
+    extent.span_mm = std::max(extent.span_mm, record.span_mm);
+    extent.longest_s = std::max(extent.longest_s, record.length_s());
+  }
+  return extent;
+}
 
 std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
                                   const std::vector<Record>& records, std::size_t count, std::uint64_t seed) {
@@ -119,7 +112,7 @@ std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
 }
 
 model::Model base_model(const std::vector<Log>& logs, std::size_t branches) {
-  const DataScale scale = scale_of(make_records(logs, {}));
+  const CampaignSize scale = campaign_size(make_records(logs, {}));
   const double gain = scale.span_mm / std::max(scale.largest_kpa, 1e-6);
   model::Model model;
   model.name = "identified";

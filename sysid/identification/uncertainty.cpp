@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "base/statistics.h"
 #include "sysid/fitting/bounded_solve.h"
 
 namespace softgrip::sysid {
@@ -127,17 +128,6 @@ std::vector<LooseDirection> loose_directions(const MatrixXd& covariance, const s
 }
 
 }  // namespace
-
-double t_quantile(double degrees_of_freedom) {
-  // Cornish and Fisher's expansion (Abramowitz and Stegun 26.7.5); the error at 3 degrees is below 1 %.
-  constexpr double z = 1.959963984540054;
-  const double v = std::max(degrees_of_freedom, 2.0);
-  const double z3 = z * z * z;
-  const double z5 = z3 * z * z;
-  const double z7 = z5 * z * z;
-  return z + (z3 + z) / (4 * v) + (5 * z5 + 16 * z3 + 3 * z) / (96 * v * v) +
-         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * v * v * v);
-}
 
 Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>& z, double huber_mm) {
   const auto n = static_cast<Index>(z.size());

@@ -37,7 +37,4 @@ struct Uncertainty {
 [[nodiscard]] Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>& z,
                                          double huber_mm);
 
-/// 97.5 % quantile of Student's t.
-[[nodiscard]] double t_quantile(double degrees_of_freedom);
-
 }  // namespace softgrip::sysid

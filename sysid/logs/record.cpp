@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/statistics.h"
 #include "model/catalogue.h"
 
 namespace softgrip::sysid {
@@ -120,11 +121,8 @@ double fast_noise_mm(const Record& record) {
     const double second = y[i] - 2 * y[i - 1] + y[i - 2];
     if (std::isfinite(second)) differences.push_back(std::abs(second));
   }
-  if (differences.empty()) return 0;
-  const auto middle = differences.begin() + static_cast<long>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
   // The median of |N(0, 6 sigma^2)| is 0.6745 sqrt(6) sigma.
-  return *middle / (0.6745 * std::sqrt(6.0));
+  return median_of(std::span(differences)) / (0.6745 * std::sqrt(6.0));
 }
 
 model::Model deterministic_part(const model::Model& model, Drive drive) {

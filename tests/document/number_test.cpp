@@ -1,6 +1,7 @@
 // Texts to numbers: exactly, without a locale, and with a hint where a text is none.
 
 #include "document/number.h"
+#include "base/numbers.h"
 
 #include <gtest/gtest.h>
 

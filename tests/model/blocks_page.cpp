@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "base/text.h"
+#include "base/numbers.h"
 #include "model/catalogue.h"
 
 namespace softgrip::model {
@@ -48,7 +48,7 @@ std::string_view how_undone(Inverse inverse) {
 
 std::string range(double value) {
   if (value == 0) return "0";
-  return to_text(value);
+  return shortest(value);
 }
 
 void write_parameter(std::ostream& out, const ParameterSpec& spec) {

@@ -91,7 +91,7 @@ ExitCode run(const Options& options) {
   const daemon::Outcome outcome = (*daemon)->run();
   if (!outcome.message.empty()) fail(ExitCode::failed, outcome.message);
   report(options, outcome);
-  return static_cast<ExitCode>(daemon::exit_code_of(outcome));
+  return daemon::exit_code_of(outcome);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
 #include "tools/commissioning/motion.h"
@@ -13,12 +14,6 @@ namespace softgrip::tools::doctor {
 namespace {
 
 constexpr double ms_per_s = 1e3;
-
-/// To so many decimals, and never as "-0.00".
-std::string fixed(double value, int decimals) {
-  const double scale = std::pow(10, decimals);
-  return fmt::format("{:.{}f}", std::round(value * scale) / scale + 0.0, decimals);
-}
 
 std::string advice_for_silence(const rig::RigFile& rig) {
   const bool simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);

@@ -4,13 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "document/number.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools::calibrate {
 namespace {
-
-using document::written;
 
 /// To so many decimals, without zeros that say nothing.
 std::string rounded(double value, int decimals) {

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
+#include "sysid/identification/start_points.h"
 
 namespace softgrip::tools {
 namespace {
@@ -37,12 +38,10 @@ ClosedLoopQuestion closed_loop_question(const sysid::Diagnosis& diagnosis, std::
   question.recalibrated = diagnosis.recalibrated_model;
   question.extended = diagnosis.extended_model;
   question.noise_mm = diagnosis.noise_mm;
-  question.pressure_max_kpa = 0;
   question.seed = seed;
-  for (const sysid::Record& record : diagnosis.records) {
-    question.span_mm = std::max(question.span_mm, record.span_mm);
-    question.pressure_max_kpa = std::max(question.pressure_max_kpa, record.largest_kpa);
-  }
+  const sysid::CampaignSize extent = sysid::campaign_size(diagnosis.records);
+  question.span_mm = extent.span_mm;
+  question.pressure_max_kpa = extent.largest_kpa;
   return question;
 }
 

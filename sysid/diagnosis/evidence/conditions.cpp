@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/statistics.h"
 #include "sysid/fitting/score.h"
 
 namespace softgrip::sysid {
@@ -19,10 +20,7 @@ double drive_noise_kpa(const std::vector<double>& p) {
   std::vector<double> sizes;
   for (std::size_t i = 3; i < p.size(); ++i)
     sizes.push_back(std::abs(p[i] - 3 * p[i - 1] + 3 * p[i - 2] - p[i - 3]));
-  if (sizes.empty()) return 0;
-  const auto middle = sizes.begin() + static_cast<long>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle / (0.6745 * std::sqrt(20.0));
+  return median_of(std::span(sizes)) / (0.6745 * std::sqrt(20.0));
 }
 
 void add_rates(const Record& record, DriveHistory& h) {

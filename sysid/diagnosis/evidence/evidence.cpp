@@ -7,6 +7,7 @@
 #include <random>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "sysid/diagnosis/evidence/spectrum.h"
 #include "sysid/fitting/trajectory.h"
 
@@ -30,13 +31,6 @@ constexpr double worth = 0.01;
 
 double square(double x) {
   return x * x;
-}
-
-/// Quantile of Student's t for a two-sided 95 % interval (Cornish-Fisher, good to 1 % from 3 on).
-double t95(double freedom) {
-  constexpr double z = 1.959964;
-  const double z3 = z * z * z, z5 = z3 * z * z;
-  return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom);
 }
 
 /// Integral of the autocorrelation of what is not white: from the first lag on, relative to it.
@@ -262,7 +256,7 @@ void describe_bins(const Sums& s, const Binning& binning, const std::vector<doub
       spread += square(s.sum[b * s.bins + k] - bin.mean_mm * count);
     }
     const double deviation = std::sqrt(spread * clusters / std::max(1.0, clusters - 1)) / n;
-    const double half = clusters > 2 ? t95(clusters - 1) * deviation : none;
+    const double half = clusters > 2 ? t_quantile(clusters - 1) * deviation : none;
     bin.lower_mm = bin.mean_mm - half;
     bin.upper_mm = bin.mean_mm + half;
   }

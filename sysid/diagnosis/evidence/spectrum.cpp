@@ -7,10 +7,14 @@
 #include <limits>
 #include <numbers>
 
-#include "sysid/diagnosis/residual/fourier.h"
+#include <unsupported/Eigen/FFT>
+
+#include "base/statistics.h"
 
 namespace softgrip::sysid {
 namespace {
+
+using Complex = std::complex<double>;
 
 constexpr std::size_t shown = 100;
 /// Bins on either side that make a line's neighbourhood, in units of one record's own resolution.
@@ -42,7 +46,8 @@ Periodogram periodogram(const std::vector<Record>& records,
   const std::size_t size = std::bit_ceil(p.longest);
   p.step_hz = 1 / (p.interval_s * static_cast<double>(size));
   p.power.assign(size / 2, 0.0);
-  std::vector<Complex> x(size);
+  std::vector<Complex> x(size), transformed;
+  Eigen::FFT<double> fourier;
   for (const std::vector<double>& r : residual_mm) {
     double mean = 0, count = 0;
     for (const double v : r) {
@@ -63,8 +68,8 @@ Periodogram periodogram(const std::vector<Record>& records,
       p.window_squares += w * w;
     }
     p.window_mean_square += square(window_sum);
-    fourier_transform(x);
-    for (std::size_t b = 0; b < p.power.size(); ++b) p.power[b] += std::norm(x[b]);
+    fourier.fwd(transformed, x);
+    for (std::size_t b = 0; b < p.power.size(); ++b) p.power[b] += std::norm(transformed[b]);
   }
   return p;
 }
@@ -89,12 +94,6 @@ void add_curve(const Periodogram& p, SpectrumEvidence& evidence) {
   }
 }
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The level around bin b without its own lobe: the higher median of its two sides, for a misfit's spectrum
 /// is steep. 0 where there is too little on a side.
 double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
@@ -105,7 +104,8 @@ double level_around(const Periodogram& p, std::size_t b, std::size_t padding) {
     high.push_back(p.power[k]);
   const std::size_t fewest = around * padding / 4;
   if (low.size() < fewest) return 0;
-  return high.size() < fewest ? median(low) : std::max(median(low), median(high));
+  const double below = median_of(std::span(low));
+  return high.size() < fewest ? below : std::max(below, median_of(std::span(high)));
 }
 
 /// The command itself has a line there: whatever answers to it has one too.

@@ -5,6 +5,7 @@
 #include "sysid/diagnosis/evidence/evidence.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
+#include "sysid/identification/start_points.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -14,29 +15,11 @@ constexpr double spans_of_a_branch = 3;
 /// A time constant longer than so much of the longest log is not seen in it.
 constexpr double share_of_log = 1.0;
 
-void add_wrong_way(const model::Model& model, std::vector<UnphysicalSign>& signs) {
-  for (const Combination& c : combinations_of(model)) {
-    if (c.name != "beta_over_instantaneous_gain") continue;
-    const double ratio = c.value(model);
-    if (ratio <= 1 && ratio >= 0) continue;
-    signs.push_back({"wrong_way_first",
-                     "beta / (alpha + 1/k0) is " + significant(ratio, 3) +
-                         ", above 1: recalibrated, the model moves the wrong way first. A latency that the "
-                         "model lacks is the usual cause.",
-                     ratio, 1});
-  }
-}
-
 void add_branches(const model::Model& model, const std::vector<Record>& records,
                   std::vector<UnphysicalSign>& signs) {
   const auto position = model::position_of(model, "kelvin_voigt");
   if (!position) return;
-  double span_mm = 0, largest_kpa = 0, longest_s = 0;
-  for (const Record& record : records) {
-    span_mm = std::max(span_mm, record.span_mm);
-    largest_kpa = std::max(largest_kpa, record.largest_kpa);
-    longest_s = std::max(longest_s, record.length_s());
-  }
+  const auto [largest_kpa, span_mm, longest_s] = campaign_size(records);
   const model::BlockSpec& block = model.blocks[*position];
   const std::vector<double> constants_s = branch_time_constants_s(model);
   for (std::size_t b = 0; b < constants_s.size(); ++b) {
@@ -78,7 +61,8 @@ void add_bounds(const model::Model& model, std::vector<UnphysicalSign>& signs) {
 
 std::vector<UnphysicalSign> unphysical_signs(const model::Model& model, const std::vector<Record>& records) {
   std::vector<UnphysicalSign> signs;
-  add_wrong_way(model, signs);
+  if (const double ratio = beta_over_gain(model); ratio > 1)
+    signs.push_back({"wrong_way_first", wrong_way_sentence(ratio) + ".", ratio, 1});
   add_branches(model, records, signs);
   add_bounds(model, signs);
   return signs;

@@ -4,17 +4,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/statistics.h"
+
 namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t lags = 25;
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -32,7 +27,8 @@ double measured_noise_mm(const std::vector<Record>& records) {
   if (sizes.empty()) return 0;
   // The median alone would be as coarse as the quantisation; it only bounds what a wrong sample or a corner
   // of the motion may contribute. Cutting at 4 deviations loses 0.1 % of a normal variance.
-  const double bound = 4 * median(sizes) / 0.6745;
+  std::vector<double> sorted = sizes;
+  const double bound = 4 * median_of(std::span(sorted)) / 0.6745;
   double sum = 0;
   std::size_t count = 0;
   for (const double size : sizes) {

@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <utility>
 
-#include "sysid/diagnosis/residual/fourier.h"
+#include <unsupported/Eigen/FFT>
+
+#include "base/statistics.h"
 
 namespace softgrip::sysid {
 namespace {
+
+using Complex = std::complex<double>;
 
 /// Bins on either side that make a peak's neighbourhood.
 constexpr std::size_t around = 60;
@@ -47,8 +52,7 @@ std::vector<std::pair<double, std::size_t>> peaks_of(const std::vector<double>& 
     const std::size_t first = b > around ? b - around : 1;
     const std::size_t last = std::min(power.size(), b + around);
     near.assign(power.begin() + static_cast<long>(first), power.begin() + static_cast<long>(last));
-    std::nth_element(near.begin(), near.begin() + static_cast<long>(near.size() / 2), near.end());
-    peaks.emplace_back(power[b] / (near[near.size() / 2] + 1e-300), b);
+    peaks.emplace_back(power[b] / (median_of(std::span(near)) + 1e-300), b);
   }
   std::sort(peaks.rbegin(), peaks.rend());
   return peaks;
@@ -68,12 +72,13 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   // Twice the length: the grid of frequencies is finer than what the campaign resolves.
   const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(campaign_s / interval_s) + 4);
   std::vector<Complex> x = on_one_grid(records, residual_mm, interval_s, size);
-  fourier_transform(x);
+  std::vector<Complex> transformed;
+  Eigen::FFT<double>().fwd(transformed, x);
   const double step_hz = 1 / (interval_s * static_cast<double>(size));
   const double highest_hz = std::min(0.45 / interval_s, highest_looked_at_hz);
   const double lowest_hz = slowest_oscillation_hz(length_s);
   std::vector<double> power(std::min(size / 2, static_cast<std::size_t>(highest_hz / step_hz)));
-  for (std::size_t b = 0; b < power.size(); ++b) power[b] = std::norm(x[b]);
+  for (std::size_t b = 0; b < power.size(); ++b) power[b] = std::norm(transformed[b]);
   const auto peaks = peaks_of(power, static_cast<std::size_t>(std::ceil(lowest_hz / step_hz)));
   double readings = 0;
   for (const auto& r : residual_mm) {
@@ -84,8 +89,8 @@ std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
   for (std::size_t i = 0; i < std::min(count, peaks.size()); ++i) {
     const double frequency_hz = step_hz * static_cast<double>(peaks[i].second);
     // The transform's time begins with the first sample, the line's with the campaign.
-    const Complex amplitude =
-        2 / readings * x[peaks[i].second] * std::polar(1.0, -2 * std::numbers::pi * frequency_hz * began_s);
+    const Complex amplitude = 2 / readings * transformed[peaks[i].second] *
+                              std::polar(1.0, -2 * std::numbers::pi * frequency_hz * began_s);
     lines.push_back({frequency_hz, -amplitude.imag(), amplitude.real()});
   }
   return lines;

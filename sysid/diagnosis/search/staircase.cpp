@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/search/jump_tracking.h"
 #include "sysid/identification/uncertainty.h"

@@ -34,15 +34,8 @@ double square(double x) {
 
 /// What recalibration cannot be trusted with.
 void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings) {
-  for (const Combination& c : combinations_of(model)) {
-    if (c.name != "beta_over_instantaneous_gain") continue;
-    const double ratio = c.value(model);
-    if (ratio > 1) {
-      warnings.push_back(
-          "recalibrated, the model is unphysical: beta / (alpha + 1/k0) = " + significant(ratio, 3) +
-          " is above 1, it would move the wrong way first; a latency in the data is the usual cause");
-    }
-  }
+  if (const double ratio = beta_over_gain(model); ratio > 1)
+    warnings.push_back("recalibrated, the model is unphysical: " + wrong_way_sentence(ratio));
 }
 
 /// Limits of the data that bear on what can be told.

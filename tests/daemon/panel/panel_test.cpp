@@ -400,7 +400,8 @@ TEST(PanelRun, LinesThatCannotBeHadEndTheStartWithTheirPlaceInTheRigFile) {
     const auto daemon = Daemon::create(std::move(rig), options);
     ASSERT_TRUE(daemon);
     const Outcome outcome = (*daemon)->run();
-    EXPECT_EQ(exit_code_of(outcome), kind == drivers::GpioFailure::Kind::refused ? 3 : 4);
+    EXPECT_EQ(exit_code_of(outcome),
+              kind == drivers::GpioFailure::Kind::refused ? ExitCode::input_refused : ExitCode::io);
     EXPECT_EQ(outcome.message.find("rig.yaml:12:5: no such line"), 0U) << outcome.message;
     EXPECT_NE(outcome.message.find("look at gpioinfo"), std::string::npos);
     EXPECT_EQ(outcome.ticks, 0U);

@@ -46,7 +46,7 @@ TEST(Daemon, RunsASequenceAndReportsItsResult) {
   EXPECT_EQ(outcome.sequence_end, control::SequenceEnd::done);
   EXPECT_EQ(outcome.last.channels[0].result, control::GripResult::released);
   EXPECT_TRUE(outcome.left_safely);
-  EXPECT_EQ(exit_code_of(outcome), 0);
+  EXPECT_EQ(exit_code_of(outcome), ExitCode::done);
   EXPECT_NE(std::find(kinds.begin(), kinds.end(), "sequence_finished"), kinds.end());
 }
 
@@ -68,7 +68,7 @@ TEST(Daemon, AnExceptionOfTheCallersOwnStillEndsWithSafeOutputs) {
   EXPECT_EQ(outcome.ending, Ending::broken);
   EXPECT_EQ(outcome.message, "on purpose");
   EXPECT_TRUE(outcome.left_safely);
-  EXPECT_EQ(exit_code_of(outcome), 1);
+  EXPECT_EQ(exit_code_of(outcome), ExitCode::failed);
   EXPECT_LT(outcome.wall_s, 10);
 }
 
@@ -79,12 +79,12 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
     outcome.ending = ending;
     return exit_code_of(outcome);
   };
-  EXPECT_EQ(code(Ending::asked), 0);
-  EXPECT_EQ(code(Ending::sequence_refused), 5);
-  EXPECT_EQ(code(Ending::not_idle), 5);
-  EXPECT_EQ(code(Ending::real_time_refused), 1);
-  EXPECT_EQ(code(Ending::socket_failed), 4);
-  EXPECT_EQ(code(Ending::broken), 1);
+  EXPECT_EQ(code(Ending::asked), ExitCode::done);
+  EXPECT_EQ(code(Ending::sequence_refused), ExitCode::state_refused);
+  EXPECT_EQ(code(Ending::not_idle), ExitCode::state_refused);
+  EXPECT_EQ(code(Ending::real_time_refused), ExitCode::failed);
+  EXPECT_EQ(code(Ending::socket_failed), ExitCode::io);
+  EXPECT_EQ(code(Ending::broken), ExitCode::failed);
   using control::SequenceEnd;
   for (const auto& [end, expected] :
        {std::pair{SequenceEnd::done, 0}, std::pair{SequenceEnd::failed, 6},
@@ -94,8 +94,9 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
   }
   outcome.left_safely = false;
   outcome.sequence_end = SequenceEnd::done;
-  EXPECT_EQ(code(Ending::sequence_ended), 1) << "a board that was not left safely is a failure";
-  EXPECT_EQ(code(Ending::asked), 1);
+  EXPECT_EQ(code(Ending::sequence_ended), ExitCode::failed)
+      << "a board that was not left safely is a failure";
+  EXPECT_EQ(code(Ending::asked), ExitCode::failed);
 }
 
 }  // namespace

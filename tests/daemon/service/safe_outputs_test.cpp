@@ -69,7 +69,7 @@ TEST_F(SafeOutputsTest, ABoardThatStaysSilentIsNotConfirmed) {
   board_.next_connect = BusStatus::disconnected;
   const SafeOutputsReport report = write(board_, std::chrono::milliseconds(20));
   EXPECT_EQ(report.end, SafeOutputsEnd::board_silent);
-  EXPECT_EQ(exit_code_of(report.end), 4);
+  EXPECT_EQ(exit_code_of(report.end), ExitCode::io);
   EXPECT_TRUE(board_.written.empty());
 }
 
@@ -80,7 +80,7 @@ TEST_F(SafeOutputsTest, ATrippedWatchdogOfTheBoardIsSafeEnough) {
 
 TEST_F(SafeOutputsTest, AfterAnOrderlyEndTheOutputsStay) {
   EXPECT_EQ(leave_safe_outputs(rig_, "success").end, SafeOutputsEnd::not_needed);
-  EXPECT_EQ(exit_code_of(SafeOutputsEnd::not_needed), 0);
+  EXPECT_EQ(exit_code_of(SafeOutputsEnd::not_needed), ExitCode::done);
 }
 
 }  // namespace

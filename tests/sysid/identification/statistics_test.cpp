@@ -46,13 +46,6 @@ TEST(NoiseModel, GapsAndSeveralSeriesDoNotMix) {
   EXPECT_NEAR(fit_noise(autocovariance_of({first, second})).lag1_correlation, 0.8, 0.02);
 }
 
-TEST(TQuantile, MatchesTables) {
-  EXPECT_NEAR(t_quantile(3), 3.182, 0.03);
-  EXPECT_NEAR(t_quantile(10), 2.228, 0.001);
-  EXPECT_NEAR(t_quantile(30), 2.042, 0.0005);
-  EXPECT_NEAR(t_quantile(1e9), 1.95996, 1e-5);
-}
-
 /// Against a fine search over a grid.
 TEST(BoundedSolve, FindsTheConstrainedMinimum) {
   std::mt19937_64 random(4);

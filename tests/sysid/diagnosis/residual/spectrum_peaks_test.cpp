@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "sysid/diagnosis/residual/fourier.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -74,20 +73,6 @@ TEST(SpectrumPeaks, AWanderingZeroIsNoOscillation) {
   const Campaign c = campaign(0.05, 2.0, 0);
   for (const Line& peak : spectrum_peaks(c.records, c.residual_mm, 3))
     EXPECT_GE(peak.frequency_hz, 0.2 - 1e-9);
-}
-
-TEST(Fourier, AgreesWithItsDefinition) {
-  std::vector<Complex> x;
-  for (std::uint64_t i = 0; i < 64; ++i) x.emplace_back(normal_at(1, i), normal_at(2, i));
-  std::vector<Complex> transformed = x;
-  fourier_transform(transformed);
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    Complex sum = 0;
-    for (std::size_t n = 0; n < x.size(); ++n) {
-      sum += x[n] * std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k * n) / 64);
-    }
-    EXPECT_NEAR(std::abs(transformed[k] - sum), 0, 1e-11);
-  }
 }
 
 }  // namespace
