@@ -34,7 +34,7 @@ if(gpiod_VERSION VERSION_GREATER_EQUAL 2)
 endif()
 
 # What stands in for the rig.
-softgrip_room(simulation/plant USES base model drivers/board)
+softgrip_room(simulation/plant USES base document model drivers/board)
 softgrip_room(simulation/emulator USES base document model drivers/board drivers/modbus simulation/plant)
 
 # The rig file.

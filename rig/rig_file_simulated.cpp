@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "rig/rig_file_reader.h"
+#include "simulation/plant/fault_reader.h"
 
 namespace softgrip::rig {
 
@@ -12,16 +13,7 @@ namespace {
 
 using document::Node;
 
-/// An object between the fingers: a map, or `none` where it is pulled out.
-std::optional<simulation::PlantObject> read_object(Context& context, const Node& node) {
-  MapReader reader(context.document, node, context.problems, "object");
-  simulation::PlantObject object;
-  object.position_mm = reader.number("position_mm", {-1000, 1000});
-  object.yielding = reader.number("yielding", {0, 1});
-  return object;
-}
-
-/// Distinct seeds per channel from one number: SplitMix64's sequence.
+/// Distinct seeds per channel from one number, by a step of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t seed_of(std::uint64_t seed, std::uint64_t channel) {
   return scattered(seed + channel * 0x9e3779b97f4a7c15U);
 }
@@ -32,7 +24,8 @@ simulation::PlantSettings read_plant(Context& context, const Node& node, const s
   if (const auto model = named_model(context, reader, "model", InputFile::Role::plant)) plant.model = *model;
   plant.displacement_noise_mm = reader.number("displacement_noise_mm", {0, 100});
   plant.pressure_noise_kpa = reader.number("pressure_noise_kpa", {0, 100});
-  if (const Node* object = reader.child("object", false)) plant.object = read_object(context, *object);
+  if (const Node* object = reader.child("object", false))
+    plant.object = simulation::read_object(context.document, *object, context.problems);
   plant.sample_time_s = context.period_s();
   return plant;
 }
@@ -57,14 +50,14 @@ void read_line_fault(MapReader& reader, Event& event) {
   event.kind = Event::Kind::line_fault;
   using Kind = simulation::LineFault::Kind;
   event.line.kind = static_cast<Kind>(reader.choice("line", {"free", "blocked", "leaking"}));
-  if (event.line.kind == Kind::leaking) event.line.share = reader.number("share", {0, 1});
+  simulation::read_own_keys(reader, event.line);
 }
 
 void read_sensor_fault(MapReader& reader, Event& event) {
   event.kind = Event::Kind::sensor_fault;
   using Kind = simulation::SensorFault::Kind;
   event.sensor.kind = static_cast<Kind>(reader.choice("sensor", {"good", "stuck", "offset", "out_of_range"}));
-  if (event.sensor.kind == Kind::offset) event.sensor.value_mm = reader.number("value_mm", {-1000, 1000});
+  simulation::read_own_keys(reader, event.sensor, "value_mm");
 }
 
 void read_object_event(Context& context, MapReader& reader, Event& event) {
@@ -72,7 +65,7 @@ void read_object_event(Context& context, MapReader& reader, Event& event) {
   const Node* const node = reader.child("object", true);
   if (node == nullptr) return;
   if (node->kind == Node::Kind::scalar && node->scalar == "none") return;
-  event.object = read_object(context, *node);
+  event.object = simulation::read_object(context.document, *node, context.problems);
 }
 
 /// One of these keys says what happens.

@@ -5,7 +5,6 @@
 namespace softgrip::drivers {
 namespace {
 
-constexpr std::size_t header_size = 7;  // transaction, protocol, length, unit
 constexpr std::uint8_t exception_bit = 0x80;
 constexpr std::size_t exception_pdu_size = 2;
 
@@ -18,21 +17,25 @@ ReplyDefect header_defect(std::span<const std::uint8_t> bytes, std::size_t pdu_s
     const std::size_t length = word_at(bytes, 4);
     if (length != 1 + pdu_size && length != 1 + exception_pdu_size) return ReplyDefect::length;
   }
-  if (bytes.size() >= header_size && bytes[6] != unit) return ReplyDefect::unit;
+  if (bytes.size() >= mbap_size && bytes[6] != unit) return ReplyDefect::unit;
   return ReplyDefect::none;
 }
 
 }  // namespace
 
-std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction, std::uint8_t unit,
-                          Frame& frame) noexcept {
-  const std::size_t size = build_pdu(request, std::span(frame).subspan<header_size>());
-  if (size == 0) return 0;
+std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint16_t transaction,
+                     std::uint8_t unit) noexcept {
   put_word(frame, 0, transaction);
   put_word(frame, 2, 0);  // protocol: Modbus
-  put_word(frame, 4, static_cast<std::uint16_t>(1 + size));
+  put_word(frame, 4, static_cast<std::uint16_t>(1 + pdu_size));
   frame[6] = unit;
-  return header_size + size;
+  return mbap_size + pdu_size;
+}
+
+std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction, std::uint8_t unit,
+                          Frame& frame) noexcept {
+  const std::size_t size = build_pdu(request, std::span(frame).subspan<mbap_size>());
+  return size == 0 ? 0 : put_mbap(frame, size, transaction, unit);
 }
 
 ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
@@ -41,16 +44,16 @@ ModbusReply parse_reply(std::span<const std::uint8_t> bytes, const ModbusRequest
   if (pdu_size == 0) return defective(ReplyDefect::function);
   const ReplyDefect defect = header_defect(bytes, pdu_size, transaction, unit);
   if (defect != ReplyDefect::none) return defective(defect);
-  if (bytes.size() <= header_size) return {};
+  if (bytes.size() <= mbap_size) return {};
 
   // The header must state the length of what it stands before: of the answer, or of an exception.
-  const std::uint8_t function = bytes[header_size];
+  const std::uint8_t function = bytes[mbap_size];
   const bool exception = function == (request.function | exception_bit);
   if (!exception && function != request.function) return defective(ReplyDefect::function);
   const std::size_t size = exception ? exception_pdu_size : pdu_size;
   if (word_at(bytes, 4) != 1 + size) return defective(ReplyDefect::length);
-  if (bytes.size() > header_size + size) return defective(ReplyDefect::trailing);
-  return parse_pdu(bytes.subspan(header_size), request);
+  if (bytes.size() > mbap_size + size) return defective(ReplyDefect::trailing);
+  return parse_pdu(bytes.subspan(mbap_size), request);
 }
 
 }  // namespace softgrip::drivers

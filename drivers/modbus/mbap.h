@@ -1,12 +1,7 @@
 #pragma once
 // Framing on Modbus TCP: the header in front of questions and answers.
-//
-// Why libmodbus does not frame them: its client sends and receives in one call, so that the unit id and the
-// length of a reply, which 3.1.6 does not check, cannot be looked at before it acts on them; and its raw
-// request always carries transaction id 0, so that a late reply could pass for the answer to a later
-// question. What is left of it here are its constants and its texts of exceptions.
+// Format: MODBUS Messaging on TCP/IP Implementation Guide V1.0b, 3.1.3 (MBAP header).
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,11 +11,15 @@
 
 namespace softgrip::drivers {
 
-/// Longest frame on Modbus TCP [bytes].
-inline constexpr std::size_t max_frame = 7 + max_pdu;
-using Frame = std::array<std::uint8_t, max_frame>;
+/// Transaction id, protocol id, length (two bytes each), unit id.
+inline constexpr std::size_t mbap_size = 7;
 
-/// Writes the frame; returns its size, or 0 for a request that reply_pdu_size() refuses.
+/// Writes the header in front of the PDU of `pdu_size` bytes that begins at frame[mbap_size]; returns the
+/// size of the frame.
+std::size_t put_mbap(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint16_t transaction,
+                     std::uint8_t unit) noexcept;
+
+/// Writes the frame of a question; returns its size, or 0 for a request that reply_pdu_size() refuses.
 [[nodiscard]] std::size_t build_request(const ModbusRequest& request, std::uint16_t transaction,
                                         std::uint8_t unit, Frame& frame) noexcept;
 

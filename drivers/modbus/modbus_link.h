@@ -1,52 +1,109 @@
 #pragma once
 // A wire with Modbus modules at its other end: one question at a time, and an end at any doubt.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 
+#include "base/descriptor.h"
 #include "drivers/board/board.h"
+#include "drivers/board/round_trip.h"
 #include "drivers/modbus/modbus_address.h"
+#include "drivers/modbus/modbus_reply.h"
 #include "drivers/modbus/modbus_request.h"
+
+struct _modbus;  // libmodbus' modbus_t
 
 namespace softgrip::drivers {
 
-/// Everything is bounded by a point in time on CLOCK_MONOTONIC [ns], never by the time between two bytes.
-/// Nothing but cost() and describe() allocates; nothing throws, resolves names or retries.
+/// libmodbus receives; on a serial line it also opens, sends and checks the checksum. Around it: every wait
+/// ends at a point in time on CLOCK_MONOTONIC [ns], never by the time between two bytes; a raw frame is
+/// judged by our own pure check before anything in it is used; bytes behind it are looked for.
+/// docs/explanation/libraries.md says what libmodbus leaves to us and why.
+///
+/// Nothing but the constructors, cost() and describe() allocates; nothing throws, resolves names or retries.
 class ModbusLink {
  public:
-  ModbusLink() = default;
   ModbusLink(const ModbusLink&) = delete;
   ModbusLink& operator=(const ModbusLink&) = delete;
   ModbusLink(ModbusLink&&) = delete;
   ModbusLink& operator=(ModbusLink&&) = delete;
-  virtual ~ModbusLink() = default;
+  virtual ~ModbusLink();
 
   /// Opens the link, after closing the one there was.
-  [[nodiscard]] virtual BusStatus open(Nanoseconds deadline) noexcept = 0;
-  virtual void close() noexcept = 0;
-  [[nodiscard]] virtual bool is_open() const noexcept = 0;
+  [[nodiscard]] BusStatus open(Nanoseconds deadline) noexcept;
+  void close() noexcept;
+  [[nodiscard]] bool is_open() const noexcept { return descriptor() >= 0; }
 
   /// Asks, and waits for the answer. On `ok` and on `exception` the link stands; on anything else it was
   /// closed, so that a late or duplicated reply cannot be taken for the answer to a later question.
-  [[nodiscard]] virtual BusStatus ask(std::uint8_t unit, const ModbusRequest& request,
-                                      Nanoseconds deadline) noexcept = 0;
+  [[nodiscard]] BusStatus ask(std::uint8_t unit, const ModbusRequest& request, Nanoseconds deadline) noexcept;
   /// What the last successful ask() read: bits or registers, high byte first. Valid until the next ask().
-  [[nodiscard]] virtual std::span<const std::uint8_t> data() const noexcept = 0;
+  [[nodiscard]] std::span<const std::uint8_t> data() const noexcept { return data_; }
   /// What the last failure was.
-  [[nodiscard]] virtual const char* detail() const noexcept = 0;
+  [[nodiscard]] const char* detail() const noexcept { return detail_.data(); }
 
   /// Measurements for cost(): none from now on; the last ask() was one.
-  virtual void forget_measurements() noexcept = 0;
-  virtual void keep_measurement() noexcept = 0;
-
+  void forget_measurements() noexcept { measured_.reset(); }
+  void keep_measurement() noexcept { measured_.add(answer_time(last_round_trip_)); }
   /// What these transactions take, one after the other, and how it adds up. `plan` says in words what they
   /// are.
   [[nodiscard]] virtual Board::Budget cost(std::span<const TransactionSize> transactions,
                                            const std::string& plan) const = 0;
-  /// "127.0.0.1:502", "/dev/ttyUSB0, 115200 8N1"
+  /// "127.0.0.1:502", "/dev/ttyUSB0 (115200 8N1)"
   [[nodiscard]] virtual std::string describe() const = 0;
+
+ protected:
+  /// Takes over a context of libmodbus; without one open() fails.
+  explicit ModbusLink(_modbus* context) noexcept;
+
+  [[nodiscard]] _modbus* context() const noexcept { return context_; }
+  [[nodiscard]] int descriptor() const noexcept;
+  /// Says why a link does not open.
+  BusStatus refuse(BusStatus status, const char* what, const char* why) noexcept;
+  /// Closes the link and says why.
+  BusStatus fail(BusStatus status, const char* what, const char* why) noexcept;
+  BusStatus wait_until_ready(short events, Nanoseconds deadline, const char* what) noexcept;
+  [[nodiscard]] const RoundTrip& measured() const noexcept { return measured_; }
+
+  Descriptor held_;               ///< given back when the link closes
+  Nanoseconds heard_at_ = 0;      ///< when the last bytes came
+  bool answer_may_come_ = false;  ///< the last session ended while one was due
+
+ private:
+  virtual BusStatus connect(Nanoseconds deadline) noexcept = 0;
+  /// Writes the frame of a question; returns its size, or 0 for one that reply_pdu_size() refuses.
+  virtual std::size_t build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept = 0;
+  /// Waits until a question may be sent.
+  virtual BusStatus before_asking(Nanoseconds) noexcept { return BusStatus::ok; }
+  virtual BusStatus send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept = 0;
+  /// The pure reply check over all that came since the question `asked` was sent.
+  [[nodiscard]] virtual ModbusReply judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
+                                          const ModbusRequest& request,
+                                          std::span<const std::uint8_t> asked) const noexcept = 0;
+  /// What of a round trip is kept as a measurement.
+  [[nodiscard]] virtual Nanoseconds answer_time(Nanoseconds round_trip) const noexcept { return round_trip; }
+
+  ModbusReply receive(std::uint8_t unit, const ModbusRequest& request, std::span<const std::uint8_t> asked,
+                      Nanoseconds deadline, int& error) noexcept;
+  BusStatus name_failure(int error) noexcept;
+  BusStatus conclude(const ModbusReply& reply, int error, std::uint8_t unit,
+                     const ModbusRequest& request) noexcept;
+  bool put_where_select_finds_it() noexcept;
+
+  _modbus* context_;
+  /// libmodbus waits by select(), which knows no descriptor above 1023: the place of one is kept from the
+  /// start.
+  Descriptor place_;
+  Frame outgoing_{};
+  Frame incoming_{};
+  std::span<const std::uint8_t> data_ = {};
+  RoundTrip measured_;
+  Nanoseconds last_round_trip_ = 0;
+  std::array<char, 200> detail_{};
 };
 
 [[nodiscard]] std::unique_ptr<ModbusLink> make_link(const ModbusAddress& address);

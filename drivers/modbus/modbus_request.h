@@ -1,6 +1,7 @@
 #pragma once
 // Questions in Modbus: the bytes from the function code on, whatever wire they go over.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,6 +10,9 @@ namespace softgrip::drivers {
 
 /// Longest question or answer without its framing [bytes]: function code and 252 bytes of data.
 inline constexpr std::size_t max_pdu = 253;
+/// Longest frame of any wire [bytes]: that of Modbus TCP.
+inline constexpr std::size_t max_frame = 7 + max_pdu;
+using Frame = std::array<std::uint8_t, max_frame>;
 
 /// Most registers or bits in one transaction, by the specification.
 inline constexpr std::uint16_t max_read_registers = 125;

@@ -1,5 +1,6 @@
 #include "drivers/modbus/modbus_rtu_link.h"
 
+#include <modbus/modbus.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -13,8 +14,7 @@
 #include "base/clock.h"
 #include "base/descriptor_wait.h"
 #include "base/errno_text.h"
-#include "drivers/modbus/exception_text.h"
-#include "drivers/modbus/serial_port.h"
+#include "drivers/modbus/rtu_frame.h"
 
 namespace softgrip::drivers {
 namespace {
@@ -40,37 +40,34 @@ void sleep_until(Nanoseconds moment) noexcept {
 }  // namespace
 
 ModbusRtuLink::ModbusRtuLink(SerialLine line)
-    : line_(std::move(line)),
+    : ModbusLink(new_context(line)),
+      line_(std::move(line)),
       character_(nanoseconds(character_s(line_))),
       silence_(nanoseconds(drivers::silence_s(line_))) {}
 
-ModbusRtuLink::~ModbusRtuLink() {
-  if (port_ >= 0) ::close(port_);
-}
-
-void ModbusRtuLink::close() noexcept {
-  if (port_ >= 0) ::close(port_);
-  port_ = -1;
-}
-
-BusStatus ModbusRtuLink::fail(BusStatus status, const char* what, const char* why) noexcept {
-  std::snprintf(detail_.data(), detail_.size(), "%s: %s", what, why);
-  close();
-  answer_may_come_ = true;
-  return status;
-}
-
-BusStatus ModbusRtuLink::open(Nanoseconds deadline) noexcept {
-  close();
-  const SerialPort port = open_serial(line_);
-  if (port.descriptor < 0) {
-    std::snprintf(detail_.data(), detail_.size(), "%s %s: %s", port.what, line_.device.c_str(),
-                  port.error != 0 ? text_of_errno(port.error) : "refused");
-    return BusStatus::disconnected;
+BusStatus ModbusRtuLink::connect(Nanoseconds deadline) noexcept {
+  const SerialFailure failure = open_serial(context(), line_, held_);
+  if (failure.what != nullptr) {
+    std::array<char, 128> what{};
+    std::snprintf(what.data(), what.size(), "%s %s", failure.what, line_.device.c_str());
+    return refuse(BusStatus::disconnected, what.data(),
+                  failure.error != 0 ? text_of_errno(failure.error) : "refused");
   }
-  port_ = port.descriptor;
-  silent_since_ = now();
+  heard_at_ = now();
   return answer_may_come_ ? listen(deadline) : BusStatus::ok;
+}
+
+/// Reads what the line holds after it was found ready.
+BusStatus ModbusRtuLink::read_some(std::span<std::uint8_t> bytes, const char* what,
+                                   std::size_t& got) noexcept {
+  const ssize_t count = ::read(descriptor(), bytes.data(), bytes.size());
+  if (count == 0) return fail(BusStatus::disconnected, what, "the device is gone");
+  if (count < 0 && errno != EAGAIN && errno != EINTR) {
+    return fail(BusStatus::disconnected, what, text_of_errno(errno));
+  }
+  got = static_cast<std::size_t>(std::max<ssize_t>(0, count));
+  heard_at_ = now();
+  return BusStatus::ok;
 }
 
 /// Lets pass what still belongs to the session before: a module may be about to answer, and its answer may be
@@ -81,137 +78,73 @@ BusStatus ModbusRtuLink::listen(Nanoseconds deadline) noexcept {
   Nanoseconds end = std::min(now() + longest_frame + usual + silence_, now() + (deadline - now()) / 2);
   while (now() < end) {
     if (now() >= deadline) return fail(BusStatus::bad_reply, "listening", "the line does not fall silent");
-    const Waited waited = wait_for(port_, POLLIN, std::min(end, deadline));
+    const Waited waited = wait_for(descriptor(), POLLIN, std::min(end, deadline));
     if (waited == Waited::failed) return fail(BusStatus::disconnected, "listening", text_of_errno(errno));
     if (waited == Waited::timed_out) continue;
-    const ssize_t got = ::read(port_, incoming_.data(), incoming_.size());
-    if (got == 0) return fail(BusStatus::disconnected, "listening", "the device is gone");
-    if (got < 0 && errno != EAGAIN && errno != EINTR) {
-      return fail(BusStatus::disconnected, "listening", text_of_errno(errno));
-    }
-    silent_since_ = now();
-    end = std::max(end, silent_since_ + silence_);
+    std::array<std::uint8_t, max_rtu_frame> passing;
+    std::size_t got = 0;
+    const BusStatus status = read_some(passing, "listening", got);
+    if (status != BusStatus::ok) return status;
+    end = std::max(end, heard_at_ + silence_);
   }
   answer_may_come_ = false;
   return BusStatus::ok;
 }
 
-BusStatus ModbusRtuLink::wait_until_ready(short events, Nanoseconds deadline, const char* what) noexcept {
-  switch (wait_for(port_, events, deadline)) {
-    case Waited::ready:
-      return BusStatus::ok;
-    case Waited::timed_out:
-      return fail(BusStatus::timed_out, what, "the deadline passed");
-    case Waited::failed:
-      break;
-  }
-  return fail(BusStatus::disconnected, what, text_of_errno(errno));
+std::size_t ModbusRtuLink::build(std::uint8_t unit, const ModbusRequest& request, Frame& frame) noexcept {
+  last_size_ = size_of(request);
+  return ::modbus_set_slave(context(), unit) == 0 ? build_rtu_request(request, unit, frame) : 0;
 }
 
-BusStatus ModbusRtuLink::wait_for_silence(Nanoseconds deadline) noexcept {
-  const Nanoseconds quiet = silent_since_ + silence_;
+BusStatus ModbusRtuLink::before_asking(Nanoseconds deadline) noexcept {
+  const Nanoseconds quiet = heard_at_ + silence_;
   if (quiet > deadline) return fail(BusStatus::timed_out, "waiting for silence", "the deadline passed");
   if (quiet > now()) sleep_until(quiet);
-  const ssize_t got = ::read(port_, incoming_.data(), incoming_.size());
-  if (got > 0) {
-    return fail(BusStatus::bad_reply, "before asking",
-                "bytes came that nobody asked for, a late or repeated reply");
-  }
-  if (got == 0) return fail(BusStatus::disconnected, "before asking", "the device is gone");
-  if (errno == EAGAIN || errno == EINTR) return BusStatus::ok;
-  return fail(BusStatus::disconnected, "before asking", text_of_errno(errno));
+  pollfd line{.fd = descriptor(), .events = POLLIN, .revents = 0};
+  if (::poll(&line, 1, 0) == 0) return BusStatus::ok;
+  std::array<std::uint8_t, 1> first{};
+  std::size_t got = 0;
+  const BusStatus status = read_some(first, "before asking", got);
+  if (status != BusStatus::ok || got == 0) return status;
+  return fail(BusStatus::bad_reply, "before asking",
+              "bytes came that nobody asked for, a late or repeated reply");
 }
 
-BusStatus ModbusRtuLink::send_all(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
+BusStatus ModbusRtuLink::send(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
+  // libmodbus puts the checksum behind.
+  const auto unchecked = static_cast<int>(frame.size()) - 2;
+  if (::modbus_send_raw_request(context(), frame.data(), unchecked) != static_cast<int>(frame.size())) {
+    return fail(BusStatus::disconnected, "sending", text_of_errno(errno < MODBUS_ENOBASE ? errno : ENOBUFS));
+  }
+  return line_.echo ? take_echo(frame, deadline) : BusStatus::ok;
+}
+
+BusStatus ModbusRtuLink::take_echo(std::span<const std::uint8_t> frame, Nanoseconds deadline) noexcept {
+  std::array<std::uint8_t, max_rtu_frame> echo;
   while (!frame.empty()) {
-    const ssize_t sent = ::write(port_, frame.data(), frame.size());
-    if (sent > 0) {
-      frame = frame.subspan(static_cast<std::size_t>(sent));
-    } else if (sent == 0 || errno == EAGAIN) {
-      const BusStatus status = wait_until_ready(POLLOUT, deadline, "sending");
-      if (status != BusStatus::ok) return status;
-    } else if (errno != EINTR) {
-      return fail(BusStatus::disconnected, "sending", text_of_errno(errno));
+    BusStatus status = wait_until_ready(POLLIN, deadline, "waiting for the echo");
+    std::size_t got = 0;
+    if (status == BusStatus::ok) status = read_some(std::span(echo).first(frame.size()), "sending", got);
+    if (status != BusStatus::ok) return status;
+    if (!std::equal(echo.begin(), echo.begin() + static_cast<std::ptrdiff_t>(got), frame.begin())) {
+      return fail(BusStatus::bad_reply, "sending", "the echo is not what was sent: two masters on one line?");
     }
+    frame = frame.subspan(got);
   }
   return BusStatus::ok;
 }
 
-/// What the bytes received so far are; `over` is left false while more must come.
-BusStatus ModbusRtuLink::judge(std::size_t have, std::uint8_t unit, const ModbusRequest& request,
-                               std::span<const std::uint8_t> asked, bool& over) noexcept {
-  std::span<const std::uint8_t> bytes = std::span<const std::uint8_t>(incoming_).first(have);
-  if (line_.echo) {
-    const std::size_t common = std::min(have, asked.size());
-    if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(common), asked.begin())) {
-      return fail(BusStatus::bad_reply, "sending", "the echo is not what was sent: two masters on one line?");
-    }
-    bytes = bytes.subspan(common);
-  }
-  const ModbusReply reply = parse_rtu_reply(bytes, request, unit, asked);
-  over = reply.state != ModbusReply::State::incomplete;
-  switch (reply.state) {
-    case ModbusReply::State::incomplete:
-      return BusStatus::ok;
-    case ModbusReply::State::complete:
-      data_ = reply.data;
-      return BusStatus::ok;
-    case ModbusReply::State::exception:
-      std::snprintf(detail_.data(), detail_.size(), "unit %u refused function %u at %u: %s (exception %u)",
-                    static_cast<unsigned>(unit), static_cast<unsigned>(request.function),
-                    static_cast<unsigned>(request.address), text_of_exception(reply.exception_code),
-                    static_cast<unsigned>(reply.exception_code));
-      return BusStatus::exception;
-    case ModbusReply::State::defective:
-      break;
-  }
-  return fail(BusStatus::bad_reply, "receiving", text_of(reply.defect));
+ModbusReply ModbusRtuLink::judge(std::span<const std::uint8_t> bytes, std::uint8_t unit,
+                                 const ModbusRequest& request,
+                                 std::span<const std::uint8_t> asked) const noexcept {
+  return parse_rtu_reply(bytes, request, unit, asked);
 }
 
-BusStatus ModbusRtuLink::receive(std::uint8_t unit, const ModbusRequest& request,
-                                 std::span<const std::uint8_t> asked, Nanoseconds deadline) noexcept {
-  std::size_t have = 0;
-  while (true) {
-    const char* const what = have == 0 ? "waiting for the reply" : "waiting for the rest of the reply";
-    if (const BusStatus status = wait_until_ready(POLLIN, deadline, what); status != BusStatus::ok) {
-      return status;
-    }
-    const ssize_t got = ::read(port_, incoming_.data() + have, incoming_.size() - have);
-    if (got == 0) return fail(BusStatus::disconnected, what, "the device is gone");
-    if (got < 0) {
-      if (errno == EINTR || errno == EAGAIN) continue;
-      return fail(BusStatus::disconnected, what, text_of_errno(errno));
-    }
-    silent_since_ = now();
-    have += static_cast<std::size_t>(got);
-    bool over = false;
-    const BusStatus status = judge(have, unit, request, asked, over);
-    if (over || status != BusStatus::ok) return status;
-  }
-}
-
-BusStatus ModbusRtuLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanoseconds deadline) noexcept {
-  data_ = {};
-  if (!is_open()) return BusStatus::disconnected;
-  const std::size_t size = build_rtu_request(request, unit, outgoing_);
-  if (size == 0) return fail(BusStatus::bad_reply, "asking", "no such Modbus request");
-  if (const BusStatus status = wait_for_silence(deadline); status != BusStatus::ok) return status;
-  const auto frame = std::span<const std::uint8_t>(outgoing_).first(size);
-  const Nanoseconds asked_at = now();
-  if (const BusStatus status = send_all(frame, deadline); status != BusStatus::ok) return status;
-  const BusStatus status = receive(unit, request, frame, deadline);
-  last_round_trip_ = now() - asked_at;
-  last_size_ = {size - rtu_overhead, reply_pdu_size(request)};
-  return status;
-}
-
-Nanoseconds ModbusRtuLink::wire_time(TransactionSize size) const noexcept {
-  return static_cast<Nanoseconds>(size.request + size.reply + 2 * rtu_overhead) * character_;
-}
-
-void ModbusRtuLink::keep_measurement() noexcept {
-  // A module answers after a silence of its own, by which it knows that the question is over.
-  answers_.add(std::max<Nanoseconds>(0, last_round_trip_ - wire_time(last_size_) - silence_));
+/// What modules and adapter needed beside bytes and silence. A module answers after a silence of its own, by
+/// which it knows that the question is over.
+Nanoseconds ModbusRtuLink::answer_time(Nanoseconds round_trip) const noexcept {
+  const auto bytes = static_cast<Nanoseconds>(last_size_.request + last_size_.reply + 2 * rtu_overhead);
+  return std::max<Nanoseconds>(0, round_trip - bytes * character_ - silence_);
 }
 
 Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
@@ -221,13 +154,13 @@ Board::Budget ModbusRtuLink::cost(std::span<const TransactionSize> transactions,
   for (const TransactionSize& size : transactions) bytes += size.request + size.reply + 2 * rtu_overhead;
   const double wire_s = static_cast<double>(bytes) * character_s(line_);
   const double silences_s = 2 * count * seconds(silence_);
-  const bool known = answers_.count() > 0;
-  const double answer_s = known ? answers_.median_s() : line_.turnaround_s + line_.adapter_latency_s;
+  const bool known = measured().count() > 0;
+  const double answer_s = known ? measured().median_s() : line_.turnaround_s + line_.adapter_latency_s;
 
   std::string source;
   if (known) {
-    source = "median of " + std::to_string(answers_.count()) + " measured when connecting, slowest " +
-             milliseconds(answers_.slowest_s());
+    source = "median of " + std::to_string(measured().count()) + " measured when connecting, slowest " +
+             milliseconds(measured().slowest_s());
   } else {
     source = "turnaround " + milliseconds(line_.turnaround_s) + " and adapter " +
              milliseconds(line_.adapter_latency_s) + ", not measured: not connected yet";

@@ -7,10 +7,6 @@ namespace {
 
 constexpr std::size_t crc_size = 2;
 
-std::uint16_t crc_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
-  return static_cast<std::uint16_t>(bytes[at + 1] << 8 | bytes[at]);
-}
-
 bool begins_with(std::span<const std::uint8_t> bytes, std::span<const std::uint8_t> begin) noexcept {
   return bytes.size() >= begin.size() && std::equal(begin.begin(), begin.end(), bytes.begin());
 }
@@ -26,14 +22,23 @@ std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept {
   return static_cast<std::uint16_t>(crc);
 }
 
-std::size_t build_rtu_request(const ModbusRequest& request, std::uint8_t unit, RtuFrame& frame) noexcept {
-  const std::size_t size = build_pdu(request, std::span(frame).subspan<1, max_pdu>());
-  if (size == 0) return 0;
+std::size_t put_rtu_ends(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint8_t unit) noexcept {
   frame[0] = unit;
-  const std::uint16_t crc = crc16(std::span<const std::uint8_t>(frame).first(1 + size));
-  frame[1 + size] = static_cast<std::uint8_t>(crc & 0xff);
-  frame[2 + size] = static_cast<std::uint8_t>(crc >> 8);
-  return size + rtu_overhead;
+  const std::uint16_t crc = crc16(frame.first(1 + pdu_size));
+  frame[1 + pdu_size] = static_cast<std::uint8_t>(crc & 0xff);
+  frame[2 + pdu_size] = static_cast<std::uint8_t>(crc >> 8);
+  return pdu_size + rtu_overhead;
+}
+
+bool crc_holds(std::span<const std::uint8_t> frame) noexcept {
+  const std::size_t end = frame.size() - crc_size;
+  const std::uint16_t crc = crc16(frame.first(end));
+  return frame[end] == (crc & 0xff) && frame[end + 1] == crc >> 8;
+}
+
+std::size_t build_rtu_request(const ModbusRequest& request, std::uint8_t unit, Frame& frame) noexcept {
+  const std::size_t size = build_pdu(request, std::span(frame).subspan<1, max_pdu>());
+  return size == 0 ? 0 : put_rtu_ends(frame, size, unit);
 }
 
 ModbusReply parse_rtu_reply(std::span<const std::uint8_t> bytes, const ModbusRequest& request,
@@ -50,7 +55,7 @@ ModbusReply parse_rtu_reply(std::span<const std::uint8_t> bytes, const ModbusReq
   }
   const std::size_t size = 1 + pdu_size_of(reply, request);
   if (bytes.size() < size + crc_size) return {};
-  if (crc_at(bytes, size) != crc16(bytes.first(size))) {
+  if (!crc_holds(bytes.first(size + crc_size))) {
     return defective(begins_with(bytes, asked) ? ReplyDefect::own_echo : ReplyDefect::checksum);
   }
   if (bytes.size() > size + crc_size) return defective(ReplyDefect::trailing);

@@ -2,7 +2,6 @@
 // Framing on serial lines (Modbus RTU): unit id in front, CRC behind; a frame ends with silence.
 // MODBUS over Serial Line, Specification and Implementation Guide V1.02, 2.5.1.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,14 +15,20 @@ namespace softgrip::drivers {
 inline constexpr std::size_t max_rtu_frame = 1 + max_pdu + 2;
 /// What a frame has beside the question or answer: unit id and CRC [bytes].
 inline constexpr std::size_t rtu_overhead = 3;
-using RtuFrame = std::array<std::uint8_t, max_rtu_frame>;
 
 /// CRC-16 of the specification: polynomial 0xA001 (reflected), starting from 0xFFFF. Sent low byte first.
 [[nodiscard]] std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept;
 
-/// Writes the frame; returns its size, or 0 for a request that reply_pdu_size() refuses.
+/// Writes unit id and CRC around the PDU of `pdu_size` bytes that begins at frame[1]; returns the size of the
+/// frame.
+std::size_t put_rtu_ends(std::span<std::uint8_t> frame, std::size_t pdu_size, std::uint8_t unit) noexcept;
+
+/// Whether a frame ends with the CRC of what is before it.
+[[nodiscard]] bool crc_holds(std::span<const std::uint8_t> frame) noexcept;
+
+/// Writes the frame of a question; returns its size, or 0 for a request that reply_pdu_size() refuses.
 [[nodiscard]] std::size_t build_rtu_request(const ModbusRequest& request, std::uint8_t unit,
-                                            RtuFrame& frame) noexcept;
+                                            Frame& frame) noexcept;
 
 /// Judges `bytes`, all that was received since the question (`asked`, the frame that was sent) went out. As
 /// parse_reply(): `incomplete` is a proper beginning, a wrong beginning is not waited out.

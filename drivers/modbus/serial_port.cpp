@@ -1,10 +1,12 @@
 #include "drivers/modbus/serial_port.h"
 
+#include <asm/termbits.h>  // termios2; excludes <termios.h>
 #include <fcntl.h>
+#include <modbus/modbus.h>
 #include <sys/file.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <utility>
 
 namespace softgrip::drivers {
 namespace {
@@ -21,25 +22,6 @@ namespace {
 constexpr double silent_characters = 3.5;
 constexpr double fixed_silence_s = 1.75e-3;
 constexpr std::uint32_t fixed_above_baud = 19200;
-
-constexpr std::array<std::pair<std::uint32_t, speed_t>, 12> speeds{{{1200, B1200},
-                                                                    {2400, B2400},
-                                                                    {4800, B4800},
-                                                                    {9600, B9600},
-                                                                    {19200, B19200},
-                                                                    {38400, B38400},
-                                                                    {57600, B57600},
-                                                                    {115200, B115200},
-                                                                    {230400, B230400},
-                                                                    {460800, B460800},
-                                                                    {921600, B921600},
-                                                                    {1000000, B1000000}}};
-
-speed_t speed_of(std::uint32_t baud) noexcept {
-  const auto* const found =
-      std::find_if(speeds.begin(), speeds.end(), [baud](const auto& pair) { return pair.first == baud; });
-  return found == speeds.end() ? B0 : found->second;
-}
 
 bool is_pseudo_terminal(int descriptor) noexcept {
   // Documentation/admin-guide/devices.txt of the kernel: Unix98 slaves.
@@ -59,51 +41,37 @@ tcflag_t line_flags(const SerialLine& line) noexcept {
   return flags;
 }
 
-constexpr tcflag_t judged_flags = CSIZE | PARENB | PARODD | CSTOPB;
-
-/// Bytes as they are, no modem lines, no signals.
-bool configure(int descriptor, const SerialLine& line) noexcept {
-  termios settings{};
-  if (::tcgetattr(descriptor, &settings) != 0) return false;
-  ::cfmakeraw(&settings);
-  settings.c_cflag &= ~(judged_flags | CRTSCTS | HUPCL);
-  settings.c_cflag |= line_flags(line) | CLOCAL | CREAD;
-  settings.c_iflag &= ~static_cast<tcflag_t>(IXON | IXOFF | IXANY | INPCK);
-  settings.c_cc[VMIN] = 1;  // with O_NONBLOCK: no byte is EAGAIN, and 0 is the end of the line
-  settings.c_cc[VTIME] = 0;
-  return ::cfsetspeed(&settings, speed_of(line.baud)) == 0 &&
-         ::tcsetattr(descriptor, TCSANOW, &settings) == 0;
-}
-
-/// tcsetattr succeeds if any of the settings was taken.
+/// What the driver made of the settings.
 bool keeps_to(int descriptor, const SerialLine& line) noexcept {
-  termios settings{};
-  if (::tcgetattr(descriptor, &settings) != 0) return false;
-  const bool same_speed = ::cfgetospeed(&settings) == speed_of(line.baud);
-  const bool same_format = (settings.c_cflag & judged_flags) == line_flags(line);
-  return same_speed && (same_format || is_pseudo_terminal(descriptor));
+  termios2 settings{};  // with the rate as a number
+  if (::ioctl(descriptor, TCGETS2, &settings) != 0) return false;
+  constexpr tcflag_t judged = CSIZE | PARENB | PARODD | CSTOPB;
+  const bool same_format = (settings.c_cflag & judged) == line_flags(line);
+  return settings.c_ospeed == line.baud && (same_format || is_pseudo_terminal(descriptor));
 }
 
-SerialPort failed(int descriptor, const char* what, int error) noexcept {
-  if (descriptor >= 0) ::close(descriptor);
-  return {-1, what, error};
+char parity_of(const SerialLine& line) noexcept {
+  return line.parity == Parity::none ? 'N' : line.parity == Parity::even ? 'E' : 'O';
 }
 
 }  // namespace
 
-SerialPort open_serial(const SerialLine& line) noexcept {
-  const int descriptor = ::open(line.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) return failed(-1, "opening the serial device", errno);
-  if (::isatty(descriptor) == 0) return failed(descriptor, "opening the serial device", ENOTTY);
-  // Two masters on one line would take each other's answers.
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0)
-    return failed(descriptor, "taking the serial device", EBUSY);
-  if (!configure(descriptor, line)) return failed(descriptor, "setting the serial line", errno);
-  if (!keeps_to(descriptor, line)) {
-    return failed(descriptor, "setting the serial line: the device does not keep to rate or format", 0);
+modbus_t* new_context(const SerialLine& line) {
+  return ::modbus_new_rtu(line.device.c_str(), static_cast<int>(line.baud), parity_of(line), 8,
+                          line.stop_bits);
+}
+
+SerialFailure open_serial(modbus_t* context, const SerialLine& line, Descriptor& master) noexcept {
+  master = Descriptor(::open(line.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!master) return {"opening the serial device", errno};
+  if (::isatty(master.get()) == 0) return {"opening the serial device", ENOTTY};
+  if (::flock(master.get(), LOCK_EX | LOCK_NB) != 0) return {"taking the serial device", EBUSY};
+  if (::modbus_connect(context) != 0) return {"setting the serial line", errno};
+  if (!keeps_to(::modbus_get_socket(context), line)) {
+    return {"setting the serial line: the device does not keep to rate or format", 0};
   }
-  (void)::tcflush(descriptor, TCIOFLUSH);
-  return {descriptor, "", 0};
+  (void)::modbus_flush(context);
+  return {};
 }
 
 double character_s(const SerialLine& line) noexcept {
@@ -132,8 +100,7 @@ bool set_format(std::string_view text, SerialLine& line) noexcept {
 }
 
 std::string format_of(const SerialLine& line) {
-  const char parity = line.parity == Parity::none ? 'N' : line.parity == Parity::even ? 'E' : 'O';
-  return std::to_string(line.baud) + " 8" + parity + std::to_string(line.stop_bits);
+  return std::to_string(line.baud) + " 8" + parity_of(line) + std::to_string(line.stop_bits);
 }
 
 std::optional<AdapterLatency> adapter_latency(const std::string& device, const std::string& sys) {

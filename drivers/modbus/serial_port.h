@@ -7,20 +7,29 @@
 #include <string>
 #include <string_view>
 
+#include "base/descriptor.h"
 #include "drivers/modbus/modbus_address.h"
+
+struct _modbus;  // libmodbus' modbus_t
 
 namespace softgrip::drivers {
 
-/// A device that was opened, or why not.
-struct SerialPort {
-  int descriptor = -1;
-  const char* what = "";  ///< what failed
-  int error = 0;          ///< errno; 0: the device took the settings but does not keep to them
+/// Why a device did not open.
+struct SerialFailure {
+  const char* what = nullptr;  ///< what failed; none: the device is open
+  int error = 0;               ///< errno; 0: the device took the settings but does not keep to them
 };
 
-/// Opens the device for this process alone, without blocking, with the line's settings, and reads them back.
-/// A pseudo-terminal has no bits on a wire: it is not asked for parity. Allocates nothing.
-[[nodiscard]] SerialPort open_serial(const SerialLine& line) noexcept;
+/// A context of libmodbus for the line, to be freed; none if it takes no such device.
+[[nodiscard]] _modbus* new_context(const SerialLine& line);
+
+/// Lets libmodbus open the device without blocking and set it up. Before, the device is taken for this
+/// process alone, for as long as `master` is open: two masters on one line would take each other's answers,
+/// and the second would change the settings of the first. Behind, the settings are read back: libmodbus takes
+/// a rate that it does not know for 9600, and tcsetattr succeeds if any of the settings was taken. A
+/// pseudo-terminal has no bits on a wire: it is not asked for parity. Allocates nothing.
+[[nodiscard]] SerialFailure open_serial(_modbus* context, const SerialLine& line,
+                                        Descriptor& master) noexcept;
 
 /// Duration of one character with its start, parity and stop bits [s].
 [[nodiscard]] double character_s(const SerialLine& line) noexcept;

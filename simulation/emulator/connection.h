@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "base/descriptor.h"
-#include "simulation/emulator/mbap.h"
 #include "simulation/emulator/reply.h"
-#include "simulation/emulator/rtu.h"
+#include "simulation/emulator/requests.h"
 
 namespace softgrip::simulation {
 

@@ -1,5 +1,6 @@
 #include "simulation/emulator/emulated_board.h"
 
+#include <modbus/modbus.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +17,7 @@ using drivers::RegisterBlock;
 constexpr double nanoseconds_per_second = 1e9;
 
 bool reads_input_registers(const RegisterBlock& block) {
-  return block.function == static_cast<std::uint8_t>(Function::read_input);
+  return block.function == MODBUS_FC_READ_INPUT_REGISTERS;
 }
 
 /// First register and number of registers that a write request changes, or an empty range.
@@ -25,12 +26,12 @@ struct WrittenRange {
   std::size_t count = 0;
 };
 WrittenRange written_by(std::span<const std::uint8_t> pdu) {
-  switch (static_cast<Function>(pdu[0])) {
-    case Function::write_single:
+  switch (pdu[0]) {
+    case MODBUS_FC_WRITE_SINGLE_REGISTER:
       return {word_at(pdu, 1), 1};
-    case Function::write_multiple:
+    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
       return {word_at(pdu, 1), word_at(pdu, 3)};
-    case Function::read_write:
+    case MODBUS_FC_WRITE_AND_READ_REGISTERS:
       return {word_at(pdu, 5), word_at(pdu, 7)};
     default:
       return {};
@@ -90,7 +91,7 @@ void EmulatedBoard::define_block(const RegisterBlock& block, Registers::Access a
 }
 
 void EmulatedBoard::define_write(const FixedWrite& write) {
-  if (write.function == static_cast<std::uint8_t>(Function::write_coil)) {
+  if (write.function == MODBUS_FC_WRITE_SINGLE_COIL) {
     registers_.define_coil(write.address);
   } else {
     registers_.define_holding(write.address, Registers::Access::read_write);
@@ -123,11 +124,15 @@ void EmulatedBoard::fill_readable_gaps() {
 }
 
 void EmulatedBoard::allow_functions() {
-  constexpr std::array always{Function::read_coils,    Function::read_discrete, Function::read_holding,
-                              Function::read_input,    Function::write_coil,    Function::write_single,
-                              Function::write_multiple};
-  for (const Function function : always) registers_.allow(function);
-  if (map_.has_fc23) registers_.allow(Function::read_write);
+  constexpr std::array<std::uint8_t, 7> always{MODBUS_FC_READ_COILS,
+                                               MODBUS_FC_READ_DISCRETE_INPUTS,
+                                               MODBUS_FC_READ_HOLDING_REGISTERS,
+                                               MODBUS_FC_READ_INPUT_REGISTERS,
+                                               MODBUS_FC_WRITE_SINGLE_COIL,
+                                               MODBUS_FC_WRITE_SINGLE_REGISTER,
+                                               MODBUS_FC_WRITE_MULTIPLE_REGISTERS};
+  for (const std::uint8_t function : always) registers_.allow(function);
+  if (map_.has_fc23) registers_.allow(MODBUS_FC_WRITE_AND_READ_REGISTERS);
 }
 
 Registers::Answer EmulatedBoard::answer(Nanoseconds now, std::span<const std::uint8_t> pdu) {
@@ -236,12 +241,12 @@ bool EmulatedBoard::feeds(std::span<const std::uint8_t> pdu) const {
 bool EmulatedBoard::is_write(std::span<const std::uint8_t> pdu, const FixedWrite& write) const {
   if (pdu.size() < 5 || pdu[0] != write.function || word_at(pdu, 1) != write.address) return false;
   constexpr std::uint16_t coil_on = 0xff00;
-  switch (static_cast<Function>(pdu[0])) {
-    case Function::write_coil:
+  switch (pdu[0]) {
+    case MODBUS_FC_WRITE_SINGLE_COIL:
       return (word_at(pdu, 3) == coil_on) == (write.value != 0);
-    case Function::write_single:
+    case MODBUS_FC_WRITE_SINGLE_REGISTER:
       return word_at(pdu, 3) == write.value;
-    case Function::write_multiple:
+    case MODBUS_FC_WRITE_MULTIPLE_REGISTERS:
       return pdu.size() >= 8 && word_at(pdu, 6) == write.value;
     default:
       return false;

@@ -1,5 +1,6 @@
 #include "simulation/emulator/emulator.h"
 
+#include <modbus/modbus.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -92,7 +93,7 @@ Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link)
   Bytes pdu{request.pdu[0]};
   if (!index || carried_out(faults_.faults()[*index].kind)) {
     if (board == nullptr) {
-      pdu = exception_reply(request.pdu[0], Exception::gateway_target_failed);
+      pdu = exception_reply(request.pdu[0], MODBUS_EXCEPTION_GATEWAY_TARGET);
     } else {
       for (const Finger& finger : fingers_) finger.show(boards_);
       board->ignore_writes(faults_.first_active(FaultKind::ignored_write).has_value());
@@ -161,30 +162,12 @@ void Emulator::apply_faults(std::size_t channel) {
   for (std::size_t i = 0; i < faults_.faults().size(); ++i) {
     const FaultSpec& fault = faults_.faults()[i];
     if (!faults_.active(i) || fault.channel.value_or(channel) != channel) continue;
-    switch (fault.kind) {
-      case FaultKind::sensor_stuck:
-        sensor = {simulation::SensorFault::Kind::stuck, 0};
-        break;
-      case FaultKind::sensor_jumping:
-        sensor = {};
-        if (is_off(fault, faults_.since(i), now_))
-          sensor = {simulation::SensorFault::Kind::offset, fault.by_mm};
-        break;
-      case FaultKind::sensor_out_of_range:
-        sensor = {simulation::SensorFault::Kind::out_of_range, 0};
-        break;
-      case FaultKind::line_blocked:
-        line = {simulation::LineFault::Kind::blocked, 0};
-        break;
-      case FaultKind::line_leaking:
-        line = {simulation::LineFault::Kind::leaking, fault.share};
-        break;
-      case FaultKind::object_removed:
-        object_there = false;
-        break;
-      default:
-        break;
+    if (fault.line.kind != LineFault::Kind::none) line = fault.line;
+    if (fault.sensor.kind != SensorFault::Kind::none) {
+      const bool there = fault.kind != FaultKind::sensor_jumping || is_off(fault, faults_.since(i), now_);
+      sensor = there ? fault.sensor : SensorFault{};
     }
+    if (fault.kind == FaultKind::object_removed) object_there = false;
   }
   fingers_[channel].set_faults(line, sensor);
   fingers_[channel].place_object(object_there);

@@ -13,7 +13,7 @@
 #include "simulation/emulator/fault_schedule.h"
 #include "simulation/emulator/finger.h"
 #include "simulation/emulator/reply.h"
-#include "simulation/emulator/wire.h"
+#include "simulation/emulator/requests.h"
 
 namespace softgrip::simulation {
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "document/reader.h"
+#include "simulation/plant/fault_reader.h"
 
 namespace softgrip::simulation {
 namespace {
@@ -34,23 +36,22 @@ void read_own_keys(FaultSpec& fault, document::MapReader& map) {
       fault.code = static_cast<std::uint8_t>(map.integer("code", 1, 255));
       break;
     case FaultKind::sensor_jumping:
-      fault.by_mm = map.number("by_mm", {-1000, 1000});
       fault.interval_s = map.number("interval_s", {shortest_interval_s, 60});
-      break;
-    case FaultKind::line_leaking:
-      fault.share = map.number("share", up_to(1));
       break;
     default:
       break;
   }
+  read_own_keys(map, fault.line);
+  read_own_keys(map, fault.sensor, "by_mm");
 }
 
 FaultSpec read_fault(const document::Document& document, const document::Node& node,
                      const std::vector<std::string>& channels, document::Problems& problems) {
   document::MapReader map(document, node, problems, "fault");
-  FaultSpec fault;
-  fault.name = map.text("name");
-  fault.kind = static_cast<FaultKind>(map.choice("kind", {kind_names.begin(), kind_names.end()}));
+  std::string name = map.text("name");
+  FaultSpec fault =
+      fault_of(static_cast<FaultKind>(map.choice("kind", {kind_names.begin(), kind_names.end()})));
+  fault.name = std::move(name);
   fault.at_s = map.optional_number("at_s", up_to(longest_s));
   fault.for_s = map.optional_number("for_s", up_to(longest_s));
   if (on_the_wire(fault.kind)) {
@@ -67,6 +68,19 @@ FaultSpec read_fault(const document::Document& document, const document::Node& n
 
 std::string_view name_of(FaultKind kind) noexcept {
   return kind_names[static_cast<std::size_t>(kind)];
+}
+
+FaultSpec fault_of(FaultKind kind) {
+  using Line = LineFault::Kind;
+  using Sensor = SensorFault::Kind;
+  FaultSpec fault;
+  fault.kind = kind;
+  if (kind == FaultKind::line_blocked) fault.line.kind = Line::blocked;
+  if (kind == FaultKind::line_leaking) fault.line.kind = Line::leaking;
+  if (kind == FaultKind::sensor_stuck) fault.sensor.kind = Sensor::stuck;
+  if (kind == FaultKind::sensor_jumping) fault.sensor.kind = Sensor::offset;
+  if (kind == FaultKind::sensor_out_of_range) fault.sensor.kind = Sensor::out_of_range;
+  return fault;
 }
 
 std::vector<FaultSpec> read_faults(const document::Document& document,

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "document/node.h"
+#include "simulation/plant/plant.h"
 
 namespace softgrip::simulation {
 
@@ -69,9 +70,12 @@ struct FaultSpec {
   double delay_s = 0;
   double interval_s = 0;
   std::uint8_t code = 0;
-  double by_mm = 0;
-  double share = 0;
+  LineFault line;      ///< line_blocked, line_leaking
+  SensorFault sensor;  ///< sensor_stuck, sensor_jumping, sensor_out_of_range
 };
+
+/// A fault of this kind, without a name and with nothing of its own.
+[[nodiscard]] FaultSpec fault_of(FaultKind kind);
 
 /// Reads a faults file for a rig with these channels. Problems are added to `problems`; the result means
 /// something only if none were.

@@ -8,32 +8,12 @@
 #include <set>
 #include <span>
 
-#include "simulation/emulator/mbap.h"
+#include "simulation/emulator/requests.h"
 
 namespace softgrip::simulation {
 
-enum class Function : std::uint8_t {
-  read_coils = 0x01,
-  read_discrete = 0x02,
-  read_holding = 0x03,
-  read_input = 0x04,
-  write_coil = 0x05,
-  write_single = 0x06,
-  write_multiple = 0x10,
-  read_write = 0x17,
-};
-
-enum class Exception : std::uint8_t {
-  illegal_function = 1,
-  illegal_address = 2,
-  illegal_value = 3,
-  device_failure = 4,
-  device_busy = 6,
-  gateway_target_failed = 11,
-};
-
 /// The reply that reports an exception.
-[[nodiscard]] Bytes exception_reply(std::uint8_t function, Exception code);
+[[nodiscard]] Bytes exception_reply(std::uint8_t function, std::uint8_t code);
 
 /// A bank of registers. An address that was not defined is answered with an exception, never with a zero:
 /// a client that asks for the wrong address must not believe that the board is alive. Like the ADAM-6000, it
@@ -47,7 +27,7 @@ class Registers {
   void define_coil(std::uint16_t address, bool value = false);
   void define_discrete_input(std::uint16_t address, bool value = false);
   /// A function code that the board knows; all others are answered with illegal_function.
-  void allow(Function function) { functions_.insert(function); }
+  void allow(std::uint8_t function) { functions_.insert(function); }
 
   [[nodiscard]] std::uint16_t holding(std::uint16_t address) const { return holding_.at(address).value; }
   [[nodiscard]] std::uint16_t input(std::uint16_t address) const { return input_.at(address); }
@@ -88,7 +68,7 @@ class Registers {
   std::map<std::uint16_t, std::uint16_t> input_;
   std::map<std::uint16_t, bool> coils_;
   std::map<std::uint16_t, bool> discrete_inputs_;
-  std::set<Function> functions_;
+  std::set<std::uint8_t> functions_;
 };
 
 }  // namespace softgrip::simulation

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <vector>
 
-#include "simulation/emulator/mbap.h"
+#include "simulation/emulator/requests.h"
 
 namespace softgrip::simulation {
 

@@ -1,6 +1,7 @@
 #include "simulation/emulator/serial_end.h"
 
 #include <fcntl.h>
+#include <modbus/modbus.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -70,6 +71,16 @@ tl::expected<void, std::string> SerialEnd::make_pseudo() {
   return {};
 }
 
+tl::expected<void, std::string> SerialEnd::open_device() {
+  modbus_t* const context = drivers::new_context(line_);
+  const drivers::SerialFailure failed = drivers::open_serial(context, line_, kept_);
+  end_ = Descriptor{::modbus_get_socket(context)};
+  ::modbus_free(context);  // leaves the descriptor open
+  if (failed.what != nullptr) return failure(std::string(failed.what) + " " + line_.device, failed.error);
+  pseudo_ = is_pseudo_terminal(line_.device);
+  return {};
+}
+
 tl::expected<SerialEnd, std::string> SerialEnd::open(const drivers::SerialLine& line) {
   SerialEnd end(line);
   struct stat about {};
@@ -79,10 +90,7 @@ tl::expected<SerialEnd, std::string> SerialEnd::open(const drivers::SerialLine& 
     if (auto made = end.make_pseudo(); !made) return tl::unexpected{made.error()};
     return end;
   }
-  const drivers::SerialPort port = drivers::open_serial(line);
-  if (port.descriptor < 0) return failure(std::string(port.what) + " " + line.device, port.error);
-  end.end_ = Descriptor{port.descriptor};
-  end.pseudo_ = is_pseudo_terminal(line.device);
+  if (auto opened = end.open_device(); !opened) return tl::unexpected{opened.error()};
   return end;
 }
 

@@ -33,10 +33,13 @@ class SerialEnd {
  private:
   explicit SerialEnd(drivers::SerialLine line) : line_(std::move(line)) {}
   tl::expected<void, std::string> make_pseudo();
+  tl::expected<void, std::string> open_device();
 
   drivers::SerialLine line_;
   Descriptor end_;
-  Descriptor kept_;  // the daemon's end, held open: without it the line would hang up when the daemon leaves
+  // Of a pseudo-terminal the daemon's end: without it the line would hang up when the daemon leaves. Of a
+  // device what keeps others from opening it.
+  Descriptor kept_;
   std::string link_;
   bool pseudo_ = false;
 };

@@ -31,8 +31,7 @@ Reply longer_than_it_is(Wire wire, const Request& request, const Bytes& pdu) {
     return at_once(std::move(whole));
   }
   const auto length = static_cast<std::uint16_t>(word_at(whole, 4) + 1);
-  whole[4] = static_cast<std::uint8_t>(length >> 8U);
-  whole[5] = static_cast<std::uint8_t>(length & 0xffU);
+  drivers::put_word(whole, 4, length);
   return at_once(std::move(whole));
 }
 
@@ -77,7 +76,7 @@ Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request, c
     case FaultKind::wrong_length:
       return longer_than_it_is(wire, request, pdu);
     case FaultKind::exception_reply:
-      return good_reply(wire, request, exception_reply(request.pdu[0], static_cast<Exception>(fault.code)));
+      return good_reply(wire, request, exception_reply(request.pdu[0], fault.code));
     case FaultKind::disconnect:
       return {{}, true};
     default:

@@ -2,9 +2,8 @@
 // What the faults of the wire make of a good reply.
 
 #include "simulation/emulator/fault.h"
-#include "simulation/emulator/mbap.h"
 #include "simulation/emulator/reply.h"
-#include "simulation/emulator/wire.h"
+#include "simulation/emulator/requests.h"
 
 namespace softgrip::simulation {
 

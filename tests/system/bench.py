@@ -115,11 +115,11 @@ class Process:
 class Emulator(Process):
     """softgrip-rig on a free port, with a control socket."""
 
-    def __init__(self, folder, *arguments, port=0, name="softgrip-rig"):
+    def __init__(self, folder, *arguments, port=0, board="adam-6024", name="softgrip-rig"):
         self.control_path = folder / f"{name}.sock"
-        super().__init__(name, [SOFTGRIP_RIG, "--model", folder / "config/models/bench_twin.yaml",
-                                "--board", folder / "config/boards/adam-6024.yaml", "--tcp", port,
-                                "--control", self.control_path, *arguments], folder)
+        boards = ["--board", folder / f"config/boards/{board}.yaml"] if board else []
+        super().__init__(name, [SOFTGRIP_RIG, "--model", folder / "config/models/bench_twin.yaml", *boards,
+                                "--tcp", port, "--control", self.control_path, *arguments], folder)
         self.port = int(wait_for(f"{name} to listen: {self.errors()}", self._ready))
         self.control = Lines(self.control_path)
 

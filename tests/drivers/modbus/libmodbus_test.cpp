@@ -72,7 +72,7 @@ class LibmodbusServer {
 
 BoardMap shipped(const std::string& name) {
   document::Problems problems;
-  return load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/" + name, problems).value();
+  return rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/" + name, problems).value();
 }
 
 TEST(Libmodbus, AdamWithFunctions16And4) {

@@ -12,7 +12,7 @@ using Bytes = std::vector<std::uint8_t>;
 using State = ModbusReply::State;
 
 Bytes built(const ModbusRequest& request, std::uint8_t unit) {
-  RtuFrame frame{};
+  Frame frame{};
   const std::size_t size = build_rtu_request(request, unit, frame);
   return {frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(size)};
 }

@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   request.count = data[2] % 128;
   request.values = std::span(values).first(data[3] % 3);
   const std::span<const std::uint8_t> bytes(data + choices, size - choices);
-  RtuFrame frame{};
+  Frame frame{};
   const std::size_t asked = build_rtu_request(request, 1, frame);
   State last = State::incomplete;
   for (std::size_t have = 0; have <= bytes.size(); ++have) {

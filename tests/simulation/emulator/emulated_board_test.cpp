@@ -136,7 +136,7 @@ TEST(EmulatedBoard, AnswersEveryRequestWithAReplyOrAnException) {
       byte = static_cast<std::uint8_t>(random() % 4 == 0 ? random() : random() % 24);
     const Bytes reply = board.answer(i, pdu).pdu;
     ASSERT_GE(reply.size(), 2U);
-    ASSERT_LE(reply.size(), max_pdu_size);
+    ASSERT_LE(reply.size(), max_pdu);
     ASSERT_EQ(reply[0] & 0x7fU, pdu[0] & 0x7fU);
   }
 }

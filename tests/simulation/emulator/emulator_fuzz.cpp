@@ -10,7 +10,7 @@
 
 #include "rig/board_map_file.h"
 #include "simulation/emulator/emulated_board.h"
-#include "simulation/emulator/mbap.h"
+#include "simulation/emulator/requests.h"
 
 namespace {
 
@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (const auto request = stream.next()) {
       now += 10'000'000;
       const auto answer = board.answer(now, request->pdu);
-      require(answer.pdu.size() >= 2 && answer.pdu.size() <= simulation::max_pdu_size);
+      require(answer.pdu.size() >= 2 && answer.pdu.size() <= simulation::max_pdu);
       require((answer.pdu[0] & 0x7fU) == (request->pdu[0] & 0x7fU));
     }
   }

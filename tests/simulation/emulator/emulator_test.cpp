@@ -16,9 +16,8 @@ constexpr Nanoseconds second = 1'000'000'000;
 constexpr Nanoseconds millisecond = second / 1000;
 
 FaultSpec fault(std::string name, FaultKind kind) {
-  FaultSpec spec;
+  FaultSpec spec = fault_of(kind);
   spec.name = std::move(name);
-  spec.kind = kind;
   return spec;
 }
 
@@ -160,7 +159,7 @@ TEST_F(EmulatorTest, AStuckSensorOfOneChannelSticks) {
 
 TEST_F(EmulatorTest, AJumpingSensorJumpsToAndFro) {
   FaultSpec jumping = fault("jumping", FaultKind::sensor_jumping);
-  jumping.by_mm = 4;
+  jumping.sensor.value_mm = 4;
   jumping.interval_s = 0.1;
   Emulator emulator(settings({jumping}));
   emulator.trigger("jumping", 0);
@@ -179,7 +178,7 @@ TEST_F(EmulatorTest, ASensorOutOfRangeShowsTheUpperEndAndItsStatus) {
 
 TEST_F(EmulatorTest, LinesBlockAndLeak) {
   FaultSpec leaking = fault("leaking", FaultKind::line_leaking);
-  leaking.share = 0.25;
+  leaking.line.share = 0.25;
   leaking.channel = 0;
   FaultSpec blocked = fault("blocked", FaultKind::line_blocked);
   blocked.channel = 1;

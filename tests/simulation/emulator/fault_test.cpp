@@ -53,9 +53,9 @@ TEST(FaultsFile, ReadsEveryKind) {
   EXPECT_EQ(faults[2].delay_s, 0.2);
   EXPECT_EQ(faults[9].code, 4);
   EXPECT_EQ(faults[12].channel, 1U);
-  EXPECT_EQ(faults[13].by_mm, -3);
+  EXPECT_EQ(faults[13].sensor.value_mm, -3);
   EXPECT_FALSE(faults[15].channel);
-  EXPECT_EQ(faults[16].share, 0.3);
+  EXPECT_EQ(faults[16].line.share, 0.3);
 }
 
 TEST(FaultsFile, SaysWhatIsWrongAndWhere) {

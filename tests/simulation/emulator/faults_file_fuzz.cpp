@@ -25,8 +25,8 @@ void check(const simulation::FaultSpec& fault) {
   require(!fault.at_s || (std::isfinite(*fault.at_s) && *fault.at_s >= 0));
   require(!fault.for_s || (std::isfinite(*fault.for_s) && *fault.for_s > 0));
   require(!fault.channel || *fault.channel < 2);
-  require(fault.delay_s >= 0 && fault.interval_s >= 0 && fault.share >= 0 && fault.share <= 1);
-  require(std::isfinite(fault.by_mm));
+  require(fault.delay_s >= 0 && fault.interval_s >= 0 && fault.line.share >= 0 && fault.line.share <= 1);
+  require(std::isfinite(fault.sensor.value_mm));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "simulation/emulator/mbap.h"
+#include "simulation/emulator/requests.h"
 
 #include <gtest/gtest.h>
 
@@ -52,12 +52,12 @@ TEST(RequestStream, BreaksOnAHeaderThatMakesNoSense) {
 }
 
 TEST(RequestStream, AcceptsTheLongestFrameAndNotMore) {
-  for (const std::size_t size : {max_pdu_size, max_pdu_size + 1}) {
-    const Bytes whole = frame(1, 1, Bytes(size, 0x10));
+  for (const std::size_t size : {max_pdu, max_pdu + 1}) {
+    const Bytes whole = frame_on(Wire::tcp, 1, 1, Bytes(size, 0x10));
     RequestStream stream;
     stream.append(whole);
-    EXPECT_EQ(stream.next().has_value(), size == max_pdu_size);
-    EXPECT_EQ(stream.broken(), size != max_pdu_size);
+    EXPECT_EQ(stream.next().has_value(), size == max_pdu);
+    EXPECT_EQ(stream.broken(), size != max_pdu);
   }
 }
 
@@ -70,7 +70,7 @@ TEST(RequestStream, DoesNotKeepAnEndlessFlood) {
 
 TEST(Frame, IsWhatTheStreamReads) {
   RequestStream stream;
-  stream.append(frame(0xabcd, 17, Bytes{0x04, 0x00, 0x01, 0x00, 0x02}));
+  stream.append(frame_on(Wire::tcp, 0xabcd, 17, Bytes{0x04, 0x00, 0x01, 0x00, 0x02}));
   const auto request = stream.next();
   ASSERT_TRUE(request);
   EXPECT_EQ(request->transaction, 0xabcd);

@@ -1,11 +1,22 @@
 #include "simulation/emulator/registers.h"
 
 #include <gtest/gtest.h>
+#include <modbus/modbus.h>
+
+#include <array>
 
 namespace softgrip::simulation {
 namespace {
 
 /// Holding 0-3 (2 and 3 writable), input 10-11, coil 5.
+constexpr std::array<std::uint8_t, 7> functions{MODBUS_FC_READ_COILS,
+                                                MODBUS_FC_READ_HOLDING_REGISTERS,
+                                                MODBUS_FC_READ_INPUT_REGISTERS,
+                                                MODBUS_FC_WRITE_SINGLE_COIL,
+                                                MODBUS_FC_WRITE_SINGLE_REGISTER,
+                                                MODBUS_FC_WRITE_MULTIPLE_REGISTERS,
+                                                MODBUS_FC_WRITE_AND_READ_REGISTERS};
+
 class RegistersTest : public testing::Test {
  protected:
   RegistersTest() {
@@ -16,11 +27,7 @@ class RegistersTest : public testing::Test {
     registers.define_input(10, 7);
     registers.define_input(11, 8);
     registers.define_coil(5, true);
-    for (const auto function :
-         {Function::read_coils, Function::read_holding, Function::read_input, Function::write_coil,
-          Function::write_single, Function::write_multiple, Function::read_write}) {
-      registers.allow(function);
-    }
+    for (const std::uint8_t function : functions) registers.allow(function);
   }
 
   Bytes ask(const Bytes& pdu) { return registers.answer(pdu).pdu; }

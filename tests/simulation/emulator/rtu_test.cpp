@@ -1,4 +1,4 @@
-#include "simulation/emulator/rtu.h"
+#include "simulation/emulator/requests.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 const Clock::time_point start{};
 
 Bytes read_request(std::uint8_t unit = 1) {
-  return rtu_frame(unit, Bytes{4, 0, 0, 0, 8});
+  return frame_on(Wire::rtu, 0, unit, Bytes{4, 0, 0, 0, 8});
 }
 
 TEST(RtuRequestStream, CutsRequestsByTheirLength) {
@@ -24,7 +24,7 @@ TEST(RtuRequestStream, CutsRequestsByTheirLength) {
   RtuRequestStream stream;
   Bytes all;
   for (const Bytes& pdu : pdus) {
-    const Bytes frame = rtu_frame(3, pdu);
+    const Bytes frame = frame_on(Wire::rtu, 0, 3, pdu);
     all.insert(all.end(), frame.begin(), frame.end());
   }
   std::vector<Bytes> found;
@@ -40,7 +40,7 @@ TEST(RtuRequestStream, CutsRequestsByTheirLength) {
 
 TEST(RtuRequestStream, AFunctionThatNoBoardHasIsStillAQuestion) {
   RtuRequestStream stream;
-  stream.append(rtu_frame(1, Bytes{43, 14, 1, 0}), start);
+  stream.append(frame_on(Wire::rtu, 0, 1, Bytes{43, 14, 1, 0}), start);
   const auto request = stream.next();
   ASSERT_TRUE(request.has_value());
   EXPECT_EQ(request->pdu[0], 43);
