@@ -66,7 +66,7 @@ std::string read_channel_name(Context& context, MapReader& reader) {
 
 void read_feedforward(Context& context, MapReader& reader, control::ChannelSettings& channel) {
   channel.feedforward.kind = static_cast<control::FeedforwardKind>(
-      reader.choice("feedforward", {"none", "bouc_wen", "full_model", "planned"}));
+      reader.choice("feedforward", {control::feedforward_names.begin(), control::feedforward_names.end()}));
   // A command waits for the bus thread, which lags the loop by this.
   const double lag_s = context.rig.loop.bus_offset_fraction * context.period_s();
   channel.feedforward.extra_latency_s = reader.optional_number("extra_latency_s", {0, 1}).value_or(lag_s);

@@ -1,7 +1,11 @@
 #pragma once
 // The pressure that the model says a reference needs.
 
+#include <array>
 #include <cstdint>
+#include <string>
+
+#include "model/blocks/bouc_wen.h"
 
 namespace softgrip::control {
 
@@ -12,6 +16,13 @@ enum class FeedforwardKind : std::uint8_t {
   full_model,  ///< inverse of the whole chain: implicit solve, lead for lag, preview for delay
   planned,     ///< computed before the run by least squares over the reference; needs no inverse
 };
+
+/// How rig files and options write the kinds, in their order. One is named after the block that it undoes.
+inline constexpr std::array<std::string_view, 4> feedforward_names{"none", model::BoucWen<double>::info.id,
+                                                                   "full_model", "planned"};
+[[nodiscard]] constexpr std::string_view name_of(FeedforwardKind kind) {
+  return feedforward_names.at(static_cast<std::size_t>(kind));
+}
 
 struct FeedforwardSettings {
   FeedforwardKind kind = FeedforwardKind::none;

@@ -6,7 +6,12 @@
 #include <optional>
 #include <string_view>
 
+#include "model/blocks/asymmetric_hysteresis.h"
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/pressure_saturation.h"
+#include "model/blocks/valve_lag.h"
 #include "model/dual.h"
+#include "model/named.h"
 
 namespace softgrip::control {
 namespace {
@@ -31,9 +36,10 @@ constexpr double clock_rounding_s = 1e-6;
 /// How long the difference between the pressure before and the start of a plan takes to fade.
 constexpr double plan_fade_s = 3;
 
-/// The value of a parameter of the first block with that id, or nothing.
-std::optional<double> value_in(const model::Model& model, std::string_view id, std::string_view parameter) {
-  const std::optional<std::size_t> position = model::position_of(model, id);
+/// The value of a parameter of the first block of that type, or nothing.
+template <template <class> class Block>
+std::optional<double> value_in(const model::Model& model, std::string_view parameter) {
+  const std::optional<std::size_t> position = model::position_of<Block>(model);
   if (!position) return std::nullopt;
   const model::BlockSpec& block = model.blocks[*position];
   return block.values[model::find_parameter(block, parameter).value()];
@@ -42,7 +48,7 @@ std::optional<double> value_in(const model::Model& model, std::string_view id, s
 model::Model bouc_wen_of(const model::Model& model) {
   // Its asymmetry is a part of it.
   return model::only(model, [](const model::BlockInfo& info) {
-    return info.id == "bouc_wen" || info.id == "asymmetric_hysteresis";
+    return model::is<model::BoucWen, model::AsymmetricHysteresis>(info);
   });
 }
 
@@ -68,10 +74,9 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
                                            const LimitSettings& limits, double tick_s)
     : limits_(limits),
       tick_s_(tick_s),
-      ceiling_kpa_(std::min(
-          limits.pressure_max_kpa,
-          value_in(model, "pressure_saturation", "limit_kpa").value_or(std::numeric_limits<double>::max()))),
-      lag_s_(value_in(model, "valve_lag", "time_constant_s").value_or(0)),
+      ceiling_kpa_(std::min(limits.pressure_max_kpa, value_in<model::PressureSaturation>(model, "limit_kpa")
+                                                         .value_or(std::numeric_limits<double>::max()))),
+      lag_s_(value_in<model::ValveLag>(model, "time_constant_s").value_or(0)),
       lag_share_(lag_s_ > 0 ? -std::expm1(-tick_s / lag_s_) : 1),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
       inverse_(body_of(model), tick_s) {

@@ -9,8 +9,13 @@
 #include "base/numbers.h"
 #include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
+#include "model/blocks/asymmetric_hysteresis.h"
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/pressure_saturation.h"
+#include "model/blocks/valve_lag.h"
 #include "model/chain.h"
 #include "model/dual.h"
+#include "model/named.h"
 
 namespace softgrip::control {
 namespace {
@@ -100,8 +105,8 @@ std::string without_inverse(const model::Model& model) {
     const bool in_valve = info.station == Station::valve;
     const bool undone = info.inverse == Inverse::implicit
                             ? !in_valve
-                            : in_valve && (info.inverse == Inverse::preview || info.id == "valve_lag" ||
-                                           info.id == "pressure_saturation");
+                            : in_valve && (info.inverse == Inverse::preview ||
+                                           model::is<model::ValveLag, model::PressureSaturation>(info));
     if (undone) continue;
     names += (names.empty() ? "`" : ", `") + std::string(info.id) + "`";
   }
@@ -111,9 +116,9 @@ std::string without_inverse(const model::Model& model) {
 tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const LimitSettings& limits,
                                            double tick_s) {
   const auto part = model::only(model, [](const BlockInfo& info) {
-    return info.id == "bouc_wen" || info.id == "asymmetric_hysteresis";  // its asymmetry is a part of it
+    return model::is<model::BoucWen, model::AsymmetricHysteresis>(info);  // its asymmetry is a part of it
   });
-  if (!model::position_of(part, "bouc_wen")) {
+  if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(
         Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of"});
   }

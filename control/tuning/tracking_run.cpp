@@ -13,8 +13,10 @@
 #include "control/feedforward/running_model.h"
 #include "control/sequences/planner.h"
 #include "control/tick/channel_controller.h"
+#include "model/blocks/kelvin_voigt.h"
 #include "model/chain.h"
 #include "model/dual.h"
+#include "model/named.h"
 
 namespace softgrip::control {
 namespace {
@@ -107,7 +109,7 @@ GainRange gain_range(const model::Model& body, double pressure_max_kpa) {
 std::complex<double> creep(const model::Model& body, std::complex<double> s) {
   std::complex<double> sum = 0;
   for (const model::BlockSpec& block : body.blocks) {
-    if (model::catalogue()[block.type].info.id != "kelvin_voigt") continue;
+    if (!model::is<model::KelvinVoigt>(block)) continue;
     for (std::size_t i = 1; i + 1 < block.values.size(); i += 2) {
       sum += 1.0 / (block.values[i + 1] * s + block.values[i]);
     }

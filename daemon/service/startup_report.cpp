@@ -12,20 +12,6 @@ namespace {
 
 constexpr double ms_per_s = 1e3;
 
-std::string_view name_of_feedforward(control::FeedforwardKind kind) {
-  switch (kind) {
-    case control::FeedforwardKind::none:
-      return "none";
-    case control::FeedforwardKind::bouc_wen:
-      return "bouc_wen";
-    case control::FeedforwardKind::planned:
-      return "planned";
-    case control::FeedforwardKind::full_model:
-      return "full_model";
-  }
-  return "?";
-}
-
 std::string bus_lines(const rig::RigFile& rig, const drivers::Board& board) {
   const double period_s = 1 / rig.settings.rate_hz;
   const drivers::Board::Budget budget = board.budget();
@@ -51,7 +37,7 @@ std::string channel_line(const control::ChannelSettings& channel, const rig::Val
   const bool planned = channel.feedforward.kind == control::FeedforwardKind::planned;
   return fmt::format("channel {}: {:g} to {:g} kPa, feedforward {} accepted{}, valve {} on power loss\n",
                      channel.name, channel.limits.pressure_min_kpa, channel.limits.pressure_max_kpa,
-                     name_of_feedforward(channel.feedforward.kind),
+                     name_of(channel.feedforward.kind),
                      planned ? " (a sequence is planned before it starts)" : "",
                      valve.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
 }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "model/blocks/kelvin_voigt.h"
+#include "model/named.h"
 #include "sysid/fitting/gradient.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
@@ -167,7 +169,7 @@ class ChainResiduals final : public Residuals {
   void creep_columns(const FitPoint& point, std::span<const double> z, std::size_t branch, double by_ln_tau,
                      double* line) const {
     if (by_ln_tau == 0) return;
-    const auto position = model::position_of(point.model, "kelvin_voigt");
+    const auto position = model::position_of<model::KelvinVoigt>(point.model);
     for (std::size_t c = 0; c < space_.size(); ++c) {
       const FreeParameter& p = space_.free()[c];
       if (p.kind != FreeParameter::Kind::model) continue;

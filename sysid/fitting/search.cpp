@@ -7,6 +7,8 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/named.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
@@ -141,7 +143,7 @@ std::vector<SearchResult> search(const FitSpace& space, const std::vector<Record
 }
 
 void order_branches(const std::vector<double>& like_s, FitPoint& point) {
-  const auto position = model::position_of(point.model, "kelvin_voigt");
+  const auto position = model::position_of<model::KelvinVoigt>(point.model);
   if (!position) return;
   const auto slowest_first = [](const std::vector<double>& values) {
     std::vector<std::size_t> order(values.size());

@@ -3,9 +3,14 @@
 #include <array>
 #include <cmath>
 
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_lag.h"
 #include "model/catalogue.h"
 #include "model/dual.h"
 #include "model/exponential.h"
+#include "model/named.h"
 #include "sysid/fitting/hysteresis_step.h"
 
 namespace softgrip::sysid {
@@ -255,16 +260,16 @@ std::optional<SeparableShape> separable_shape(const model::Model& model) {
   bool has_bouc_wen = false;
   bool has_kelvin_voigt = false;
   for (std::size_t i = 0; i < model.blocks.size(); ++i) {
-    const std::string_view id = model::catalogue()[model.blocks[i].type].info.id;
-    const std::vector<double>& values = model.blocks[i].values;
-    if (id == "transport_delay" && !shape.delay && !shape.lag) {
+    const model::BlockSpec& block = model.blocks[i];
+    const std::vector<double>& values = block.values;
+    if (model::is<model::TransportDelay>(block) && !shape.delay && !shape.lag) {
       shape.delay = i;
-    } else if (id == "valve_lag" && !shape.lag) {
+    } else if (model::is<model::ValveLag>(block) && !shape.lag) {
       shape.lag = i;
-    } else if (id == "bouc_wen" && !has_bouc_wen && values[4] == 1) {
+    } else if (model::is<model::BoucWen>(block) && !has_bouc_wen && values[4] == 1) {
       shape.bouc_wen = i;
       has_bouc_wen = true;
-    } else if (id == "kelvin_voigt" && !has_kelvin_voigt) {
+    } else if (model::is<model::KelvinVoigt>(block) && !has_kelvin_voigt) {
       shape.kelvin_voigt = i;
       shape.branches = (values.size() - 1) / 2;
       has_kelvin_voigt = true;

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "model/blocks/kelvin_voigt.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "sysid/fitting/trajectory_walk.h"
 
 namespace softgrip::sysid {
@@ -47,7 +49,7 @@ double rms(std::span<const double> values) {
 
 std::vector<double> branch_time_constants_s(const model::Model& model) {
   std::vector<double> time_constants;
-  const auto position = model::position_of(model, "kelvin_voigt");
+  const auto position = model::position_of<model::KelvinVoigt>(model);
   if (!position) return time_constants;
   const std::vector<double>& values = model.blocks[*position].values;
   for (std::size_t i = 1; i + 1 < values.size(); i += 2) time_constants.push_back(values[i + 1] / values[i]);

@@ -1,4 +1,9 @@
 #include "sysid/identification/combinations.h"
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_lag.h"
+#include "model/named.h"
 
 #include "base/numbers.h"
 
@@ -7,17 +12,18 @@ namespace {
 
 using model::Model;
 
-/// Values of the first block with this id; the block must be there.
-const std::vector<double>& values_of(const Model& model, std::string_view id) {
-  return model.blocks[*model::position_of(model, id)].values;
+/// Values of the first block of this type; the block must be there.
+template <template <class> class Block>
+const std::vector<double>& values_of(const Model& model) {
+  return model.blocks[*model::position_of<Block>(model)].values;
 }
 
 double instantaneous(const Model& model) {
-  return values_of(model, "bouc_wen")[0] + 1 / values_of(model, "kelvin_voigt")[0];
+  return values_of<model::BoucWen>(model)[0] + 1 / values_of<model::KelvinVoigt>(model)[0];
 }
 
 void add_hysteresis(std::vector<Combination>& list) {
-  const auto bw = [](const Model& m, std::size_t i) { return values_of(m, "bouc_wen")[i]; };
+  const auto bw = [](const Model& m, std::size_t i) { return values_of<model::BoucWen>(m)[i]; };
   list.push_back({"levelling_growing_per_kpa", "1/kPa", "gamma + eta", 0.01,
                   [bw](const Model& m) { return bw(m, 2) + bw(m, 3); }});
   list.push_back({"levelling_shrinking_per_kpa", "1/kPa", "gamma - eta", 0.01,
@@ -27,11 +33,11 @@ void add_hysteresis(std::vector<Combination>& list) {
 }
 
 void add_creep(const Model& model, std::vector<Combination>& list) {
-  const std::size_t branches = (values_of(model, "kelvin_voigt").size() - 1) / 2;
+  const std::size_t branches = (values_of<model::KelvinVoigt>(model).size() - 1) / 2;
   for (std::size_t b = 0; b < branches; ++b) {
     const std::string number = std::to_string(b + 1);
     const auto kv = [b](const Model& m, std::size_t i) {
-      return values_of(m, "kelvin_voigt")[1 + 2 * b + i];
+      return values_of<model::KelvinVoigt>(m)[1 + 2 * b + i];
     };
     list.push_back({"branch" + number + "_gain_mm_per_kpa", "mm/kPa", "1/k" + number, 0,
                     [kv](const Model& m) { return 1 / kv(m, 0); }});
@@ -44,24 +50,24 @@ void add_creep(const Model& model, std::vector<Combination>& list) {
 
 std::vector<Combination> combinations_of(const Model& model) {
   std::vector<Combination> list;
-  const bool hysteresis = model::position_of(model, "bouc_wen").has_value();
-  const bool creep = model::position_of(model, "kelvin_voigt").has_value();
+  const bool hysteresis = model::position_of<model::BoucWen>(model).has_value();
+  const bool creep = model::position_of<model::KelvinVoigt>(model).has_value();
   if (hysteresis && creep) {
     list.push_back({"instantaneous_gain_mm_per_kpa", "mm/kPa", "alpha + 1/k0", 0, instantaneous});
     list.push_back({"beta_over_instantaneous_gain", "", "beta / (alpha + 1/k0)", 0,
-                    [](const Model& m) { return values_of(m, "bouc_wen")[1] / instantaneous(m); }});
+                    [](const Model& m) { return values_of<model::BoucWen>(m)[1] / instantaneous(m); }});
     list.push_back({"creep_gain_mm_per_kpa", "mm/kPa", "sum of 1/k of the branches", 0, [](const Model& m) {
-                      const auto& kv = values_of(m, "kelvin_voigt");
+                      const auto& kv = values_of<model::KelvinVoigt>(m);
                       double sum = 0;
                       for (std::size_t i = 1; i < kv.size(); i += 2) sum += 1 / kv[i];
                       return sum;
                     }});
   }
-  if (hysteresis && values_of(model, "bouc_wen")[4] == 1) add_hysteresis(list);
+  if (hysteresis && values_of<model::BoucWen>(model)[4] == 1) add_hysteresis(list);
   if (creep) add_creep(model, list);
-  if (model::position_of(model, "transport_delay") && model::position_of(model, "valve_lag")) {
+  if (model::position_of<model::TransportDelay>(model) && model::position_of<model::ValveLag>(model)) {
     list.push_back({"latency_s", "s", "delay + lag", 0.01, [](const Model& m) {
-                      return values_of(m, "transport_delay")[0] + values_of(m, "valve_lag")[0];
+                      return values_of<model::TransportDelay>(m)[0] + values_of<model::ValveLag>(m)[0];
                     }});
   }
   return list;

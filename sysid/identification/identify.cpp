@@ -7,7 +7,9 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "model/blocks/bouc_wen.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/search.h"
 #include "sysid/fitting/trajectory.h"
@@ -154,7 +156,7 @@ class Run {
 
 /// Another exponent with a hysteresis of about the same size: gamma and eta act on h^n instead of h.
 model::Model with_exponent(model::Model model, int exponent) {
-  const auto position = model::position_of(model, "bouc_wen");
+  const auto position = model::position_of<model::BoucWen>(model);
   if (!position) return model;
   std::vector<double>& v = model.blocks[*position].values;
   const double limit_mm = std::max(v[1], 1e-6) / std::max(v[2] + v[3], 1e-6);

@@ -4,15 +4,16 @@
 #include <cmath>
 #include <random>
 
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_lag.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "sysid/identification/identify.h"
 
 namespace softgrip::sysid {
 namespace {
-
-std::size_t type_of(std::string_view id) {
-  return *model::find_block(id);
-}
 
 class Drawer {
  public:
@@ -38,16 +39,16 @@ class Drawer {
     const double gain = scale_.span_mm / scale_.largest_kpa;
     for (model::BlockSpec& block : point.model.blocks) {
       std::vector<double>& v = block.values;
-      if (block.type == type_of("bouc_wen")) {
+      if (model::is<model::BoucWen>(block)) {
         const double growing = between(0.5, 8) / scale_.largest_kpa;
         const double eta = growing * uniform(0.2, 0.9);
         v[0] = gain * uniform(0.2, 1);
         v[1] = v[0] * uniform(0.2, 1);
         v[2] = growing - eta;
         v[3] = eta;
-      } else if (block.type == type_of("kelvin_voigt")) {
+      } else if (model::is<model::KelvinVoigt>(block)) {
         branches(gain, v);
-      } else if (block.type == type_of("transport_delay") || block.type == type_of("valve_lag")) {
+      } else if (model::is<model::TransportDelay>(block) || model::is<model::ValveLag>(block)) {
         v[0] = uniform(0.005, 0.3);
       }
     }
@@ -118,8 +119,8 @@ model::Model base_model(const std::vector<Log>& logs, std::size_t branches) {
   model.name = "identified";
   model.source = "starting values from the data's scale";
   const double levelling = 1 / std::max(scale.largest_kpa, 1e-6);
-  model = model::with_block(std::move(model),
-                            {type_of("bouc_wen"), {0.6 * gain, 0.3 * gain, levelling, levelling, 1}});
+  model = model::with_block(std::move(model), {model::type_of<model::BoucWen>(),
+                                               {0.6 * gain, 0.3 * gain, levelling, levelling, 1}});
   // A rigid k0: alpha alone is the instantaneous gain, of which the data see only alpha + 1/k0.
   std::vector<double> creep{1e9};
   const double slowest = std::max(scale.longest_s / 4, 1.0);
@@ -129,7 +130,7 @@ model::Model base_model(const std::vector<Log>& logs, std::size_t branches) {
     const double stiffness = static_cast<double>(branches) / (0.4 * gain);
     creep.insert(creep.end(), {stiffness, stiffness * time_constant});
   }
-  return model::with_block(std::move(model), {type_of("kelvin_voigt"), std::move(creep)});
+  return model::with_block(std::move(model), {model::type_of<model::KelvinVoigt>(), std::move(creep)});
 }
 
 }  // namespace softgrip::sysid

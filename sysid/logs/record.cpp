@@ -5,7 +5,10 @@
 #include <cmath>
 
 #include "base/statistics.h"
+#include "model/blocks/quantisation.h"
+#include "model/blocks/sensor_noise.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -126,11 +129,10 @@ double fast_noise_mm(const Record& record) {
 }
 
 model::Model deterministic_part(const model::Model& model, Drive drive) {
-  constexpr std::array<std::string_view, 2> noise{"sensor_noise", "quantisation"};
   model::Model part = model;
   std::erase_if(part.blocks, [&](const model::BlockSpec& block) {
     const model::BlockInfo& info = model::catalogue()[block.type].info;
-    return std::find(noise.begin(), noise.end(), info.id) != noise.end() ||
+    return model::is<model::SensorNoise, model::Quantisation>(info) ||
            (drive == Drive::measured && info.station == model::Station::valve);
   });
   return part;

@@ -38,15 +38,6 @@ constexpr double default_pressure_max_kpa = 60;
 constexpr double default_slew_kpa_per_s = 400;
 constexpr double ahead_of_any_mm = 1e4;
 
-std::optional<control::FeedforwardKind> kind_named(const std::string& name) {
-  using control::FeedforwardKind;
-  if (name == "none") return FeedforwardKind::none;
-  if (name == "bouc_wen") return FeedforwardKind::bouc_wen;
-  if (name == "full_model") return FeedforwardKind::full_model;
-  if (name == "planned") return FeedforwardKind::planned;
-  return std::nullopt;
-}
-
 /// Takes over what the rig file says of the channel; nothing when that went well.
 std::optional<ExitCode> take_rig(const Options& options, control::TuneTask& task) {
   if (const auto code = unreadable(options.rig)) return code;
@@ -138,7 +129,11 @@ ExitCode run(Options& options) {
   }
   if (options.rate_hz) task.rate_hz = *options.rate_hz;
   if (options.pressure_max_kpa) task.channel.limits.pressure_max_kpa = *options.pressure_max_kpa;
-  if (options.feedforward) task.channel.feedforward.kind = kind_named(*options.feedforward).value();
+  if (options.feedforward) {
+    const auto& names = control::feedforward_names;
+    task.channel.feedforward.kind = static_cast<control::FeedforwardKind>(
+        std::find(names.begin(), names.end(), *options.feedforward) - names.begin());
+  }
   const auto accepted =
       control::check_feedforward(*model, task.channel.feedforward, task.channel.limits, 1 / task.rate_hz);
   if (!accepted) return fail(ExitCode::input_refused, options.model + ": " + accepted.error().text);
@@ -176,7 +171,8 @@ void add_tune(CLI::App& program, ExitCode& outcome) {
   command->add_option("--rate-hz", options->rate_hz, "Of the loop, without a rig [200]")
       ->check(number_between(10.0, 2000.0));
   command->add_option("--feedforward", options->feedforward, "In place of the rig's, or of none")
-      ->check(CLI::IsMember({"none", "bouc_wen", "full_model", "planned"}));
+      ->check(CLI::IsMember(
+          std::vector<std::string>(control::feedforward_names.begin(), control::feedforward_names.end())));
   command->add_option("--pressure-max-kpa", options->pressure_max_kpa, "Highest pressure, without a rig [60]")
       ->check(number_between(1.0, 1000.0));
   command->add_option("--mismatch-percent", options->mismatch_percent, "Every parameter is off by up to this")

@@ -11,7 +11,11 @@
 #include "control/feedforward/invertibility.h"
 #include "control/tuning/gain_search.h"
 #include "control/tuning/tracking_run.h"
+#include "model/blocks/outliers.h"
+#include "model/blocks/quantisation.h"
+#include "model/blocks/sensor_noise.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 
 namespace softgrip::tools {
 namespace {
@@ -34,7 +38,7 @@ constexpr control::GainSearch gain_search{.iterations = 25, .coarseness = 2};
 /// counted twice.
 model::Model body_of(const model::Model& model) {
   return model::only(model, [](const model::BlockInfo& info) {
-    return info.id != "sensor_noise" && info.id != "quantisation" && info.id != "outliers";
+    return !model::is<model::SensorNoise, model::Quantisation, model::Outliers>(info);
   });
 }
 

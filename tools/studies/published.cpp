@@ -10,7 +10,9 @@
 #include "base/random.h"
 #include "control/feedforward/actuator_inverse.h"
 #include "control/feedforward/invertibility.h"
+#include "model/blocks/bouc_wen.h"
 #include "model/chain.h"
+#include "model/named.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/identify.h"
 #include "sysid/logs/record.h"
@@ -139,8 +141,8 @@ PublishedMatch match_published(double eta_per_bar, const PublishedOptions& optio
 
 /// The published Bouc-Wen element with another beta.
 model::Model element(double ratio) {
-  const model::Model published =
-      model::only(published_model(2), [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });
+  const model::Model published = model::only(
+      published_model(2), [](const model::BlockInfo& info) { return model::is<model::BoucWen>(info); });
   std::vector<double> values = model::flat_values(published);
   values[1] = ratio * values[0];
   return model::with_values(published, values);

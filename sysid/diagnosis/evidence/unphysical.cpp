@@ -1,7 +1,9 @@
 #include <algorithm>
 
 #include "base/numbers.h"
+#include "model/blocks/kelvin_voigt.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "sysid/diagnosis/evidence/evidence.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
@@ -17,7 +19,7 @@ constexpr double share_of_log = 1.0;
 
 void add_branches(const model::Model& model, const std::vector<Record>& records,
                   std::vector<UnphysicalSign>& signs) {
-  const auto position = model::position_of(model, "kelvin_voigt");
+  const auto position = model::position_of<model::KelvinVoigt>(model);
   if (!position) return;
   const auto [largest_kpa, span_mm, longest_s] = campaign_size(records);
   const model::BlockSpec& block = model.blocks[*position];

@@ -5,7 +5,10 @@
 #include <cstddef>
 
 #include "base/numbers.h"
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
 #include "model/model.h"
+#include "model/named.h"
 #include "sysid/fitting/trajectory.h"
 
 namespace softgrip::sysid {
@@ -49,11 +52,11 @@ double relative_gain(const Record& record, const std::vector<double>& prediction
 
 /// The model of an actuator that moves so many times as far.
 model::Model amplified(model::Model model, double gain) {
-  if (const auto at = model::position_of(model, "bouc_wen")) {
+  if (const auto at = model::position_of<model::BoucWen>(model)) {
     model.blocks[*at].values[0] *= gain;
     model.blocks[*at].values[1] *= gain;
   }
-  if (const auto at = model::position_of(model, "kelvin_voigt")) {
+  if (const auto at = model::position_of<model::KelvinVoigt>(model)) {
     for (double& stiffness_or_damping : model.blocks[*at].values) stiffness_or_damping /= gain;
   }
   return model;
