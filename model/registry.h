@@ -64,4 +64,13 @@ using AnyBlock = std::variant<TransportDelay<T>,           //
                               SensorSaturation<T>,         //
                               Quantisation<T>>;
 
+/// BlockSpec::type of a block.
+template <class Block>
+constexpr std::size_t block_type() {
+  return []<std::size_t... I>(std::index_sequence<I...>) {
+    return ((std::is_same_v<std::variant_alternative_t<I, AnyBlock<double>>, Block> ? I : 0) + ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<AnyBlock<double>>>{});
+}
+
 }  // namespace softgrip::model

@@ -1,78 +1,79 @@
 #pragma once
-// Causes: what a diagnosis may name. They are the blocks of the catalogue, but for the base structure and the
-// sensor's random error; what is added here is only where a search for each begins.
+// Causes: what a diagnosis may name. All that is known of one stands in its own file in this folder (form.h
+// says what that is), and registry.h lists them; here is what the rest of the diagnosis asks.
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "model/model.h"
-#include "sysid/diagnosis/residual/spectrum_peaks.h"
-#include "sysid/logs/record.h"
+#include "sysid/diagnosis/causes/form.h"
+#include "sysid/diagnosis/causes/scales.h"
 
 namespace softgrip::sysid {
 
-/// A block type that can be the cause of a misfit.
+/// A block by which a cause extends a model.
+struct CauseForm {
+  std::size_t type = 0;    ///< index in model::catalogue()
+  bool free_form = false;  ///< as many numbers as it takes to follow anything slow: a fit finds each of them
+                           ///< from zero, so that no look at a start tells what it is worth
+  /// Where fits begin, spread over what is plausible at these scales, within the declared bounds.
+  std::vector<model::BlockSpec> (*starts)(const Scales& scales) = nullptr;
+  /// Whether a block of the type has this form; nullptr: any has.
+  bool (*holds)(const model::BlockSpec& block) = nullptr;
+  /// Whether a fit may move value `index`. A calibration range or a ceiling that the data do not reach stays
+  /// where the start put it.
+  bool (*is_fitted)(std::size_t index) = nullptr;
+  /// Within what a fit may move value `index`, besides its declared bounds: as far as the block is still what
+  /// it is called.
+  Range (*range)(std::size_t index, const Scales& scales, const model::Model& model) = nullptr;
+  /// What a sensor of this shape shows at a displacement [mm]; nullptr where it is none (sensor_shape).
+  double (*shown_mm)(const model::BlockSpec& block, double displacement_mm) = nullptr;
+};
+
+/// One cause, as its file declares it (form.h).
 struct Cause {
-  std::size_t type = 0;  ///< index in model::catalogue()
   std::string_view id;
+  std::string_view title;
   model::Station station = model::Station::valve;
+  std::span<const CauseForm> forms;
+  bool found_by_fitting = true;
+  Column needs = Column::none;
+  std::span<const Advice> advice;
+  std::string_view twin;  ///< id; empty: none
+  std::span<const std::string_view> counterparts;
+  bool is_stop = false;
+  bool parts_twins = false;
+  std::string_view sensor_shape;  ///< empty: no sensor without memory
+
+  [[nodiscard]] constexpr bool is_static_sensor() const { return !sensor_shape.empty(); }
+  constexpr bool operator==(const Cause& other) const { return id == other.id; }
 };
 
-/// All causes, in the order of the catalogue.
-[[nodiscard]] const std::vector<Cause>& all_causes();
+/// All causes, in the order in which the signal meets their first forms.
+[[nodiscard]] std::span<const Cause> all_causes();
 [[nodiscard]] std::optional<Cause> find_cause(std::string_view id);
+/// The cause of which this block type is a form, or nullptr: the base structure and the sensor's random error
+/// are no causes.
+[[nodiscard]] const Cause* cause_of(std::size_t block_type);
 
-/// What the data say about the sizes at which causes can work.
-struct Scales {
-  double span_mm = 0;             ///< of the displacement
-  double largest_kpa = 0;         ///< of the drive
-  double campaign_s = 0;          ///< all records together
-  double sample_s = 0;            ///< shortest usual interval
-  double largest_supply_kpa = 0;  ///< 0: no such column
-  bool has_temperature = false;   ///< and it varies
-  bool has_supply = false;        ///< and it varies
-  bool has_valve = true;          ///< false: the measured pressure drives the model
-  /// What stands out of the residual's spectrum, the clearest first.
-  std::vector<Line> residual_lines;
-};
+/// The form in which a block of one of the cause's types stands.
+[[nodiscard]] const CauseForm& form_of(const Cause& cause, const model::BlockSpec& block);
+/// The same of a block of any of these causes; nullptr: it is of none of them.
+[[nodiscard]] const CauseForm* form_among(std::span<const Cause> causes, const model::BlockSpec& block);
 
-/// A block of the cause's type from which a fit may start.
-struct CauseStart {
-  model::BlockSpec block;
-};
+/// Where the cause stands in a model, in whichever form, or nothing.
+[[nodiscard]] std::optional<std::size_t> position_of(const model::Model& model, const Cause& cause);
+/// The model without it.
+[[nodiscard]] model::Model without(model::Model model, const Cause& cause);
 
-/// Why the data cannot answer for this cause ("needs the column temperature_c"), or empty.
+/// Why the data cannot answer for this cause ("needs a temperature_c column that varies"), or empty.
 [[nodiscard]] std::string unanswerable(const Cause& cause, const Scales& scales);
 
-/// The starts of a cause's fit, spread over what is plausible at these scales. Empty for a cause that is not
-/// found by fitting a trajectory (outliers).
-[[nodiscard]] std::vector<CauseStart> cause_starts(const Cause& cause, const Scales& scales);
-
-/// Whether the block has parts (a zero that goes from knot to knot): as many numbers as it takes to follow
-/// anything slow. A fit finds each of them from zero, so that no look at a start tells what it is worth.
-[[nodiscard]] bool has_free_form(const Cause& cause, const model::BlockSpec& block);
-
-/// Whether a fit may move value `index` of the cause's block. A calibration range or a ceiling that the data
-/// do not reach stays where the start put it; of a block with several forms only those move that the start
-/// has (the others stand at their neutral values).
-[[nodiscard]] bool is_fitted(const Cause& cause, const model::BlockSpec& block, std::size_t index);
-
-/// Between what a value may be.
-struct Range {
-  double lower = 0;
-  double upper = 0;
-};
-
-/// Within what a fit may move value `index` of the cause's block in `model`, besides its declared bounds: as
-/// far as the block is still what it is called. Beyond, it would pass as a form of something else (a
-/// hysteresis wider than all pressures is a viscous branch) and stand as a rival that is none.
-[[nodiscard]] Range fit_range(const Cause& cause, std::size_t index, const model::Model& model,
-                              const Scales& scales);
-
-/// The scales of a campaign, but for the residual's peaks.
-[[nodiscard]] Scales scales_of(const std::vector<Record>& records);
+/// The starts of all forms. Empty for a cause that is not found by fitting a trajectory.
+[[nodiscard]] std::vector<model::BlockSpec> starts_of(const Cause& cause, const Scales& scales);
 
 }  // namespace softgrip::sysid

@@ -42,7 +42,7 @@ struct Pair {
 std::vector<Cause> next_best(const NamedCause& named) {
   std::vector<Cause> causes;
   for (const CandidateScore& score : named.candidates) {
-    if (score.cause.type == named.cause.type || !std::isfinite(score.heldout_rmse_mm)) continue;
+    if (score.cause == named.cause || !std::isfinite(score.heldout_rmse_mm)) continue;
     causes.push_back(score.cause);
     if (causes.size() == 2) break;
   }
@@ -96,8 +96,8 @@ class Designer {
     std::vector<Cause> rivals = named.rivals;
     if (rivals.empty() && options_.always) rivals = next_best(named);
     if (rivals.size() > most_rivals) rivals.resize(most_rivals);
-    const bool stands = std::any_of(d_.extended.causes.begin(), d_.extended.causes.end(),
-                                    [&](const Cause& c) { return c.type == named.cause.type; });
+    const std::vector<Cause>& standing = d_.extended.causes;
+    const bool stands = std::find(standing.begin(), standing.end(), named.cause) != standing.end();
     if (rivals.empty() || !stands) return;
     const StructureFit rest = d_.extended.causes.size() > 1
                                   ? fit_without_cause(data_.records, d_.extended, named.cause)

@@ -1,7 +1,6 @@
 #include "sysid/diagnosis/experiments/experiment_advice.h"
 
 #include <algorithm>
-#include <array>
 
 #include "base/numbers.h"
 #include "sysid/diagnosis/causes/cause.h"
@@ -11,56 +10,58 @@
 namespace softgrip::sysid {
 namespace {
 
-using Station = model::Station;
-
-bool is_any(std::string_view id, std::initializer_list<std::string_view> ids) {
-  return std::find(ids.begin(), ids.end(), id) != ids.end();
+bool has(const Cause& cause, Advice advice) {
+  return std::find(cause.advice.begin(), cause.advice.end(), advice) != cause.advice.end();
 }
 
-bool both(std::string_view one, std::string_view other, std::initializer_list<std::string_view> ids) {
-  return is_any(one, ids) && is_any(other, ids);
-}
+constexpr const char* vary_temperature =
+    "add a temperature_c column and repeat at another temperature: a gain that follows it is neither wear "
+    "nor "
+    "drift";
 
-bool either(std::string_view one, std::string_view other, std::initializer_list<std::string_view> ids) {
-  return is_any(one, ids) || is_any(other, ids);
-}
-
-std::string names(std::string_view one, std::string_view other) {
-  return std::string(one) + " and " + std::string(other);
+/// What tells the two apart where no waveform does.
+std::string instead_of_waveform(const Cause& one, const Cause& other, const std::string& names,
+                                bool gauge_made) {
+  if (has(one, Advice::change_load) && has(other, Advice::change_load)) {
+    return std::string(gauge_made ? "the gauge left it open: read it again, finer and further, or change "
+                                    "the load or move the object"
+                                  : "change the load or move the object") +
+           ": what breaks at the same reading again is the sensor, what moves with the load is not";
+  }
+  if (has(one, Advice::leave_vented) && has(other, Advice::leave_vented)) {
+    return "leave the finger vented for an hour and read its zero: no waveform in the menu tells " + names +
+           " apart";
+  }
+  return {};
 }
 
 }  // namespace
 
 std::vector<std::string> advice_for(std::string_view one, std::string_view other, const AdviceFacts& facts) {
+  const std::string names = std::string(one) + " and " + std::string(other);
+  const Cause first = find_cause(one).value_or(Cause{});
+  const Cause second = find_cause(other).value_or(Cause{});
   std::vector<std::string> advice;
-  const auto first = find_cause(one);
-  const auto second = find_cause(other);
+  const bool known = !first.id.empty() && !second.id.empty();
   const bool one_in_valve =
-      first && second && (first->station == Station::valve) != (second->station == Station::valve);
+      known && (first.station == model::Station::valve) != (second.station == model::Station::valve);
   if (one_in_valve && !facts.pressure_recorded) {
-    advice.push_back("record pressure_kpa (the valve's own pressure): it says at once which of " +
-                     names(one, other) + " it is");
+    advice.push_back("record pressure_kpa (the valve's own pressure): it says at once which of " + names +
+                     " it is");
   }
-  if (either(one, other, {"thermal_gain"}) ||
-      (!facts.temperature_varies && both(one, other, {"ageing", "stress_softening", "sensor_drift"}))) {
-    advice.push_back(
-        "add a temperature_c column and repeat at another temperature: a gain that follows it is neither "
-        "wear nor drift");
+  const bool may_be_warmth =
+      has(first, Advice::record_temperature) && has(second, Advice::record_temperature);
+  if (has(first, Advice::vary_temperature) || has(second, Advice::vary_temperature) ||
+      (may_be_warmth && !facts.temperature_varies)) {
+    advice.emplace_back(vary_temperature);
   }
   if (facts.separable) return advice;
-  if (both(one, other, {"stiffening", "contact", "sensor_nonlinearity", "sensor_saturation"})) {
-    advice.push_back(
-        std::string(facts.gauge_made ? "the gauge left it open: read it again, finer and further, or change "
-                                       "the load or move the object"
-                                     : "change the load or move the object") +
-        ": what breaks at the same reading again is the sensor, what moves with the load is not");
-  } else if (both(one, other, {"sensor_drift", "slow_creep", "ageing"})) {
-    advice.push_back("leave the finger vented for an hour and read its zero: no waveform in the menu tells " +
-                     names(one, other) + " apart");
-  } else if (advice.empty()) {
-    advice.push_back("no waveform in the menu tells " + names(one, other) +
-                     " apart within the rig's limits: less noise or a larger pressure would be needed");
+  std::string instead = instead_of_waveform(first, second, names, facts.gauge_made);
+  if (instead.empty() && advice.empty()) {
+    instead = "no waveform in the menu tells " + names +
+              " apart within the rig's limits: less noise or a larger pressure would be needed";
   }
+  if (!instead.empty()) advice.push_back(std::move(instead));
   return advice;
 }
 

@@ -7,9 +7,9 @@
 #include <map>
 #include <span>
 
-#include "model/blocks/sensor_nonlinearity.h"
-#include "model/blocks/sensor_saturation.h"
-#include "model/catalogue.h"
+#include "sysid/diagnosis/causes/cause.h"
+#include "sysid/diagnosis/causes/sensor_nonlinearity.h"
+#include "sysid/diagnosis/causes/sensor_saturation.h"
 #include "sysid/fitting/minimise.h"
 
 namespace softgrip::sysid {
@@ -134,6 +134,8 @@ class Checker {
   }
 
   using Numbers = std::span<const double>;
+  using Bent = causes::SensorNonlinearity;
+  using Ending = causes::SensorSaturation;
 
   /// Fits zero and scale, and `own` further numbers that `shape_of` makes a shape of.
   [[nodiscard]] GaugeFit fitted_with(const std::function<SensorShape(Numbers own)>& shape_of,
@@ -166,24 +168,24 @@ class Checker {
   }
 
   [[nodiscard]] GaugeFit freely_bent(double offset_mm) const {
-    const auto type = *model::find_block("sensor_nonlinearity");
+    const std::size_t type = find_cause(Bent::id)->forms.front().type;
     const double range_mm = std::max(1e-3, scales_.highest_mm - std::min(0.0, scales_.lowest_mm));
     return fitted_with(
         [=](Numbers bend) {
-          return SensorShape{{{type, {bend[0], bend[1], range_mm}}}, offset_mm};
+          return SensorShape{{{type, Bent::bent(bend[0], bend[1], range_mm)}}, offset_mm};
         },
         {{0, 0}, {0.05 * range_mm, 0}, {-0.05 * range_mm, 0}}, offset_mm);
   }
 
   [[nodiscard]] GaugeFit freely_ending(double offset_mm) const {
-    const auto type = *model::find_block("sensor_saturation");
+    const std::size_t type = find_cause(Ending::id)->forms.front().type;
     std::vector<std::vector<double>> ends;
     const double highest = *std::max_element(result_.cut_mm.begin(), result_.cut_mm.end()) - offset_mm;
     const double span = scales_.highest_mm - scales_.lowest_mm;
     for (const double share : {0.0, 0.05, 0.15, 0.3, 0.5}) ends.push_back({highest - share * span});
     return fitted_with(
         [=](Numbers end) {
-          return SensorShape{{{type, {-1e4, std::max(end[0], -9e3)}}}, offset_mm};
+          return SensorShape{{{type, Ending::ending(end[0])}}, offset_mm};
         },
         ends, offset_mm);
   }
@@ -253,41 +255,27 @@ class Checker {
   GaugeCheck result_;
 };
 
-template <class Block>
-double through(const model::BlockSpec& block, double y) {
-  Block one(block.values, {});
-  return one.sample(y, 0.0, {});
-}
-
 }  // namespace
-
-bool is_static_sensor(std::size_t type) {
-  const std::string_view id = model::catalogue()[type].info.id;
-  return id == "sensor_nonlinearity" || id == "sensor_saturation";
-}
 
 std::vector<model::BlockSpec> static_sensor_blocks(const model::Model& model) {
   std::vector<model::BlockSpec> blocks;
   for (const model::BlockSpec& block : model.blocks) {
-    if (is_static_sensor(block.type)) blocks.push_back(block);
+    const Cause* const cause = cause_of(block.type);
+    if (cause != nullptr && cause->is_static_sensor()) blocks.push_back(block);
   }
   return blocks;
 }
 
 double SensorShape::at(double displacement_mm) const {
   double y = displacement_mm;
-  for (const model::BlockSpec& block : blocks) {
-    const bool bends = model::catalogue()[block.type].info.id == "sensor_nonlinearity";
-    y = bends ? through<model::SensorNonlinearity<double>>(block, y)
-              : through<model::SensorSaturation<double>>(block, y);
-  }
+  for (const model::BlockSpec& block : blocks) y = form_of(*cause_of(block.type), block).shown_mm(block, y);
   return y + offset_mm;
 }
 
 std::string SensorShape::id() const {
   std::string text;
   for (const model::BlockSpec& block : blocks)
-    text += (text.empty() ? "" : "+") + std::string(model::catalogue()[block.type].info.id);
+    text += (text.empty() ? "" : "+") + std::string(cause_of(block.type)->id);
   return text.empty() ? "straight" : text;
 }
 

@@ -21,9 +21,7 @@
 
 namespace softgrip::sysid {
 
-/// Blocks of the sensor that neither remember nor know the time.
-[[nodiscard]] bool is_static_sensor(std::size_t type);
-/// Those of a model, in chain order.
+/// The blocks of a model that make a sensor of another static shape, in chain order.
 [[nodiscard]] std::vector<model::BlockSpec> static_sensor_blocks(const model::Model& model);
 
 /// What the sensor might be.

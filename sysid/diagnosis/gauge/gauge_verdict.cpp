@@ -33,8 +33,7 @@ struct Explanation {
 std::string in_words(const SensorShape& shape) {
   std::string text;
   for (const model::BlockSpec& block : shape.blocks) {
-    const bool bends = model::catalogue()[block.type].info.id == "sensor_nonlinearity";
-    text += (text.empty() ? "" : " with ") + std::string(bends ? "a bent scale" : "an end of the sensor");
+    text += (text.empty() ? "" : " with ") + std::string(cause_of(block.type)->sensor_shape);
   }
   return text.empty() ? "a straight sensor" : text;
 }
@@ -79,20 +78,18 @@ class Weighing {
     std::vector<Cause> others = chosen.rivals;
     const std::size_t rivals = others.size();
     for (const Cause& cause : sensor_counterparts(chosen.cause)) {
-      const auto same = [&](const Cause& c) { return c.type == cause.type; };
-      if (std::none_of(others.begin(), others.end(), same)) others.push_back(cause);
+      if (std::find(others.begin(), others.end(), cause) == others.end()) others.push_back(cause);
     }
     // Where no sensor that is bent or ends is among them, a gauge has nothing to say.
     std::vector<Cause> all = others;
     all.push_back(chosen.cause);
     const bool matters =
-        std::any_of(all.begin(), all.end(), [](const Cause& c) { return is_static_sensor(c.type); });
-    const bool fitted = model::position_of(selection_.extended.point.model, chosen.cause.type).has_value();
+        std::any_of(all.begin(), all.end(), [](const Cause& c) { return c.is_static_sensor(); });
+    const bool fitted = position_of(selection_.extended.point.model, chosen.cause).has_value();
     if (matters && fitted && question_.may_replace) {
       for (Candidate& candidate : fit_candidates(data_, without(place), others)) {
         if (!candidate.fit) continue;
-        const auto at = std::find_if(others.begin(), others.end(),
-                                     [&](const Cause& c) { return c.type == candidate.cause.type; });
+        const auto at = std::find(others.begin(), others.end(), candidate.cause);
         const bool implied = static_cast<std::size_t>(at - others.begin()) >= rivals;
         standing.push_back({candidate.cause, std::move(*candidate.fit), implied});
       }
@@ -126,13 +123,13 @@ class Weighing {
     model::Model sensor;
     sensor.blocks = static_sensor_blocks(extended.point.model);
     for (const ChosenCause& chosen : selection_.chosen)
-      sensor = model::without_block(std::move(sensor), chosen.cause.type);
+      sensor = sysid::without(std::move(sensor), chosen.cause);
     double offset_mm = mean_offset_mm(extended.point);
     for (std::size_t place = 0; place < at.size(); ++place) {
       const Standing& standing = places_[place][at[place]];
-      if (!is_static_sensor(standing.cause.type)) continue;
-      const auto position = model::position_of(standing.fit.point.model, standing.cause.type);
-      if (!position || model::position_of(sensor, standing.cause.type)) return std::nullopt;
+      if (!standing.cause.is_static_sensor()) continue;
+      const auto position = position_of(standing.fit.point.model, standing.cause);
+      if (!position || position_of(sensor, standing.cause)) return std::nullopt;
       sensor = model::with_block(std::move(sensor), standing.fit.point.model.blocks[*position]);
       offset_mm = mean_offset_mm(standing.fit.point);
     }
@@ -188,8 +185,8 @@ class Weighing {
     const std::vector<Standing>& standing = places_[place];
     std::vector<Cause> rivals;
     for (const Cause& rival : chosen.rivals) {
-      const auto fitted = std::find_if(standing.begin(), standing.end(),
-                                       [&](const Standing& s) { return s.cause.type == rival.type; });
+      const auto fitted =
+          std::find_if(standing.begin(), standing.end(), [&](const Standing& s) { return s.cause == rival; });
       // One that has no fit could not be weighed.
       const bool stays = fitted == standing.end() ||
                          std::find(left.begin() + 1, left.end(),
@@ -241,13 +238,11 @@ class Weighing {
     std::vector<Cause> causes = selection_.extended.causes;
     for (const std::size_t place : changed) {
       const Standing& standing = places_[place][now[place]];
-      const std::size_t old = selection_.chosen[place].cause.type;
+      const Cause& old = selection_.chosen[place].cause;
       const model::Model& from = standing.fit.point.model;
-      point.model = model::with_block(model::without_block(point.model, old),
-                                      from.blocks[*model::position_of(from, standing.cause.type)]);
-      for (Cause& cause : causes) {
-        if (cause.type == old) cause = standing.cause;
-      }
+      point.model = model::with_block(sysid::without(point.model, old),
+                                      from.blocks[*position_of(from, standing.cause)]);
+      std::replace(causes.begin(), causes.end(), old, standing.cause);
     }
     return fit_structure(data_.records, std::move(causes), point);
   }
@@ -338,7 +333,7 @@ class Weighing {
   /// alone.
   void doubt() {
     for (ChosenCause& chosen : selection_.chosen) {
-      if (!chosen.rivals.empty() || is_static_sensor(chosen.cause.type)) continue;
+      if (!chosen.rivals.empty() || chosen.cause.is_static_sensor()) continue;
       chosen.rivals = sensor_counterparts(chosen.cause);
     }
   }
@@ -364,9 +359,7 @@ class Weighing {
 }  // namespace
 
 bool gauge_tells_apart(const Cause& one, const Cause& other) {
-  const bool first = is_static_sensor(one.type);
-  const bool second = is_static_sensor(other.type);
-  return first != second || (first && one.type != other.type);
+  return one.is_static_sensor() != other.is_static_sensor() || (one.is_static_sensor() && one != other);
 }
 
 GaugeScales gauge_scales(const std::vector<Record>& records, double noise_mm) {

@@ -25,6 +25,7 @@ Json cause_json(const NamedCause& named) {
     parameters[p.name] = std::move(one);
   }
   return {{"id", named.cause.id},
+          {"form", model::catalogue()[named.block_type].info.id},
           {"station", model::name_of(named.cause.station)},
           {"parameters", std::move(parameters)},
           {"heldout_gain_percent", spread(named.heldout_gain_percent)}};

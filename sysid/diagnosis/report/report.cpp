@@ -154,12 +154,12 @@ std::string rivalry(const NamedCause& named, const model::Model& extended) {
 }
 
 void add_cause(Page& page, const NamedCause& named, const Diagnosis& d) {
-  const model::BlockInfo& info = model::catalogue()[named.cause.type].info;
-  page.subsection(std::string(info.title));
+  const model::BlockInfo& info = model::catalogue()[named.block_type].info;
+  page.subsection(std::string(named.cause.title));
   std::string meaning(info.meaning);
   if (!meaning.empty() && meaning.back() != '.') meaning += '.';
   page.paragraph(meaning + " Station: " + std::string(model::name_of(info.station)) +
-                 "; id: " + std::string(info.id) +
+                 "; id: " + std::string(named.cause.id) +
                  ". Held-out gain over the model without it: " + range(named.heldout_gain_percent, 1) + ".");
   if (!named.rivals.empty()) page.paragraph(rivalry(named, d.extended.point.model));
   if (!named.candidates.empty())
@@ -195,7 +195,7 @@ void add_extension(Page& page, const Diagnosis& d, const model::Model& given) {
   page.section(is_extended(d) ? "The extension" : "The parameters");
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {
-      const model::BlockInfo& info = model::catalogue()[named.cause.type].info;
+      const model::BlockInfo& info = model::catalogue()[named.block_type].info;
       page.subsection(std::string(info.title));
       page.code(info.equation);
       page.table(cause_parameter_table(named));

@@ -29,10 +29,9 @@ const ConditionEvidence* find(const ResidualEvidence& evidence, const std::strin
 
 std::string outcome_of(const CandidateScore& c, const NamedCause* chosen, double chosen_rmse_mm) {
   if (chosen != nullptr) {
-    if (c.cause.type == chosen->cause.type) return "named";
-    const bool rival = std::any_of(chosen->rivals.begin(), chosen->rivals.end(),
-                                   [&](const Cause& r) { return r.type == c.cause.type; });
-    if (rival) return "explains as much, or is the same to every command";
+    if (c.cause == chosen->cause) return "named";
+    if (std::find(chosen->rivals.begin(), chosen->rivals.end(), c.cause) != chosen->rivals.end())
+      return "explains as much, or is the same to every command";
   }
   if (!c.why_not.empty()) return c.why_not;
   if (std::isnan(c.heldout_rmse_mm)) return "behind when fitted";

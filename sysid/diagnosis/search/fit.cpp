@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
@@ -16,12 +19,10 @@ bool moves(const model::Model& model, const std::vector<Cause>& causes, std::siz
   if (model::parameter_spec(model, flat_index).whole) return false;
   const model::ParameterPlace place = model::place_of(model, flat_index);
   const model::BlockSpec& block = model.blocks[place.block];
-  for (const Cause& cause : causes) {
-    if (cause.type == block.type) return is_fitted(cause, block, place.value);
-  }
+  if (const CauseForm* form = form_among(causes, block)) return form->is_fitted(place.value);
   // alpha and 1/k0 enter only as their sum.
-  const bool is_k0 = model::catalogue()[block.type].info.id == "kelvin_voigt" && place.value == 0;
-  return !(is_k0 && model::position_of(model, "bouc_wen"));
+  const bool is_k0 = model::is<model::KelvinVoigt>(block) && place.value == 0;
+  return !(is_k0 && model::position_of<model::BoucWen>(model));
 }
 
 }  // namespace
@@ -42,9 +43,8 @@ FitSpace structure_space(const std::vector<Record>& records, const model::Model&
     const FreeParameter& free = space.free()[i];
     if (free.kind != FreeParameter::Kind::model) continue;
     const model::ParameterPlace place = model::place_of(model, free.flat_index);
-    for (const Cause& cause : causes) {
-      if (cause.type != model.blocks[place.block].type) continue;
-      const Range range = fit_range(cause, place.value, model, scales);
+    if (const CauseForm* form = form_among(causes, model.blocks[place.block])) {
+      const Range range = form->range(place.value, scales, model);
       space.bound(i, range.lower, range.upper);
     }
   }
@@ -87,8 +87,8 @@ StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause
 }
 
 StructureFit without_cause(StructureFit fit, const Cause& cause) {
-  std::erase_if(fit.causes, [&](const Cause& c) { return c.type == cause.type; });
-  fit.point.model = model::without_block(std::move(fit.point.model), cause.type);
+  std::erase(fit.causes, cause);
+  fit.point.model = without(std::move(fit.point.model), cause);
   return fit;
 }
 

@@ -27,11 +27,11 @@ struct FitEffort {
 };
 
 /// The flat indices that a fit of this structure moves: all of the base but exponents and k0 where alpha is
-/// there, and what is_fitted() allows of the causes.
+/// there, and what the causes' forms say.
 [[nodiscard]] std::vector<std::size_t> fitted_indices(const model::Model& model,
                                                       const std::vector<Cause>& causes);
 
-/// What a fit of this structure moves, within the bounds of fit_range().
+/// What a fit of this structure moves, within the ranges of the causes' forms.
 [[nodiscard]] FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
                                        const std::vector<Cause>& causes);
 

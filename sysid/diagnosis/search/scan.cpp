@@ -18,20 +18,12 @@ constexpr double damping = 1e-3;
 constexpr double least_size = 0.7;
 constexpr double largest_size = 1.4;
 
-/// Which values of a block a fit moves.
-using Form = std::vector<bool>;
-
-Form form_of(const Cause& cause, const model::BlockSpec& block) {
-  Form form(block.values.size());
-  for (std::size_t i = 0; i < form.size(); ++i) form[i] = is_fitted(cause, block, i);
-  return form;
-}
-
 /// A start at one of the places.
 struct Judged {
   double mean_square_mm2 = 0;
   const Scan* place = nullptr;
   const model::BlockSpec* block = nullptr;
+  const CauseForm* form = nullptr;
 };
 
 }  // namespace
@@ -84,29 +76,31 @@ double Scan::mean_square_with(const model::BlockSpec& block) const {
 
 std::vector<FitPoint> best_starts(std::span<const Scan> scans, const Cause& cause, const Scales& scales,
                                   std::size_t fewest) {
-  const std::vector<CauseStart> starts = cause_starts(cause, scales);
+  const std::vector<model::BlockSpec> starts = starts_of(cause, scales);
   std::vector<Judged> judged;
   for (const Scan& scan : scans) {
-    for (const CauseStart& start : starts) {
-      if (has_free_form(cause, start.block)) continue;
-      const double square = scan.mean_square_with(start.block);
-      if (std::isfinite(square)) judged.push_back({square, &scan, &start.block});
+    for (const model::BlockSpec& start : starts) {
+      const CauseForm& form = form_of(cause, start);
+      if (form.free_form) continue;
+      const double square = scan.mean_square_with(start);
+      if (std::isfinite(square)) judged.push_back({square, &scan, &start, &form});
     }
   }
   std::stable_sort(judged.begin(), judged.end(),
                    [](const Judged& a, const Judged& b) { return a.mean_square_mm2 < b.mean_square_mm2; });
-  std::set<Form> forms;
+  std::set<const CauseForm*> forms;
   std::set<const Scan*> places;
   std::vector<Judged> chosen, others;
   for (const Judged& one : judged) {
-    const bool new_form = forms.insert(form_of(cause, *one.block)).second;
+    const bool new_form = forms.insert(one.form).second;
     const bool new_place = places.insert(one.place).second;
     (new_form || new_place ? chosen : others).push_back(one);
   }
   for (std::size_t i = 0; i < others.size() && chosen.size() < fewest; ++i) chosen.push_back(others[i]);
-  for (const CauseStart& start : starts) {
-    if (has_free_form(cause, start.block) && !scans.empty() && scans.front().usable())
-      chosen.push_back({0, &scans.front(), &start.block});
+  for (const model::BlockSpec& start : starts) {
+    const CauseForm& form = form_of(cause, start);
+    if (form.free_form && !scans.empty() && scans.front().usable())
+      chosen.push_back({0, &scans.front(), &start, &form});
   }
   std::vector<FitPoint> points;
   for (const Judged& one : chosen) {

@@ -105,10 +105,8 @@ std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit
                                       const std::vector<Cause>& only,
                                       const std::function<void(const Cause&)>& done) {
   std::vector<Cause> wanted;
-  for (const Cause& cause : only.empty() ? all_causes() : only) {
-    if (cause.id == "outliers") continue;  // not a trajectory: see outliers.h
-    const bool has = model::position_of(current.point.model, cause.type).has_value();
-    if (!has) wanted.push_back(cause);
+  for (const Cause& cause : only.empty() ? all_causes() : std::span(only)) {
+    if (cause.found_by_fitting && !position_of(current.point.model, cause)) wanted.push_back(cause);
   }
   std::vector<Candidate> candidates(wanted.size());
   std::vector<std::vector<StructureFit>> looks(wanted.size());

@@ -65,7 +65,7 @@ class Selector {
   /// of one that does.
   static bool is_free_form(const Scored& s) {
     const model::Model& model = s.candidate.fit->point.model;
-    return has_free_form(s.candidate.cause, model.blocks[*model::position_of(model, s.candidate.cause.type)]);
+    return form_of(s.candidate.cause, model.blocks[*position_of(model, s.candidate.cause)]).free_form;
   }
 
   /// All candidates for one more cause on top of `current`, fitted, the best ones scored held out; best
@@ -163,7 +163,7 @@ class Selector {
       std::vector<Scored> scored = score(without(i));
       if (scored.empty() || scored.front().losses.empty()) continue;
       const bool better = rmse_mm(scored.front().losses) < rmse_mm(result_.extended_losses) &&
-                          scored.front().candidate.cause.type != old.type;
+                          scored.front().candidate.cause != old;
       if (better) {
         take(scored.front());
         return;  // the new one stands last now; the others were searched with the old
@@ -200,11 +200,14 @@ class Selector {
     const auto twin = twin_of(chosen.cause, result_.extended.point.model);
     if (twin) chosen.rivals.push_back(*twin);
     for (const Scored& s : scored) {
-      if (s.losses.empty() || s.candidate.cause.type == chosen.cause.type) continue;
-      if (twin && s.candidate.cause.type == twin->type) continue;
+      if (s.losses.empty() || s.candidate.cause == chosen.cause) continue;
+      if (twin && s.candidate.cause == *twin) continue;
       if (is_free_form(s)) continue;
       const Spread behind = mean_difference(s.losses, result_.extended_losses, options_.seed);
-      const double negligible = (are_stops(s.candidate.cause, chosen.cause) ? 0.02 : 0.002) * noise_ * noise_;
+      // How far an object gives way tells it from a sensor that clips, and of a hard one a few readings say
+      // little.
+      const bool stops = s.candidate.cause.is_stop && chosen.cause.is_stop;
+      const double negligible = (stops ? 0.02 : 0.002) * noise_ * noise_;
       if (behind.value <= std::max(behind.standard_error, negligible) &&
           behind.value <= std::max(rival_share * gained, negligible)) {
         chosen.rivals.push_back(s.candidate.cause);

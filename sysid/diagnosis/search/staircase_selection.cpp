@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/staircase.h"
@@ -13,7 +14,7 @@ namespace {
 /// model without one has swallowed the valve's mean lag.
 std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& selected,
                                              const Cause& dead_band) {
-  if (model::position_of(selected.point.model, dead_band.type)) return without_cause(selected, dead_band);
+  if (position_of(selected.point.model, dead_band)) return without_cause(selected, dead_band);
   std::vector<Candidate> fits = fit_candidates(data, selected, {dead_band});
   if (fits.empty() || !fits.front().fit) return std::nullopt;
   return without_cause(*fits.front().fit, dead_band);
@@ -45,12 +46,10 @@ StructureFit base_behind(const Staircase& found) {
 }
 
 /// With the valve in front again.
-FitPoint with_valve(const FitPoint& behind, const Cause& dead_band, double band_kpa, double form) {
+FitPoint with_valve(const FitPoint& behind, const Cause& dead_band, double band_kpa, bool jumps) {
   FitPoint point = behind;
-  model::BlockSpec block = model::neutral_block(dead_band.type);
-  block.values[*model::find_parameter(block, "band_kpa")] = band_kpa;
-  block.values[*model::find_parameter(block, "form")] = form;
-  point.model = model::with_block(point.model, block);
+  point.model = model::with_block(
+      point.model, {dead_band.forms.front().type, causes::ValveDeadband::with_band(band_kpa, jumps)});
   return point;
 }
 
@@ -60,8 +59,9 @@ void extend(Selection& selection, const SearchData& data, const StructureFit& be
   std::vector<Cause> causes{dead_band};
   causes.insert(causes.end(), behind.causes.begin(), behind.causes.end());
   StructureFit staircase =
-      evaluate_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, 1));
-  StructureFit mean = fit_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, 0));
+      evaluate_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, true));
+  StructureFit mean =
+      fit_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, false));
   staircase.free_parameters = mean.free_parameters;
   BlockLosses staircase_losses = held_out_losses(data.records, division, staircase);
   BlockLosses mean_losses = held_out_losses(data.records, division, mean);
@@ -75,8 +75,8 @@ void extend(Selection& selection, const SearchData& data, const StructureFit& be
 std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data, const Selection& plain,
                                                           double noise_mm, const Division& division,
                                                           const SelectionOptions& options) {
-  const Cause dead_band = *find_cause("valve_deadband");
-  if (model::position_of(data.given.model, dead_band.type)) return std::nullopt;
+  const Cause dead_band = *find_cause(causes::ValveDeadband::id);
+  if (position_of(data.given.model, dead_band)) return std::nullopt;
   const auto found = staircase_before(data, plain, dead_band, noise_mm);
   if (!found) return std::nullopt;
 

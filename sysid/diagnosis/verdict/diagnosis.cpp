@@ -6,6 +6,8 @@
 
 #include "base/numbers.h"
 #include "model/catalogue.h"
+#include "sysid/diagnosis/causes/outliers.h"
+#include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
@@ -38,12 +40,23 @@ void warn_unphysical(const model::Model& model, std::vector<std::string>& warnin
     warnings.push_back("recalibrated, the model is unphysical: " + wrong_way_sentence(ratio));
 }
 
+/// Which causes cannot be judged without a column.
+void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
+  for (const Column column : {Column::temperature_c, Column::supply_kpa}) {
+    std::string ids;
+    for (const Cause& cause : all_causes()) {
+      if (cause.needs == column) ids += (ids.empty() ? "" : " and ") + std::string(cause.id);
+    }
+    if (!scales.has(column) && !ids.empty()) {
+      warnings.push_back("no " + std::string(name_of(column)) + " column that varies: " + ids +
+                         " cannot be judged");
+    }
+  }
+}
+
 /// Limits of the data that bear on what can be told.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings) {
-  if (!scales.has_temperature)
-    warnings.emplace_back("no temperature_c column that varies: thermal_gain cannot be judged");
-  if (!scales.has_supply)
-    warnings.emplace_back("no supply_kpa column that varies: supply_sag cannot be judged");
+  warn_of_columns(scales, warnings);
   const bool measured =
       std::any_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
   if (!measured) {
@@ -102,7 +115,7 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
 std::vector<CauseParameter> parameters_of(const StructureFit& fit, const Cause& cause, const FitSpace& space,
                                           const std::vector<double>& z, const Uncertainty& uncertainty) {
   std::vector<CauseParameter> list;
-  const auto position = model::position_of(fit.point.model, cause.type);
+  const auto position = position_of(fit.point.model, cause);
   const model::BlockSpec& block = fit.point.model.blocks[*position];
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     CauseParameter p;
@@ -128,7 +141,8 @@ std::vector<CauseParameter> parameters_of(const StructureFit& fit, const Cause& 
 
 NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm) {
   NamedCause named;
-  named.cause = *find_cause("outliers");
+  named.cause = *find_cause(causes::Outliers::id);
+  named.block_type = named.cause.forms.front().type;
   named.parameters = {
       {"probability", "", evidence.share, {evidence.share_low, evidence.share_high}, true},
       {"size_mm", "mm", evidence.size_mm, {evidence.size_low_mm, evidence.size_high_mm}, true}};
@@ -307,8 +321,10 @@ class Diagnostician {
     for (const ChosenCause& chosen : selection.chosen) {
       NamedCause named;
       named.cause = chosen.cause;
+      const model::Model& extended = selection.extended.point.model;
+      named.block_type = extended.blocks[*position_of(extended, chosen.cause)].type;
       named.parameters = parameters_of(selection.extended, chosen.cause, space, z, uncertainty);
-      if (d_.staircase && chosen.cause.id == "valve_deadband") {
+      if (d_.staircase && chosen.cause.id == causes::ValveDeadband::id) {
         // Of the staircase itself; the extended model's may be that of its mean.
         named.parameters.front() = {"band_kpa", "kPa", d_.staircase->band_kpa, d_.staircase->band_ci95, true};
       }

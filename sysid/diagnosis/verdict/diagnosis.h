@@ -39,6 +39,7 @@ struct CauseParameter {
 /// A cause as the verdict names it.
 struct NamedCause {
   Cause cause;
+  std::size_t block_type = 0;  ///< of the form in which it was found
   std::vector<CauseParameter> parameters;
   Spread heldout_gain_percent;
   std::vector<Cause> rivals;

@@ -8,7 +8,7 @@ namespace softgrip::sysid {
 namespace {
 
 std::string title(const Cause& cause) {
-  std::string text(model::catalogue()[cause.type].info.title);
+  std::string text(cause.title);
   if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
   return text;
 }

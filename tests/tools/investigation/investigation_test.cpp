@@ -30,7 +30,8 @@ model::Model loaded(const std::string& name) {
 
 /// The finger that is investigated: softer than the given model after its largest load.
 model::Model finger() {
-  return model::with_block(loaded("bench_twin"), {sysid::find_cause("stress_softening")->type, {0.006}});
+  return model::with_block(loaded("bench_twin"),
+                           {sysid::find_cause("stress_softening")->forms.front().type, {0.006}});
 }
 
 /// Two loads, the second larger, and no repetition.
@@ -178,8 +179,8 @@ class GaugeStepTest : public InvestigationTest {
  protected:
   void SetUp() override {
     InvestigationTest::SetUp();
-    const model::Model finger =
-        model::with_block(loaded("bench_twin"), {sysid::find_cause("stiffening")->type, {0.01}});
+    const model::Model finger = model::with_block(
+        loaded("bench_twin"), {sysid::find_cause("stiffening")->forms.front().type, {0.01}});
     options_.logs.clear();
     for (const double top_kpa : {30.0, 55.0}) {
       const sysid::Waveform load{"load", "", {{0, 0}, {1, 0}, {5, top_kpa}, {8, top_kpa}, {12, 0}, {20, 0}}};
@@ -290,8 +291,8 @@ TEST(SimulatedGauge, ReadsTheSensorOfTheTruthAndNotItsFinger) {
   ExperimentRig rig = simulated_rig();
   auto& channel = std::get<simulation::SimulatedBoardSettings>(rig.rig.board).channels[rig.channel];
   channel.plant.model = model::with_block(
-      model::with_block(channel.plant.model, {sysid::find_cause("stiffening")->type, {0.02}}),
-      {sysid::find_cause("sensor_nonlinearity")->type, {1.5, 0, 20}});
+      model::with_block(channel.plant.model, {sysid::find_cause("stiffening")->forms.front().type, {0.02}}),
+      {sysid::find_cause("sensor_nonlinearity")->forms.front().type, {1.5, 0, 20}});
   const fs::path folder = fs::temp_directory_path() / ("softgrip_gauge_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   const auto gauge = simulated_gauge(rig)({0, 10, 20, 10, 100}, folder.string());

@@ -1,12 +1,15 @@
+// What holds of every cause in the registry.
+
 #include "sysid/diagnosis/causes/cause.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "model/catalogue.h"
-#include "sysid/diagnosis/search/fit.h"
+#include "sysid/diagnosis/causes/twins.h"
 #include "tests/model/presets.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
@@ -21,86 +24,152 @@ Scales typical_scales() {
   return s;
 }
 
-model::Model twin() {
-  return model::without_block(
-      model::without_block(model::testing::preset("bench_twin"), *model::find_block("transport_delay")),
-      *model::find_block("valve_lag"));
+/// The twin without its valve, with a block.
+model::Model with(const model::BlockSpec& block) {
+  const model::Model twin = model::testing::preset("bench_twin");
+  return model::with_block(
+      model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; }),
+      block);
 }
 
-TEST(Causes, EveryStartIsAValidModelThatAFitCanMove) {
-  for (const Cause& cause : all_causes()) {
-    if (cause.id == "outliers") continue;
-    const std::vector<CauseStart> starts = cause_starts(cause, typical_scales());
-    EXPECT_FALSE(starts.empty()) << cause.id;
-    for (const CauseStart& start : starts) {
-      const model::Model model = model::with_block(twin(), start.block);
-      ASSERT_TRUE(model::validate(model).empty()) << model::validate(model).front();
-      bool moves = false;
-      for (std::size_t i = 0; i < start.block.values.size(); ++i) {
-        if (!is_fitted(cause, start.block, i)) continue;
-        moves = true;
-        const Range range = fit_range(cause, i, model, typical_scales());
-        EXPECT_LT(range.lower, range.upper) << cause.id << " value " << i;
-      }
-      EXPECT_TRUE(moves) << cause.id;
+class Causes : public ::testing::TestWithParam<Cause> {
+ protected:
+  const Cause& cause = GetParam();
+  const Scales scales = typical_scales();
+
+  /// check(form, start) for every start of every form.
+  template <class Check>
+  void each_start(Check check) {
+    for (const CauseForm& form : cause.forms) {
+      if (form.starts == nullptr) continue;
+      for (const model::BlockSpec& start : form.starts(scales)) check(form, start);
+    }
+  }
+};
+
+TEST_P(Causes, HaveStartsInEveryForm) {
+  for (const CauseForm& form : cause.forms) {
+    ASSERT_EQ(form.starts != nullptr, cause.found_by_fitting);
+    if (form.starts != nullptr) {
+      EXPECT_FALSE(form.starts(scales).empty());
     }
   }
 }
 
-// A fit moves what belongs to the form that its start has, and nothing of the block's other forms.
-TEST(Causes, FormsAreFittedApart) {
-  const std::vector<Record> records = known_campaign(1);
-  for (const std::string_view id : {"asymmetric_hysteresis", "rate_dependent_hysteresis", "sensor_drift",
-                                    "stress_softening", "ageing", "valve_deadband"}) {
-    const Cause cause = *find_cause(id);
-    const std::size_t bare = structure_space(records, twin(), {}).size();
-    std::vector<std::size_t> counts;
-    for (const CauseStart& start : cause_starts(cause, typical_scales())) {
-      const FitSpace space = structure_space(records, model::with_block(twin(), start.block), {cause});
-      const std::size_t singles = model::catalogue()[cause.type].parameters.size();
-      if (has_free_form(cause, start.block)) {
-        EXPECT_EQ(space.size() - bare, start.block.values.size() - singles) << id << ": the knots";
-        continue;
-      }
-      counts.push_back(space.size() - bare);
+TEST_P(Causes, StartAsValidModelsOfTheirForm) {
+  each_start([&](const CauseForm& form, const model::BlockSpec& start) {
+    EXPECT_EQ(start.type, form.type);
+    EXPECT_EQ(&form_of(cause, start), &form) << "another form has taken it";
+    const auto wrong = model::validate(with(start));
+    ASSERT_TRUE(wrong.empty()) << wrong.front();
+  });
+}
+
+TEST_P(Causes, StartWithinWhatAFitMayDo) {
+  each_start([&](const CauseForm& form, const model::BlockSpec& start) {
+    bool moves = false;
+    for (std::size_t i = 0; i < start.values.size(); ++i) {
+      if (!form.is_fitted(i)) continue;
+      moves = true;
+      const model::ParameterSpec& spec = model::catalogue()[form.type].spec(i);
+      const Range range = form.range(i, scales, with(start));
+      EXPECT_LT(range.lower, range.upper) << spec.name;
+      EXPECT_LT(std::max(range.lower, spec.lower), std::min(range.upper, spec.upper)) << spec.name;
+      EXPECT_GE(start.values[i], range.lower) << spec.name;
+      EXPECT_LE(start.values[i], range.upper) << spec.name;
     }
-    EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 3u) << id;
-    EXPECT_GE(*std::min_element(counts.begin(), counts.end()), 1u) << id;
+    EXPECT_TRUE(moves);
+  });
+}
+
+// More than three numbers at once meet almost any curve; a form that takes them says so.
+TEST_P(Causes, MoveFewNumbers) {
+  each_start([&](const CauseForm& form, const model::BlockSpec& start) {
+    std::size_t fitted = 0;
+    for (std::size_t i = 0; i < start.values.size(); ++i)
+      fitted += form.is_fitted(i) && !model::catalogue()[form.type].spec(i).whole ? 1U : 0U;
+    EXPECT_GE(fitted, 1U);
+    if (!form.free_form) {
+      EXPECT_LE(fitted, 3U);
+    }
+  });
+}
+
+TEST_P(Causes, AreFoundInAModelAndTakenOut) {
+  each_start([&](const CauseForm&, const model::BlockSpec& start) {
+    const model::Model model = with(start);
+    const auto at = position_of(model, cause);
+    ASSERT_TRUE(at);
+    EXPECT_EQ(model.blocks[*at], start);
+    EXPECT_EQ(form_among(all_causes(), start), &form_of(cause, start));
+    EXPECT_FALSE(position_of(without(model, cause), cause));
+  });
+}
+
+TEST_P(Causes, SayWhichColumnTheyNeed) {
+  EXPECT_EQ(unanswerable(cause, scales), "");
+  Scales bare = scales;
+  bare.has_supply = bare.has_temperature = false;
+  EXPECT_EQ(unanswerable(cause, bare).empty(), cause.needs == Column::none);
+  if (cause.needs != Column::none) {
+    EXPECT_NE(unanswerable(cause, bare).find(name_of(cause.needs)), std::string::npos);
   }
+  Scales driven = scales;
+  driven.has_valve = false;
+  EXPECT_EQ(unanswerable(cause, driven).empty(), cause.station != model::Station::valve);
+}
+
+// A twin, and what a gauge can tell, stand one at the sensor and one before it.
+TEST_P(Causes, HaveTwinsAndCounterpartsAtTheOtherEnd) {
+  const auto at_sensor = [](const Cause& c) { return c.station == model::Station::sensor; };
+  for (const Cause& other : sensor_counterparts(cause))
+    EXPECT_NE(at_sensor(cause), at_sensor(other)) << other.id;
+  if (cause.twin.empty()) return;
+  EXPECT_EQ(find_cause(cause.twin)->twin, cause.id);
+  EXPECT_NE(std::find(cause.counterparts.begin(), cause.counterparts.end(), cause.twin),
+            cause.counterparts.end());
+}
+
+TEST_P(Causes, ShowAGaugeASensorWhereTheySaySo) {
+  for (const CauseForm& form : cause.forms) EXPECT_EQ(form.shown_mm != nullptr, cause.is_static_sensor());
+  if (cause.is_static_sensor()) {
+    EXPECT_EQ(cause.station, model::Station::sensor);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, Causes, ::testing::ValuesIn(all_causes().begin(), all_causes().end()),
+                         [](const auto& each) { return std::string(each.param.id); });
+
+TEST(Registry, CoversTheCatalogue) {
+  std::set<std::string_view> none;
+  for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
+    if (cause_of(type) == nullptr) none.insert(model::catalogue()[type].info.id);
+  }
+  EXPECT_EQ(none, (std::set<std::string_view>{"bouc_wen", "kelvin_voigt", "sensor_noise", "quantisation"}));
+  EXPECT_FALSE(find_cause("bouc_wen"));
+  EXPECT_FALSE(find_cause("no such thing"));
+  EXPECT_TRUE(std::is_sorted(all_causes().begin(), all_causes().end(), [](const Cause& a, const Cause& b) {
+    return a.forms.front().type < b.forms.front().type;
+  }));
 }
 
 // Where a block would be something else by another name, a fit may not go.
-TEST(Causes, StayWhatTheyAreCalled) {
-  const std::vector<Record> records = known_campaign(2);
-  const auto largest = [&](std::string_view id, std::string_view parameter) {
-    const Cause cause = *find_cause(id);
-    const model::Model model = model::with_block(twin(), cause_starts(cause, typical_scales()).front().block);
-    const FitSpace space = structure_space(records, model, {cause});
-    for (const FreeParameter& p : space.free()) {
-      if (p.name == std::string(id) + "." + std::string(parameter)) return std::pair(p.lower, p.upper);
-    }
-    return std::pair(std::nan(""), std::nan(""));
-  };
-  EXPECT_LE(largest("rate_dependent_hysteresis", "width_kpa").second, records[1].largest_kpa);
-  EXPECT_LE(largest("inertia", "damping_ratio").second, std::sqrt(0.5));
-  EXPECT_GE(largest("contact", "position_mm").first, 0.01 * records[0].span_mm);
-  EXPECT_GE(largest("slow_creep", "time_constant_s").first, 16.0);  // the twin's slowest branch: 16.5 s
-  EXPECT_GE(largest("periodic_disturbance", "frequency_hz").first, 0.2 - 1e-12);
-}
-
-// Bands of a valve that jumps: wherever the true band is, a start is near enough to keep step with it.
-TEST(Causes, NoStaircaseIsMissed) {
-  std::vector<double> bands;
+TEST(Ranges, KeepCausesWhatTheyAreCalled) {
   const Scales scales = typical_scales();
-  for (const CauseStart& start : cause_starts(*find_cause("valve_deadband"), scales)) {
-    if (start.block.values[1] == 1) bands.push_back(start.block.values[0]);
-  }
-  for (double band = 0.018 * scales.largest_kpa; band < 0.19 * scales.largest_kpa; band *= 1.003) {
-    double nearest = 1;
-    for (const double start : bands)
-      nearest = std::min(nearest, std::fabs(scales.largest_kpa / start - scales.largest_kpa / band));
-    EXPECT_LE(nearest, 0.51) << band;
-  }
+  const auto range = [&](std::string_view id, std::string_view parameter) {
+    const Cause cause = *find_cause(id);
+    for (const model::BlockSpec& start : starts_of(cause, scales)) {
+      const auto index = model::find_parameter(start, parameter);
+      const CauseForm& form = form_of(cause, start);
+      if (index && form.is_fitted(*index)) return form.range(*index, scales, with(start));
+    }
+    return Range{NAN, NAN};
+  };
+  EXPECT_LE(range("rate_dependent_hysteresis", "width_kpa").upper, scales.largest_kpa);
+  EXPECT_LE(range("inertia", "damping_ratio").upper, std::sqrt(0.5));
+  EXPECT_GE(range("contact", "position_mm").lower, 0.01 * scales.span_mm);
+  EXPECT_GE(range("slow_creep", "time_constant_s").lower, 16.0);  // the twin's slowest branch: 16.5 s
+  EXPECT_GE(range("periodic_disturbance", "frequency_hz").lower, 0.2 - 1e-12);
 }
 
 }  // namespace

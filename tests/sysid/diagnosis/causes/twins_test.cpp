@@ -22,7 +22,7 @@ Cause cause(std::string_view id) {
 }
 
 model::Model with(const model::Model& model, std::string_view id) {
-  return model::with_block(model, model::neutral_block(cause(id).type));
+  return model::with_block(model, model::neutral_block(cause(id).forms.front().type));
 }
 
 TEST(Twins, AreBentBeforeAndBehindTheLoad) {
@@ -78,11 +78,11 @@ TEST_F(BentRig, IsNotGivenOneNameOfTheTwo) {
   ASSERT_TRUE(twin_of(chosen.cause, selection.extended.point.model)) << chosen.cause.id;
   const auto twin = *twin_of(chosen.cause, selection.extended.point.model);
   const auto listed = std::count_if(chosen.rivals.begin(), chosen.rivals.end(),
-                                    [&](const Cause& rival) { return rival.type == twin.type; });
+                                    [&](const Cause& rival) { return rival == twin; });
   EXPECT_EQ(listed, 1);
   // The form of one of them alone would have stood: that is what the rule is for.
   const auto score = std::find_if(chosen.candidates.begin(), chosen.candidates.end(),
-                                  [&](const CandidateScore& s) { return s.cause.type == twin.type; });
+                                  [&](const CandidateScore& s) { return s.cause == twin; });
   ASSERT_NE(score, chosen.candidates.end());
   EXPECT_GT(score->rmse_mm, 1.02 * std::sqrt(selection.extended.mean_square_mm2));
 }

@@ -19,7 +19,7 @@ namespace {
 constexpr double noise_mm = 0.04;
 
 model::Model hiding(const char* id, std::vector<double> values) {
-  return model::with_block(loaded("bench_twin"), {find_cause(id)->type, std::move(values)});
+  return model::with_block(loaded("bench_twin"), {find_cause(id)->forms.front().type, std::move(values)});
 }
 const model::Model bent_scale = hiding("sensor_nonlinearity", {0.6, 0, 25});
 const model::Model stiff_finger = hiding("stiffening", {0.012});
@@ -177,7 +177,7 @@ TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
 /// With play between them the logs tell a finger that stiffens from a bent scale by themselves; a gauge that
 /// shows a bent scale contradicts them, and the name must not stand.
 TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
-  const model::BlockSpec play{find_cause("backlash")->type, {4}};
+  const model::BlockSpec play{find_cause("backlash")->forms.front().type, {4}};
   const model::Model given = model::with_block(loaded("bench_twin"), play);
   const model::Model truth = model::with_block(stiff_finger, play);
   const auto stands = [](const Diagnosis& d) {

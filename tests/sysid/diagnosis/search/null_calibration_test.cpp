@@ -24,7 +24,8 @@ struct Searched {
 Searched searched(double backlash_mm) {
   const model::Model given = loaded("zhang2025");
   model::Model truth = given;
-  if (backlash_mm > 0) truth = model::with_block(given, {find_cause("backlash")->type, {backlash_mm}});
+  if (backlash_mm > 0)
+    truth = model::with_block(given, {find_cause("backlash")->forms.front().type, {backlash_mm}});
   const std::vector<Log> logs{simulated(truth, model::SignalName::tp1, 25, 0.04, 1),
                               simulated(truth, model::SignalName::sp2, 25, 0.04, 2)};
   Searched s;

@@ -22,7 +22,7 @@ std::vector<Record> records_of(const model::Model& truth) {
 }
 
 model::BlockSpec block(const char* id, std::vector<double> values) {
-  return {find_cause(id)->type, std::move(values)};
+  return {find_cause(id)->forms.front().type, std::move(values)};
 }
 
 class Scanned : public ::testing::Test {
@@ -79,7 +79,7 @@ TEST(BestStarts, TheLatencyNearTheHiddenOneComesFirst) {
   scans.emplace_back(data.thinned, std::vector<Cause>{}, data.given);
   const auto points = best_starts(scans, *find_cause("transport_delay"), data.scales, 2);
   ASSERT_EQ(points.size(), 2U);
-  const auto at = model::position_of(points.front().model, find_cause("transport_delay")->type);
+  const auto at = model::position_of(points.front().model, find_cause("transport_delay")->forms.front().type);
   EXPECT_NEAR(points.front().model.blocks[*at].values[0], 0.1, 1e-12);
 }
 
@@ -109,8 +109,8 @@ TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   EXPECT_LT(elsewhere, points.size());
   EXPECT_LE(points.size(), 4U);
   const FitPoint& last = best_starts(scans, *find_cause("sensor_drift"), data.scales, 1).back();
-  EXPECT_TRUE(has_free_form(*find_cause("sensor_drift"),
-                            last.model.blocks[*model::position_of(last.model, "sensor_drift")]));
+  const Cause drift = *find_cause("sensor_drift");
+  EXPECT_TRUE(form_of(drift, last.model.blocks[*position_of(last.model, drift)]).free_form);
 }
 
 }  // namespace

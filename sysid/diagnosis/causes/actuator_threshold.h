@@ -1,0 +1,19 @@
+#pragma once
+// No motion below a threshold pressure.
+
+#include "model/blocks/actuator_threshold.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct ActuatorThreshold : FormOf<model::ActuatorThreshold> {
+  static Starts starts(const Scales& s) {
+    return every({{"threshold_kpa", {0.02 * s.largest_kpa, 0.08 * s.largest_kpa, 0.2 * s.largest_kpa}}});
+  }
+  /// Below nearly all pressures nothing moves: then the data are of another actuator.
+  static Bounds bounds(const Scales& s, const model::Model&) {
+    return {{"threshold_kpa", 0, 0.6 * s.largest_kpa}};
+  }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,18 @@
+#pragma once
+// Play between the actuator and the measured point.
+
+#include "model/blocks/backlash.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct Backlash : FormOf<model::Backlash> {
+  static constexpr bool parts_twins = true;
+
+  static Starts starts(const Scales& s) {
+    return every({{"gap_mm", {0.01 * s.span_mm, 0.05 * s.span_mm, 0.15 * s.span_mm}}});
+  }
+  static Bounds bounds(const Scales& s, const model::Model&) { return {{"gap_mm", 0, 0.5 * s.span_mm}}; }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,25 @@
+#pragma once
+// Stiffer beyond a position: an object or a stop.
+
+#include "model/blocks/contact.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct Contact : FormOf<model::Contact> {
+  static constexpr std::array advice{Advice::change_load};
+  static constexpr std::array<std::string_view, 2> counterparts{"sensor_saturation", "sensor_nonlinearity"};
+  static constexpr bool is_stop = true;
+
+  static Starts starts(const Scales& s) {
+    return every({{"position_mm",
+                   {0.35 * s.span_mm, 0.55 * s.span_mm, 0.7 * s.span_mm, 0.85 * s.span_mm, 0.95 * s.span_mm}},
+                  {"stiffening", {0.2, 1.5}}});
+  }
+  /// A contact from the beginning on is a smaller gain; one that is hardly reached could be anything.
+  static Bounds bounds(const Scales& s, const model::Model&) {
+    return {{"position_mm", 0.05 * s.span_mm, s.span_mm}};
+  }
+};
+
+}  // namespace softgrip::sysid::causes

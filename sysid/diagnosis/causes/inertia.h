@@ -1,0 +1,23 @@
+#pragma once
+// The finger rings: a mode of the second order.
+
+#include "model/blocks/inertia.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct Inertia : FormOf<model::Inertia> {
+  static constexpr bool parts_twins = true;
+
+  static Starts starts(const Scales&) {
+    return every({{"period_s", {0.05, 0.15, 0.4, 1.0}}, {"damping_ratio", {0.15, 0.5}}});
+  }
+  static Bounds bounds(const Scales& s, const model::Model&) {
+    return {{"period_s",
+             2 * s.sample_s},  // a shorter one than two samples is not seen
+                               // From a damping of 1/sqrt(2) on nothing resonates: two lags in series.
+            {"damping_ratio", 0.005, 0.7}};
+  }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,24 @@
+#pragma once
+// A steady oscillation that the command does not explain.
+
+#include "model/blocks/periodic_disturbance.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct PeriodicDisturbance : FormOf<model::PeriodicDisturbance> {
+  /// At what stands out of the residual's spectrum.
+  static Starts starts(const Scales& s) {
+    Starts starts;
+    for (const Line& line : s.residual_lines) {
+      starts.push_back(start(
+          {{"sine_mm", line.sine_mm}, {"cosine_mm", line.cosine_mm}, {"frequency_hz", line.frequency_hz}}));
+    }
+    return starts;
+  }
+  static Bounds bounds(const Scales& s, const model::Model&) {
+    return {{"frequency_hz", slowest_oscillation_hz(s.campaign_s)}};
+  }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,16 @@
+#pragma once
+// The pressure stops below the command.
+
+#include "model/blocks/pressure_saturation.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct PressureSaturation : FormOf<model::PressureSaturation> {
+  static Starts starts(const Scales& s) {
+    return every({{"limit_kpa",
+                   {0.97 * s.largest_kpa, 0.9 * s.largest_kpa, 0.75 * s.largest_kpa, 0.6 * s.largest_kpa}}});
+  }
+};
+
+}  // namespace softgrip::sysid::causes

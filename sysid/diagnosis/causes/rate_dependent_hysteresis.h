@@ -1,0 +1,64 @@
+#pragma once
+// The width of a loop changes with the rate, beyond what creep does.
+
+#include "model/blocks/rate_dependent_hysteresis.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct RateDependentHysteresis {
+  /// A loop of its own that relaxes.
+  struct Relaxing : FormOf<model::RateDependentHysteresis> {
+    static constexpr std::array<Parameter, 3> fitted{"gain_mm_per_kpa", "width_kpa", "time_constant_s"};
+
+    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+    static Starts starts(const Scales& s) {
+      const double gain = s.gain_mm_per_kpa();
+      return every({{"gain_mm_per_kpa", {0.05 * gain, -0.05 * gain}},
+                    {"width_kpa", {0.1 * s.largest_kpa, 0.5 * s.largest_kpa}},
+                    {"time_constant_s", {0.3, 3.0}},
+                    {"rate_kpa_per_s", {s.largest_kpa}},
+                    {"settling_s", {0.05}}});
+    }
+    static Bounds bounds(const Scales& s, const model::Model&) {
+      return {// A loop that no pressure of the data saturates is linear in the pressure: a viscous branch.
+              {"width_kpa", 0.01 * s.largest_kpa, 0.5 * s.largest_kpa},
+              // One that does not relax within the data's cycles does not know their rate.
+              {"time_constant_s", s.sample_s, 0.1 * s.campaign_s}};
+    }
+  };
+
+  /// The base's loop changes with a rate.
+  struct Following : FormOf<model::RateDependentHysteresis> {
+    static Starts sized(Parameter size, const std::vector<double>& sizes, const Scales& s) {
+      // The largest pressure in five seconds, in one, in a fifth.
+      return every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
+                    {"settling_s", {0.03, 0.2}},
+                    {size, sizes},
+                    {"width_kpa", {0.3 * s.largest_kpa}},
+                    {"time_constant_s", {1.0}}});
+    }
+    static Bounds bounds(const Scales& s, const model::Model&) {
+      return {// A loop that is wider by the same at all rates of the data is only wider.
+              {"rate_kpa_per_s", 0.05 * s.largest_kpa, 20 * s.largest_kpa},
+              // What looks back farther is not a rate but a history.
+              {"settling_s", 0.5 * s.sample_s, 0.5}};
+    }
+  };
+  /// It grows.
+  struct Growing : Following {
+    static constexpr std::array<Parameter, 3> fitted{"growth", "rate_kpa_per_s", "settling_s"};
+    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+    static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
+  };
+  /// It levels off sooner or later.
+  struct Levelling : Following {
+    static constexpr std::array<Parameter, 3> fitted{"levelling", "rate_kpa_per_s", "settling_s"};
+    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+    static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
+  };
+
+  using Forms = List<Relaxing, Growing, Levelling>;
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,60 @@
+#pragma once
+// The list of causes: the only one in the project. To add a cause, write its file here and add its line
+// (docs/how-to/add-a-cause.md). A block of the catalogue that is in no list below does not compile.
+
+#include "model/registry.h"
+#include "sysid/diagnosis/causes/actuator_threshold.h"
+#include "sysid/diagnosis/causes/ageing.h"
+#include "sysid/diagnosis/causes/asymmetric_hysteresis.h"
+#include "sysid/diagnosis/causes/backlash.h"
+#include "sysid/diagnosis/causes/contact.h"
+#include "sysid/diagnosis/causes/inertia.h"
+#include "sysid/diagnosis/causes/outliers.h"
+#include "sysid/diagnosis/causes/periodic_disturbance.h"
+#include "sysid/diagnosis/causes/pressure_saturation.h"
+#include "sysid/diagnosis/causes/rate_dependent_hysteresis.h"
+#include "sysid/diagnosis/causes/sensor_drift.h"
+#include "sysid/diagnosis/causes/sensor_lag.h"
+#include "sysid/diagnosis/causes/sensor_nonlinearity.h"
+#include "sysid/diagnosis/causes/sensor_saturation.h"
+#include "sysid/diagnosis/causes/slow_creep.h"
+#include "sysid/diagnosis/causes/stiffening.h"
+#include "sysid/diagnosis/causes/stress_softening.h"
+#include "sysid/diagnosis/causes/supply_sag.h"
+#include "sysid/diagnosis/causes/thermal_gain.h"
+#include "sysid/diagnosis/causes/transport_delay.h"
+#include "sysid/diagnosis/causes/valve_deadband.h"
+#include "sysid/diagnosis/causes/valve_lag.h"
+
+namespace softgrip::sysid::causes {
+
+using All = List<ActuatorThreshold,        //
+                 Ageing,                   //
+                 AsymmetricHysteresis,     //
+                 Backlash,                 //
+                 Contact,                  //
+                 Inertia,                  //
+                 Outliers,                 //
+                 PeriodicDisturbance,      //
+                 PressureSaturation,       //
+                 RateDependentHysteresis,  //
+                 SensorDrift,              //
+                 SensorLag,                //
+                 SensorNonlinearity,       //
+                 SensorSaturation,         //
+                 SlowCreep,                //
+                 Stiffening,               //
+                 StressSoftening,          //
+                 SupplySag,                //
+                 ThermalGain,              //
+                 TransportDelay,           //
+                 ValveDeadband,            //
+                 ValveLag>;
+
+/// Blocks that are no form of a cause: the base structure, and the sensor's random error.
+using NoCauses = List<model::BoucWen<double>,      //
+                      model::KelvinVoigt<double>,  //
+                      model::SensorNoise<double>,  //
+                      model::Quantisation<double>>;
+
+}  // namespace softgrip::sysid::causes

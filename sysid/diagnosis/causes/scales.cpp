@@ -1,0 +1,30 @@
+#include "sysid/diagnosis/causes/scales.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace softgrip::sysid {
+
+Scales scales_of(const std::vector<Record>& records) {
+  const auto varies = [](const std::vector<double>& column) {
+    if (column.empty()) return false;
+    const auto [low, high] = std::minmax_element(column.begin(), column.end());
+    return *high - *low > 1e-6 * std::max(1.0, std::abs(*high));
+  };
+  Scales s;
+  s.sample_s = std::numeric_limits<double>::infinity();
+  for (const Record& record : records) {
+    s.span_mm = std::max(s.span_mm, record.span_mm);
+    s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);
+    s.campaign_s += record.length_s();
+    s.sample_s = std::min(s.sample_s, record.mean_interval_s());
+    s.has_temperature |= varies(record.temperature_c);
+    s.has_supply |= varies(record.supply_kpa);
+    for (const double supply : record.supply_kpa)
+      s.largest_supply_kpa = std::max(s.largest_supply_kpa, supply);
+  }
+  return s;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,45 @@
+#pragma once
+// What the data say about the sizes at which causes can work.
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// A column of a log without which some causes cannot be told.
+enum class Column : std::uint8_t { none, temperature_c, supply_kpa };
+
+/// "temperature_c", "supply_kpa"
+[[nodiscard]] constexpr std::string_view name_of(Column column) {
+  return column == Column::temperature_c ? "temperature_c" : "supply_kpa";
+}
+
+/// Sizes of a campaign.
+struct Scales {
+  double span_mm = 0;             ///< of the displacement
+  double largest_kpa = 0;         ///< of the drive
+  double campaign_s = 0;          ///< all records together
+  double sample_s = 0;            ///< shortest usual interval
+  double largest_supply_kpa = 0;  ///< 0: no such column
+  bool has_temperature = false;   ///< and it varies
+  bool has_supply = false;        ///< and it varies
+  bool has_valve = true;          ///< false: the measured pressure drives the model
+  /// What stands out of the residual's spectrum, the clearest first.
+  std::vector<Line> residual_lines;
+
+  /// Of the finger over all pressures.
+  [[nodiscard]] double gain_mm_per_kpa() const { return largest_kpa > 0 ? span_mm / largest_kpa : 1; }
+  /// Whether the column is there and varies.
+  [[nodiscard]] bool has(Column column) const {
+    return column == Column::none || (column == Column::temperature_c ? has_temperature : has_supply);
+  }
+};
+
+/// The scales of a campaign, but for the residual's peaks.
+[[nodiscard]] Scales scales_of(const std::vector<Record>& records);
+
+}  // namespace softgrip::sysid

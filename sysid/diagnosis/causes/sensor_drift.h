@@ -1,0 +1,83 @@
+#pragma once
+// The zero of the sensor wanders: steadily, while it warms up, to and fro, or as it likes.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include "model/blocks/sensor_drift.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct SensorDrift {
+  static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
+
+  using Form = FormOf<model::SensorDrift>;
+  static bool has_knots(const model::BlockSpec& block) {
+    return block.values.size() > Form::BlockType::parameters.size();
+  }
+
+  /// One way, and while it warms up.
+  struct Steady : Form {
+    static constexpr std::array<Parameter, 3> fitted{"rate_mm_per_h", "warm_up_mm", "warm_up_time_s"};
+    static bool holds(const model::BlockSpec& block) {
+      return !has_knots(block) && (block.values[fitted[0].index] != 0 || block.values[fitted[1].index] != 0);
+    }
+    static Starts starts(const Scales& s) {
+      const double rate = 3600 * 0.05 * s.span_mm / s.campaign_s;
+      return every({{"rate_mm_per_h", {-rate, rate}},
+                    {"warm_up_time_s", {0.3 * s.campaign_s}},
+                    {"wander_period_s", {s.campaign_s}}});
+    }
+    /// Warming up faster than this is creep of the actuator, slower a steady drift.
+    static Bounds bounds(const Scales& s, const model::Model&) {
+      return {{"warm_up_time_s", 0.02 * s.campaign_s, s.campaign_s}};
+    }
+  };
+
+  /// To and fro.
+  struct Wander : Form {
+    static constexpr std::array<Parameter, 3> fitted{"wander_sin_mm", "wander_cos_mm", "wander_period_s"};
+    static bool holds(const model::BlockSpec& block) { return !has_knots(block); }
+    /// Waves of every phase, small and not so small.
+    static Starts starts(const Scales& s) {
+      Starts starts;
+      for (const double campaigns : {0.15, 0.25, 0.4, 0.65, 1.0, 1.7}) {
+        for (const double size_mm : {0.004 * s.span_mm, 0.016 * s.span_mm}) {
+          for (int eighth = 0; eighth < 8; ++eighth) {
+            const double angle = eighth * std::numbers::pi / 4;
+            starts.push_back(start({{"warm_up_time_s", 0.3 * s.campaign_s},
+                                    {"wander_sin_mm", size_mm * std::cos(angle)},
+                                    {"wander_cos_mm", size_mm * std::sin(angle)},
+                                    {"wander_period_s", campaigns * s.campaign_s}}));
+          }
+        }
+      }
+      return starts;
+    }
+    /// It turns a dozen times in a campaign at most; of a slower one than three campaigns only the trend
+    /// shows.
+    static Bounds bounds(const Scales& s, const model::Model&) {
+      return {{"wander_period_s", s.campaign_s / 12, 3 * s.campaign_s}};
+    }
+  };
+
+  /// As it likes, from knot to knot.
+  struct Knots : Form {
+    static constexpr bool free_form = true;
+    static constexpr std::array<Parameter, 0> fitted{};
+    static Starts starts(const Scales& s) {
+      constexpr double closest_s = 12;  // closer together, they would follow the loops
+      const auto knots = static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
+      Values values = start({{"warm_up_time_s", 0.3 * s.campaign_s},
+                             {"wander_period_s", s.campaign_s},
+                             {"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});
+      values.resize(values.size() + knots, 0.0);
+      return {std::move(values)};
+    }
+  };
+
+  using Forms = List<Steady, Wander, Knots>;
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,15 @@
+#pragma once
+// The reading lags the displacement.
+
+#include "model/blocks/sensor_lag.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct SensorLag : FormOf<model::SensorLag> {
+  static constexpr bool parts_twins = true;
+
+  static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,27 @@
+#pragma once
+// The scale of the sensor is bent.
+
+#include "model/blocks/sensor_nonlinearity.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct SensorNonlinearity : FormOf<model::SensorNonlinearity> {
+  static constexpr std::array advice{Advice::change_load};
+  static constexpr std::string_view twin = "stiffening";
+  static constexpr std::array<std::string_view, 1> counterparts{"stiffening"};
+  static constexpr std::string_view sensor_shape = "a bent scale";
+  /// The calibrated range is where the bend is counted from.
+  static constexpr std::array<Parameter, 2> fitted{"bow_mm", "wave_mm"};
+
+  static Starts starts(const Scales& s) {
+    return every(
+        {{"bow_mm", {-0.02 * s.span_mm, 0.02 * s.span_mm}}, {"wave_mm", {0.0}}, {"range_mm", {s.span_mm}}});
+  }
+  /// For a fit to gauge readings.
+  static Values bent(double bow_mm, double wave_mm, double range_mm) {
+    return start({{"bow_mm", bow_mm}, {"wave_mm", wave_mm}, {"range_mm", range_mm}});
+  }
+};
+
+}  // namespace softgrip::sysid::causes

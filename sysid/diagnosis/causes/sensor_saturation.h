@@ -1,0 +1,30 @@
+#pragma once
+// The reading clips.
+
+#include <algorithm>
+
+#include "model/blocks/sensor_saturation.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct SensorSaturation : FormOf<model::SensorSaturation> {
+  static constexpr std::array advice{Advice::change_load};
+  static constexpr std::array<std::string_view, 1> counterparts{"contact"};
+  static constexpr bool is_stop = true;
+  static constexpr std::string_view sensor_shape = "an end of the sensor";
+  /// A floor that the data do not reach.
+  static constexpr std::array<Parameter, 1> fitted{"upper_mm"};
+  static constexpr double no_floor_mm = -1e4;
+
+  static Starts starts(const Scales& s) {
+    return every({{"lower_mm", {no_floor_mm}},
+                  {"upper_mm", {0.97 * s.span_mm, 0.9 * s.span_mm, 0.75 * s.span_mm, 0.6 * s.span_mm}}});
+  }
+  /// For a fit to gauge readings.
+  static Values ending(double upper_mm) {
+    return start({{"lower_mm", no_floor_mm}, {"upper_mm", std::max(upper_mm, 0.9 * no_floor_mm)}});
+  }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,29 @@
+#pragma once
+// Creep that is slower than the model's slowest branch.
+
+#include <algorithm>
+
+#include "model/blocks/slow_creep.h"
+#include "sysid/diagnosis/causes/form.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid::causes {
+
+struct SlowCreep : FormOf<model::SlowCreep> {
+  static constexpr std::array advice{Advice::leave_vented};
+
+  static Starts starts(const Scales& s) {
+    const double gain = s.gain_mm_per_kpa();
+    return every({{"gain_mm_per_kpa", {0.05 * gain, 0.2 * gain}},
+                  {"time_constant_s", {0.15 * s.campaign_s, 0.5 * s.campaign_s, 2 * s.campaign_s}}});
+  }
+  /// As fast as a branch of the base it is that branch; much slower than the campaign only gain per time
+  /// shows.
+  static Bounds bounds(const Scales& s, const model::Model& model) {
+    double slowest_s = 0;
+    for (const double tau_s : branch_time_constants_s(model)) slowest_s = std::max(slowest_s, tau_s);
+    return {{"time_constant_s", std::min(1.5 * slowest_s, 0.15 * s.campaign_s), 20 * s.campaign_s}};
+  }
+};
+
+}  // namespace softgrip::sysid::causes

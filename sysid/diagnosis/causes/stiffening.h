@@ -1,0 +1,19 @@
+#pragma once
+// The gain changes with displacement, both ways alike.
+
+#include "model/blocks/stiffening.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct Stiffening : FormOf<model::Stiffening> {
+  static constexpr std::array advice{Advice::change_load};
+  static constexpr std::string_view twin = "sensor_nonlinearity";
+  static constexpr std::array<std::string_view, 1> counterparts{"sensor_nonlinearity"};
+
+  static Starts starts(const Scales& s) {
+    return every({{"stiffening_per_mm", {-0.3 / s.span_mm, 0.1 / s.span_mm, 0.5 / s.span_mm}}});
+  }
+};
+
+}  // namespace softgrip::sysid::causes

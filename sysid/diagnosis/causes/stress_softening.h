@@ -1,0 +1,33 @@
+#pragma once
+// Softer after the largest load so far (Mullins).
+
+#include "model/blocks/stress_softening.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct StressSoftening {
+  static constexpr std::array advice{Advice::record_temperature};
+
+  /// In proportion to the largest load.
+  struct Proportional : FormOf<model::StressSoftening> {
+    static constexpr std::array<Parameter, 1> fitted{"softening_per_kpa"};
+    static bool holds(const model::BlockSpec& block) {
+      return block.values[Parameter("levelling_per_kpa").index] == 0;
+    }
+    static Starts starts(const Scales& s) {
+      return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}}});
+    }
+  };
+  /// Less and less with larger loads.
+  struct Levelling : FormOf<model::StressSoftening> {
+    static Starts starts(const Scales& s) {
+      return every({{"softening_per_kpa", {0.5 / s.largest_kpa}},
+                    {"levelling_per_kpa", {1.0 / s.largest_kpa, 5.0 / s.largest_kpa}}});
+    }
+  };
+
+  using Forms = List<Proportional, Levelling>;
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,19 @@
+#pragma once
+// The pressure follows a supply that falls.
+
+#include "model/blocks/supply_sag.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct SupplySag : FormOf<model::SupplySag> {
+  static constexpr Column needs = Column::supply_kpa;
+  /// The nominal supply is only where the coupling is counted from.
+  static constexpr std::array<Parameter, 1> fitted{"coupling"};
+
+  static Starts starts(const Scales& s) {
+    return every({{"coupling", {0.1, 0.5}}, {"nominal_kpa", {s.largest_supply_kpa}}});
+  }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,16 @@
+#pragma once
+// The gain follows the temperature.
+
+#include "model/blocks/thermal_gain.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct ThermalGain : FormOf<model::ThermalGain> {
+  static constexpr Column needs = Column::temperature_c;
+  static constexpr std::array advice{Advice::vary_temperature};
+
+  static Starts starts(const Scales&) { return every({{"gain_per_c", {-0.01, 0.01}}}); }
+};
+
+}  // namespace softgrip::sysid::causes

@@ -1,0 +1,13 @@
+#pragma once
+// Dead time between command and pressure.
+
+#include "model/blocks/transport_delay.h"
+#include "sysid/diagnosis/causes/form.h"
+
+namespace softgrip::sysid::causes {
+
+struct TransportDelay : FormOf<model::TransportDelay> {
+  static Starts starts(const Scales&) { return every({{"delay_s", {0.02, 0.1, 0.25, 0.5}}}); }
+};
+
+}  // namespace softgrip::sysid::causes

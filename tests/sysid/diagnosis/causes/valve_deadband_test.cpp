@@ -1,0 +1,25 @@
+#include "sysid/diagnosis/causes/valve_deadband.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrip::sysid {
+namespace {
+
+// Bands of a valve that jumps: wherever the true band is, a start is near enough to keep step with it.
+TEST(ValveDeadband, NoStaircaseIsMissed) {
+  Scales scales;
+  scales.largest_kpa = 40;
+  const std::vector<double> bands = causes::ValveDeadband::jumping_bands_kpa(scales);
+  for (double band = 0.018 * scales.largest_kpa; band < 0.19 * scales.largest_kpa; band *= 1.003) {
+    double nearest = 1;
+    for (const double start : bands)
+      nearest = std::min(nearest, std::fabs(scales.largest_kpa / start - scales.largest_kpa / band));
+    EXPECT_LE(nearest, 0.51) << band;
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

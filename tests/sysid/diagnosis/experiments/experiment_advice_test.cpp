@@ -1,0 +1,50 @@
+#include "sysid/diagnosis/experiments/experiment_advice.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "sysid/diagnosis/causes/cause.h"
+
+namespace softgrip::sysid {
+namespace {
+
+bool says(const std::vector<std::string>& advice, std::string_view words) {
+  return std::any_of(advice.begin(), advice.end(),
+                     [&](const std::string& sentence) { return sentence.find(words) != std::string::npos; });
+}
+
+TEST(Advice, IsGivenForEveryPairThatNoWaveformTellsApart) {
+  for (const Cause& one : all_causes()) {
+    for (const Cause& other : all_causes()) {
+      if (one == other) continue;
+      const auto advice = advice_for(one.id, other.id, {});
+      EXPECT_FALSE(advice.empty()) << one.id << ", " << other.id;
+      EXPECT_EQ(advice.size(), advice_for(other.id, one.id, {}).size()) << one.id << ", " << other.id;
+      for (const std::string& sentence : advice) EXPECT_FALSE(sentence.empty());
+    }
+  }
+  EXPECT_FALSE(advice_for("none", all_causes().front().id, {}).empty());
+}
+
+TEST(Advice, IsNotNeededWhereAWaveformTells) {
+  EXPECT_TRUE(advice_for("backlash", "contact", {.separable = true}).empty());
+  // But a column that is missing tells at once.
+  EXPECT_TRUE(says(advice_for("valve_lag", "sensor_lag", {.separable = true}), "record pressure_kpa"));
+  EXPECT_TRUE(advice_for("valve_lag", "sensor_lag", {.pressure_recorded = true, .separable = true}).empty());
+}
+
+TEST(Advice, IsOfWhatTheTwoHaveInCommon) {
+  EXPECT_TRUE(says(advice_for("stiffening", "contact", {}), "change the load"));
+  EXPECT_TRUE(says(advice_for("stiffening", "contact", {.gauge_made = true}), "the gauge left it open"));
+  EXPECT_TRUE(says(advice_for("slow_creep", "ageing", {}), "vented for an hour"));
+  EXPECT_TRUE(says(advice_for("stress_softening", "ageing", {}), "another temperature"));
+  EXPECT_FALSE(
+      says(advice_for("stress_softening", "ageing", {.temperature_varies = true}), "another temperature"));
+  EXPECT_TRUE(
+      says(advice_for("thermal_gain", "contact", {.temperature_varies = true}), "another temperature"));
+  EXPECT_TRUE(says(advice_for("inertia", "contact", {}), "no waveform"));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid
