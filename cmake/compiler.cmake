@@ -1,9 +1,9 @@
-# Flags that every target of the project shares: warnings are errors, sanitizers by one option.
+# Flags that every target of the project shares: warnings, sanitizers by one option.
 add_library(softgrip_flags INTERFACE)
 target_include_directories(softgrip_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(softgrip_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
-  -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough
+  -Wall -Wextra -Wpedantic $<$<BOOL:${SOFTGRIP_WERROR}>:-Werror> -Wshadow -Wconversion -Wsign-conversion
+  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough
   # Bit-for-bit repeatable runs: no contraction of a*b+c that differs between compilers and call sites.
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
