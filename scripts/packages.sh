@@ -3,11 +3,13 @@
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 
+release=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
+
 wanted=()
 for section in "$@"; do
-  mapfile -t names < <(awk -v section="[$section]" '
+  mapfile -t names < <(awk -v section="[$section]" -v release="@$release" '
     /^\[/ {inside = ($1 == section); next}
-    inside {sub(/#.*/, ""); if (NF) print $1}' "$here/packages.txt")
+    inside {sub(/#.*/, ""); if (NF == 1 || (NF && $2 == release)) print $1}' "$here/packages.txt")
   [ ${#names[@]} -gt 0 ] || { echo "packages.sh: no section [$section] in packages.txt" >&2; exit 2; }
   wanted+=("${names[@]}")
 done

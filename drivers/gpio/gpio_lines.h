@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -84,5 +85,8 @@ struct GpioFailure {
 /// Requests all lines through libgpiod, outputs inactive. Nothing is kept of them if one cannot be had.
 [[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines(
     std::span<const GpioLineSettings> lines);
+/// The same where the chips' files stand in `devices` instead of /dev.
+[[nodiscard]] tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines_in(
+    const std::filesystem::path& devices, std::span<const GpioLineSettings> lines);
 
 }  // namespace softgrip::drivers

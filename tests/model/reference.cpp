@@ -20,11 +20,11 @@ struct Problem {
   [[nodiscard]] double command(double t) const { return from_kpa + slope * (t - from_s); }
 };
 
-int right_hand_side(realtype t, N_Vector y, N_Vector ydot, void* data) {
+int right_hand_side(sunrealtype t, N_Vector y, N_Vector ydot, void* data) {
   const Problem& problem = *static_cast<Problem*>(data);
   const Physics& f = problem.physics;
-  const realtype* s = N_VGetArrayPointer(y);
-  realtype* d = N_VGetArrayPointer(ydot);
+  const sunrealtype* s = N_VGetArrayPointer(y);
+  sunrealtype* d = N_VGetArrayPointer(ydot);
   const bool lag = f.lag_s > 0;
   const double p = lag ? s[0] : problem.command(t);
   const double rate = lag ? (problem.command(t) - s[0]) / f.lag_s : problem.slope;
@@ -61,7 +61,11 @@ std::vector<double> integrate(const Physics& physics, const std::vector<double>&
   }
 
   SUNContext context = nullptr;
+#ifdef SUN_COMM_NULL
+  require(SUNContext_Create(SUN_COMM_NULL, &context));  // since version 7
+#else
   require(SUNContext_Create(nullptr, &context));
+#endif
   const auto size = static_cast<sunindextype>(2 + physics.k.size());
   N_Vector y = N_VNew_Serial(size, context);
   N_VConst(0, y);
@@ -93,7 +97,7 @@ std::vector<double> integrate(const Physics& physics, const std::vector<double>&
         require(CVode(cvode, target, y, &t, CV_NORMAL));
       }
       if (next < count && t >= sample - 1e-12) {
-        const realtype* s = N_VGetArrayPointer(y);
+        const sunrealtype* s = N_VGetArrayPointer(y);
         const double p = physics.lag_s > 0 ? s[0] : problem.command(t);
         double sum = physics.alpha * p - s[1] + p / physics.k0;
         for (std::size_t j = 0; j < physics.k.size(); ++j) sum += s[2 + j];

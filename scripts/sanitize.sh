@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Builds tests under the sanitizers and runs them:
+#   scripts/sanitize.sh        what meets bytes from outside under AddressSanitizer and UndefinedBehaviorSanitizer, what
+#                              has threads under ThreadSanitizer: the part of scripts/test.sh
+#   scripts/sanitize.sh all    every test program under the first two, all of the daemon's under the third
+# Without the tests that run other programs of the system. What a sanitizer reports is never forgiven, since the reports
+# are files: build/PRESET/reports.
+set -euo pipefail
+cd "$(dirname "$(realpath "$0")")/.."
+. scripts/ctest.sh
+
+# sanitized PRESET TEST_PROGRAM ...
+sanitized() {
+  local preset=$1 reports=$PWD/build/$1/reports failed=0
+  shift
+  echo "$preset: $*"
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset" -j "$(nproc)" --target "$@" | tail -n 1
+  rm -rf "$reports" && mkdir -p "$reports"
+  ASAN_OPTIONS=log_path=$reports/asan UBSAN_OPTIONS=print_stacktrace=1:log_path=$reports/ubsan \
+    TSAN_OPTIONS=log_path=$reports/tsan \
+    run_ctest "$preset" 'blind|system|recipe' -E '_NOT_BUILT|^(systemd|packaging|repository|BlocksPage)\.' |
+    grep -v ' Start \| Passed ' || failed=1
+  if [ -n "$(ls "$reports")" ]; then
+    cat "$reports"/* >&2
+    failed=1
+  fi
+  return $failed
+}
+
+case ${1:-} in
+  "")
+    sanitized asan-ubsan base_test drivers_test emulator_test
+    sanitized tsan drivers_test daemon_test daemon_process_test
+    ;;
+  all)
+    sanitized asan-ubsan all
+    sanitized tsan daemon_test daemon_process_test daemon_real_time_test drivers_test emulator_test emulator_wire_test
+    ;;
+  *) sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+esac

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""clang-tidy (.clang-tidy says what it asks, and why not more) over the sources:
+
+  scripts/tidy.py                    all of them
+  scripts/tidy.py daemon tools/rig   these folders or files
+
+What was clean stays clean until the source, a header of the project that it reaches, its compiler command, .clang-tidy
+or clang-tidy's version changes: build/tidy remembers. JOBS and BUILD_DIR (default: all cores, build/release) may be
+set in the environment. Exits 1 on a finding.
+"""
+
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+BUILD = ROOT / os.environ.get("BUILD_DIR", "build/release")
+CACHE = ROOT / "build/tidy"
+
+
+def sources(places):
+    listed = subprocess.run(["git", "ls-files", "--", *places], cwd=ROOT, capture_output=True, text=True, check=True)
+    return [name for name in listed.stdout.splitlines() if name.endswith(".cpp")]
+
+
+def commands():
+    """Compiler arguments by source, without precompiled headers: those of GCC mean nothing to clang."""
+    if not (BUILD / "compile_commands.json").exists():
+        subprocess.run(["cmake", "--preset", "release", "-B", BUILD], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    found = {}
+    for entry in json.loads((BUILD / "compile_commands.json").read_text()):
+        words = shlex.split(entry["command"])
+        while words and not words[0].endswith("++"):
+            words.pop(0)  # a launcher, such as ccache
+        kept = [word for i, word in enumerate(words)
+                if word != "-Winvalid-pch" and not word.endswith("cmake_pch.hxx")
+                and not (word == "-include" and words[i + 1].endswith("cmake_pch.hxx"))]
+        found[os.path.relpath(entry["file"], ROOT)] = {**entry, "command": shlex.join(kept)}
+    # What only another build has, such as a fuzz target, is compiled like its neighbour.
+    for name in sources(["."]):
+        if name not in found:
+            near = max(found, key=lambda other: len(os.path.commonprefix([name, other])))
+            command = found[near]["command"].replace(found[near]["file"], str(ROOT / name))
+            found[name] = {**found[near], "file": str(ROOT / name), "command": command}
+    return found
+
+
+class Keys:
+    """What a result depends on, as one checksum."""
+
+    def __init__(self, found):
+        self.commands = found
+        self.files = {}
+        version = subprocess.run(["clang-tidy", "--version"], capture_output=True, text=True, check=True).stdout
+        self.common = version + (ROOT / ".clang-tidy").read_text()
+
+    def file(self, name):
+        """(checksum, headers of the project that it includes)"""
+        if name not in self.files:
+            text = (ROOT / name).read_bytes()
+            beside = os.path.dirname(name)
+            headers = set()
+            for header in re.findall(rb'^#include "([^"]+)"', text, re.MULTILINE):
+                near = os.path.normpath(os.path.join(beside, header.decode()))
+                headers |= {path for path in (near, header.decode()) if (ROOT / path).is_file()}
+            self.files[name] = hashlib.sha256(text).hexdigest(), headers
+        return self.files[name]
+
+    def of(self, source):
+        seen, waiting = set(), [source]
+        while waiting:
+            name = waiting.pop()
+            if name not in seen:
+                seen.add(name)
+                waiting += self.file(name)[1]
+        parts = [self.common, self.commands[source]["command"].replace(str(ROOT), ""), *(name + self.file(name)[0] for name in sorted(seen))]
+        return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def check(source):
+    run = subprocess.run(["clang-tidy", "-p", CACHE, "--quiet", source], cwd=ROOT, capture_output=True, text=True)
+    return run.returncode == 0, run.stdout + ("" if run.returncode == 0 else run.stderr)
+
+
+def main():
+    wanted = sources(sys.argv[1:] or ["."])
+    if not wanted:
+        print("tidy.py: no sources there", file=sys.stderr)
+        return 2
+    found = commands()
+    CACHE.mkdir(parents=True, exist_ok=True)
+    (CACHE / "compile_commands.json").write_text(json.dumps(list(found.values())))
+    keys = Keys(found)
+    due = {source: CACHE / keys.of(source) for source in wanted}
+    due = {source: mark for source, mark in due.items() if not mark.exists()}
+    print(f"{len(wanted)} sources, {len(due)} of them to be looked at", flush=True)
+
+    started, failed, told = time.monotonic(), 0, set()
+    with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS", os.cpu_count()))) as pool:
+        waiting = {pool.submit(check, source): source for source in due}
+        for future in concurrent.futures.as_completed(waiting):
+            clean, text = future.result()
+            if clean:
+                due[waiting[future]].touch()
+                continue
+            failed += 1
+            # A finding in a header comes once per source that includes it.
+            findings = re.split(r"\n(?=\S+:\d+:\d+: (?:error|warning): )", "\n" + text)
+            print("\n".join(one for one in findings if one not in told).strip() or waiting[future], flush=True)
+            told |= set(findings)
+    print(f"{failed} of {len(due)} with findings, {time.monotonic() - started:.0f} s")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""Every file, link and program that the documents name exists: paths.py [--build BUILD_DIR]
+
+Read are README.md and docs/. A word of inline code or of a code block is taken for a path of the project where its first
+folder is one; BUILD_DIR's ninja file says which programs there are under build/. `*`, `{a,b}` and CAPITALS (what the
+reader puts in) match whatever fits.
+"""
+
+import argparse
+import fnmatch
+import itertools
+import pathlib
+import re
+import sys
+
+import tree
+from tree import ROOT
+
+
+def names_and_folders():
+    names = tree.names()
+    folders = {str(parent) for name in names for parent in pathlib.PurePosixPath(name).parents}
+    return set(names) | folders - {"."}
+
+
+def programs(build):
+    """What ninja makes, relative to the build folder; None where it does not say."""
+    file = build / "build.ninja" if build else None
+    if file is None or not file.exists():
+        return None
+    return set(re.findall(r"^build ([^ :|$]+)", file.read_text(), re.MULTILINE))
+
+
+def alternatives(word):
+    """a{b,c}d -> abd, acd"""
+    parts = re.split(r"\{([^{}]*,[^{}]*)\}", word)
+    choices = [part.split(",") if index % 2 else [part] for index, part in enumerate(parts)]
+    return ["".join(choice) for choice in itertools.product(*choices)]
+
+
+def pattern_of(word):
+    """What the reader puts in matches anything."""
+    return re.sub(r"<[^<>]*>|\b[A-Z][A-Z_]+\b(?![.])", "*", word)
+
+
+def words_of(text):
+    """(line number, word) of inline code and of code blocks"""
+    inside = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.lstrip().startswith("```"):
+            inside = not inside
+            continue
+        for code in [line] if inside else re.findall(r"`([^`]+)`", line):
+            for word in re.split(r"[\s'\"=()|;]+", code):
+                yield number, word.rstrip(".,:")
+
+
+def anchors_of(text):
+    headings = re.findall(r"^#+ +(.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def links_of(text):
+    for number, line in enumerate(text.splitlines(), 1):
+        for target in re.findall(r"\]\(([^()\s]+)\)", re.sub(r"`[^`]*`", "", line)):
+            if not re.match(r"[a-z]+:", target):
+                yield number, target
+
+
+class Judge:
+    def __init__(self, build):
+        self.names = names_and_folders()
+        self.names |= {name.rsplit(".", 1)[0] for name in self.names if name.endswith((".h", ".cpp"))}
+        self.file_names = {name.rsplit("/", 1)[-1] for name in self.names}
+        self.roots = {name.split("/")[0] for name in self.names if "/" in name}
+        self.programs = programs(build)
+        self.findings = []
+
+    def path_exists(self, word):
+        word = word.removeprefix("./").rstrip("/")
+        if any(symbol in word for symbol in "*?["):
+            return any(fnmatch.fnmatchcase(name, word) for name in self.names)
+        return word in self.names
+
+    def program_exists(self, word):
+        """build/PRESET/path/to/program; deeper inside build/ lies what programs write"""
+        parts = word.split("/", 2)
+        if len(parts) < 3 or self.programs is None:
+            return True
+        return not parts[2] or any(fnmatch.fnmatchcase(name, parts[2]) for name in self.programs)
+
+    def word(self, place, word):
+        root = word.removeprefix("./").split("/")[0]
+        if re.fullmatch(r"\w+\.(h|cpp|py|sh|cmake)", word) and word not in self.file_names:
+            self.findings.append(f"{place}: `{word}`: the project has no such file")
+        if "/" not in word or word.startswith(("/", "http")) or not re.fullmatch(r"[\w./*{},<>+\-]+", word):
+            return
+        for choice in map(pattern_of, alternatives(word)):
+            if root in self.roots and not self.path_exists(choice):
+                self.findings.append(f"{place}: `{word}`: the project has no such file or folder")
+            elif re.match(r"build/(release|debug|demo|asan-ubsan|tsan)/", choice) and not self.program_exists(choice):
+                self.findings.append(f"{place}: `{word}`: nothing of that name is built")
+
+    def link(self, document, number, target):
+        place = f"{document.relative_to(ROOT)}:{number}"
+        path, _, anchor = target.partition("#")
+        file = (document.parent / path).resolve() if path else document
+        if not file.is_relative_to(ROOT) or str(file.relative_to(ROOT)) not in self.names:
+            self.findings.append(f"{place}: the link `{target}` leads nowhere")
+        elif anchor and anchor not in anchors_of(file.read_text()):
+            self.findings.append(f"{place}: the link `{target}`: that page has no such heading")
+
+    def document(self, document):
+        text = document.read_text()
+        for number, word in words_of(text):
+            self.word(f"{document.relative_to(ROOT)}:{number}", word)
+        for number, target in links_of(text):
+            self.link(document, number, target)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", type=pathlib.Path)
+    judge = Judge(parser.parse_args().build)
+    documents = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    for document in documents:
+        judge.document(document)
+    print("\n".join(judge.findings) or f"{len(documents)} documents name nothing that does not exist")
+    return 1 if judge.findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

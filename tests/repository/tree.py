@@ -1,0 +1,15 @@
+"""The files of the project, as git knows them; in a tarball, all but what is built."""
+
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def names():
+    listed = subprocess.run(["git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard"],
+                            capture_output=True, text=True)
+    if listed.returncode == 0:
+        return sorted({name for name in listed.stdout.splitlines() if (ROOT / name).exists()})
+    files = (path.relative_to(ROOT) for path in ROOT.rglob("*") if path.is_file())
+    return sorted(str(path) for path in files if not path.parts[0].startswith((".", "build")))
