@@ -14,19 +14,19 @@ home=build/fuzz
 # target | corpus in the tree | more seeds | dictionary | longest input
 targets() {
   cat <<'TABLE'
-yaml_fuzz|tests/model/document/corpus||tests/document/yaml.dict|4096
-model_file_fuzz|tests/model/model_file_corpus|config/models|tests/document/yaml.dict|4096
-sequence_file_fuzz|tests/control/sequence_file_corpus|config/sequences|tests/document/yaml.dict|4096
-rig_file_fuzz|tests/daemon/rig_file_corpus|config|tests/document/yaml.dict|8192
-board_map_fuzz|tests/drivers/board_map_corpus|config/boards|tests/document/yaml.dict|8192
-faults_file_fuzz|tests/tools/rig/faults_file_corpus||tests/document/yaml.dict|4096
-modbus_reply_fuzz|tests/drivers/modbus_reply_corpus|||512
-rtu_reply_fuzz|tests/drivers/rtu_reply_corpus|||512
-emulator_fuzz|tests/tools/rig/emulator_corpus|||1024
-client_request_fuzz|tests/daemon/client_request_corpus||tests/daemon/client_request.dict|1024
-log_fuzz|tests/sysid/log_corpus|||4096
-gauge_fuzz|tests/sysid/diagnosis/gauge_corpus|||4096
-recording_fuzz|tests/tools/recording_corpus||tests/daemon/client_request.dict|4096
+yaml_fuzz|tests/document/corpus||tests/document/yaml.dict|4096
+model_file_fuzz|tests/model/file/model_file_corpus|config/models|tests/document/yaml.dict|4096
+sequence_file_fuzz|tests/control/sequences/sequence_file_corpus|config/sequences|tests/document/yaml.dict|4096
+rig_file_fuzz|tests/rig/rig_file_corpus|config|tests/document/yaml.dict|8192
+board_map_fuzz|tests/rig/board_map_corpus|config/boards|tests/document/yaml.dict|8192
+faults_file_fuzz|tests/simulation/emulator/faults_file_corpus||tests/document/yaml.dict|4096
+modbus_reply_fuzz|tests/drivers/modbus/modbus_reply_corpus|||512
+rtu_reply_fuzz|tests/drivers/modbus/rtu_reply_corpus|||512
+emulator_fuzz|tests/simulation/emulator/emulator_corpus|||1024
+client_request_fuzz|tests/daemon/socket/client_request_corpus||tests/daemon/client_request.dict|1024
+log_fuzz|tests/sysid/logs/log_corpus|||4096
+gauge_fuzz|tests/sysid/diagnosis/gauge/gauge_corpus|||4096
+recording_fuzz|tests/tools/recordings/recording_corpus||tests/daemon/client_request.dict|4096
 TABLE
 }
 

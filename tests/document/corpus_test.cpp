@@ -14,8 +14,7 @@ namespace {
 
 TEST(Corpus, IsHarmless) {
   std::size_t files = 0;
-  const std::filesystem::path folder =
-      std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/model/document/corpus";
+  const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/document/corpus";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};

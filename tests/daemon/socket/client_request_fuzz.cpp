@@ -2,7 +2,7 @@
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target client_request_fuzz
 //   build/fuzz/tests/daemon/client_request_fuzz -max_total_time=660 -max_len=1024
-//   -dict=tests/daemon/client_request.dict NEW_CORPUS tests/daemon/client_request_corpus
+//   -dict=tests/daemon/client_request.dict NEW_CORPUS tests/daemon/socket/client_request_corpus
 
 #include <cstddef>
 #include <cstdint>

@@ -116,7 +116,7 @@ TEST(ClientRequest, TheFuzzersCorpusIsHarmless) {
   };
   std::size_t files = 0;
   const std::filesystem::path folder =
-      std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/daemon/client_request_corpus";
+      std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/daemon/socket/client_request_corpus";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string line{std::istreambuf_iterator<char>(file), {}};

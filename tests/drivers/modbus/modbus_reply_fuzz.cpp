@@ -3,7 +3,7 @@
 //
 //   cmake --preset fuzz && cmake --build --preset fuzz --target modbus_reply_fuzz
 //   build/fuzz/tests/drivers/modbus_reply_fuzz -max_total_time=660 -max_len=512
-//   tests/drivers/modbus_reply_corpus
+//   tests/drivers/modbus/modbus_reply_corpus
 
 #include <array>
 #include <cmath>
