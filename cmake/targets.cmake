@@ -108,8 +108,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     -Wno-stringop-overread)
 endif()
 function(softgrip_precompile_for_tests target)
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    return()  # clang wants the same definitions wherever a precompiled header is used
+  # clang wants the same definitions wherever a precompiled header is used; ccache finds nothing again behind one.
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_CXX_COMPILER_LAUNCHER)
+    return()
   endif()
   if(NOT TARGET softgrip_test_headers)
     file(WRITE ${CMAKE_BINARY_DIR}/test_headers.cpp "")
