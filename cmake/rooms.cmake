@@ -18,7 +18,7 @@ softgrip_room(model/file USES base document model)
 # What a tick runs.
 softgrip_room(control/elements USES base model)
 softgrip_room(control/feedforward USES base model control/elements)
-softgrip_room(control/tick USES base document model control/elements control/feedforward)
+softgrip_room(control/tick USES document model control/elements control/feedforward)
 # What is done before it.
 softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick
   LIBRARIES Eigen3::Eigen)
@@ -26,8 +26,8 @@ softgrip_room(control/tuning USES base model control/elements control/feedforwar
 
 # Boards.
 softgrip_room(drivers/board USES base model)
-softgrip_room(drivers/modbus USES base model drivers/board LIBRARIES PkgConfig::modbus)
-softgrip_room(drivers/iio USES base model drivers/board)
+softgrip_room(drivers/modbus USES base drivers/board LIBRARIES PkgConfig::modbus)
+softgrip_room(drivers/iio USES base drivers/board)
 softgrip_room(drivers/gpio USES base model LIBRARIES PkgConfig::gpiod)
 if(gpiod_VERSION VERSION_GREATER_EQUAL 2)
   target_compile_definitions(softgrip_drivers_gpio PRIVATE SOFTGRIP_GPIOD_2=1)
@@ -39,35 +39,35 @@ softgrip_room(simulation/emulator USES base document model drivers/board drivers
 
 # The rig file.
 softgrip_room(rig
-  USES base document model model/file control/elements control/feedforward control/tick control/sequences
-       drivers/board drivers/modbus drivers/iio drivers/gpio simulation/plant)
+  USES base document model/file control/feedforward control/tick control/sequences drivers/board drivers/modbus
+       drivers/iio drivers/gpio simulation/plant)
 
 # The daemon.
-softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig)
-softgrip_room(daemon/recording USES base model control/elements control/tick drivers/board rig daemon/loop
+softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig LIBRARIES spdlog::spdlog)
+softgrip_room(daemon/recording
+  USES base control/elements control/tick rig daemon/loop
   LIBRARIES spdlog::spdlog nlohmann_json::nlohmann_json)
-softgrip_room(daemon/panel USES base model control/elements control/tick drivers/gpio rig daemon/loop daemon/recording)
+softgrip_room(daemon/panel USES base drivers/gpio rig daemon/loop)
 softgrip_room(daemon/socket
-  USES base document model control/elements control/tick control/sequences rig daemon/loop daemon/recording
+  USES base document model control/tick control/sequences rig daemon/loop daemon/recording
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(daemon/service
-  USES base document model control/elements control/tick drivers/board drivers/modbus drivers/iio drivers/gpio
-       simulation/plant rig daemon/loop daemon/recording daemon/panel daemon/socket
+  USES base control/tick drivers/board drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
   LIBRARIES spdlog::spdlog PkgConfig::systemd)
 
 # From a log to the reason.
 softgrip_room(sysid/logs USES base document model)
-softgrip_room(sysid/pages USES base document model model/file sysid/logs)
+softgrip_room(sysid/pages USES base model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
-softgrip_room(sysid/identification USES base document model model/file sysid/logs sysid/pages sysid/fitting
+softgrip_room(sysid/identification
+  USES base model model/file sysid/logs sysid/pages sysid/fitting
   LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
-softgrip_room(sysid/diagnosis/residual USES base model sysid/logs LIBRARIES Eigen3::Eigen)
-softgrip_room(sysid/diagnosis/causes USES base model sysid/logs sysid/fitting sysid/diagnosis/residual)
+softgrip_room(sysid/diagnosis/residual USES base sysid/logs LIBRARIES Eigen3::Eigen)
+softgrip_room(sysid/diagnosis/causes USES model sysid/logs sysid/fitting sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
   USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes)
 softgrip_room(sysid/diagnosis/evidence
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
-       sysid/diagnosis/search)
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/gauge
   USES base document model sysid/logs sysid/fitting sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search)
@@ -75,12 +75,11 @@ softgrip_room(sysid/diagnosis/verdict
   USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
 softgrip_room(sysid/diagnosis/experiments
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
-       sysid/diagnosis/search sysid/diagnosis/gauge sysid/diagnosis/verdict)
+  USES base sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes sysid/diagnosis/search
+       sysid/diagnosis/gauge sysid/diagnosis/verdict)
 softgrip_room(sysid/diagnosis/report
-  USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/residual
-       sysid/diagnosis/causes sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge
-       sysid/diagnosis/verdict
+  USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
+       sysid/diagnosis/gauge sysid/diagnosis/verdict
   LIBRARIES nlohmann_json::nlohmann_json)
 # The innermost loops of a fit.
 softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
@@ -94,24 +93,21 @@ softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/c
   LIBRARIES nlohmann_json::nlohmann_json)
 # What moves a rig by hand: doctor and calibrate.
 softgrip_room(tools/commissioning
-  USES base document model control/elements control/feedforward control/tick drivers/board rig daemon/loop
-       daemon/recording daemon/service
+  USES base document control/elements control/feedforward drivers/board rig daemon/loop daemon/recording
+       daemon/service
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
-  USES base document model model/file control/elements control/feedforward control/tuning drivers/board
-       simulation/plant rig daemon/service daemon/socket sysid/logs sysid/fitting sysid/identification
-       sysid/diagnosis/causes sysid/diagnosis/gauge sysid/diagnosis/verdict sysid/diagnosis/experiments
-       sysid/diagnosis/report tools/recordings
+  USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig
+       daemon/service daemon/socket sysid/logs sysid/identification sysid/diagnosis/verdict
+       sysid/diagnosis/experiments sysid/diagnosis/report tools/recordings
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/studies
   USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)
 softgrip_room(tools/commands
-  USES base document model model/file control/elements control/feedforward control/tick control/tuning drivers/board
-       rig daemon/service daemon/socket sysid/logs sysid/pages sysid/fitting sysid/identification
-       sysid/diagnosis/causes sysid/diagnosis/gauge sysid/diagnosis/verdict sysid/diagnosis/experiments
-       sysid/diagnosis/report tools/command_line tools/client tools/recordings tools/commissioning
-       tools/investigation tools/studies
+  USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/pages
+       sysid/identification sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
+       tools/recordings tools/commissioning tools/investigation tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)

@@ -104,7 +104,7 @@ TEST(RigFile, ARateBeyondTheBusBudgetIsRefusedUnlessAccepted) {
     if (entry.key == "rate_hz") entry.value.scalar = "5000";
   }
   Problems problems;
-  EXPECT_FALSE(read_rig(document, problems).has_value());
+  EXPECT_FALSE(rig::read_rig(document, problems).has_value());
   EXPECT_NE(problems.format().find("the bus is not fast enough for 5000 exchanges a second"),
             std::string::npos)
       << problems.format();
@@ -113,7 +113,7 @@ TEST(RigFile, ARateBeyondTheBusBudgetIsRefusedUnlessAccepted) {
   yes.scalar = "true";
   document.root.entries[2].value.entries[0].value.entries.push_back({"accept_over_budget", {}, yes});
   Problems accepted;
-  const auto rig = read_rig(document, accepted);
+  const auto rig = rig::read_rig(document, accepted);
   ASSERT_TRUE(rig.has_value()) << accepted.format();
   EXPECT_TRUE(rig->accept_over_budget);
 }
@@ -132,7 +132,7 @@ void for_each_entry(Node& node, const std::string& path, const Use& use) {
 /// Where a document without its entry at `path` is refused, with the problems; nothing if it is accepted.
 std::optional<std::string> refusal(const Document& document) {
   Problems problems;
-  if (read_rig(document, problems)) return std::nullopt;
+  if (rig::read_rig(document, problems)) return std::nullopt;
   return problems.format();
 }
 
@@ -178,7 +178,7 @@ TEST_P(EveryKey, IsRefusedWhenItsValueIsNonsense) {
     owner.entries[index].value = nonsense;
     document_.root = original;
     Problems problems;
-    EXPECT_FALSE(read_rig(document_, problems).has_value()) << path;
+    EXPECT_FALSE(rig::read_rig(document_, problems).has_value()) << path;
     const auto there = [&](const document::Problem& problem) { return problem.at == taken.at; };
     EXPECT_TRUE(std::any_of(problems.list().begin(), problems.list().end(), there)) << path << "\n"
                                                                                     << problems.format();

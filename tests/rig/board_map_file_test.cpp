@@ -7,6 +7,8 @@
 namespace softgrip::rig {
 namespace {
 
+using namespace drivers;
+
 const std::string boards = SOFTGRIP_SOURCE_DIR "/config/boards/";
 
 /// A small valid board; the tests change one line of it.

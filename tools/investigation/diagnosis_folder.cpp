@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
+#include "sysid/diagnosis/report/diagnosis_json.h"
 #include "sysid/identification/start_points.h"
 
 namespace softgrip::tools {

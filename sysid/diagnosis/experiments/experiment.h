@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "sysid/diagnosis/experiments/waveform.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 

@@ -1,8 +1,9 @@
+#include "sysid/diagnosis/report/diagnosis_json.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "model/catalogue.h"
-#include "sysid/diagnosis/verdict/diagnosis.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
 #include "model/model.h"
@@ -117,8 +116,5 @@ void examine(Diagnosis& diagnosis, const DiagnosisOptions& options);
 
 /// The verdict in one sentence that a technician understands.
 [[nodiscard]] std::string verdict_sentence(const Diagnosis& diagnosis);
-
-/// The contract's JSON. `next_experiment` is null here; add_experiment() fills it in.
-[[nodiscard]] nlohmann::ordered_json json_of(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -86,9 +86,10 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
   EXPECT_EQ(code(Ending::socket_failed), ExitCode::io);
   EXPECT_EQ(code(Ending::broken), ExitCode::failed);
   using control::SequenceEnd;
-  for (const auto& [end, expected] :
-       {std::pair{SequenceEnd::done, 0}, std::pair{SequenceEnd::failed, 6},
-        std::pair{SequenceEnd::stopped, 1}, std::pair{SequenceEnd::faulted, 1}}) {
+  for (const auto& [end, expected] : {std::pair{SequenceEnd::done, ExitCode::done},
+                                      std::pair{SequenceEnd::failed, ExitCode::not_acceptable},
+                                      std::pair{SequenceEnd::stopped, ExitCode::failed},
+                                      std::pair{SequenceEnd::faulted, ExitCode::failed}}) {
     outcome.sequence_end = end;
     EXPECT_EQ(code(Ending::sequence_ended), expected);
   }

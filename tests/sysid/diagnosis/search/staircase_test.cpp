@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "campaign.h"
 #include "model/catalogue.h"
 #include "sysid/fitting/fit_space.h"
+#include "tests/sysid/diagnosis/campaign.h"
 
 namespace softgrip::sysid {
 namespace {

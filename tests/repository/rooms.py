@@ -1,0 +1,82 @@
+"""The rooms of cmake/rooms.cmake, held against the code and against docs/explanation/architecture.md.
+
+    rooms.py            fails where a folder with code is no room, where an arrow is drawn that no include needs, or
+                        where the page's table does not say what rooms.cmake says
+    rooms.py --write    brings the page's first and last column up to date; what a room knows is written by hand
+"""
+
+import pathlib
+import re
+import sys
+
+source = pathlib.Path(__file__).resolve().parents[2]
+page = source / "docs/explanation/architecture.md"
+begin, end = "<!-- rooms: kept up to date by tests/repository/rooms.py --write -->\n", "<!-- /rooms -->\n"
+product = "base document model control drivers simulation rig daemon sysid tools".split()
+
+
+def rooms():
+    """[(folder, other folders, rooms that it may use)] in the order of the file."""
+    text = re.sub(r"#.*", "", (source / "cmake/rooms.cmake").read_text())
+    found = []
+    for call in re.findall(r"softgrip_room\(([^)]*)\)", text):
+        words, key, lists = call.split(), "FOLDER", {"FOLDER": [], "FOLDERS": [], "USES": [], "LIBRARIES": []}
+        for word in words:
+            if word in lists:
+                key = word
+            else:
+                lists[key].append(word)
+        found.append((lists["FOLDER"][0], lists["FOLDERS"], lists["USES"]))
+    return found
+
+
+def included_by(folders):
+    """The folders of the project whose headers the files of `folders` include."""
+    folders_included = set()
+    for folder in folders:
+        for file in [*(source / folder).glob("*.h"), *(source / folder).glob("*.cpp")]:
+            for header in re.findall(r'^#include "([^"]+)"', file.read_text(), re.M):
+                folders_included.add(str(pathlib.PurePosixPath(header).parent))
+    return folders_included
+
+
+def table(known):
+    """The page's table; `known` says what a room knows, by folder."""
+    lines = ["| room | what it knows | may include |\n", "|---|---|---|\n"]
+    for folder, _, uses in rooms():
+        lines.append(f"| `{folder}` | {known.get(folder, '')} | {', '.join(uses)} |\n")
+    return "".join(lines)
+
+
+def main():
+    wrong, home = [], {}
+    for folder, others, _ in rooms():
+        for one in [folder, *others]:
+            home[one] = folder
+    for top in product:
+        for path in sorted({file.parent for file in (source / top).rglob("*.h")}):
+            name = str(path.relative_to(source))
+            if name not in home and name != "tools/programs":
+                wrong.append(f"{name} is no room of cmake/rooms.cmake")
+    for folder, others, uses in rooms():
+        needed = {home.get(one, one) for one in included_by([folder, *others])}
+        for idle in [one for one in uses if one not in needed]:
+            wrong.append(f"cmake/rooms.cmake: {folder} may use {idle} and does not")
+    text = page.read_text()
+    before, rest = text.split(begin)
+    now, after = rest.split(end)
+    known = dict(re.findall(r"^\| `([^`]+)` \| (.*?) \| [^|]*\|$", now, re.M))
+    wanted = table(known)
+    if "--write" in sys.argv:
+        page.write_text(before + begin + wanted + end + after)
+    elif now != wanted:
+        wrong.append("docs/explanation/architecture.md: the table of rooms is not what cmake/rooms.cmake says "
+                     "(tests/repository/rooms.py --write mends it)")
+    wrong += [f"docs/explanation/architecture.md does not say what {room} knows" for room, _, _ in rooms()
+              if not known.get(room)]
+    print("\n".join(wrong) or f"{len(rooms())} rooms, all as the page says")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
