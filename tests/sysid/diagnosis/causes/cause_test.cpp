@@ -9,6 +9,7 @@
 #include <set>
 
 #include "model/catalogue.h"
+#include "sysid/diagnosis/causes/registry.h"
 #include "sysid/diagnosis/causes/twins.h"
 #include "tests/model/presets.h"
 #include "tests/sysid/diagnosis/campaign.h"
@@ -30,6 +31,17 @@ model::Model with(const model::BlockSpec& block) {
   return model::with_block(
       model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; }),
       block);
+}
+
+template <class... C>
+constexpr std::size_t size_of(causes::List<C...>) {
+  return sizeof...(C);
+}
+
+TEST(CauseList, AllOfTheRegistryAreKnownByTheirIds) {
+  EXPECT_EQ(all_causes().size(), size_of(causes::All{}));
+  for (const Cause& cause : all_causes()) EXPECT_EQ(find_cause(cause.id)->id, cause.id);
+  EXPECT_FALSE(find_cause("no_such_cause").has_value());
 }
 
 class Causes : public ::testing::TestWithParam<Cause> {
