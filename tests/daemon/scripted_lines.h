@@ -62,8 +62,7 @@ class Terminals::Lines final : public drivers::GpioLines {
  public:
   explicit Lines(Terminals& terminals) : terminals_(terminals) {}
 
-  std::optional<std::size_t> wait(Nanoseconds timeout,
-                                  std::span<drivers::GpioEdge> edges) noexcept override {
+  std::optional<std::size_t> wait(Nanoseconds timeout, std::span<drivers::GpioEdge> edges) noexcept override {
     std::unique_lock lock(terminals_.mutex_);
     terminals_.changed_.wait_for(lock, std::chrono::nanoseconds(timeout),
                                  [&] { return terminals_.failed_ || !terminals_.edges_.empty(); });
