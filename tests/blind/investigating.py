@@ -36,7 +36,7 @@ def investigate_world(build, folder, world, gauge=True):
         def command(script):
             return shlex.join([sys.executable, str(HERE / script), str(program), str(work / "played"), *options])
 
-        done = subprocess.run([build / "tools/programs/softgrip", "investigate", "--model", judging.GIVEN, "--data",
+        done = subprocess.run([build / "tools/softgrip", "investigate", "--model", judging.GIVEN, "--data",
                                *sorted((work / "logs").glob("*.csv")), "--out", work / "out", "--rig-command",
                                command("rig.py"), *(["--gauge-command", command("gauge.py")] if gauge else []),
                                "--pressure-max-kpa", "60", "--yes", "--no-closed-loop", "--json"],

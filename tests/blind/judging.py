@@ -95,7 +95,7 @@ def run_world(build, folder, world):
             make += ["--cause", ",".join(world["causes"])]
         subprocess.run(make, check=True)
         logs = sorted((work / "logs").glob("*.csv"))
-        done = subprocess.run([build / "tools/programs/softgrip", "diagnose", "--model", GIVEN, "--data", *logs, "--out",
+        done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", GIVEN, "--data", *logs, "--out",
                                work / "out", "--json"], capture_output=True, text=True)
         if done.returncode != 0:
             return {**world, "outcome": "failed", "message": done.stderr[-300:]}
