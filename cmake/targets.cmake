@@ -109,7 +109,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 function(softgrip_precompile_for_tests target)
   # clang wants the same definitions wherever a precompiled header is used; ccache finds nothing again behind one.
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_CXX_COMPILER_LAUNCHER)
+  if(NOT SOFTGRIP_PRECOMPILE OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_CXX_COMPILER_LAUNCHER)
     return()
   endif()
   if(NOT TARGET softgrip_test_headers)
