@@ -31,7 +31,12 @@ fi
 
 say "build"
 cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=ON >/dev/null
-cmake --build --preset release -j "$jobs" | tail -n 1
+mkdir -p build
+if ! cmake --build --preset release -j "$jobs" >build/build.log 2>&1; then
+  grep -A 12 -E '^FAILED:' build/build.log || tail -n 40 build/build.log
+  exit 1
+fi
+tail -n 1 build/build.log
 
 if $quick; then
   say "test"

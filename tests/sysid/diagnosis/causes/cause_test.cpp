@@ -34,7 +34,7 @@ model::Model with(const model::BlockSpec& block) {
 }
 
 template <class... C>
-constexpr std::size_t size_of(causes::List<C...>) {
+constexpr std::size_t size_of(List<C...>) {
   return sizeof...(C);
 }
 
