@@ -1,12 +1,13 @@
 #pragma once
-// What every block of a chain provides. One block, one file under model/blocks/, one line in registry.h.
+// What every block of a chain provides. One mechanism, one block, one file under model/blocks/, one line in
+// registry.h. docs/how-to/add-a-block.md goes through the steps.
 //
 // A block is a class template over the number type T (double; an automatic differentiation type):
 //
 //   template <class T> class ValveLag {
 //    public:
-//     static constexpr BlockInfo info{...};                        // id, station, kind, inverse, one line
-//     static constexpr std::array parameters{ParameterSpec{...}};  // its only declaration
+//     static constexpr BlockInfo info = block_info(...);          // id, station, kind, inverse, one line
+//     static constexpr std::array parameters{parameter(...)};     // its only declaration
 //     ValveLag(std::span<const T> values, const Preparation&);
 //     void reset(const T& input);  // see "Rest"
 //     T output() const;            // where the block stands
@@ -24,6 +25,8 @@
 //     element:                 U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const;
 //     pressure, displacement:  U peek(const T& duration_s, const U& end, const Surroundings&) const;
 //     (a template over U: double, or Dual<double> for the derivative with respect to the newest pressure)
+//
+// The concepts below are this contract for the compiler; registry.h asks them of every block.
 //
 // A step calls next(segment) one or more times; the durations of what it passes on sum to the duration of
 // what it got (a jump may be kept back by a delay), the first `begin` is the last `end` of the step before,
@@ -46,10 +49,12 @@
 // Blocks are copyable values; stepping allocates nothing once a block was prepared for a sample time.
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <span>
 #include <string_view>
 
+#include "model/dual.h"
 #include "model/parameter.h"
 #include "model/segment.h"
 
@@ -88,11 +93,104 @@ struct BlockInfo {
   bool repeatable = false;    ///< may stand in a chain more than once (two stops, two disturbances)
 };
 
+/// For block_info(): the block may stand in a chain more than once.
+struct Repeatable {};
+
+/// What a block says of itself, in the order of the members above. The meaning is a sentence.
+consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
+                               std::string_view title, std::string_view meaning, std::string_view equation) {
+  if (id.empty() || title.empty() || !meaning.ends_with('.'))
+    throw "a block has an id, a title and a meaning";
+  return {id, station, kind, inverse, title, meaning, equation};
+}
+consteval BlockInfo block_info(std::string_view id, Station station, Kind kind, Inverse inverse,
+                               std::string_view title, std::string_view meaning, std::string_view equation,
+                               Repeatable) {
+  BlockInfo info = block_info(id, station, kind, inverse, title, meaning, equation);
+  info.repeatable = true;
+  return info;
+}
+
 /// What a block may need to prepare itself, besides its parameters.
 struct Preparation {
   double sample_time_s = 0;  ///< nominal; 0 when samples are irregular
   std::uint64_t seed = 0;    ///< of this block's random numbers, distinct per block and channel
 };
+
+/// It says what it is and which numbers it has.
+template <class Block>
+concept SaysWhatItIs = requires {
+  { Block::info } -> std::same_as<const BlockInfo&>;
+  std::span<const ParameterSpec>(Block::parameters);
+};
+
+/// With repeated parts it says what one of them has and how many there may be.
+template <class Block>
+concept SaysItsParts = requires {
+  std::span<const ParameterSpec>(Block::repeated);
+  std::size_t{Block::max_parts};
+};
+
+/// It is a value made of its numbers, which can be put to rest and says where it stands.
+template <class Block, class T>
+concept StandsSomewhere = std::copyable<Block> &&
+    requires(Block block, const Block& still, const T& input, std::span<const T> values,
+             const Preparation& preparation) {
+  Block(values, preparation);
+  block.reset(input);
+  { still.output() } -> std::convertible_to<T>;
+};
+
+/// Pressure and displacement blocks: it passes segments on.
+template <class Block, class T>
+concept PassesOn = requires(Block block, const Segment<T>& in, const Surroundings& around,
+                            void (&next)(const Segment<T>&)) {
+  { block.step(in, around, next) } -> std::same_as<void>;
+};
+
+/// Elements: it turns pressure into displacement.
+template <class Block, class T>
+concept TurnsIntoDisplacement = requires(Block block, const Segment<T>& in, const Surroundings& around) {
+  { block.step(in, around) } -> std::same_as<Segment<T>>;
+};
+
+/// Reading blocks: it samples a displacement.
+template <class Block, class T>
+concept Samples = requires(Block block, const T& value, const Surroundings& around) {
+  { block.sample(value, value, around) } -> std::same_as<T>;
+};
+
+/// Blocks that are undone implicitly: it says where it would go.
+template <class Block, class T, class U>
+concept Foretells = requires(const Block block, const T& duration_s, const U& end,
+                             const Surroundings& around) {
+  { block.peek(duration_s, end, around) } -> std::same_as<U>;
+};
+
+/// The contract by kind.
+template <class Block, class T>
+concept SeriesBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && PassesOn<Block, T>;
+template <class Block, class T>
+concept ElementBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && TurnsIntoDisplacement<Block, T>;
+template <class Block, class T>
+concept ReadingBlock = SaysWhatItIs<Block> && StandsSomewhere<Block, T> && Samples<Block, T>;
+
+/// Compiles for a block that keeps to its contract; what is missing stands in the compiler's message.
+template <template <class> class Block, class T>
+consteval bool keeps_contract() {
+  using B = Block<T>;
+  static_assert(SaysWhatItIs<B>);
+  if constexpr (requires { B::repeated; }) static_assert(SaysItsParts<B>);
+  constexpr Kind kind = B::info.kind;
+  if constexpr (kind == Kind::pressure || kind == Kind::displacement) static_assert(SeriesBlock<B, T>);
+  if constexpr (kind == Kind::element) static_assert(ElementBlock<B, T>);
+  if constexpr (kind == Kind::reading) static_assert(ReadingBlock<B, T>);
+  if constexpr (B::info.inverse == Inverse::implicit) {
+    static_assert(Foretells<B, T, T>);
+    static_assert(Foretells<B, T, Dual<T>>);
+  }
+  return true;
+}
 
 /// "valve", "actuator", "load", "sensor"
 [[nodiscard]] constexpr std::string_view name_of(Station station) {

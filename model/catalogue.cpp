@@ -1,7 +1,7 @@
 #include "model/catalogue.h"
 
 #include <array>
-#include <utility>
+#include <stdexcept>
 
 #include "model/registry.h"
 
@@ -22,11 +22,9 @@ Descriptor describe() {
   return result;
 }
 
-using Blocks = AnyBlock<double>;
-
-template <std::size_t... I>
-std::array<Descriptor, sizeof...(I)> describe_all(std::index_sequence<I...>) {
-  return {describe<std::variant_alternative_t<I, Blocks>>()...};
+template <template <class> class... Block>
+std::array<Descriptor, sizeof...(Block)> describe_all(BlockList<Block...>) {
+  return {describe<Block<double>>()...};
 }
 
 }  // namespace
@@ -41,11 +39,24 @@ bool Descriptor::accepts(std::size_t value_count) const {
 
 const ParameterSpec& Descriptor::spec(std::size_t index) const {
   if (index < parameters.size()) return parameters[index];
-  return repeated[(index - parameters.size()) % repeated.size()];
+  const std::size_t behind = index - parameters.size();
+  if (behind >= max_parts * repeated.size()) {
+    throw std::out_of_range(std::string(info.id) + " has no value " + std::to_string(index));
+  }
+  return repeated[behind % repeated.size()];
+}
+
+std::string Descriptor::name(std::size_t index) const {
+  std::string name(spec(index).name);
+  if (index >= parameters.size()) {
+    const std::size_t part = (index - parameters.size()) / repeated.size();
+    name.replace(name.find('#'), 1, std::to_string(part + 1));
+  }
+  return name;
 }
 
 std::span<const Descriptor> catalogue() {
-  static const auto all = describe_all(std::make_index_sequence<std::variant_size_v<Blocks>>{});
+  static const auto all = describe_all(Blocks{});
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "model/block.h"
@@ -23,8 +24,10 @@ struct Descriptor {
 
   /// How many values a block of this type may have: parameters.size() + n repeated.size().
   [[nodiscard]] bool accepts(std::size_t value_count) const;
-  /// The declaration of value `index` of a block.
+  /// The declaration of value `index` of a block. Throws std::out_of_range where no block has one.
   [[nodiscard]] const ParameterSpec& spec(std::size_t index) const;
+  /// Its name, numbered where parts repeat: "k2_kpa_per_mm". Throws like spec().
+  [[nodiscard]] std::string name(std::size_t index) const;
 };
 
 /// All block types, by BlockSpec::type.

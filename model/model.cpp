@@ -83,8 +83,8 @@ BlockSpec default_block(std::size_t type, std::size_t parts) {
   return block;
 }
 
-BlockSpec neutral_block(std::size_t type) {
-  BlockSpec block = default_block(type);
+BlockSpec neutral_block(std::size_t type, std::size_t parts) {
+  BlockSpec block = default_block(type, parts);
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     const double neutral = catalogue()[type].spec(i).neutral;
     if (!std::isnan(neutral)) block.values[i] = neutral;
@@ -124,14 +124,7 @@ std::optional<std::size_t> position_of(const Model& model, std::string_view id) 
 }
 
 std::string parameter_name(const BlockSpec& block, std::size_t index) {
-  const Descriptor& descriptor = catalogue()[block.type];
-  std::string name(descriptor.spec(index).name);
-  const std::size_t mark = name.find('#');
-  if (mark != std::string::npos) {
-    const std::size_t part = (index - descriptor.parameters.size()) / descriptor.repeated.size();
-    name.replace(mark, 1, std::to_string(part + 1));
-  }
-  return name;
+  return catalogue()[block.type].name(index);
 }
 
 std::optional<std::size_t> find_parameter(const BlockSpec& block, std::string_view name) {

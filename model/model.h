@@ -37,7 +37,7 @@ struct Model {
 /// A block of a type with its default values (`parts` of them where parts repeat).
 [[nodiscard]] BlockSpec default_block(std::size_t type, std::size_t parts = 1);
 /// A block of a type at its neutral values, where it does nothing.
-[[nodiscard]] BlockSpec neutral_block(std::size_t type);
+[[nodiscard]] BlockSpec neutral_block(std::size_t type, std::size_t parts = 1);
 
 /// The model with one more block, in the place that registry.h gives it.
 [[nodiscard]] Model with_block(Model model, BlockSpec block);

@@ -1,6 +1,7 @@
 #pragma once
 // A signal multiplied by a gain that moves with its surroundings.
 
+#include "model/gain.h"
 #include "model/segment.h"
 
 namespace softgrip::model {
@@ -22,6 +23,39 @@ class MovingGain {
 
  private:
   T gain_{1.0};
+};
+
+/// A displacement block whose gain follows its surroundings and nothing else. `Block` declares
+/// `T law(const Surroundings&) const`; y is multiplied by positive_gain(law).
+template <class Block, class T>
+class SurroundingsGain {
+ public:
+  /// Where the surroundings put the gain, the next step says.
+  void reset(const T& input) {
+    gain_.reset(T(1.0));
+    output_ = input;
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings& surroundings, Next&& next) {
+    const Segment<T> out = gain_.step(in, at(surroundings));
+    output_ = out.end;
+    next(out);
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_mm, const Surroundings& surroundings) const {
+    return end_mm * at(surroundings);
+  }
+
+ private:
+  [[nodiscard]] T at(const Surroundings& surroundings) const {
+    return positive_gain(static_cast<const Block*>(this)->law(surroundings));
+  }
+
+  MovingGain<T> gain_;
+  T output_{0.0};
 };
 
 }  // namespace softgrip::model

@@ -1,35 +1,127 @@
 #pragma once
-// Blocks of a model by their types: an id is written nowhere but in the block's own file, and a block that is
-// gone is an error of the compiler.
+// Blocks of a model by their C++ type and their numbers by name, both checked by the compiler: a block that
+// is not registered or a name that it does not have is an error where it is written.
+//
+//   model::BlockSpec lag = model::block_of<model::ValveLag>({{"time_constant_s", 0.1}});
+//   if (const auto* spring = model::find_block<model::KelvinVoigt>(model))
+//     k0 = model::value<model::KelvinVoigt>(*spring, "k0_kpa_per_mm");
 
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
-#include "model/catalogue.h"
 #include "model/model.h"
+#include "model/registry.h"
 
 namespace softgrip::model {
 
+/// Index of a value in BlockSpec::values. Of repeated parts by the part's number: "k2_kpa_per_mm".
+template <template <class> class Block>
+consteval std::size_t parameter_index(std::string_view name) {
+  using B = Block<double>;
+  std::size_t index = 0;
+  for (const ParameterSpec& spec : B::parameters) {
+    if (spec.name == name) return index;
+    ++index;
+  }
+  if constexpr (requires { B::repeated; }) {
+    for (std::size_t part = 1; part <= B::max_parts; ++part) {
+      for (const ParameterSpec& spec : B::repeated) {
+        if (is_name_of_part(spec.name, part, name)) return index;
+        ++index;
+      }
+    }
+  }
+  throw "the block has no parameter of this name";
+}
+
+/// The name of a value of a block, as its index.
+template <template <class> class Block>
+struct ParameterName {
+  std::size_t index;
+  consteval ParameterName(const char* name)  // NOLINT(google-explicit-constructor): written as text
+      : index(parameter_index<Block>(name)) {}
+};
+
+/// A value of a block with its name.
+template <template <class> class Block>
+struct NamedValue {
+  ParameterName<Block> name;
+  double value;
+};
+
+/// A block with these values. One that is not named does nothing: it stands where neutral_block() puts it.
+template <template <class> class Block>
+[[nodiscard]] BlockSpec block_of(std::initializer_list<NamedValue<Block>> values, std::size_t parts = 1) {
+  BlockSpec block = neutral_block(block_type<Block>(), parts);
+  for (const NamedValue<Block>& named : values) block.values.at(named.name.index) = named.value;
+  return block;
+}
+
 /// Whether a block is of one of these types: is<BoucWen, KelvinVoigt>(block).
+template <template <class> class... Block>
+[[nodiscard]] constexpr bool is(const BlockSpec& block) {
+  return ((block.type == block_type<Block>()) || ...);
+}
 template <template <class> class... Block>
 [[nodiscard]] constexpr bool is(const BlockInfo& info) {
   return ((info.id == Block<double>::info.id) || ...);
 }
-template <template <class> class... Block>
-[[nodiscard]] bool is(const BlockSpec& block) {
-  return is<Block...>(catalogue()[block.type].info);
-}
 
-/// BlockSpec::type of a block.
+/// A value of a block of this type. Throws std::out_of_range for a part that it does not have.
 template <template <class> class Block>
-[[nodiscard]] std::size_t type_of() {
-  return *find_block(Block<double>::info.id);
+[[nodiscard]] double value(const BlockSpec& block, ParameterName<Block> name) {
+  return block.values.at(name.index);
+}
+template <template <class> class Block>
+[[nodiscard]] double& value(BlockSpec& block, ParameterName<Block> name) {
+  return block.values.at(name.index);
 }
 
-/// Where the first block of a type stands in the model, or nothing.
+/// Where the first block of this type stands in the model, or nothing.
 template <template <class> class Block>
 [[nodiscard]] std::optional<std::size_t> position_of(const Model& model) {
-  return position_of(model, Block<double>::info.id);
+  return position_of(model, block_type<Block>());
+}
+
+/// The first block of this type, or nullptr.
+template <template <class> class Block>
+[[nodiscard]] const BlockSpec* find_block(const Model& model) {
+  const auto position = position_of<Block>(model);
+  return position ? &model.blocks[*position] : nullptr;
+}
+template <template <class> class Block>
+[[nodiscard]] BlockSpec* find_block(Model& model) {
+  const auto position = position_of<Block>(model);
+  return position ? &model.blocks[*position] : nullptr;
+}
+
+/// A value of the first block of this type, or nothing.
+template <template <class> class Block>
+[[nodiscard]] std::optional<double> value_in(const Model& model, ParameterName<Block> name) {
+  const BlockSpec* const block = find_block<Block>(model);
+  return block != nullptr ? std::optional(value<Block>(*block, name)) : std::nullopt;
+}
+
+/// Whether the model has a block of any of these types.
+template <template <class> class... Block>
+[[nodiscard]] bool has_any(const Model& model) {
+  return (position_of<Block>(model).has_value() || ...);
+}
+
+template <template <class> class Block>
+[[nodiscard]] Model without_block(Model model) {
+  return without_block(std::move(model), block_type<Block>());
+}
+
+/// The model with only the blocks of these types.
+template <template <class> class... Block>
+[[nodiscard]] Model only(Model model) {
+  std::erase_if(model.blocks, [](const BlockSpec& block) { return !is<Block...>(block); });
+  return model;
 }
 
 }  // namespace softgrip::model

@@ -1,6 +1,7 @@
 #pragma once
 // What a block says of a parameter, once: the YAML key, its check, the fit's bounds and scale, the manual.
 
+#include <cstddef>
 #include <limits>
 #include <string_view>
 
@@ -12,11 +13,11 @@ namespace softgrip::model {
 struct ParameterSpec {
   std::string_view name;
   std::string_view unit;     ///< "" for a pure number
+  std::string_view meaning;  ///< one line
   double default_value = 0;  ///< a value at which the block does something typical
   double lower = 0;          ///< smallest allowed, itself allowed
   double upper = 0;          ///< largest allowed, itself allowed
   double scale = 1;          ///< a typical change, for the scaling of a fit
-  std::string_view meaning;  ///< one line
   bool whole = false;        ///< only whole numbers (an exponent)
   /// The value at which the block does nothing, when all its parameters that have one stand there;
   /// NaN where the value does not matter then.
@@ -25,5 +26,68 @@ struct ParameterSpec {
   /// that came to a block later, so that older files say what they always said.
   double if_left_out = std::numeric_limits<double>::quiet_NaN();
 };
+
+// The words of a declaration, each for the member of the same sense above.
+struct Typical {
+  double value;
+};
+struct Within {
+  double lower, upper;
+};
+struct Scale {
+  double value;
+};
+struct Neutral {
+  double value;
+};
+struct IfLeftOut {
+  double value;
+};
+struct Whole {};
+
+namespace declaration {
+constexpr void add(ParameterSpec& spec, Neutral neutral) {
+  spec.neutral = neutral.value;
+}
+constexpr void add(ParameterSpec& spec, IfLeftOut if_left_out) {
+  spec.if_left_out = if_left_out.value;
+}
+constexpr void add(ParameterSpec& spec, Whole) {
+  spec.whole = true;
+}
+}  // namespace declaration
+
+/// The declaration of one parameter:
+///   parameter("rate_mm_per_h", "mm/h", "steady drift", Typical{0.5}, Within{-1e5, 1e5}, Scale{1.0},
+///   Neutral{0.0})
+/// Numbers outside their own bounds do not compile.
+template <class... More>
+consteval ParameterSpec parameter(std::string_view name, std::string_view unit, std::string_view meaning,
+                                  Typical typical, Within within, Scale scale, More... more) {
+  ParameterSpec spec{name, unit, meaning, typical.value, within.lower, within.upper, scale.value};
+  (declaration::add(spec, more), ...);
+  const auto allowed = [&](double value) {
+    return value != value || (value >= within.lower && value <= within.upper);
+  };
+  if (!allowed(spec.default_value) || !allowed(spec.neutral) || !allowed(spec.if_left_out) ||
+      !(spec.scale > 0)) {
+    throw "a parameter's numbers must lie within its bounds, its scale above 0";
+  }
+  return spec;
+}
+
+/// Whether `declared`, with part's number in the place of `#`, is `name`.
+constexpr bool is_name_of_part(std::string_view declared, std::size_t part, std::string_view name) {
+  const std::size_t mark = declared.find('#');
+  const std::string_view behind = declared.substr(mark + 1);
+  if (!name.starts_with(declared.substr(0, mark)) || !name.ends_with(behind)) return false;
+  if (name.size() <= mark + behind.size()) return false;
+  std::size_t number = 0;
+  for (const char c : name.substr(mark, name.size() - mark - behind.size())) {
+    if (c < '0' || c > '9') return false;
+    number = number * 10 + static_cast<std::size_t>(c - '0');
+  }
+  return number == part;
+}
 
 }  // namespace softgrip::model

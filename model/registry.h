@@ -2,26 +2,35 @@
 // The list of blocks: the only one in the project. To add a block, write model/blocks/<id>.h and add its line
 // here; everything else (files, names, bounds, reference page, chain, tests of properties) follows.
 
+#include <cstddef>
+#include <type_traits>
 #include <variant>
 
 #include "model/blocks/actuator_threshold.h"
 #include "model/blocks/ageing.h"
-#include "model/blocks/asymmetric_hysteresis.h"
+#include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/backlash.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/contact.h"
+#include "model/blocks/duhem_hysteresis.h"
 #include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/outliers.h"
 #include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/quantisation.h"
-#include "model/blocks/rate_dependent_hysteresis.h"
+#include "model/blocks/rate_dependent_levelling.h"
+#include "model/blocks/rate_dependent_width.h"
+#include "model/blocks/relaxing_friction.h"
+#include "model/blocks/running_in.h"
 #include "model/blocks/sensor_drift.h"
+#include "model/blocks/sensor_free_drift.h"
 #include "model/blocks/sensor_lag.h"
 #include "model/blocks/sensor_noise.h"
 #include "model/blocks/sensor_nonlinearity.h"
 #include "model/blocks/sensor_saturation.h"
+#include "model/blocks/sensor_wander.h"
+#include "model/blocks/sensor_warm_up.h"
 #include "model/blocks/slow_creep.h"
 #include "model/blocks/stiffening.h"
 #include "model/blocks/stress_softening.h"
@@ -30,47 +39,82 @@
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_deadband.h"
 #include "model/blocks/valve_lag.h"
+#include "model/blocks/valve_stiction.h"
+#include "model/blocks/wear.h"
 #include "model/catalogue.h"
 
 namespace softgrip::model {
 
-/// One block of any type. The index of a type is BlockSpec::type and its place in catalogue(). Listed in the
-/// order in which the signal meets them; with_block() puts blocks there.
-template <class T>
-using AnyBlock = std::variant<TransportDelay<T>,           //
-                              ValveDeadband<T>,            //
-                              ValveLag<T>,                 //
-                              SupplySag<T>,                //
-                              PressureSaturation<T>,       //
-                              ActuatorThreshold<T>,        //
-                              StressSoftening<T>,          //
-                              BoucWen<T>,                  //
-                              KelvinVoigt<T>,              //
-                              SlowCreep<T>,                //
-                              AsymmetricHysteresis<T>,     //
-                              RateDependentHysteresis<T>,  //
-                              Stiffening<T>,               //
-                              ThermalGain<T>,              //
-                              Ageing<T>,                   //
-                              Inertia<T>,                  //
-                              Contact<T>,                  //
-                              Backlash<T>,                 //
-                              SensorLag<T>,                //
-                              SensorNonlinearity<T>,       //
-                              SensorDrift<T>,              //
-                              PeriodicDisturbance<T>,      //
-                              SensorNoise<T>,              //
-                              Outliers<T>,                 //
-                              SensorSaturation<T>,         //
-                              Quantisation<T>>;
+/// The registered blocks, each under the contract of block.h.
+template <template <class> class... Block>
+struct BlockList {
+  template <class T>
+  using Any = std::variant<Block<T>...>;
 
-/// BlockSpec::type of a block.
-template <class Block>
-constexpr std::size_t block_type() {
-  return []<std::size_t... I>(std::index_sequence<I...>) {
-    return ((std::is_same_v<std::variant_alternative_t<I, AnyBlock<double>>, Block> ? I : 0) + ...);
+  static_assert((keeps_contract<Block, double>() && ...));
+  static_assert((keeps_contract<Block, Dual<double>>() && ...));
+
+  /// Where B, a block over double, stands in the list; behind its end when it is not registered.
+  template <class B>
+  static consteval std::size_t index_of() {
+    std::size_t index = 0;
+    (void)((std::is_same_v<B, Block<double>> || (++index, false)) || ...);
+    return index;
   }
-  (std::make_index_sequence<std::variant_size_v<AnyBlock<double>>>{});
+};
+
+/// All blocks, in the order in which the signal meets them; with_block() puts blocks there.
+using Blocks = BlockList<TransportDelay,          //
+                         ValveDeadband,           //
+                         ValveStiction,           //
+                         ValveLag,                //
+                         SupplySag,               //
+                         PressureSaturation,      //
+                         ActuatorThreshold,       //
+                         StressSoftening,         //
+                         BoucWen,                 //
+                         KelvinVoigt,             //
+                         SlowCreep,               //
+                         DuhemHysteresis,         //
+                         AsymmetricBoucWen,       //
+                         RelaxingFriction,        //
+                         RateDependentWidth,      //
+                         RateDependentLevelling,  //
+                         Stiffening,              //
+                         ThermalGain,             //
+                         Ageing,                  //
+                         RunningIn,               //
+                         Wear,                    //
+                         Inertia,                 //
+                         Contact,                 //
+                         Backlash,                //
+                         SensorLag,               //
+                         SensorNonlinearity,      //
+                         SensorDrift,             //
+                         SensorWarmUp,            //
+                         SensorWander,            //
+                         SensorFreeDrift,         //
+                         PeriodicDisturbance,     //
+                         SensorNoise,             //
+                         Outliers,                //
+                         SensorSaturation,        //
+                         Quantisation>;
+
+/// One block of any type. The index of a type is BlockSpec::type and its place in catalogue().
+template <class T>
+using AnyBlock = Blocks::Any<T>;
+
+/// BlockSpec::type of a block: block_type<ValveLag>() or, of one over a number type,
+/// block_type<ValveLag<double>>().
+template <template <class> class Block>
+[[nodiscard]] consteval std::size_t block_type() {
+  static_assert(Blocks::index_of<Block<double>>() < std::variant_size_v<AnyBlock<double>>, "not registered");
+  return Blocks::index_of<Block<double>>();
+}
+template <class Block>
+[[nodiscard]] consteval std::size_t block_type() {
+  static_assert(Blocks::index_of<Block>() < std::variant_size_v<AnyBlock<double>>, "not registered");
+  return Blocks::index_of<Block>();
 }
 
 }  // namespace softgrip::model

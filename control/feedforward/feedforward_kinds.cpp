@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "model/blocks/asymmetric_hysteresis.h"
+#include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/valve_lag.h"
@@ -36,19 +36,10 @@ constexpr double clock_rounding_s = 1e-6;
 /// How long the difference between the pressure before and the start of a plan takes to fade.
 constexpr double plan_fade_s = 3;
 
-/// The value of a parameter of the first block of that type, or nothing.
-template <template <class> class Block>
-std::optional<double> value_in(const model::Model& model, std::string_view parameter) {
-  const std::optional<std::size_t> position = model::position_of<Block>(model);
-  if (!position) return std::nullopt;
-  const model::BlockSpec& block = model.blocks[*position];
-  return block.values[model::find_parameter(block, parameter).value()];
-}
-
 model::Model bouc_wen_of(const model::Model& model) {
   // Its asymmetry is a part of it.
   return model::only(model, [](const model::BlockInfo& info) {
-    return model::is<model::BoucWen, model::AsymmetricHysteresis>(info);
+    return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(info);
   });
 }
 

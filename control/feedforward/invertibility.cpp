@@ -9,7 +9,7 @@
 #include "base/numbers.h"
 #include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
-#include "model/blocks/asymmetric_hysteresis.h"
+#include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/valve_lag.h"
@@ -116,7 +116,8 @@ std::string without_inverse(const model::Model& model) {
 tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const LimitSettings& limits,
                                            double tick_s) {
   const auto part = model::only(model, [](const BlockInfo& info) {
-    return model::is<model::BoucWen, model::AsymmetricHysteresis>(info);  // its asymmetry is a part of it
+    return model::is<model::BoucWen, model::AsymmetricBoucWen, model::DuhemHysteresis>(
+        info);  // its asymmetry is a part of it
   });
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(

@@ -9,21 +9,12 @@ namespace softgrip::model {
 template <class T>
 class ActuatorThreshold {
  public:
-  static constexpr BlockInfo info{.id = "actuator_threshold",
-                                  .station = Station::actuator,
-                                  .kind = Kind::pressure,
-                                  .inverse = Inverse::implicit,
-                                  .title = "Actuator threshold",
-                                  .meaning = "No motion below a threshold pressure.",
-                                  .equation = "q = max(p - threshold, 0) for p >= 0"};
-  static constexpr std::array parameters{ParameterSpec{.name = "threshold_kpa",
-                                                       .unit = "kPa",
-                                                       .default_value = 3.0,
-                                                       .lower = 0.0,
-                                                       .upper = 1000.0,
-                                                       .scale = 1.0,
-                                                       .meaning = "pressure at which motion begins",
-                                                       .neutral = 0.0}};
+  static constexpr BlockInfo info = block_info(
+      "actuator_threshold", Station::actuator, Kind::pressure, Inverse::implicit, "Actuator threshold",
+      "No motion below a threshold pressure.", "q = max(p - threshold, 0) for p >= 0");
+  static constexpr std::array parameters{parameter("threshold_kpa", "kPa", "pressure at which motion begins",
+                                                   Typical{3.0}, Within{0.0, 1000.0}, Scale{1.0},
+                                                   Neutral{0.0})};
 
   ActuatorThreshold(std::span<const T> values, const Preparation&) : threshold_kpa_(values[0]) {}
 

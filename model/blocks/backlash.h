@@ -10,21 +10,12 @@ namespace softgrip::model {
 template <class T>
 class Backlash {
  public:
-  static constexpr BlockInfo info{.id = "backlash",
-                                  .station = Station::load,
-                                  .kind = Kind::displacement,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Backlash",
-                                  .meaning = "Play between the actuator and the measured point.",
-                                  .equation = "|y - z| <= gap/2, z moves only when it must"};
-  static constexpr std::array parameters{ParameterSpec{.name = "gap_mm",
-                                                       .unit = "mm",
-                                                       .default_value = 0.3,
-                                                       .lower = 0.0,
-                                                       .upper = 100.0,
-                                                       .scale = 0.1,
-                                                       .meaning = "motion that is lost at a reversal",
-                                                       .neutral = 0.0}};
+  static constexpr BlockInfo info = block_info(
+      "backlash", Station::load, Kind::displacement, Inverse::ignored, "Backlash",
+      "Play between the actuator and the measured point.", "|y - z| <= gap/2, z moves only when it must");
+  static constexpr std::array parameters{parameter("gap_mm", "mm", "motion that is lost at a reversal",
+                                                   Typical{0.3}, Within{0.0, 100.0}, Scale{0.1},
+                                                   Neutral{0.0})};
 
   Backlash(std::span<const T> values, const Preparation&) : play_(T(values[0] * 0.5)) {}
 

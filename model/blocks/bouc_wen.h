@@ -3,15 +3,16 @@
 // with signs and bars in their standard reading:
 //   B(t) = alpha p - h,   h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h
 // The model is rate independent: dh/dp = beta - (gamma + eta s) |h|^n with s = sgn(p' h), whatever the time.
-// An AsymmetricHysteresis beside it adds a term that differs between loading and unloading,
+// An AsymmetricBoucWen beside it adds a term that differs between loading and unloading,
 //   dh/dp = beta (1 + b sgn(p')) - (gamma + eta s + delta sgn(p') + epsilon sgn(p') s) |h|^n
 // (the term in the sign of the velocity alone of the generalised Bouc-Wen models: Wang and Wen, Journal of
 // Engineering Mechanics 126, 2000; Song and Der Kiureghian, Journal of Engineering Mechanics 132, 2006; with
 // b and epsilon loading and unloading have numbers of their own altogether).
-// A RateDependentHysteresis beside it makes the loop wider where the pressure moves fast,
+// A RateDependentWidth beside it makes the loop wider where the pressure moves fast,
 //   B = alpha p - h (1 + growth r/(r + rate)), settling r' = |p'| - r
 // (heights of the loop that grow with the rate: Ang, Khosla and Riviere, IEEE/ASME Transactions on
-// Mechatronics 12, 2007; here they level off), or levels off sooner there, eta (1 + levelling r/(r + rate)).
+// Mechatronics 12, 2007; here they level off); a RateDependentLevelling lets it level off sooner there,
+//   eta (1 + levelling r/(r + rate)).
 
 #include <array>
 #include <cmath>
@@ -33,10 +34,40 @@ struct BoucWenSkew {
 /// What the loop has more where the pressure moves fast.
 template <class T>
 struct BoucWenRate {
-  T growth{0.0};          ///< of its width, as a share
-  T levelling{0.0};       ///< of eta, as a share
+  T share{0.0};           ///< of its width, or of eta
   T half_kpa_per_s{1.0};  ///< rate at which it is half of that
   T settling_s{1.0};      ///< over which the rate is averaged
+};
+
+/// r of settling r' = |p'| - r, and how much of a share it makes.
+template <class T>
+class AveragedRate {
+ public:
+  AveragedRate() = default;
+  explicit AveragedRate(const BoucWenRate<T>& rate) : rate_(rate), settling_per_s_(1.0 / rate.settling_s) {}
+
+  void reset() { kpa_per_s_ = T(0.0); }
+  void step(const T& change_kpa, const T& duration_s) { kpa_per_s_ = after(change_kpa, duration_s); }
+
+  /// r after `duration_s`: it relaxes toward |p'|; a jump throws it up by the jump per settling time.
+  template <class U>
+  [[nodiscard]] U after(const U& change_kpa, const T& duration_s) const {
+    const T z = duration_s * settling_per_s_;
+    const U size = value_of(change_kpa) < 0.0 ? U(-change_kpa) : change_kpa;
+    return kpa_per_s_ + (size * settling_per_s_ - z * kpa_per_s_) * phi1(T(-z));
+  }
+
+  /// `base` times the share: nothing at rest, all of it where the pressure moves much faster than half.
+  template <class U>
+  [[nodiscard]] U share_of(const T& base, const U& kpa_per_s) const {
+    return base * rate_.share * (kpa_per_s / (kpa_per_s + rate_.half_kpa_per_s));
+  }
+  [[nodiscard]] T share_of(const T& base) const { return share_of(base, kpa_per_s_); }
+
+ private:
+  BoucWenRate<T> rate_;
+  T settling_per_s_{1.0};
+  T kpa_per_s_{0.0};
 };
 
 /// For exponent 1, dh/dp is linear between sign changes of h: stepped in closed form, exact for any step
@@ -49,60 +80,25 @@ struct BoucWenRate {
 template <class T>
 class BoucWen {
  public:
-  static constexpr BlockInfo info{
-      .id = "bouc_wen",
-      .station = Station::actuator,
-      .kind = Kind::element,
-      .inverse = Inverse::implicit,
-      .title = "Bouc-Wen hysteresis",
-      .meaning = "Rate-independent hysteresis.",
-      .equation = "y += alpha p - h, h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h"};
+  static constexpr BlockInfo info =
+      block_info("bouc_wen", Station::actuator, Kind::element, Inverse::implicit, "Bouc-Wen hysteresis",
+                 "Rate-independent hysteresis.",
+                 "y += alpha p - h, h' = beta p' - gamma p' |h|^n - eta |p'| |h|^(n-1) h");
   static constexpr std::array parameters{
-      ParameterSpec{.name = "alpha_mm_per_kpa",
-                    .unit = "mm/kPa",
-                    .default_value = 0.35,
-                    .lower = 0.0,
-                    .upper = 10.0,
-                    .scale = 0.1,
-                    .meaning = "elastic gain",
-                    .neutral = 0.0},
-      ParameterSpec{
-          .name = "beta_mm_per_kpa",
-          .unit = "mm/kPa",
-          .default_value = 0.2,
-          .lower = 0.0,
-          .upper = 10.0,
-          .scale = 0.1,
-          .meaning =
-              "gain of the hysteresis state at its zero; below the instantaneous gain of the whole actuator"
-              " where the model can be inverted",
-          .neutral = 0.0},
-      ParameterSpec{
-          .name = "gamma_per_kpa",
-          .unit = "1/kPa",
-          .default_value = 0.03,
-          .lower = -10.0,
-          .upper = 10.0,
-          .scale = 0.02,
-          .meaning =
-              "how fast the hysteresis state levels off, both ways alike (per mm^(exponent-1) besides)"},
-      ParameterSpec{
-          .name = "eta_per_kpa",
-          .unit = "1/kPa",
-          .default_value = 0.03,
-          .lower = 0.0,
-          .upper = 10.0,
-          .scale = 0.02,
-          .meaning =
-              "how fast it levels off while it grows: the width of the loop (per mm^(exponent-1) besides)"},
-      ParameterSpec{.name = "exponent",
-                    .unit = "",
-                    .default_value = 1.0,
-                    .lower = 1.0,
-                    .upper = 4.0,
-                    .scale = 1.0,
-                    .meaning = "n, sharpness of the levelling off",
-                    .whole = true}};
+      parameter("alpha_mm_per_kpa", "mm/kPa", "elastic gain", Typical{0.35}, Within{0.0, 10.0}, Scale{0.1},
+                Neutral{0.0}),
+      parameter("beta_mm_per_kpa", "mm/kPa",
+                "gain of the hysteresis state at its zero; below the instantaneous gain of the whole "
+                "actuator where the model can be inverted",
+                Typical{0.2}, Within{0.0, 10.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("gamma_per_kpa", "1/kPa",
+                "how fast the hysteresis state levels off, both ways alike (per mm^(exponent-1) besides)",
+                Typical{0.03}, Within{-10.0, 10.0}, Scale{0.02}),
+      parameter("eta_per_kpa", "1/kPa",
+                "how fast it levels off while it grows: the width of the loop (per mm^(exponent-1) besides)",
+                Typical{0.03}, Within{0.0, 10.0}, Scale{0.02}),
+      parameter("exponent", "", "n, sharpness of the levelling off", Typical{1.0}, Within{1.0, 4.0},
+                Scale{1.0}, Whole{})};
 
   BoucWen(std::span<const T> values, const Preparation&)
       : alpha_(values[0]),
@@ -141,19 +137,24 @@ class BoucWen {
     }
   }
 
-  /// Makes the loop wider by up to `growth` of itself, and eta larger by up to `levelling` of itself, where
-  /// the pressure moves much faster than `rate_kpa_per_s`, as averaged over `settling_s`. The growth is exact
-  /// at the end of a straight segment; eta is that of its beginning.
+  /// Makes the loop wider by up to `rate.share` of itself where the pressure moves much faster than
+  /// `rate.half_kpa_per_s`. Exact at the end of a straight segment.
   void widen(const BoucWenRate<T>& rate) {
-    widens_ = true;
-    rate_ = rate;
-    settling_per_s_ = 1.0 / rate.settling_s;
+    follows_rate_ = true;
+    widening_ = AveragedRate<T>(rate);
+  }
+
+  /// Makes eta larger by up to `rate.share` of itself there. During a segment eta is that of its beginning.
+  void level_off(const BoucWenRate<T>& rate) {
+    follows_rate_ = true;
+    levelling_ = AveragedRate<T>(rate);
     eta_ = (growing_[0] + growing_[1] - shrinking_[0] - shrinking_[1]) * 0.25;
     more_eta_ = T(0.0);
   }
 
   void reset(const T& input) {
-    speed_kpa_per_s_ = T(0.0);
+    widening_.reset();
+    levelling_.reset();
     more_eta_ = T(0.0);
     hysteresis_ = T(0.0);
     direction_ = value_of(input) < 0.0 ? -1.0 : 1.0;
@@ -176,7 +177,7 @@ class BoucWen {
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T change = in.end - in.begin;
     const T begin = output_;
-    if (is_zero(change) && !widens_) return {in.duration_s, begin, begin, begin};
+    if (is_zero(change) && !follows_rate_) return {in.duration_s, begin, begin, begin};
     const T before = hysteresis_;
     const double direction = direction_of(change);
     hysteresis_ = moved(change, direction);
@@ -188,14 +189,16 @@ class BoucWen {
     const T off_middle = in.mean - (in.begin + in.end) * 0.5;
     const T mean_h = (before + hysteresis_) * 0.5 + change * (slope_before - slope_after) * (1.0 / 12.0) +
                      (slope_before + slope_after) * 0.5 * off_middle;
-    if (!widens_) {
+    if (!follows_rate_) {
       output_ = alpha_ * pressure_ - hysteresis_;
       return {in.duration_s, begin, output_, alpha_ * in.mean - mean_h};
     }
-    const T wide_before = width(speed_kpa_per_s_);
-    speed_kpa_per_s_ = speed(change, in.duration_s);
-    const T wide = width(speed_kpa_per_s_);
-    more_eta_ = eta_ * rate_.levelling * fastness(speed_kpa_per_s_);
+    const T one(1.0);
+    const T wide_before = 1.0 + widening_.share_of(one);
+    widening_.step(change, in.duration_s);
+    levelling_.step(change, in.duration_s);
+    const T wide = 1.0 + widening_.share_of(one);
+    more_eta_ = levelling_.share_of(eta_);
     output_ = alpha_ * pressure_ - hysteresis_ * wide;
     const T together = (hysteresis_ - before) * (wide - wide_before) * (1.0 / 12.0);
     return {in.duration_s, begin, output_,
@@ -206,8 +209,8 @@ class BoucWen {
   [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const {
     const U change = end_kpa - pressure_;
     const U h = moved(change, direction_of(change));
-    if (!widens_) return alpha_ * end_kpa - h;
-    return alpha_ * end_kpa - h * width(speed(change, duration_s));
+    if (!follows_rate_) return alpha_ * end_kpa - h;
+    return alpha_ * end_kpa - h * (1.0 + widening_.share_of(T(1.0), widening_.after(change, duration_s)));
   }
 
  private:
@@ -219,26 +222,6 @@ class BoucWen {
     return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : direction_;
   }
 
-  // r after `duration_s`: it relaxes toward |p'|; a jump throws it up by the jump per settling time.
-  template <class U>
-  [[nodiscard]] U speed(const U& change, const T& duration_s) const {
-    const T z = duration_s * settling_per_s_;
-    const U size = value_of(change) < 0.0 ? U(-change) : change;
-    return speed_kpa_per_s_ + (size * settling_per_s_ - z * speed_kpa_per_s_) * phi1(T(-z));
-  }
-
-  // How many times its width without motion the loop has.
-  template <class U>
-  [[nodiscard]] U width(const U& speed_kpa_per_s) const {
-    return 1.0 + rate_.growth * fastness(speed_kpa_per_s);
-  }
-
-  // 0 at rest, 1 where the pressure moves much faster than the rate that counts.
-  template <class U>
-  [[nodiscard]] U fastness(const U& speed_kpa_per_s) const {
-    return speed_kpa_per_s / (speed_kpa_per_s + rate_.half_kpa_per_s);
-  }
-
   [[nodiscard]] const T& beta(double direction) const { return beta_[direction > 0.0 ? 1 : 0]; }
 
   static T not_below(const T& value, double bound) { return value_of(value) < bound ? T(bound) : value; }
@@ -248,7 +231,7 @@ class BoucWen {
   [[nodiscard]] T rate(double h, double direction) const {
     const std::size_t way = direction > 0.0 ? 1 : 0;
     const bool grows = h * direction >= 0.0;
-    if (!widens_) return grows ? growing_[way] : shrinking_[way];
+    if (!follows_rate_) return grows ? growing_[way] : shrinking_[way];
     return grows ? T(growing_[way] + more_eta_) : T(shrinking_[way] - more_eta_);
   }
 
@@ -362,15 +345,31 @@ class BoucWen {
   std::array<T, 2> shrinking_;  // gamma - eta, likewise
   int exponent_;
   double direction_ = 1.0;
-  bool widens_ = false;
-  BoucWenRate<T> rate_;
+  bool follows_rate_ = false;
+  AveragedRate<T> widening_;
+  AveragedRate<T> levelling_;
   T eta_{0.0};
   T more_eta_{0.0};
-  T settling_per_s_{0.0};
-  T speed_kpa_per_s_{0.0};  // r
   T hysteresis_{0.0};
   T pressure_{0.0};
   T output_{0.0};
+};
+
+/// What the parts of the chain's Bouc-Wen element have in common that stand in the model as blocks of their
+/// own: they declare `void shape(BoucWen<T>&) const`, which the chain calls once, when all its blocks are
+/// made, and add nothing themselves. Without bouc_wen in the chain they do nothing.
+template <class T>
+class BoucWenPart {
+ public:
+  void reset(const T&) {}
+  [[nodiscard]] T output() const { return T(0.0); }
+  Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    return {in.duration_s, T(0.0), T(0.0), T(0.0)};
+  }
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U&, const Surroundings&) const {
+    return U(0.0);
+  }
 };
 
 }  // namespace softgrip::model

@@ -10,32 +10,16 @@ namespace softgrip::model {
 template <class T>
 class Contact {
  public:
-  static constexpr BlockInfo info{
-      .id = "contact",
-      .station = Station::load,
-      .kind = Kind::displacement,
-      .inverse = Inverse::implicit,
-      .title = "Contact",
-      .meaning = "Stiffer beyond a position: an object or a stop.",
-      .equation = "z = y up to the position, beyond it position + (y - position)/(1 + stiffening)",
-      .repeatable = true};
+  static constexpr BlockInfo info = block_info(
+      "contact", Station::load, Kind::displacement, Inverse::implicit, "Contact",
+      "Stiffer beyond a position: an object or a stop.",
+      "z = y up to the position, beyond it position + (y - position)/(1 + stiffening)", Repeatable{});
   static constexpr std::array parameters{
-      ParameterSpec{.name = "position_mm",
-                    .unit = "mm",
-                    .default_value = 15.0,
-                    .lower = -1000.0,
-                    .upper = 1000.0,
-                    .scale = 2.0,
-                    .meaning = "displacement at which contact begins"},
-      ParameterSpec{
-          .name = "stiffening",
-          .unit = "",
-          .default_value = 1.0,
-          .lower = 0.0,
-          .upper = 1e6,
-          .scale = 0.5,
-          .meaning = "added stiffness relative to the free actuator; 1 halves the motion beyond the position",
-          .neutral = 0.0}};
+      parameter("position_mm", "mm", "displacement at which contact begins", Typical{15.0},
+                Within{-1000.0, 1000.0}, Scale{2.0}),
+      parameter("stiffening", "",
+                "added stiffness relative to the free actuator; 1 halves the motion beyond the position",
+                Typical{1.0}, Within{0.0, 1e6}, Scale{0.5}, Neutral{0.0})};
 
   Contact(std::span<const T> values, const Preparation&)
       : position_mm_(values[0]), beyond_(1.0 / (1.0 + values[1])) {}

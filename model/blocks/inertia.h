@@ -13,28 +13,14 @@ namespace softgrip::model {
 template <class T>
 class Inertia {
  public:
-  static constexpr BlockInfo info{.id = "inertia",
-                                  .station = Station::load,
-                                  .kind = Kind::displacement,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Inertia",
-                                  .meaning = "Ringing: a second-order mode of mass and spring.",
-                                  .equation = "z'' + 2 d w z' + w^2 z = w^2 y, w = 2 pi/period"};
-  static constexpr std::array parameters{ParameterSpec{.name = "period_s",
-                                                       .unit = "s",
-                                                       .default_value = 0.1,
-                                                       .lower = 0.0,
-                                                       .upper = 10.0,
-                                                       .scale = 0.05,
-                                                       .meaning = "period of the undamped mode",
-                                                       .neutral = 0.0},
-                                         ParameterSpec{.name = "damping_ratio",
-                                                       .unit = "",
-                                                       .default_value = 0.2,
-                                                       .lower = 0.005,
-                                                       .upper = 0.95,
-                                                       .scale = 0.1,
-                                                       .meaning = "d; 1 would not ring any more"}};
+  static constexpr BlockInfo info = block_info("inertia", Station::load, Kind::displacement, Inverse::ignored,
+                                               "Inertia", "Ringing: a second-order mode of mass and spring.",
+                                               "z'' + 2 d w z' + w^2 z = w^2 y, w = 2 pi/period");
+  static constexpr std::array parameters{
+      parameter("period_s", "s", "period of the undamped mode", Typical{0.1}, Within{0.0, 10.0}, Scale{0.05},
+                Neutral{0.0}),
+      parameter("damping_ratio", "", "d; 1 would not ring any more", Typical{0.2}, Within{0.005, 0.95},
+                Scale{0.1})};
 
   Inertia(std::span<const T> values, const Preparation&)
       : passes_(!(value_of(values[0]) > 1e-6)),

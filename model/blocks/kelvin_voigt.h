@@ -15,38 +15,18 @@ namespace softgrip::model {
 template <class T>
 class KelvinVoigt {
  public:
-  static constexpr BlockInfo info{.id = "kelvin_voigt",
-                                  .station = Station::actuator,
-                                  .kind = Kind::element,
-                                  .inverse = Inverse::implicit,
-                                  .title = "Kelvin-Voigt creep",
-                                  .meaning = "Creep: a spring in series with branches of spring and dashpot.",
-                                  .equation = "y += p/k0 + x1 + x2 + ..., c x' = p - k x in every branch"};
-  static constexpr std::array parameters{ParameterSpec{.name = "k0_kpa_per_mm",
-                                                       .unit = "kPa/mm",
-                                                       .default_value = 300.0,
-                                                       .lower = 1e-3,
-                                                       .upper = 1e9,
-                                                       .scale = 50.0,
-                                                       .meaning = "stiffness of the instantaneous spring",
-                                                       .neutral = 1e9}};
+  static constexpr BlockInfo info =
+      block_info("kelvin_voigt", Station::actuator, Kind::element, Inverse::implicit, "Kelvin-Voigt creep",
+                 "Creep: a spring in series with branches of spring and dashpot.",
+                 "y += p/k0 + x1 + x2 + ..., c x' = p - k x in every branch");
+  static constexpr std::array parameters{parameter("k0_kpa_per_mm", "kPa/mm",
+                                                   "stiffness of the instantaneous spring", Typical{300.0},
+                                                   Within{1e-3, 1e9}, Scale{50.0}, Neutral{1e9})};
   static constexpr std::array repeated{
-      ParameterSpec{.name = "k#_kpa_per_mm",
-                    .unit = "kPa/mm",
-                    .default_value = 5.0,
-                    .lower = 0.0,
-                    .upper = 1e9,
-                    .scale = 2.0,
-                    .meaning = "stiffness of branch #",
-                    .neutral = 1e9},
-      ParameterSpec{.name = "c#_kpa_s_per_mm",
-                    .unit = "kPa s/mm",
-                    .default_value = 10.0,
-                    .lower = 1e-9,
-                    .upper = 1e9,
-                    .scale = 5.0,
-                    .meaning = "damping of branch #; its time constant is c/k",
-                    .neutral = 1e9}};
+      parameter("k#_kpa_per_mm", "kPa/mm", "stiffness of branch #", Typical{5.0}, Within{0.0, 1e9},
+                Scale{2.0}, Neutral{1e9}),
+      parameter("c#_kpa_s_per_mm", "kPa s/mm", "damping of branch #; its time constant is c/k", Typical{10.0},
+                Within{1e-9, 1e9}, Scale{5.0}, Neutral{1e9})};
   static constexpr std::size_t max_parts = 8;
 
   KelvinVoigt(std::span<const T> values, const Preparation& preparation)

@@ -12,28 +12,13 @@ namespace softgrip::model {
 template <class T>
 class Outliers {
  public:
-  static constexpr BlockInfo info{.id = "outliers",
-                                  .station = Station::sensor,
-                                  .kind = Kind::reading,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Outliers",
-                                  .meaning = "Isolated wrong samples.",
-                                  .equation = "z = y +- size with the given probability"};
-  static constexpr std::array parameters{ParameterSpec{.name = "probability",
-                                                       .unit = "",
-                                                       .default_value = 0.01,
-                                                       .lower = 0.0,
-                                                       .upper = 1.0,
-                                                       .scale = 0.01,
-                                                       .meaning = "share of the readings that are wrong",
-                                                       .neutral = 0.0},
-                                         ParameterSpec{.name = "size_mm",
-                                                       .unit = "mm",
-                                                       .default_value = 2.0,
-                                                       .lower = 0.0,
-                                                       .upper = 1000.0,
-                                                       .scale = 1.0,
-                                                       .meaning = "how wrong they are"}};
+  static constexpr BlockInfo info =
+      block_info("outliers", Station::sensor, Kind::reading, Inverse::ignored, "Outliers",
+                 "Isolated wrong samples.", "z = y +- size with the given probability");
+  static constexpr std::array parameters{
+      parameter("probability", "", "share of the readings that are wrong", Typical{0.01}, Within{0.0, 1.0},
+                Scale{0.01}, Neutral{0.0}),
+      parameter("size_mm", "mm", "how wrong they are", Typical{2.0}, Within{0.0, 1000.0}, Scale{1.0})};
 
   Outliers(std::span<const T> values, const Preparation& preparation)
       : probability_(value_of(values[0])), size_mm_(values[1]), seed_(preparation.seed) {}

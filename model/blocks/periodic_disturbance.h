@@ -12,37 +12,16 @@ namespace softgrip::model {
 template <class T>
 class PeriodicDisturbance {
  public:
-  static constexpr BlockInfo info{.id = "periodic_disturbance",
-                                  .station = Station::sensor,
-                                  .kind = Kind::reading,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Periodic disturbance",
-                                  .meaning = "A steady oscillation that the command does not explain.",
-                                  .equation = "z = y + sine sin(2 pi f t) + cosine cos(2 pi f t)",
-                                  .repeatable = true};
-  static constexpr std::array parameters{ParameterSpec{.name = "sine_mm",
-                                                       .unit = "mm",
-                                                       .default_value = 0.1,
-                                                       .lower = -100.0,
-                                                       .upper = 100.0,
-                                                       .scale = 0.1,
-                                                       .meaning = "amplitude of the sine",
-                                                       .neutral = 0.0},
-                                         ParameterSpec{.name = "cosine_mm",
-                                                       .unit = "mm",
-                                                       .default_value = 0.0,
-                                                       .lower = -100.0,
-                                                       .upper = 100.0,
-                                                       .scale = 0.1,
-                                                       .meaning = "amplitude of the cosine",
-                                                       .neutral = 0.0},
-                                         ParameterSpec{.name = "frequency_hz",
-                                                       .unit = "Hz",
-                                                       .default_value = 5.0,
-                                                       .lower = 0.001,
-                                                       .upper = 1000.0,
-                                                       .scale = 0.01,
-                                                       .meaning = "frequency"}};
+  static constexpr BlockInfo info =
+      block_info("periodic_disturbance", Station::sensor, Kind::reading, Inverse::ignored,
+                 "Periodic disturbance", "A steady oscillation that the command does not explain.",
+                 "z = y + sine sin(2 pi f t) + cosine cos(2 pi f t)", Repeatable{});
+  static constexpr std::array parameters{
+      parameter("sine_mm", "mm", "amplitude of the sine", Typical{0.1}, Within{-100.0, 100.0}, Scale{0.1},
+                Neutral{0.0}),
+      parameter("cosine_mm", "mm", "amplitude of the cosine", Typical{0.0}, Within{-100.0, 100.0}, Scale{0.1},
+                Neutral{0.0}),
+      parameter("frequency_hz", "Hz", "frequency", Typical{5.0}, Within{0.001, 1000.0}, Scale{0.01})};
 
   PeriodicDisturbance(std::span<const T> values, const Preparation&)
       : sine_mm_(values[0]), cosine_mm_(values[1]), omega_(values[2] * (2.0 * std::numbers::pi)) {}

@@ -10,21 +10,12 @@ namespace softgrip::model {
 template <class T>
 class PressureSaturation {
  public:
-  static constexpr BlockInfo info{.id = "pressure_saturation",
-                                  .station = Station::valve,
-                                  .kind = Kind::pressure,
-                                  .inverse = Inverse::bound,
-                                  .title = "Pressure saturation",
-                                  .meaning = "The pressure stops below the command.",
-                                  .equation = "p = min(u, limit)"};
-  static constexpr std::array parameters{ParameterSpec{.name = "limit_kpa",
-                                                       .unit = "kPa",
-                                                       .default_value = 100.0,
-                                                       .lower = 0.0,
-                                                       .upper = 10000.0,
-                                                       .scale = 5.0,
-                                                       .meaning = "highest pressure the valve reaches",
-                                                       .neutral = 10000.0}};
+  static constexpr BlockInfo info =
+      block_info("pressure_saturation", Station::valve, Kind::pressure, Inverse::bound, "Pressure saturation",
+                 "The pressure stops below the command.", "p = min(u, limit)");
+  static constexpr std::array parameters{parameter("limit_kpa", "kPa", "highest pressure the valve reaches",
+                                                   Typical{100.0}, Within{0.0, 10000.0}, Scale{5.0},
+                                                   Neutral{10000.0})};
 
   PressureSaturation(std::span<const T> values, const Preparation&) : limit_kpa_(values[0]) {}
 

@@ -11,21 +11,11 @@ namespace softgrip::model {
 template <class T>
 class Quantisation {
  public:
-  static constexpr BlockInfo info{.id = "quantisation",
-                                  .station = Station::sensor,
-                                  .kind = Kind::reading,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Quantisation",
-                                  .meaning = "The reading comes in steps: the converter's resolution.",
-                                  .equation = "z = step round(y/step)"};
-  static constexpr std::array parameters{ParameterSpec{.name = "step_mm",
-                                                       .unit = "mm",
-                                                       .default_value = 0.01,
-                                                       .lower = 0.0,
-                                                       .upper = 10.0,
-                                                       .scale = 0.01,
-                                                       .meaning = "size of one step",
-                                                       .neutral = 0.0}};
+  static constexpr BlockInfo info =
+      block_info("quantisation", Station::sensor, Kind::reading, Inverse::ignored, "Quantisation",
+                 "The reading comes in steps: the converter's resolution.", "z = step round(y/step)");
+  static constexpr std::array parameters{parameter("step_mm", "mm", "size of one step", Typical{0.01},
+                                                   Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0})};
 
   Quantisation(std::span<const T> values, const Preparation&) : step_mm_(value_of(values[0])) {}
 

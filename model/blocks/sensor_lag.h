@@ -11,21 +11,11 @@ namespace softgrip::model {
 template <class T>
 class SensorLag {
  public:
-  static constexpr BlockInfo info{.id = "sensor_lag",
-                                  .station = Station::sensor,
-                                  .kind = Kind::displacement,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Sensor lag",
-                                  .meaning = "The reading lags the displacement.",
-                                  .equation = "tau z' = y - z"};
-  static constexpr std::array parameters{ParameterSpec{.name = "time_constant_s",
-                                                       .unit = "s",
-                                                       .default_value = 0.02,
-                                                       .lower = 0.0,
-                                                       .upper = 10.0,
-                                                       .scale = 0.02,
-                                                       .meaning = "time constant",
-                                                       .neutral = 0.0}};
+  static constexpr BlockInfo info =
+      block_info("sensor_lag", Station::sensor, Kind::displacement, Inverse::ignored, "Sensor lag",
+                 "The reading lags the displacement.", "tau z' = y - z");
+  static constexpr std::array parameters{parameter("time_constant_s", "s", "time constant", Typical{0.02},
+                                                   Within{0.0, 10.0}, Scale{0.02}, Neutral{0.0})};
 
   SensorLag(std::span<const T> values, const Preparation& preparation)
       : time_constant_s_(values[0]), weights_(1) {

@@ -14,29 +14,14 @@ namespace softgrip::model {
 template <class T>
 class SensorNoise {
  public:
-  static constexpr BlockInfo info{.id = "sensor_noise",
-                                  .station = Station::sensor,
-                                  .kind = Kind::reading,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Sensor noise",
-                                  .meaning = "Random error of the reading.",
-                                  .equation = "z = y + normal noise"};
+  static constexpr BlockInfo info =
+      block_info("sensor_noise", Station::sensor, Kind::reading, Inverse::ignored, "Sensor noise",
+                 "Random error of the reading.", "z = y + normal noise");
   static constexpr std::array parameters{
-      ParameterSpec{.name = "rms_mm",
-                    .unit = "mm",
-                    .default_value = 0.05,
-                    .lower = 0.0,
-                    .upper = 100.0,
-                    .scale = 0.05,
-                    .meaning = "root mean square of the noise",
-                    .neutral = 0.0},
-      ParameterSpec{.name = "correlation_time_s",
-                    .unit = "s",
-                    .default_value = 0.0,
-                    .lower = 0.0,
-                    .upper = 1000.0,
-                    .scale = 0.05,
-                    .meaning = "time over which the noise forgets itself; 0: every reading anew"}};
+      parameter("rms_mm", "mm", "root mean square of the noise", Typical{0.05}, Within{0.0, 100.0},
+                Scale{0.05}, Neutral{0.0}),
+      parameter("correlation_time_s", "s", "time over which the noise forgets itself; 0: every reading anew",
+                Typical{0.0}, Within{0.0, 1000.0}, Scale{0.05})};
 
   SensorNoise(std::span<const T> values, const Preparation& preparation)
       : rms_mm_(values[0]), correlation_time_s_(value_of(values[1])), seed_(preparation.seed) {}

@@ -11,38 +11,17 @@ namespace softgrip::model {
 template <class T>
 class SensorNonlinearity {
  public:
-  static constexpr BlockInfo info{
-      .id = "sensor_nonlinearity",
-      .station = Station::sensor,
-      .kind = Kind::reading,
-      .inverse = Inverse::ignored,
-      .title = "Sensor nonlinearity",
-      .meaning = "The scale is bent between its calibration points.",
-      .equation = "z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2 x), x = y/range"};
+  static constexpr BlockInfo info =
+      block_info("sensor_nonlinearity", Station::sensor, Kind::reading, Inverse::ignored,
+                 "Sensor nonlinearity", "The scale is bent between its calibration points.",
+                 "z = y + 4 bow x (1 - x) + 6 sqrt(3) wave x (1 - x) (1 - 2 x), x = y/range");
   static constexpr std::array parameters{
-      ParameterSpec{.name = "bow_mm",
-                    .unit = "mm",
-                    .default_value = 0.2,
-                    .lower = -100.0,
-                    .upper = 100.0,
-                    .scale = 0.1,
-                    .meaning = "error in the middle of the range",
-                    .neutral = 0.0},
-      ParameterSpec{.name = "wave_mm",
-                    .unit = "mm",
-                    .default_value = 0.0,
-                    .lower = -100.0,
-                    .upper = 100.0,
-                    .scale = 0.1,
-                    .meaning = "largest error of opposite sign in the two halves",
-                    .neutral = 0.0},
-      ParameterSpec{.name = "range_mm",
-                    .unit = "mm",
-                    .default_value = 30.0,
-                    .lower = 0.1,
-                    .upper = 1000.0,
-                    .scale = 10.0,
-                    .meaning = "displacement of the upper calibration point, the lower one is 0"}};
+      parameter("bow_mm", "mm", "error in the middle of the range", Typical{0.2}, Within{-100.0, 100.0},
+                Scale{0.1}, Neutral{0.0}),
+      parameter("wave_mm", "mm", "largest error of opposite sign in the two halves", Typical{0.0},
+                Within{-100.0, 100.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("range_mm", "mm", "displacement of the upper calibration point, the lower one is 0",
+                Typical{30.0}, Within{0.1, 1000.0}, Scale{10.0})};
 
   SensorNonlinearity(std::span<const T> values, const Preparation&)
       : bow_mm_(values[0] * 4.0), wave_mm_(values[1] * 10.392304845413264), range_mm_(values[2]) {}

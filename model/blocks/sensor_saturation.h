@@ -10,29 +10,13 @@ namespace softgrip::model {
 template <class T>
 class SensorSaturation {
  public:
-  static constexpr BlockInfo info{.id = "sensor_saturation",
-                                  .station = Station::sensor,
-                                  .kind = Kind::reading,
-                                  .inverse = Inverse::ignored,
-                                  .title = "Sensor saturation",
-                                  .meaning = "The reading clips at the ends of the sensor's range.",
-                                  .equation = "z = min(max(y, lower), upper)"};
-  static constexpr std::array parameters{ParameterSpec{.name = "lower_mm",
-                                                       .unit = "mm",
-                                                       .default_value = -10.0,
-                                                       .lower = -10000.0,
-                                                       .upper = 10000.0,
-                                                       .scale = 2.0,
-                                                       .meaning = "smallest reading",
-                                                       .neutral = -10000.0},
-                                         ParameterSpec{.name = "upper_mm",
-                                                       .unit = "mm",
-                                                       .default_value = 20.0,
-                                                       .lower = -10000.0,
-                                                       .upper = 10000.0,
-                                                       .scale = 2.0,
-                                                       .meaning = "largest reading",
-                                                       .neutral = 10000.0}};
+  static constexpr BlockInfo info =
+      block_info("sensor_saturation", Station::sensor, Kind::reading, Inverse::ignored, "Sensor saturation",
+                 "The reading clips at the ends of the sensor's range.", "z = min(max(y, lower), upper)");
+  static constexpr std::array parameters{parameter("lower_mm", "mm", "smallest reading", Typical{-10.0},
+                                                   Within{-10000.0, 10000.0}, Scale{2.0}, Neutral{-10000.0}),
+                                         parameter("upper_mm", "mm", "largest reading", Typical{20.0},
+                                                   Within{-10000.0, 10000.0}, Scale{2.0}, Neutral{10000.0})};
 
   SensorSaturation(std::span<const T> values, const Preparation&)
       : lower_mm_(values[0]), upper_mm_(values[1]) {}

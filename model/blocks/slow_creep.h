@@ -12,28 +12,13 @@ namespace softgrip::model {
 template <class T>
 class SlowCreep {
  public:
-  static constexpr BlockInfo info{.id = "slow_creep",
-                                  .station = Station::actuator,
-                                  .kind = Kind::element,
-                                  .inverse = Inverse::implicit,
-                                  .title = "Slow creep",
-                                  .meaning = "Creep slower than the model's slowest branch.",
-                                  .equation = "tau x' = gain p - x"};
-  static constexpr std::array parameters{ParameterSpec{.name = "gain_mm_per_kpa",
-                                                       .unit = "mm/kPa",
-                                                       .default_value = 0.05,
-                                                       .lower = -10.0,
-                                                       .upper = 10.0,
-                                                       .scale = 0.02,
-                                                       .meaning = "what it adds in the end",
-                                                       .neutral = 0.0},
-                                         ParameterSpec{.name = "time_constant_s",
-                                                       .unit = "s",
-                                                       .default_value = 60.0,
-                                                       .lower = 0.1,
-                                                       .upper = 1e6,
-                                                       .scale = 30.0,
-                                                       .meaning = "how long it takes"}};
+  static constexpr BlockInfo info =
+      block_info("slow_creep", Station::actuator, Kind::element, Inverse::implicit, "Slow creep",
+                 "Creep slower than the model's slowest branch.", "tau x' = gain p - x");
+  static constexpr std::array parameters{
+      parameter("gain_mm_per_kpa", "mm/kPa", "what it adds in the end", Typical{0.05}, Within{-10.0, 10.0},
+                Scale{0.02}, Neutral{0.0}),
+      parameter("time_constant_s", "s", "how long it takes", Typical{60.0}, Within{0.1, 1e6}, Scale{30.0})};
 
   SlowCreep(std::span<const T> values, const Preparation& preparation)
       : gain_(values[0]), rate_(1.0 / values[1]), weights_(1) {

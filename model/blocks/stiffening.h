@@ -10,23 +10,13 @@ namespace softgrip::model {
 template <class T>
 class Stiffening {
  public:
-  static constexpr BlockInfo info{
-      .id = "stiffening",
-      .station = Station::actuator,
-      .kind = Kind::displacement,
-      .inverse = Inverse::implicit,
-      .title = "Stiffening",
-      .meaning = "The gain changes with displacement, loading and unloading alike.",
-      .equation = "z = y / (1 + s |y|), for negative s: y (1 - s |y|)"};
+  static constexpr BlockInfo info =
+      block_info("stiffening", Station::actuator, Kind::displacement, Inverse::implicit, "Stiffening",
+                 "The gain changes with displacement, loading and unloading alike.",
+                 "z = y / (1 + s |y|), for negative s: y (1 - s |y|)");
   static constexpr std::array parameters{
-      ParameterSpec{.name = "stiffening_per_mm",
-                    .unit = "1/mm",
-                    .default_value = 0.01,
-                    .lower = -1.0,
-                    .upper = 1.0,
-                    .scale = 0.005,
-                    .meaning = "relative loss of gain per displacement, doubled at the tangent",
-                    .neutral = 0.0}};
+      parameter("stiffening_per_mm", "1/mm", "relative loss of gain per displacement, doubled at the tangent",
+                Typical{0.01}, Within{-1.0, 1.0}, Scale{0.005}, Neutral{0.0})};
 
   Stiffening(std::span<const T> values, const Preparation&) : stiffening_per_mm_(values[0]) {}
 

@@ -12,32 +12,15 @@ namespace softgrip::model {
 template <class T>
 class StressSoftening {
  public:
-  static constexpr BlockInfo info{
-      .id = "stress_softening",
-      .station = Station::actuator,
-      .kind = Kind::pressure,
-      .inverse = Inverse::implicit,
-      .title = "Stress softening",
-      .meaning = "Softer after the largest load so far (Mullins).",
-      .equation = "q = p (1 + softening m/(1 + levelling m)), m = largest pressure so far"};
+  static constexpr BlockInfo info =
+      block_info("stress_softening", Station::actuator, Kind::pressure, Inverse::implicit, "Stress softening",
+                 "Softer after the largest load so far (Mullins).",
+                 "q = p (1 + softening m/(1 + levelling m)), m = largest pressure so far");
   static constexpr std::array parameters{
-      ParameterSpec{.name = "softening_per_kpa",
-                    .unit = "1/kPa",
-                    .default_value = 0.002,
-                    .lower = 0.0,
-                    .upper = 1.0,
-                    .scale = 0.001,
-                    .meaning = "relative gain won per pressure of the largest load",
-                    .neutral = 0.0},
-      ParameterSpec{.name = "levelling_per_kpa",
-                    .unit = "1/kPa",
-                    .default_value = 0.02,
-                    .lower = 0.0,
-                    .upper = 10.0,
-                    .scale = 0.01,
-                    .meaning = "how soon larger loads soften it no further",
-                    .neutral = 0.0,
-                    .if_left_out = 0.0}};
+      parameter("softening_per_kpa", "1/kPa", "relative gain won per pressure of the largest load",
+                Typical{0.002}, Within{0.0, 1.0}, Scale{0.001}, Neutral{0.0}),
+      parameter("levelling_per_kpa", "1/kPa", "how soon larger loads soften it no further", Typical{0.02},
+                Within{0.0, 10.0}, Scale{0.01}, Neutral{0.0}, IfLeftOut{0.0})};
 
   StressSoftening(std::span<const T> values, const Preparation&)
       : softening_per_kpa_(values[0]), levelling_per_kpa_(values[1]) {}

@@ -12,30 +12,15 @@ namespace softgrip::model {
 template <class T>
 class SupplySag {
  public:
-  static constexpr BlockInfo info{
-      .id = "supply_sag",
-      .station = Station::valve,
-      .kind = Kind::pressure,
-      .inverse = Inverse::ignored,
-      .title = "Supply sag",
-      .meaning = "The pressure follows a supply that falls below its nominal value.",
-      .equation = "p = u (1 - coupling max(0, 1 - supply/nominal))"};
+  static constexpr BlockInfo info =
+      block_info("supply_sag", Station::valve, Kind::pressure, Inverse::ignored, "Supply sag",
+                 "The pressure follows a supply that falls below its nominal value.",
+                 "p = u (1 - coupling max(0, 1 - supply/nominal))");
   static constexpr std::array parameters{
-      ParameterSpec{.name = "coupling",
-                    .unit = "",
-                    .default_value = 0.2,
-                    .lower = 0.0,
-                    .upper = 1.0,
-                    .scale = 0.1,
-                    .meaning = "share of a relative loss of supply that reaches the pressure",
-                    .neutral = 0.0},
-      ParameterSpec{.name = "nominal_kpa",
-                    .unit = "kPa",
-                    .default_value = 500.0,
-                    .lower = 1.0,
-                    .upper = 10000.0,
-                    .scale = 50.0,
-                    .meaning = "supply pressure at and above which nothing is lost"}};
+      parameter("coupling", "", "share of a relative loss of supply that reaches the pressure", Typical{0.2},
+                Within{0.0, 1.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("nominal_kpa", "kPa", "supply pressure at and above which nothing is lost", Typical{500.0},
+                Within{1.0, 10000.0}, Scale{50.0})};
 
   SupplySag(std::span<const T> values, const Preparation&) : coupling_(values[0]), nominal_kpa_(values[1]) {}
 

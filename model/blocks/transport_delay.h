@@ -15,21 +15,11 @@ namespace softgrip::model {
 template <class T>
 class TransportDelay {
  public:
-  static constexpr BlockInfo info{.id = "transport_delay",
-                                  .station = Station::valve,
-                                  .kind = Kind::pressure,
-                                  .inverse = Inverse::preview,
-                                  .title = "Transport delay",
-                                  .meaning = "Dead time between command and pressure.",
-                                  .equation = "p(t) = u(t - delay)"};
-  static constexpr std::array parameters{ParameterSpec{.name = "delay_s",
-                                                       .unit = "s",
-                                                       .default_value = 0.05,
-                                                       .lower = 0.0,
-                                                       .upper = 10.0,
-                                                       .scale = 0.05,
-                                                       .meaning = "dead time",
-                                                       .neutral = 0.0}};
+  static constexpr BlockInfo info =
+      block_info("transport_delay", Station::valve, Kind::pressure, Inverse::preview, "Transport delay",
+                 "Dead time between command and pressure.", "p(t) = u(t - delay)");
+  static constexpr std::array parameters{
+      parameter("delay_s", "s", "dead time", Typical{0.05}, Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0})};
 
   TransportDelay(std::span<const T> values, const Preparation& preparation)
       : delay_s_(values[0]), capacity_(initial_capacity(value_of(values[0]), preparation.sample_time_s)) {

@@ -14,21 +14,11 @@ namespace softgrip::model {
 template <class T>
 class ValveLag {
  public:
-  static constexpr BlockInfo info{.id = "valve_lag",
-                                  .station = Station::valve,
-                                  .kind = Kind::pressure,
-                                  .inverse = Inverse::lead,
-                                  .title = "Valve lag",
-                                  .meaning = "First-order lag of the regulator and the tube.",
-                                  .equation = "tau p' = u - p"};
-  static constexpr std::array parameters{ParameterSpec{.name = "time_constant_s",
-                                                       .unit = "s",
-                                                       .default_value = 0.05,
-                                                       .lower = 0.0,
-                                                       .upper = 10.0,
-                                                       .scale = 0.05,
-                                                       .meaning = "time constant",
-                                                       .neutral = 0.0}};
+  static constexpr BlockInfo info =
+      block_info("valve_lag", Station::valve, Kind::pressure, Inverse::lead, "Valve lag",
+                 "First-order lag of the regulator and the tube.", "tau p' = u - p");
+  static constexpr std::array parameters{parameter("time_constant_s", "s", "time constant", Typical{0.05},
+                                                   Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0})};
 
   ValveLag(std::span<const T> values, const Preparation& preparation)
       : time_constant_s_(values[0]), weights_(1) {

@@ -9,6 +9,7 @@
 #include "base/numbers.h"
 #include "document/reader.h"
 #include "model/catalogue.h"
+#include "model/file/earlier_blocks.h"
 
 namespace softgrip::model {
 namespace {
@@ -42,7 +43,6 @@ double read_value(MapReader& map, const ParameterSpec& spec, const std::string& 
 std::size_t count_parts(const MapReader& map, const Descriptor& descriptor) {
   std::size_t parts = 0;
   for (std::size_t part = 1; part <= descriptor.max_parts; ++part) {
-    BlockSpec probe{0, {}};
     for (const ParameterSpec& spec : descriptor.repeated) {
       std::string name(spec.name);
       name.replace(name.find('#'), 1, std::to_string(part));
@@ -50,6 +50,28 @@ std::size_t count_parts(const MapReader& map, const Descriptor& descriptor) {
     }
   }
   return std::max(parts, descriptor.min_parts);
+}
+
+bool does_something(const BlockSpec& block) {
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    const double neutral = catalogue()[block.type].spec(i).neutral;
+    if (!std::isnan(neutral) && block.values[i] != neutral) return true;
+  }
+  return false;
+}
+
+/// Whether a key of the map is none of the block that has the id today, but of what the earlier one held.
+bool has_key_of_another(const Node& map, const EarlierBlock& earlier, std::size_t today) {
+  const auto has = [](std::size_t type, const std::string& key) {
+    const Descriptor& descriptor = catalogue()[type];
+    const BlockSpec largest = default_block(type, descriptor.max_parts);
+    return find_parameter(largest, key).has_value();
+  };
+  return std::any_of(map.entries.begin(), map.entries.end(), [&](const Node::Entry& entry) {
+    if (has(today, entry.key)) return false;
+    return entry.key == earlier.choice || std::any_of(earlier.types.begin(), earlier.types.end(),
+                                                      [&](std::size_t type) { return has(type, entry.key); });
+  });
 }
 
 class ModelReader {
@@ -86,14 +108,61 @@ class ModelReader {
     }
     const Node::Entry& entry = item.entries.front();
     const std::optional<std::size_t> type = find_block(entry.key);
+    if (const EarlierBlock* const earlier = find_earlier_block(entry.key);
+        earlier != nullptr && catalogue()[earlier->types.front()].info.station == station &&
+        (!type || has_key_of_another(entry.value, *earlier, *type))) {
+      read_earlier(entry, *earlier, model);
+      return;
+    }
     if (!type || catalogue()[*type].info.station != station) {
       report_unknown(entry, type, station);
       return;
     }
-    const Descriptor& descriptor = catalogue()[*type];
-    has_element_ = has_element_ || descriptor.info.kind == Kind::element;
-    check_place(entry, descriptor.info, station, model);
-    model.blocks.push_back(read_values(entry, *type));
+    const std::size_t before = problems_.size();
+    MapReader map(document_, entry.value, problems_, entry.key);
+    BlockSpec block = read_values(map, *type);
+    map.finish();
+    check_objection(entry, block, before);
+    add(entry, std::move(block), model);
+  }
+
+  void add(const Node::Entry& entry, BlockSpec block, Model& model) {
+    const BlockInfo& info = catalogue()[block.type].info;
+    has_element_ = has_element_ || info.kind == Kind::element;
+    check_place(entry, info, model);
+    model.blocks.push_back(std::move(block));
+  }
+
+  /// A block of an earlier version, read into those of what it became that its numbers wake; when they wake
+  /// none, into the first.
+  void read_earlier(const Node::Entry& entry, const EarlierBlock& earlier, Model& model) {
+    MapReader map(document_, entry.value, problems_, entry.key);
+    std::vector<std::size_t> types = earlier.types;
+    if (!earlier.choice.empty()) {
+      const auto last = static_cast<std::int64_t>(types.size()) - 1;
+      types = {types[static_cast<std::size_t>(map.optional_integer(earlier.choice, 0, last).value_or(0))]};
+    }
+    std::vector<BlockSpec> blocks;
+    for (const std::size_t type : types) {
+      BlockSpec block = read_values(map, type, type != types.front());
+      if (type == types.front() || does_something(block)) blocks.push_back(std::move(block));
+    }
+    map.finish();
+    if (blocks.size() > 1 && !does_something(blocks.front())) blocks.erase(blocks.begin());
+    if (blocks.size() > 1 && !earlier.adds) report_several(entry, blocks);
+    for (BlockSpec& block : blocks) add(entry, std::move(block), model);
+  }
+
+  void report_several(const Node::Entry& entry, const std::vector<BlockSpec>& blocks) {
+    std::string hint = "together they are no longer what they were in one; fit them anew as";
+    for (const BlockSpec& block : blocks) {
+      hint += " `- " + std::string(catalogue()[block.type].info.id) + ": {";
+      for (std::size_t i = 0; i < block.values.size(); ++i)
+        hint += (i == 0 ? "" : ", ") + parameter_name(block, i) + ": " + shortest(block.values[i]);
+      hint += "}`";
+    }
+    problems_.add(document_.problem(
+        entry.key_at, entry.key + " holds several mechanisms, which are blocks of their own now", hint));
   }
 
   void report_unknown(const Node::Entry& entry, std::optional<std::size_t> type, Station station) {
@@ -114,13 +183,13 @@ class ModelReader {
   }
 
   // Order of kinds inside the station, and blocks that must not stand there twice.
-  void check_place(const Node::Entry& entry, const BlockInfo& info, Station station, const Model& model) {
+  void check_place(const Node::Entry& entry, const BlockInfo& info, const Model& model) {
     for (const BlockSpec& block : model.blocks) {
       const BlockInfo& other = catalogue()[block.type].info;
       if (other.id == info.id && !info.repeatable) {
-        problems_.add(document_.problem(entry.key_at, entry.key + " stands in the chain twice"));
+        problems_.add(document_.problem(entry.key_at, std::string(info.id) + " stands in the chain twice"));
       }
-      if (other.station == station && other.kind > info.kind) {
+      if (other.station == info.station && other.kind > info.kind) {
         problems_.add(document_.problem(
             entry.key_at, entry.key + " must stand before " + std::string(other.id),
             "inside a station: pressure blocks, elements, displacement blocks, reading blocks"));
@@ -129,21 +198,24 @@ class ModelReader {
     }
   }
 
-  BlockSpec read_values(const Node::Entry& entry, std::size_t type) {
+  /// @param absent_is_neutral  a number that is not given is where the block does nothing.
+  BlockSpec read_values(MapReader& map, std::size_t type, bool absent_is_neutral = false) {
     const Descriptor& descriptor = catalogue()[type];
-    const std::size_t before = problems_.size();
-    MapReader map(document_, entry.value, problems_, entry.key);
     const std::size_t parts = descriptor.repeated.empty() ? 0 : count_parts(map, descriptor);
-    BlockSpec block = default_block(type, parts);
+    BlockSpec block = neutral_block(type, parts);
     for (std::size_t i = 0; i < block.values.size(); ++i) {
-      block.values[i] = read_value(map, descriptor.spec(i), parameter_name(block, i));
-    }
-    map.finish();
-    if (problems_.size() == before && descriptor.objection != nullptr) {
-      const std::string_view objection = descriptor.objection(block.values);
-      if (!objection.empty()) problems_.add(document_.problem(entry.key_at, std::string(objection)));
+      const std::string name = parameter_name(block, i);
+      if (absent_is_neutral && map.child(name, false) == nullptr) continue;
+      block.values[i] = read_value(map, descriptor.spec(i), name);
     }
     return block;
+  }
+
+  void check_objection(const Node::Entry& entry, const BlockSpec& block, std::size_t problems_before) {
+    const Descriptor& descriptor = catalogue()[block.type];
+    if (problems_.size() != problems_before || descriptor.objection == nullptr) return;
+    const std::string_view objection = descriptor.objection(block.values);
+    if (!objection.empty()) problems_.add(document_.problem(entry.key_at, std::string(objection)));
   }
 
   const Document& document_;

@@ -119,7 +119,7 @@ model::Model base_model(const std::vector<Log>& logs, std::size_t branches) {
   model.name = "identified";
   model.source = "starting values from the data's scale";
   const double levelling = 1 / std::max(scale.largest_kpa, 1e-6);
-  model = model::with_block(std::move(model), {model::type_of<model::BoucWen>(),
+  model = model::with_block(std::move(model), {model::block_type<model::BoucWen>(),
                                                {0.6 * gain, 0.3 * gain, levelling, levelling, 1}});
   // A rigid k0: alpha alone is the instantaneous gain, of which the data see only alpha + 1/k0.
   std::vector<double> creep{1e9};
@@ -130,7 +130,7 @@ model::Model base_model(const std::vector<Log>& logs, std::size_t branches) {
     const double stiffness = static_cast<double>(branches) / (0.4 * gain);
     creep.insert(creep.end(), {stiffness, stiffness * time_constant});
   }
-  return model::with_block(std::move(model), {model::type_of<model::KelvinVoigt>(), std::move(creep)});
+  return model::with_block(std::move(model), {model::block_type<model::KelvinVoigt>(), std::move(creep)});
 }
 
 }  // namespace softgrip::sysid

@@ -76,61 +76,6 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst;
 }
 
-// Every extension is zero-limited: at its neutral values the chain is the old one.
-TEST(Chain, EveryBlockDoesNothingAtItsNeutralValues) {
-  const Model twin = preset("bench_twin");
-  const std::vector<double> plain = response(twin, SignalName::tp2, 5e-3);
-  for (std::size_t type = 0; type < catalogue().size(); ++type) {
-    const Descriptor& descriptor = catalogue()[type];
-    if (position_of(twin, type)) continue;
-    const Model extended = with_block(twin, neutral_block(type));
-    ASSERT_TRUE(validate(extended).empty()) << validate(extended).front();
-    EXPECT_LT(largest_difference(response(extended, SignalName::tp2, 5e-3), plain), 1e-9)
-        << descriptor.info.id;
-    const Model typical_one = with_block(twin, default_block(type));
-    ASSERT_TRUE(validate(typical_one).empty()) << validate(typical_one).front();
-  }
-}
-
-// What a block passes on joins without a gap and lasts as long as what it got.
-TEST(Chain, EveryBlockKeepsTimeAndContinuity) {
-  for (std::size_t type = 0; type < catalogue().size(); ++type) {
-    const Model model{"one", "test", {default_block(type)}};
-    const Chain<double> chain(model);
-    AnyBlock<double> any = chain.block(0);
-    std::visit(
-        [&](auto& block) {
-          if constexpr (requires(Segment<double> s) {
-                          block.step(s, Surroundings{}, [](const Segment<double>&) {});
-                        }) {
-            std::mt19937 generator(91);
-            std::uniform_real_distribution<double> value(-5, 60), length(1e-4, 0.2);
-            block.reset(0.0);
-            double last = block.output(), from = 0;
-            for (int i = 0; i < 2000; ++i) {
-              const double to = i % 5 == 0 ? from : value(generator);
-              const double dt = i % 7 == 0 ? 0 : length(generator);
-              Surroundings now;
-              now.time_s = i;
-              now.supply_kpa = 400 + value(generator);
-              now.temperature_c = 20 + 0.1 * value(generator);
-              double sum = 0;
-              block.step(Segment<double>::straight(dt, from, to), now, [&](const Segment<double>& s) {
-                ASSERT_NEAR(s.begin, last, 1e-9);
-                ASSERT_GE(s.duration_s, 0);
-                last = s.end;
-                sum += s.duration_s;
-              });
-              from = to;
-              ASSERT_NEAR(sum, dt, 1e-9) << catalogue()[type].info.id;
-              ASSERT_NEAR(block.output(), last, 1e-9) << catalogue()[type].info.id;
-            }
-          }
-        },
-        any);
-  }
-}
-
 TEST(Chain, NeutralElementsAddNothing) {
   for (const std::string_view id : {"bouc_wen", "kelvin_voigt"}) {
     const std::size_t type = *find_block(id);

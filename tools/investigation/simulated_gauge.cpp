@@ -26,7 +26,7 @@ constexpr double longest_mm = 10'000;
 model::Model sensor_alone(const model::Model& truth) {
   model::Model sensor =
       model::only(truth, [](const model::BlockInfo& info) { return info.station == model::Station::sensor; });
-  model::BlockSpec gain = model::default_block(model::type_of<model::BoucWen>());
+  model::BlockSpec gain = model::default_block(model::block_type<model::BoucWen>());
   gain.values[*model::find_parameter(gain, "alpha_mm_per_kpa")] = 1;
   gain.values[*model::find_parameter(gain, "beta_mm_per_kpa")] = 0;
   return model::with_block(std::move(sensor), std::move(gain));

@@ -19,7 +19,7 @@ constexpr double kpa_per_bar = 100;
 
 template <template <class> class Block>
 model::BlockSpec block(std::vector<double> values) {
-  return {model::type_of<Block>(), std::move(values)};
+  return {model::block_type<Block>(), std::move(values)};
 }
 
 /// A branch by its gain and its time constant: k and c.

@@ -2,6 +2,8 @@
 // The gain drifts across a campaign: with time, while it runs in, or with use.
 
 #include "model/blocks/ageing.h"
+#include "model/blocks/running_in.h"
+#include "model/blocks/wear.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
@@ -11,16 +13,11 @@ struct Ageing {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
 
   struct WithTime : FormOf<model::Ageing> {
-    static constexpr std::array<Parameter, 1> fitted{"gain_per_h"};
-    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
     static Starts starts(const Scales& s) {
-      return every({{"gain_per_h", {-360 / s.campaign_s, 360 / s.campaign_s}},
-                    {"run_in_time_s", {0.2 * s.campaign_s}}});
+      return every({{"gain_per_h", {-360 / s.campaign_s, 360 / s.campaign_s}}});
     }
   };
-  struct RunningIn : FormOf<model::Ageing> {
-    static constexpr std::array<Parameter, 2> fitted{"run_in", "run_in_time_s"};
-    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+  struct RunningIn : FormOf<model::RunningIn> {
     static Starts starts(const Scales& s) {
       return every({{"run_in", {-0.1, 0.1}},
                     {"run_in_time_s", {0.07 * s.campaign_s, 0.2 * s.campaign_s, 0.5 * s.campaign_s}}});
@@ -30,12 +27,10 @@ struct Ageing {
       return {{"run_in_time_s", 0.02 * s.campaign_s, 0.5 * s.campaign_s}};
     }
   };
-  struct WithUse : FormOf<model::Ageing> {
-    static constexpr std::array<Parameter, 1> fitted{"gain_per_m"};
-    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+  struct WithUse : FormOf<model::Wear> {
     static Starts starts(const Scales& s) {
       const double way_m = 0.1 * s.campaign_s * s.span_mm * 1e-3;
-      return every({{"gain_per_m", {-0.1 / way_m, 0.1 / way_m}}, {"run_in_time_s", {0.2 * s.campaign_s}}});
+      return every({{"gain_per_m", {-0.1 / way_m, 0.1 / way_m}}});
     }
   };
 

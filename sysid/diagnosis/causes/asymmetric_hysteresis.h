@@ -1,17 +1,18 @@
 #pragma once
 // The loading and unloading branches of a loop differ in shape.
 
-#include "model/blocks/asymmetric_hysteresis.h"
+#include "model/blocks/asymmetric_bouc_wen.h"
+#include "model/blocks/duhem_hysteresis.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
 struct AsymmetricHysteresis {
-  /// An element that takes another way up than down.
-  struct OwnLoop : FormOf<model::AsymmetricHysteresis> {
-    static constexpr std::array<Parameter, 3> fitted{"gain_mm_per_kpa", "unloading_kpa", "loading_kpa"};
+  static constexpr std::string_view id = "asymmetric_hysteresis";
+  static constexpr std::string_view title = "Asymmetric hysteresis";
 
-    static bool holds(const model::BlockSpec& block) { return block.values[0] != 0; }
+  /// An element that takes another way up than down.
+  struct OwnLoop : FormOf<model::DuhemHysteresis> {
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
       return every({{"gain_mm_per_kpa", {-0.05 * gain, 0.05 * gain}},
@@ -26,20 +27,14 @@ struct AsymmetricHysteresis {
   };
 
   /// The base's hysteresis, skewed.
-  struct Skew : FormOf<model::AsymmetricHysteresis> {
-    static constexpr std::array<Parameter, 3> fitted{"delta_per_kpa", "epsilon_per_kpa", "beta_share"};
-
-    static bool holds(const model::BlockSpec& block) { return block.values[0] == 0; }
+  struct Skew : FormOf<model::AsymmetricBoucWen> {
     static Starts starts(const Scales& s) {
       Starts starts;
-      const double way_kpa = 0.3 * s.largest_kpa;
       // The state of the hysteresis levels off over some tenths of the pressures.
       for (const double delta : {-2.0, -0.8, -0.3, 0.3, 0.8, 2.0}) {
-        const std::array<Value, 3> skews{{{"delta_per_kpa", delta / s.largest_kpa},
-                                          {"epsilon_per_kpa", delta / s.largest_kpa},
-                                          {"beta_share", 0.2 * delta}}};
-        for (const Value& skew : skews)
-          starts.push_back(start({{"unloading_kpa", way_kpa}, {"loading_kpa", way_kpa}, skew}));
+        starts.push_back(start({{"delta_per_kpa", delta / s.largest_kpa}}));
+        starts.push_back(start({{"epsilon_per_kpa", delta / s.largest_kpa}}));
+        starts.push_back(start({{"beta_share", 0.2 * delta}}));
       }
       return starts;
     }

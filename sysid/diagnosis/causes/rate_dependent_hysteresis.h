@@ -1,24 +1,24 @@
 #pragma once
 // The width of a loop changes with the rate, beyond what creep does.
 
-#include "model/blocks/rate_dependent_hysteresis.h"
+#include "model/blocks/rate_dependent_levelling.h"
+#include "model/blocks/rate_dependent_width.h"
+#include "model/blocks/relaxing_friction.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
 
 struct RateDependentHysteresis {
-  /// A loop of its own that relaxes.
-  struct Relaxing : FormOf<model::RateDependentHysteresis> {
-    static constexpr std::array<Parameter, 3> fitted{"gain_mm_per_kpa", "width_kpa", "time_constant_s"};
+  static constexpr std::string_view id = "rate_dependent_hysteresis";
+  static constexpr std::string_view title = "Rate-dependent hysteresis";
 
-    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+  /// A loop of its own that relaxes.
+  struct Relaxing : FormOf<model::RelaxingFriction> {
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
       return every({{"gain_mm_per_kpa", {0.05 * gain, -0.05 * gain}},
                     {"width_kpa", {0.1 * s.largest_kpa, 0.5 * s.largest_kpa}},
-                    {"time_constant_s", {0.3, 3.0}},
-                    {"rate_kpa_per_s", {s.largest_kpa}},
-                    {"settling_s", {0.05}}});
+                    {"time_constant_s", {0.3, 3.0}}});
     }
     static Bounds bounds(const Scales& s, const model::Model&) {
       return {// A loop that no pressure of the data saturates is linear in the pressure: a viscous branch.
@@ -29,16 +29,17 @@ struct RateDependentHysteresis {
   };
 
   /// The base's loop changes with a rate.
-  struct Following : FormOf<model::RateDependentHysteresis> {
-    static Starts sized(Parameter size, const std::vector<double>& sizes, const Scales& s) {
+  template <template <class> class Block>
+  struct Following : FormOf<Block> {
+    using Form = FormOf<Block>;
+    static typename Form::Starts sized(typename Form::Parameter size, const std::vector<double>& sizes,
+                                       const Scales& s) {
       // The largest pressure in five seconds, in one, in a fifth.
-      return every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
-                    {"settling_s", {0.03, 0.2}},
-                    {size, sizes},
-                    {"width_kpa", {0.3 * s.largest_kpa}},
-                    {"time_constant_s", {1.0}}});
+      return Form::every({{"rate_kpa_per_s", {0.2 * s.largest_kpa, s.largest_kpa, 5 * s.largest_kpa}},
+                          {"settling_s", {0.03, 0.2}},
+                          {size, sizes}});
     }
-    static Bounds bounds(const Scales& s, const model::Model&) {
+    static typename Form::Bounds bounds(const Scales& s, const model::Model&) {
       return {// A loop that is wider by the same at all rates of the data is only wider.
               {"rate_kpa_per_s", 0.05 * s.largest_kpa, 20 * s.largest_kpa},
               // What looks back farther is not a rate but a history.
@@ -46,15 +47,11 @@ struct RateDependentHysteresis {
     }
   };
   /// It grows.
-  struct Growing : Following {
-    static constexpr std::array<Parameter, 3> fitted{"growth", "rate_kpa_per_s", "settling_s"};
-    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+  struct Growing : Following<model::RateDependentWidth> {
     static Starts starts(const Scales& s) { return sized("growth", {0.06, 0.2, 0.6}, s); }
   };
   /// It levels off sooner or later.
-  struct Levelling : Following {
-    static constexpr std::array<Parameter, 3> fitted{"levelling", "rate_kpa_per_s", "settling_s"};
-    static bool holds(const model::BlockSpec& block) { return block.values[fitted[0].index] != 0; }
+  struct Levelling : Following<model::RateDependentLevelling> {
     static Starts starts(const Scales& s) { return sized("levelling", {-0.3, 0.5, 3.0}, s); }
   };
 

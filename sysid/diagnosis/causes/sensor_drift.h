@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
 #include "model/blocks/sensor_drift.h"
+#include "model/blocks/sensor_free_drift.h"
+#include "model/blocks/sensor_wander.h"
+#include "model/blocks/sensor_warm_up.h"
 #include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid::causes {
@@ -12,22 +16,19 @@ namespace softgrip::sysid::causes {
 struct SensorDrift {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
 
-  using Form = FormOf<model::SensorDrift>;
-  static bool has_knots(const model::BlockSpec& block) {
-    return block.values.size() > Form::BlockType::parameters.size();
-  }
-
-  /// One way, and while it warms up.
-  struct Steady : Form {
-    static constexpr std::array<Parameter, 3> fitted{"rate_mm_per_h", "warm_up_mm", "warm_up_time_s"};
-    static bool holds(const model::BlockSpec& block) {
-      return !has_knots(block) && (block.values[fitted[0].index] != 0 || block.values[fitted[1].index] != 0);
-    }
+  /// One way.
+  struct Steady : FormOf<model::SensorDrift> {
     static Starts starts(const Scales& s) {
       const double rate = 3600 * 0.05 * s.span_mm / s.campaign_s;
-      return every({{"rate_mm_per_h", {-rate, rate}},
-                    {"warm_up_time_s", {0.3 * s.campaign_s}},
-                    {"wander_period_s", {s.campaign_s}}});
+      return every({{"rate_mm_per_h", {-rate, rate}}});
+    }
+  };
+
+  /// While it warms up.
+  struct WarmUp : FormOf<model::SensorWarmUp> {
+    static Starts starts(const Scales& s) {
+      return every(
+          {{"warm_up_mm", {-0.05 * s.span_mm, 0.05 * s.span_mm}}, {"warm_up_time_s", {0.3 * s.campaign_s}}});
     }
     /// Warming up faster than this is creep of the actuator, slower a steady drift.
     static Bounds bounds(const Scales& s, const model::Model&) {
@@ -36,9 +37,7 @@ struct SensorDrift {
   };
 
   /// To and fro.
-  struct Wander : Form {
-    static constexpr std::array<Parameter, 3> fitted{"wander_sin_mm", "wander_cos_mm", "wander_period_s"};
-    static bool holds(const model::BlockSpec& block) { return !has_knots(block); }
+  struct Wander : FormOf<model::SensorWander> {
     /// Waves of every phase, small and not so small.
     static Starts starts(const Scales& s) {
       Starts starts;
@@ -46,8 +45,7 @@ struct SensorDrift {
         for (const double size_mm : {0.004 * s.span_mm, 0.016 * s.span_mm}) {
           for (int eighth = 0; eighth < 8; ++eighth) {
             const double angle = eighth * std::numbers::pi / 4;
-            starts.push_back(start({{"warm_up_time_s", 0.3 * s.campaign_s},
-                                    {"wander_sin_mm", size_mm * std::cos(angle)},
+            starts.push_back(start({{"wander_sin_mm", size_mm * std::cos(angle)},
                                     {"wander_cos_mm", size_mm * std::sin(angle)},
                                     {"wander_period_s", campaigns * s.campaign_s}}));
           }
@@ -63,21 +61,19 @@ struct SensorDrift {
   };
 
   /// As it likes, from knot to knot.
-  struct Knots : Form {
+  struct Knots : FormOf<model::SensorFreeDrift> {
     static constexpr bool free_form = true;
     static constexpr std::array<Parameter, 0> fitted{};
     static Starts starts(const Scales& s) {
       constexpr double closest_s = 12;  // closer together, they would follow the loops
       const auto knots = static_cast<std::size_t>(std::clamp(s.campaign_s / closest_s, 2.0, 16.0));
-      Values values = start({{"warm_up_time_s", 0.3 * s.campaign_s},
-                             {"wander_period_s", s.campaign_s},
-                             {"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});
+      Values values = start({{"knot_interval_s", s.campaign_s / static_cast<double>(knots)}});
       values.resize(values.size() + knots, 0.0);
       return {std::move(values)};
     }
   };
 
-  using Forms = List<Steady, Wander, Knots>;
+  using Forms = List<Steady, WarmUp, Wander, Knots>;
 };
 
 }  // namespace softgrip::sysid::causes

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "model/named.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
@@ -46,10 +47,10 @@ StructureFit base_behind(const Staircase& found) {
 }
 
 /// With the valve in front again.
-FitPoint with_valve(const FitPoint& behind, const Cause& dead_band, double band_kpa, bool jumps) {
+template <template <class> class Valve>
+FitPoint with_valve(const FitPoint& behind, double band_kpa) {
   FitPoint point = behind;
-  point.model = model::with_block(
-      point.model, {dead_band.forms.front().type, causes::ValveDeadband::with_band(band_kpa, jumps)});
+  point.model = model::with_block(point.model, model::block_of<Valve>({{"band_kpa", band_kpa}}));
   return point;
 }
 
@@ -59,9 +60,9 @@ void extend(Selection& selection, const SearchData& data, const StructureFit& be
   std::vector<Cause> causes{dead_band};
   causes.insert(causes.end(), behind.causes.begin(), behind.causes.end());
   StructureFit staircase =
-      evaluate_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, true));
+      evaluate_structure(data.records, causes, with_valve<model::ValveStiction>(behind.point, band_kpa));
   StructureFit mean =
-      fit_structure(data.records, causes, with_valve(behind.point, dead_band, band_kpa, false));
+      fit_structure(data.records, causes, with_valve<model::ValveDeadband>(behind.point, band_kpa));
   staircase.free_parameters = mean.free_parameters;
   BlockLosses staircase_losses = held_out_losses(data.records, division, staircase);
   BlockLosses mean_losses = held_out_losses(data.records, division, mean);

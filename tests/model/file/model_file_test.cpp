@@ -7,6 +7,8 @@
 
 #include "document/node.h"
 #include "model/catalogue.h"
+#include "model/file/earlier_blocks.h"
+#include "model/named.h"
 #include "tests/model/presets.h"
 
 namespace softgrip::model::testing {
@@ -75,18 +77,128 @@ TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
   EXPECT_EQ(number(twin, "kelvin_voigt.c1_kpa_s_per_mm"), 299.8);
 }
 
+/// What a file means whose actuator has a spring and, before or behind it, these blocks.
+Outcome read_with(const std::string& station, const std::string& block) {
+  const std::string spring =
+      "actuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 5, k1_kpa_per_mm: 5, c1_kpa_s_per_mm: 5}\n";
+  const std::string item = "  - " + block + "\n";
+  if (station == "actuator") return read("name: old\nsource: before\n" + spring + item);
+  return read("name: old\nsource: before\n" + spring + station + ":\n" + item);
+}
+
+/// The blocks beside the spring.
+std::vector<BlockSpec> blocks_of(const std::string& station, const std::string& block) {
+  const Outcome outcome = read_with(station, block);
+  if (!outcome.model) throw std::runtime_error(block + "\n" + outcome.problems.format());
+  return without_block<KelvinVoigt>(*outcome.model).blocks;
+}
+
 // Parameters that came to a block later: older files say what they always said.
 TEST(ModelFile, LaterParametersMayBeLeftOut) {
-  const Outcome outcome = read(
-      "name: old\nsource: before\n"
-      "valve:\n  - valve_deadband: {band_kpa: 2}\n"
-      "actuator:\n  - kelvin_voigt: {k0_kpa_per_mm: 5, k1_kpa_per_mm: 5, c1_kpa_s_per_mm: 5}\n"
-      "  - asymmetric_hysteresis: {gain_mm_per_kpa: 0.05, unloading_kpa: 15, loading_kpa: 5}\n"
-      "sensor:\n  - sensor_drift: {rate_mm_per_h: 1, warm_up_mm: 0.1, warm_up_time_s: 50}\n");
-  ASSERT_TRUE(outcome.model) << outcome.problems.format();
-  EXPECT_EQ(outcome.model->blocks[0].values, (std::vector<double>{2, 0}));
-  EXPECT_EQ(outcome.model->blocks[2].values, (std::vector<double>{0.05, 15, 5, 0, 0, 0}));
-  EXPECT_EQ(outcome.model->blocks[3].values, (std::vector<double>{1, 0.1, 50, 0, 0, 300, 30}));
+  EXPECT_EQ(blocks_of("sensor", "sensor_wander: {wander_sin_mm: 0.1}"),
+            (std::vector<BlockSpec>{{block_type<SensorWander>(), {0.1, 0, 300}}}));
+  EXPECT_EQ(blocks_of("actuator", "asymmetric_bouc_wen: {epsilon_per_kpa: 0.01}"),
+            (std::vector<BlockSpec>{{block_type<AsymmetricBoucWen>(), {0, 0.01, 0}}}));
+}
+
+struct Earlier {
+  const char* station;
+  const char* text;
+  std::vector<BlockSpec> means;
+};
+
+// A file names an earlier block under one station: what it became stands there, and it became several.
+TEST(ModelFile, EarlierBlocksBecameBlocksOfOneStation) {
+  EXPECT_EQ(find_earlier_block("valve_lag"), nullptr);
+  for (const char* id :
+       {"valve_deadband", "asymmetric_hysteresis", "rate_dependent_hysteresis", "ageing", "sensor_drift"}) {
+    const EarlierBlock* const earlier = find_earlier_block(id);
+    ASSERT_NE(earlier, nullptr) << id;
+    ASSERT_GE(earlier->types.size(), 2U) << id;
+    const Station station = catalogue()[earlier->types.front()].info.station;
+    for (const std::size_t type : earlier->types) EXPECT_EQ(catalogue()[type].info.station, station) << id;
+  }
+}
+
+// Blocks that held several mechanisms: a file of then is read into what they became.
+TEST(ModelFile, EarlierBlocksAreReadIntoWhatTheyBecame) {
+  const std::vector<Earlier> files{
+      {"valve", "valve_deadband: {band_kpa: 2}", {{block_type<ValveDeadband>(), {2}}}},
+      {"valve", "valve_deadband: {band_kpa: 2, form: 0}", {{block_type<ValveDeadband>(), {2}}}},
+      {"valve", "valve_deadband: {band_kpa: 2, form: 1}", {{block_type<ValveStiction>(), {2}}}},
+      {"actuator",
+       "asymmetric_hysteresis: {gain_mm_per_kpa: 0.05, unloading_kpa: 15, loading_kpa: 5}",
+       {{block_type<DuhemHysteresis>(), {0.05, 15, 5}}}},
+      {"actuator",
+       "asymmetric_hysteresis: {gain_mm_per_kpa: 0, unloading_kpa: 15, loading_kpa: 5, delta_per_kpa: 0.01, "
+       "epsilon_per_kpa: 0, beta_share: 0.1}",
+       {{block_type<AsymmetricBoucWen>(), {0.01, 0, 0.1}}}},
+      {"actuator",
+       "asymmetric_hysteresis: {gain_mm_per_kpa: 0.05, unloading_kpa: 15, loading_kpa: 5, delta_per_kpa: "
+       "0.01}",
+       {{block_type<DuhemHysteresis>(), {0.05, 15, 5}}, {block_type<AsymmetricBoucWen>(), {0.01, 0, 0}}}},
+      {"actuator",
+       "asymmetric_hysteresis: {gain_mm_per_kpa: 0, unloading_kpa: 15, loading_kpa: 5}",
+       {{block_type<DuhemHysteresis>(), {0, 15, 5}}}},
+      {"actuator",
+       "rate_dependent_hysteresis: {gain_mm_per_kpa: 0.03, width_kpa: 10, time_constant_s: 1}",
+       {{block_type<RelaxingFriction>(), {0.03, 10, 1}}}},
+      {"actuator",
+       "rate_dependent_hysteresis: {gain_mm_per_kpa: 0, width_kpa: 10, time_constant_s: 1, growth: 0.2, "
+       "rate_kpa_per_s: 15, settling_s: 0.1, levelling: 0}",
+       {{block_type<RateDependentWidth>(), {0.2, 15, 0.1}}}},
+      {"actuator",
+       "rate_dependent_hysteresis: {gain_mm_per_kpa: 0, width_kpa: 10, time_constant_s: 1, levelling: 0.4}",
+       {{block_type<RateDependentLevelling>(), {0.4, 20, 0.05}}}},
+      {"actuator", "ageing: {gain_per_h: 0.1}", {{block_type<Ageing>(), {0.1}}}},
+      {"actuator",
+       "ageing: {gain_per_h: 0, run_in: 0.1, run_in_time_s: 40, gain_per_m: 0}",
+       {{block_type<RunningIn>(), {0.1, 40}}}},
+      {"actuator", "ageing: {gain_per_h: 0, gain_per_m: 0.3}", {{block_type<Wear>(), {0.3}}}},
+      {"sensor",
+       "sensor_drift: {rate_mm_per_h: 1, warm_up_mm: 0, warm_up_time_s: 50}",
+       {{block_type<SensorDrift>(), {1}}}},
+      {"sensor",
+       "sensor_drift: {rate_mm_per_h: 1, warm_up_mm: 0.1, warm_up_time_s: 50}",
+       {{block_type<SensorDrift>(), {1}}, {block_type<SensorWarmUp>(), {0.1, 50}}}},
+      {"sensor",
+       "sensor_drift: {rate_mm_per_h: 0, warm_up_mm: 0, warm_up_time_s: 50, wander_sin_mm: 0.3, "
+       "wander_cos_mm: 0.1, wander_period_s: 80, knot_interval_s: 30}",
+       {{block_type<SensorWander>(), {0.3, 0.1, 80}}}},
+      {"sensor",
+       "sensor_drift: {rate_mm_per_h: 0, warm_up_mm: 0, warm_up_time_s: 50, knot_interval_s: 12, knot1_mm: "
+       "0.1, "
+       "knot2_mm: 0.2}",
+       {{block_type<SensorFreeDrift>(), {12, 0.1, 0.2}}}}};
+  for (const Earlier& file : files) EXPECT_EQ(blocks_of(file.station, file.text), file.means) << file.text;
+}
+
+// Gains that were added multiply now.
+TEST(ModelFile, EarlierBlocksThatMeanSomethingElseTogetherAreRefused) {
+  const Outcome outcome = read_with("actuator", "ageing: {gain_per_h: 0.1, run_in: 0.2, run_in_time_s: 40}");
+  EXPECT_FALSE(outcome.model);
+  ASSERT_EQ(outcome.problems.size(), 1u) << outcome.problems.format();
+  const document::Problem& problem = outcome.problems.list().front();
+  EXPECT_EQ(problem.at.line, 5u);
+  EXPECT_EQ(problem.at.column, 5u);
+  EXPECT_NE(problem.hint.find("`- ageing: {gain_per_h: 0.1}`"), std::string::npos) << problem.hint;
+  EXPECT_NE(problem.hint.find("`- running_in: {run_in: 0.2, run_in_time_s: 40}`"), std::string::npos)
+      << problem.hint;
+}
+
+TEST(ModelFile, EarlierBlocksAreCheckedLikeOthers) {
+  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
+           {"asymmetric_hysteresis: {gain_mm_per_kpa: 0.05}", "unloading_kpa"},
+           {"asymmetric_hysteresis: {gain_mm_per_kpa: 0.05, unloading_kpa: 15, loading_kpa: 5, delta: 1}",
+            "delta_per_kpa"},
+           {"rate_dependent_hysteresis: {gain_mm_per_kpa: 99, width_kpa: 10, time_constant_s: 1}",
+            "gain_mm_per_kpa"},
+           {"ageing: {gain_per_h: 0.1, form: 1}", "form"},
+           {"ageing: {}", "gain_per_h"}}) {
+    const Outcome outcome = read_with("actuator", text);
+    EXPECT_FALSE(outcome.model) << text;
+    EXPECT_NE(outcome.problems.format().find(says), std::string::npos) << outcome.problems.format();
+  }
 }
 
 TEST(ModelFile, HashStandsForTheNumbers) {

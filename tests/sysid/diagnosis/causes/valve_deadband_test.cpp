@@ -12,7 +12,7 @@ namespace {
 TEST(ValveDeadband, NoStaircaseIsMissed) {
   Scales scales;
   scales.largest_kpa = 40;
-  const std::vector<double> bands = causes::ValveDeadband::jumping_bands_kpa(scales);
+  const std::vector<double> bands = causes::ValveDeadband::Stiction::bands_kpa(scales);
   for (double band = 0.018 * scales.largest_kpa; band < 0.19 * scales.largest_kpa; band *= 1.003) {
     double nearest = 1;
     for (const double start : bands)

@@ -1,0 +1,85 @@
+#pragma once
+// Loading and unloading loops that differ in shape: an element with a length of its own for either way.
+
+#include "model/block.h"
+#include "model/exponential.h"
+
+namespace softgrip::model {
+
+/// A Duhem operator that unloading winds up and loading unwinds, each over its own pressure: while the
+/// pressure falls, z approaches the unloading length; while it rises, z fades over the loading length. Rate
+/// independent; nothing on the first loading. With both lengths equal the settled loop is point symmetric, as
+/// Bouc-Wen's own is; with different ones it is not. Exact for any step size.
+template <class T>
+class DuhemHysteresis {
+ public:
+  static constexpr BlockInfo info =
+      block_info("duhem_hysteresis", Station::actuator, Kind::element, Inverse::implicit, "Duhem hysteresis",
+                 "Loading and unloading loops differ in shape: unloading winds up what loading unwinds.",
+                 "y += gain z; falling: z' = |p'| (1 - z/unloading); rising: z' = -|p'| z/loading");
+  static constexpr std::array parameters{
+      parameter("gain_mm_per_kpa", "mm/kPa", "added per pressure at the start of unloading", Typical{0.02},
+                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
+      parameter("unloading_kpa", "kPa", "fall of the pressure over which it builds up", Typical{20.0},
+                Within{0.01, 10000.0}, Scale{5.0}),
+      parameter("loading_kpa", "kPa", "rise of the pressure over which it fades", Typical{5.0},
+                Within{0.01, 10000.0}, Scale{5.0})};
+
+  DuhemHysteresis(std::span<const T> values, const Preparation&)
+      : gain_(values[0]), unloading_per_kpa_(1.0 / values[1]), loading_per_kpa_(1.0 / values[2]) {}
+
+  void reset(const T& input) {
+    falling_ = value_of(input) < 0.0;
+    wound_kpa_ = T(0.0);
+    wound_kpa_ = moved(input, falling_);
+    pressure_ = input;
+    output_ = gain_ * wound_kpa_;
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    const T begin = output_;
+    const T change = in.end - in.begin;
+    falling_ = is_falling(change);
+    const T before = wound_kpa_;
+    wound_kpa_ = moved(change, falling_);
+    pressure_ = in.end;
+    output_ = gain_ * wound_kpa_;
+    // The cubic through both ends and their slopes.
+    const T size = falling_ ? T(-change) : change;
+    const T bow =
+        size * (falling_ ? unloading_per_kpa_ : loading_per_kpa_) * (wound_kpa_ - before) * (1.0 / 12.0);
+    return {in.duration_s, begin, output_, gain_ * ((before + wound_kpa_) * 0.5 + bow)};
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+    const U change = end_kpa - pressure_;
+    return gain_ * moved(change, is_falling(change));
+  }
+
+ private:
+  template <class U>
+  [[nodiscard]] bool is_falling(const U& change) const {
+    const double value = value_of(change);
+    return value < 0.0 || (value == 0.0 && falling_);
+  }
+
+  // z after a monotone change: dz/d|p| = 1 - z/unloading or -z/loading.
+  template <class U>
+  [[nodiscard]] U moved(const U& change, bool falling) const {
+    const T& per_kpa = falling ? unloading_per_kpa_ : loading_per_kpa_;
+    const U size = falling ? U(-change) : change;
+    return wound_kpa_ + size * phi1(U(-(per_kpa * size))) * ((falling ? 1.0 : 0.0) - per_kpa * wound_kpa_);
+  }
+
+  T gain_;
+  T unloading_per_kpa_;  // 1/unloading
+  T loading_per_kpa_;
+  bool falling_ = false;
+  T wound_kpa_{0.0};  // z
+  T pressure_{0.0};
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

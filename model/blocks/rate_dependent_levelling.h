@@ -1,0 +1,37 @@
+#pragma once
+// The chain's Bouc-Wen element that levels off sooner where the pressure moves fast.
+
+#include "model/block.h"
+#include "model/blocks/bouc_wen.h"
+
+namespace softgrip::model {
+
+/// Makes the chain's own Bouc-Wen element level off sooner with the rate (bouc_wen.h says how).
+template <class T>
+class RateDependentLevelling : public BoucWenPart<T> {
+ public:
+  static constexpr BlockInfo info = block_info(
+      "rate_dependent_levelling", Station::actuator, Kind::element, Inverse::implicit,
+      "Rate-dependent levelling",
+      "Loop width grows with rate beyond the viscous part: bouc_wen levels off sooner at high rates.",
+      "bouc_wen: eta counts eta (1 + levelling r/(r + rate)), settling r' = |p'| - r");
+  static constexpr std::array parameters{
+      parameter("levelling", "", "share by which eta of bouc_wen is larger at high rates", Typical{0.2},
+                Within{-0.9, 100.0}, Scale{0.1}, Neutral{0.0}),
+      parameter("rate_kpa_per_s", "kPa/s", "rate at which it has grown by half of that", Typical{20.0},
+                Within{0.01, 1e5}, Scale{10.0}, IfLeftOut{20.0}),
+      parameter("settling_s", "s", "time over which the rate is averaged", Typical{0.05}, Within{1e-3, 100.0},
+                Scale{0.05}, IfLeftOut{0.05})};
+
+  RateDependentLevelling(std::span<const T> values, const Preparation&)
+      : rate_{values[0], values[1], values[2]} {}
+
+  void shape(BoucWen<T>& hysteresis) const {
+    if (!is_zero(rate_.share)) hysteresis.level_off(rate_);
+  }
+
+ private:
+  BoucWenRate<T> rate_;
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,75 @@
+#pragma once
+// Loop width that grows with rate beyond the viscous part: a friction that relaxes.
+
+#include "model/block.h"
+#include "model/exponential.h"
+
+namespace softgrip::model {
+
+/// Dahl's friction that relaxes: z' = p' - z (|p'|/width + 1/tau), y -= gain z. Far faster than the width per
+/// tau it is a hysteresis of that width, far slower a viscous branch whose loop shrinks with the rate. Exact
+/// for straight pressure and any step size.
+template <class T>
+class RelaxingFriction {
+ public:
+  static constexpr BlockInfo info = block_info(
+      "relaxing_friction", Station::actuator, Kind::element, Inverse::implicit, "Relaxing friction",
+      "Loop width grows with rate beyond the viscous part: a friction that relaxes.",
+      "y -= gain z, z' = p' - z (|p'|/width + 1/tau)");
+  static constexpr std::array parameters{
+      parameter("gain_mm_per_kpa", "mm/kPa", "held back per pressure after a turn", Typical{0.03},
+                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
+      parameter("width_kpa", "kPa", "largest z, reached at high rates", Typical{10.0}, Within{0.01, 10000.0},
+                Scale{5.0}),
+      parameter("time_constant_s", "s", "time over which z relaxes", Typical{1.0}, Within{1e-3, 1e4},
+                Scale{0.5})};
+
+  RelaxingFriction(std::span<const T> values, const Preparation&)
+      : gain_(values[0]), per_kpa_(1.0 / values[1]), per_s_(1.0 / values[2]) {}
+
+  void reset(const T& input) {
+    held_kpa_ = T(0.0);  // relaxed
+    pressure_ = input;
+    output_ = T(0.0);
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    const T begin = output_;
+    const T before = held_kpa_;
+    const T change = in.end - in.begin;
+    const T decay = size_of(change) * per_kpa_ + in.duration_s * per_s_;
+    held_kpa_ = moved(change, decay);
+    pressure_ = in.end;
+    output_ = -gain_ * held_kpa_;
+    const T bow = decay * (held_kpa_ - before) * (1.0 / 12.0);
+    return {in.duration_s, begin, output_, -gain_ * ((before + held_kpa_) * 0.5 + bow)};
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T& duration_s, const U& end_kpa, const Surroundings&) const {
+    const U change = end_kpa - pressure_;
+    return -gain_ * moved(change, U(size_of(change) * per_kpa_ + duration_s * per_s_));
+  }
+
+ private:
+  template <class U>
+  static U size_of(const U& change) {
+    return value_of(change) < 0.0 ? U(-change) : change;
+  }
+
+  // dz/ds = change - decay z over s in [0, 1].
+  template <class U>
+  [[nodiscard]] U moved(const U& change, const U& decay) const {
+    return held_kpa_ + (change - decay * held_kpa_) * phi1(U(-decay));
+  }
+
+  T gain_;
+  T per_kpa_;        // 1/width
+  T per_s_;          // 1/tau
+  T held_kpa_{0.0};  // z
+  T pressure_{0.0};
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

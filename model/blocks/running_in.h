@@ -1,0 +1,36 @@
+#pragma once
+// The gain of the actuator drifts while it runs in.
+
+#include <cmath>
+
+#include "model/block.h"
+#include "model/moving_gain.h"
+
+namespace softgrip::model {
+
+/// y times 1 + r (1 - exp(-t/tau)), kept positive; t is the time of the campaign.
+template <class T>
+class RunningIn : public SurroundingsGain<RunningIn<T>, T> {
+ public:
+  static constexpr BlockInfo info = block_info(
+      "running_in", Station::actuator, Kind::displacement, Inverse::implicit, "Running in",
+      "The gain drifts while the actuator runs in.", "z = y (1 + run_in (1 - exp(-t/tau))), kept positive");
+  static constexpr std::array parameters{
+      parameter("run_in", "", "relative gain won in the course of running in", Typical{0.05},
+                Within{-10.0, 10.0}, Scale{0.05}, Neutral{0.0}),
+      parameter("run_in_time_s", "s", "time constant of running in", Typical{60.0}, Within{0.1, 1e5},
+                Scale{30.0}, IfLeftOut{60.0})};
+
+  RunningIn(std::span<const T> values, const Preparation&) : run_in_(values[0]), per_s_(1.0 / values[1]) {}
+
+  [[nodiscard]] T law(const Surroundings& surroundings) const {
+    using std::expm1;
+    return -run_in_ * expm1(T(per_s_ * -surroundings.time_s));
+  }
+
+ private:
+  T run_in_;
+  T per_s_;  // 1/tau
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,47 @@
+#pragma once
+// The zero of the sensor wanders to and fro.
+
+#include <cmath>
+#include <numbers>
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// z = y + a sin(w t) + b (cos(w t) - 1), w = 2 pi / period, t the time of the campaign: nothing at its
+/// start. Slow, as the temperature of a room; an oscillation is PeriodicDisturbance.
+template <class T>
+class SensorWander {
+ public:
+  static constexpr BlockInfo info = block_info(
+      "sensor_wander", Station::sensor, Kind::reading, Inverse::ignored, "Sensor wander",
+      "The zero wanders slowly to and fro.", "z = y + a sin(2 pi t/period) + b (cos(2 pi t/period) - 1)");
+  static constexpr std::array parameters{
+      parameter("wander_sin_mm", "mm", "a, of the wander", Typical{0.1}, Within{-100.0, 100.0}, Scale{0.1},
+                Neutral{0.0}, IfLeftOut{0.0}),
+      parameter("wander_cos_mm", "mm", "b, of the wander", Typical{0.1}, Within{-100.0, 100.0}, Scale{0.1},
+                Neutral{0.0}, IfLeftOut{0.0}),
+      parameter("wander_period_s", "s", "period of the wander", Typical{300.0}, Within{1.0, 1e5}, Scale{30.0},
+                IfLeftOut{300.0})};
+
+  SensorWander(std::span<const T> values, const Preparation&)
+      : sin_mm_(values[0]), cos_mm_(values[1]), period_s_(values[2]) {}
+
+  void reset(const T& input) { output_ = input; }
+  [[nodiscard]] T output() const { return output_; }
+
+  T sample(const T& displacement_mm, const T&, const Surroundings& surroundings) {
+    using std::cos;
+    using std::sin;
+    const T turn = (2.0 * std::numbers::pi * surroundings.time_s) / period_s_;
+    return output_ = displacement_mm + sin_mm_ * sin(turn) + cos_mm_ * (cos(turn) - 1.0);
+  }
+
+ private:
+  T sin_mm_;
+  T cos_mm_;
+  T period_s_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,29 @@
+#include "model/file/earlier_blocks.h"
+
+#include "model/registry.h"
+
+namespace softgrip::model {
+
+const EarlierBlock* find_earlier_block(std::string_view id) {
+  static const std::vector<EarlierBlock> all{
+      {"valve_deadband", {block_type<ValveDeadband>(), block_type<ValveStiction>()}, "form"},
+      {"asymmetric_hysteresis", {block_type<DuhemHysteresis>(), block_type<AsymmetricBoucWen>()}, "", true},
+      {"rate_dependent_hysteresis",
+       {block_type<RelaxingFriction>(), block_type<RateDependentWidth>(),
+        block_type<RateDependentLevelling>()},
+       "",
+       true},
+      // Their gains multiply now; before, they were added.
+      {"ageing", {block_type<Ageing>(), block_type<RunningIn>(), block_type<Wear>()}, "", false},
+      {"sensor_drift",
+       {block_type<SensorDrift>(), block_type<SensorWarmUp>(), block_type<SensorWander>(),
+        block_type<SensorFreeDrift>()},
+       "",
+       true}};
+  for (const EarlierBlock& block : all) {
+    if (block.id == id) return &block;
+  }
+  return nullptr;
+}
+
+}  // namespace softgrip::model
