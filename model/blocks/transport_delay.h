@@ -1,6 +1,7 @@
 #pragma once
 // Dead time between command and pressure: a line that holds the last `delay_s` of the signal.
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -22,8 +23,7 @@ class TransportDelay {
       parameter("delay_s", "s", "dead time", Typical{0.05}, Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0})};
 
   TransportDelay(std::span<const T> values, const Preparation& preparation)
-      : delay_s_(values[0]), capacity_(initial_capacity(value_of(values[0]), preparation.sample_time_s)) {
-    line_.resize(capacity_);
+      : delay_s_(values[0]), line_(initial_size(value_of(values[0]), preparation.sample_time_s)) {
     reset(T(0.0));
   }
 
@@ -77,12 +77,12 @@ class TransportDelay {
   };
 
   // Two pieces per sample (a jump and a ramp) and as many again when they are shorter than nominal.
-  static std::size_t initial_capacity(double delay_s, double sample_time_s) {
+  static std::size_t initial_size(double delay_s, double sample_time_s) {
     if (sample_time_s <= 0) return 64;
-    std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
-    std::size_t capacity = 64;
-    while (capacity < needed) capacity *= 2;
-    return capacity;
+    const std::size_t needed = 16 + static_cast<std::size_t>(4.0 * delay_s / sample_time_s);
+    std::size_t size = 64;
+    while (size < needed) size *= 2;
+    return size;
   }
 
   // Rounding must not decide on which side of a sample a kink or a jump falls: lengths that agree to 1e-9 are
@@ -98,27 +98,27 @@ class TransportDelay {
     return same(piece_s, remaining_s);
   }
 
+  /// The place of the i-th piece from the oldest on.
+  [[nodiscard]] std::size_t place(std::size_t i) const { return (head_ + i) & (line_.size() - 1); }
+
   void push(const Segment<T>& s) {
-    if (count_ == capacity_) grow();
-    line_[(head_ + count_) & (capacity_ - 1)] = {s.duration_s, s.end, s.mean};
+    if (count_ == line_.size()) grow();
+    line_[place(count_)] = {s.duration_s, s.end, s.mean};
     ++count_;
   }
   void pop() {
     front_begin_ = line_[head_].end;
-    head_ = (head_ + 1) & (capacity_ - 1);
+    head_ = place(1);
     --count_;
   }
   void grow() {
-    std::vector<Piece> larger(capacity_ * 2);
-    for (std::size_t i = 0; i < count_; ++i) larger[i] = line_[(head_ + i) & (capacity_ - 1)];
-    line_.swap(larger);
+    std::rotate(line_.begin(), line_.begin() + static_cast<std::ptrdiff_t>(head_), line_.end());
     head_ = 0;
-    capacity_ *= 2;
+    line_.resize(2 * line_.size());
   }
 
   T delay_s_;
   T front_begin_{0.0};  // where the oldest piece begins: the output
-  std::size_t capacity_;
   std::size_t head_ = 0;
   std::size_t count_ = 0;
   std::vector<Piece> line_;  // a ring; its size is a power of two
