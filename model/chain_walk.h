@@ -149,18 +149,21 @@ void Chain<T>::walk_pressure(Index i, const Segment<T>& segment, const Surroundi
   });
 }
 
+// What is done for each block is inlined whatever the compiler thinks of its size, here and in peek(): left
+// to itself, GCC 12 calls Kelvin-Voigt out of line (41 ns instead of 17 for a trial with derivative).
 template <class T>
 void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surroundings) {
   Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};
   for (Index i = first_element_; i < first_displacement_; ++i) {
-    visit_block(blocks_[i], [&](auto& block) {
-      if constexpr (walk::kind_of<decltype(block)> == Kind::element) {
-        const Segment<T> out = block.step(segment, surroundings);
-        sum.begin += out.begin;
-        sum.end += out.end;
-        sum.mean += out.mean;
-      }
-    });
+    visit_block(
+        blocks_[i], [&](auto& block) __attribute__((always_inline)) {
+          if constexpr (walk::kind_of<decltype(block)> == Kind::element) {
+            const Segment<T> out = block.step(segment, surroundings);
+            sum.begin += out.begin;
+            sum.end += out.end;
+            sum.mean += out.mean;
+          }
+        });
   }
   walk_displacement(first_displacement_, sum, surroundings);
 }
@@ -197,18 +200,19 @@ U Chain<T>::peek(const T& duration_s, const U& end_kpa, Surroundings surrounding
   U pressure = end_kpa;
   U displacement(0.0);
   for (Index i = 0; i < end_[2]; ++i) {
-    visit_block(blocks_[i], [&](const auto& block) {
-      using Block = decltype(block);
-      if constexpr (walk::is_implicit<Block>) {
-        if constexpr (walk::kind_of<Block> == Kind::pressure) {
-          pressure = block.peek(duration_s, pressure, surroundings);
-        } else if constexpr (walk::kind_of<Block> == Kind::element) {
-          displacement = displacement + block.peek(duration_s, pressure, surroundings);
-        } else {
-          displacement = block.peek(duration_s, displacement, surroundings);
-        }
-      }
-    });
+    visit_block(
+        blocks_[i], [&](const auto& block) __attribute__((always_inline)) {
+          using Block = decltype(block);
+          if constexpr (walk::is_implicit<Block>) {
+            if constexpr (walk::kind_of<Block> == Kind::pressure) {
+              pressure = block.peek(duration_s, pressure, surroundings);
+            } else if constexpr (walk::kind_of<Block> == Kind::element) {
+              displacement = displacement + block.peek(duration_s, pressure, surroundings);
+            } else {
+              displacement = block.peek(duration_s, displacement, surroundings);
+            }
+          }
+        });
   }
   return displacement;
 }
