@@ -8,7 +8,8 @@ revision=${2:-1}
 
 bash scripts/packages.sh build package
 cmake --preset release -DSOFTGRIP_PACKAGE_RELEASE="$revision" >/dev/null
-cmake --build --preset release -j "$(nproc)" --target softgripd softgrip softgrip-rig man_pages | tail -n 1
+. scripts/build.sh
+build release softgripd softgrip softgrip-rig man_pages
 mkdir -p "$out"
 log=$(mktemp) && trap 'rm -f "$log"' EXIT
 (cd build/release && cpack -B "$out" >"$log" 2>&1) || { cat "$log" >&2; exit 1; }

@@ -7,6 +7,7 @@
 # are files: build/PRESET/reports.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
+. scripts/build.sh
 . scripts/ctest.sh
 
 # sanitized PRESET TEST_PROGRAM ...
@@ -15,7 +16,7 @@ sanitized() {
   shift
   echo "$preset: $*"
   cmake --preset "$preset" >/dev/null
-  cmake --build --preset "$preset" -j "$(nproc)" --target "$@" | tail -n 1
+  build "$preset" "$@"
   rm -rf "$reports" && mkdir -p "$reports"
   ASAN_OPTIONS=log_path=$reports/asan UBSAN_OPTIONS=print_stacktrace=1:log_path=$reports/ubsan \
     TSAN_OPTIONS=log_path=$reports/tsan \

@@ -18,8 +18,8 @@ esac
 
 if $quick; then wanted="build tests"; else wanted="build tests package lint"; fi
 bash scripts/packages.sh $wanted
+. scripts/build.sh
 . scripts/ctest.sh
-jobs=$(nproc)
 started=$SECONDS
 say() { printf '\n== %s (%d s)\n' "$*" $((SECONDS - started)); }
 
@@ -31,12 +31,7 @@ fi
 
 say "build"
 cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=ON >/dev/null
-mkdir -p build
-if ! cmake --build --preset release -j "$jobs" >build/build.log 2>&1; then
-  grep -A 12 -E '^FAILED:' build/build.log || tail -n 40 build/build.log
-  exit 1
-fi
-tail -n 1 build/build.log
+build release
 
 if $quick; then
   say "test"
