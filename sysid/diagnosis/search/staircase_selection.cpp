@@ -1,5 +1,6 @@
 #include "sysid/diagnosis/search/staircase_selection.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "model/named.h"
@@ -11,12 +12,21 @@
 namespace softgrip::sysid {
 namespace {
 
+/// The cause in its smooth form: what is left of all staircases in the mean.
+Cause dragged_along(Cause dead_band) {
+  constexpr std::size_t play = model::block_type<model::ValveDeadband>();
+  const auto form = std::find_if(dead_band.forms.begin(), dead_band.forms.end(),
+                                 [](const CauseForm& one) { return one.type == play; });
+  dead_band.forms = {form, 1};
+  return dead_band;
+}
+
 /// What stands behind the valve, as far as a dead band that is simulated from the command can show it: a
 /// model without one has swallowed the valve's mean lag.
 std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& selected,
                                              const Cause& dead_band) {
   if (position_of(selected.point.model, dead_band)) return without_cause(selected, dead_band);
-  std::vector<Candidate> fits = fit_candidates(data, selected, {dead_band});
+  std::vector<Candidate> fits = fit_candidates(data, selected, {dragged_along(dead_band)});
   if (fits.empty() || !fits.front().fit) return std::nullopt;
   return without_cause(*fits.front().fit, dead_band);
 }
