@@ -29,7 +29,7 @@ if [ ! -s "$store/$release.tar" ]; then
   [ -n "$archive" ] || { echo "chroot_test.sh: apt names no archive of Debian" >&2; exit 1; }
   options=()
   while IFS= read -r line; do options+=(--aptopt="$line"); done < <(apt-config dump Acquire::http::Proxy Acquire::https::Proxy)
-  mmdebstrap --quiet --variant=minbase --include=ca-certificates,git "${options[@]}" \
+  mmdebstrap --quiet --format=tar --variant=minbase --include=ca-certificates,git "${options[@]}" \
     "$release" "$store/$release.part" "$archive" 2>"$store/mmdebstrap.log" ||
     { tail -n 20 "$store/mmdebstrap.log" >&2; exit 1; }
   mv "$store/$release.part" "$store/$release.tar"
