@@ -18,11 +18,11 @@ namespace {
 using model::Model;
 using model::SignalName;
 
-const Estimate& find(const std::vector<Estimate>& list, const std::string& name) {
+const Estimate& find(const std::vector<Estimate>& list, std::string_view name) {
   for (const Estimate& e : list) {
     if (e.name == name) return e;
   }
-  throw std::runtime_error("no estimate " + name);
+  throw std::runtime_error("no estimate " + std::string(name));
 }
 
 /// The combinations of the truth, each within `widths` half-widths of its interval.

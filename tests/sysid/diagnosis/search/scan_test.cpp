@@ -108,7 +108,7 @@ TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
   EXPECT_GE(elsewhere, 1U);
   EXPECT_LT(elsewhere, points.size());
   EXPECT_LE(points.size(), 4U);
-  const FitPoint& last = best_starts(scans, *find_cause("sensor_drift"), data.scales, 1).back();
+  const FitPoint last = best_starts(scans, *find_cause("sensor_drift"), data.scales, 1).back();
   const Cause drift = *find_cause("sensor_drift");
   EXPECT_TRUE(form_of(drift, last.model.blocks[*position_of(last.model, drift)]).free_form);
 }
