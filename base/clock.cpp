@@ -2,12 +2,18 @@
 
 #include <ctime>
 
+#include "base/grid.h"
+
 namespace softgrip {
 
 Nanoseconds MonotonicClock::now() const noexcept {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   return Nanoseconds{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+void MonotonicClock::sleep_until(Nanoseconds due) const noexcept {
+  softgrip::sleep_until(due);
 }
 
 }  // namespace softgrip

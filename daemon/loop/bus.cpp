@@ -63,7 +63,7 @@ Bus::Bus(drivers::Board& board, const rig::LoopSettings& loop, const rig::Reconn
 void Bus::run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept {
   Nanoseconds give_up = 0;
   while (!wires_.left_safely.load(std::memory_order_relaxed)) {
-    sleep_until(grid.due());
+    clock_.sleep_until(grid.due());
     step(grid.due());
     const Nanoseconds now = clock_.now();
     statistics_.slips.add(grid.advance(now));

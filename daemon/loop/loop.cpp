@@ -29,7 +29,7 @@ Loop::Loop(control::RigController& controller, std::uint32_t decimation, const C
 void Loop::run(Grid grid) noexcept {
   while (!wires_.leave.load(std::memory_order_relaxed)) {
     const Nanoseconds due = grid.due();
-    sleep_until(due);
+    clock_.sleep_until(due);
     tick(due);
     count_slips(grid.advance(ended_), woken_ - due >= grid.period());
   }

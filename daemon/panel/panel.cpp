@@ -61,7 +61,7 @@ Nanoseconds Panel::pause(Nanoseconds now) const noexcept {
 
 void Panel::step() noexcept {
   if (lost_) {
-    sleep_until(clock_.now() + look_interval_);
+    clock_.sleep_until(clock_.now() + look_interval_);
   } else {
     read_inputs();
   }

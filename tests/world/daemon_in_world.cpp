@@ -1,0 +1,144 @@
+#include "tests/world/daemon_in_world.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/loop/heartbeat.h"
+
+namespace softgrip::world {
+namespace {
+
+using control::Request;
+
+constexpr Nanoseconds leave_deadline = ns_per_s;
+constexpr Nanoseconds look_pause = ns_per_s / 20;
+constexpr Nanoseconds service_pause = ns_per_s / 50;
+constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
+/// WatchdogSec of the unit.
+constexpr Nanoseconds manager_patience = 2 * ns_per_s;
+
+daemon::Provenance provenance_of(const rig::RigFile& rig) {
+  daemon::Provenance provenance;
+  provenance.rig = rig.name;
+  for (const control::ChannelSettings& channel : rig.settings.channels)
+    provenance.channel_names.push_back(channel.name);
+  provenance.rate_hz = rig.settings.rate_hz;
+  provenance.decimation = rig.recorder.decimation;
+  return provenance;
+}
+
+}  // namespace
+
+DaemonInWorld::DaemonInWorld(const rig::RigFile& rig_file, Scheduler& scheduler, drivers::Board& board,
+                             std::string folder)
+    : rig(rig_file),
+      clock(scheduler),
+      loop_clock(scheduler),
+      origin(scheduler.now()),
+      controller(rig.settings),
+      wires(1 << 14),
+      events(10'000),
+      provenance(provenance_of(rig)),
+      loop(controller, rig.recorder.decimation, loop_clock, wires, loop_statistics),
+      bus(board, rig.loop, rig.reconnect, clock, wires, bus_statistics),
+      recorder((rig.recorder.directory = std::move(folder), rig.recorder), provenance, "", origin, wires,
+               events, shelf),
+      service(provenance.channel_names, origin, wires, events, shelf),
+      scheduler_(scheduler) {
+  actors_.resize(part_count);
+  actors_[static_cast<std::size_t>(Part::main)] = scheduler_.add("main", [this] { main_body(); });
+}
+
+bool DaemonInWorld::owns(ActorId id) const {
+  return std::find(actors_.begin(), actors_.end(), id) != actors_.end();
+}
+
+void DaemonInWorld::kill() {
+  for (const ActorId actor : actors_) scheduler_.kill(actor);
+  ended_ = true;
+}
+
+void DaemonInWorld::main_body() {
+  bus.open();
+  const Nanoseconds start = clock.now() + ns_per_s / 100;
+  const Nanoseconds period = nanoseconds(1 / rig.settings.rate_hz);
+  const auto offset = static_cast<Nanoseconds>(rig.loop.bus_offset_fraction * static_cast<double>(period));
+  const auto begin = [&](Part part, std::function<void()> body) {
+    actors_[static_cast<std::size_t>(part)] = scheduler_.add("", std::move(body));
+  };
+  begin(Part::loop, [this, start, period] {
+    loop.run(Grid(start, period));
+    loop_done_ = true;
+  });
+  begin(Part::bus, [this, start, period, offset] {
+    bus.run(Grid(start + offset, period), std::chrono::nanoseconds(leave_deadline));
+    bus_done_ = true;
+  });
+  begin(Part::service, [this] { service_body(); });
+  begin(Part::recorder, [this] { recorder_body(); });
+  look_after();
+
+  wires.leave.store(true);
+  const Nanoseconds give_up =
+      clock.now() + leave_deadline + ns_per_s + rig.reconnect.connect_deadline.count();
+  while (!(loop_done_ && bus_done_) && clock.now() < give_up)
+    clock.sleep_until(clock.now() + ns_per_s / 1000);
+  stop_others_ = true;
+  for (const Part part : {Part::service, Part::recorder}) {
+    while (!scheduler_.done(actor(part))) clock.sleep_until(clock.now() + ns_per_s / 1000);
+  }
+  // A thread that hangs cannot be joined: the process ends without it.
+  for (const Part part : {Part::loop, Part::bus}) scheduler_.kill(actor(part));
+  ended_ = true;
+}
+
+void DaemonInWorld::look_after() {
+  const Nanoseconds pause = nanoseconds(1 / rig.settings.rate_hz) + heartbeat_patience;
+  daemon::Heartbeat heartbeat(
+      {pause, pause + std::max<Nanoseconds>(rig.reconnect.connect_deadline.count(),
+                                            nanoseconds(rig.loop.exchange_deadline_s))});
+  Nanoseconds beat = clock.now();
+  while (!asked_to_end_) {
+    clock.sleep_until(clock.now() + look_pause);
+    const Nanoseconds now = clock.now();
+    if (heartbeat.beats(now, {loop_statistics.ticks.value(), bus_statistics.steps.value()})) beat = now;
+    if (now - beat > manager_patience) starved_ = true;
+  }
+}
+
+void DaemonInWorld::service_body() {
+  while (!stop_others_) {
+    serve();
+    clock.sleep_until(clock.now() + service_pause);
+  }
+  service.pump();
+}
+
+void DaemonInWorld::serve() {
+  service.pump();
+  for (auto request = requests_.begin(); request != requests_.end();) {
+    const auto id = service.submit(request->kind, request->sequence);
+    if (!id) break;  // busy: the client tries again
+    unanswered_[*id] = {request->kind, request->at};
+    request = requests_.erase(request);
+  }
+  for (auto asked = unanswered_.begin(); asked != unanswered_.end();) {
+    const bool open = service.take_answer(asked->first).kind == daemon::Service::Answer::Kind::pending;
+    asked = open ? std::next(asked) : unanswered_.erase(asked);
+  }
+}
+
+void DaemonInWorld::recorder_body() {
+  while (!stop_others_) {
+    recorder.drain();
+    clock.sleep_until(clock.now() + nanoseconds(rig.recorder.flush_interval_s));
+  }
+  recorder.finish();
+}
+
+void DaemonInWorld::ask(Request::Kind kind, std::shared_ptr<const daemon::LoadedSequence> sequence) {
+  requests_.push_back({kind, std::move(sequence), scheduler_.now()});
+  if (actors_[static_cast<std::size_t>(Part::service)] != 0) scheduler_.wake(actor(Part::service));
+}
+
+}  // namespace softgrip::world

@@ -1,0 +1,95 @@
+#pragma once
+// One life of the daemon: the same loop, bus, service and recorder as on a rig, each with the body that its
+// thread has there (daemon/service/real_run.cpp), on the world's clock.
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "control/tick/rig_controller.h"
+#include "daemon/loop/bus.h"
+#include "daemon/loop/loop.h"
+#include "daemon/recording/recorder.h"
+#include "daemon/socket/service.h"
+#include "rig/rig_file.h"
+#include "tests/world/hardware.h"
+#include "tests/world/scheduler.h"
+
+namespace softgrip::world {
+
+enum class Part : std::uint8_t { loop, bus, service, recorder, main };
+inline constexpr std::size_t part_count = 5;
+
+/// What a client asked and has no answer to yet.
+struct Asked {
+  control::Request::Kind kind = control::Request::Kind::none;
+  Nanoseconds at = 0;
+};
+
+class DaemonInWorld {
+ public:
+  /// Begins to run. `folder`: of the recordings.
+  DaemonInWorld(const rig::RigFile& rig, Scheduler& scheduler, drivers::Board& board, std::string folder);
+  DaemonInWorld(const DaemonInWorld&) = delete;
+  DaemonInWorld& operator=(const DaemonInWorld&) = delete;
+  DaemonInWorld(DaemonInWorld&&) = delete;
+  DaemonInWorld& operator=(DaemonInWorld&&) = delete;
+  ~DaemonInWorld() = default;
+
+  /// As a client does, through the service thread's next turn. `sequence` for a start.
+  void ask(control::Request::Kind kind, std::shared_ptr<const daemon::LoadedSequence> sequence = nullptr);
+  /// SIGTERM.
+  void terminate() noexcept { asked_to_end_ = true; }
+  /// SIGKILL.
+  void kill();
+
+  [[nodiscard]] ActorId actor(Part part) const { return actors_[static_cast<std::size_t>(part)]; }
+  [[nodiscard]] bool owns(ActorId id) const;
+  [[nodiscard]] bool ended() const noexcept { return ended_; }
+  [[nodiscard]] bool left_safely() const { return wires.left_safely.load(); }
+  /// Its heartbeat has stopped: the service manager kills it.
+  [[nodiscard]] bool starved() const noexcept { return starved_; }
+  [[nodiscard]] const std::map<std::uint32_t, Asked>& unanswered() const noexcept { return unanswered_; }
+
+  rig::RigFile rig;
+  WorldClock clock;
+  WorldClock loop_clock;  ///< the loop's own: looked at when a tick begins and when it ends
+  Nanoseconds origin;
+  control::RigController controller;
+  daemon::Wires wires;
+  daemon::EventLog events;
+  daemon::SequenceShelf shelf;
+  daemon::LoopStatistics loop_statistics;
+  daemon::BusStatistics bus_statistics;
+  daemon::Provenance provenance;
+  daemon::Loop loop;
+  daemon::Bus bus;
+  daemon::Recorder recorder;
+  daemon::Service service;
+
+ private:
+  struct Waiting {
+    control::Request::Kind kind;
+    std::shared_ptr<const daemon::LoadedSequence> sequence;
+    Nanoseconds at;
+  };
+  void main_body();
+  void service_body();
+  void recorder_body();
+  void look_after();
+  void serve();
+
+  Scheduler& scheduler_;
+  std::vector<ActorId> actors_;
+  std::vector<Waiting> requests_;
+  std::map<std::uint32_t, Asked> unanswered_;
+  bool asked_to_end_ = false;
+  bool loop_done_ = false;
+  bool bus_done_ = false;
+  bool stop_others_ = false;
+  bool starved_ = false;
+  bool ended_ = false;
+};
+
+}  // namespace softgrip::world

@@ -1,0 +1,38 @@
+#pragma once
+// A body of code with a stack of its own that runs until it gives control back. All in one thread.
+
+#include <ucontext.h>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace softgrip::world {
+
+/// An abandoned fibre's stack goes without its objects being destroyed, as those of a killed thread.
+class Fibre {
+ public:
+  explicit Fibre(std::function<void()> body);
+  Fibre(const Fibre&) = delete;
+  Fibre& operator=(const Fibre&) = delete;
+  Fibre(Fibre&&) = delete;
+  Fibre& operator=(Fibre&&) = delete;
+  ~Fibre() = default;
+
+  /// From outside: goes on with the body until give_back() or its end.
+  void resume();
+  /// From within.
+  void give_back();
+  [[nodiscard]] bool done() const noexcept { return done_; }
+
+ private:
+  static void enter(unsigned high, unsigned low);
+
+  std::function<void()> body_;
+  std::unique_ptr<std::byte[]> stack_;
+  ucontext_t own_{};
+  ucontext_t outside_{};
+  bool done_ = false;
+};
+
+}  // namespace softgrip::world

@@ -1,0 +1,129 @@
+#include "tests/world/hardware.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace softgrip::world {
+
+using drivers::BusStatus;
+
+Hardware::Hardware(HardwareSettings settings) : settings_(std::move(settings)) {
+  for (const simulation::PlantSettings& plant : settings_.plants) plants_.emplace_back(plant);
+  outputs_kpa_.assign(plants_.size(), 0);
+}
+
+void Hardware::put_out() {
+  for (std::size_t i = 0; i < plants_.size(); ++i) plants_[i].command(outputs_kpa_[i]);
+}
+
+/// In whole steps: what is written meanwhile reaches the air with the next.
+void Hardware::advance_plants(Nanoseconds until) {
+  const double step_s = seconds(settings_.plant_step);
+  for (; plants_at_ + settings_.plant_step <= until; plants_at_ += settings_.plant_step) {
+    for (simulation::Plant& plant : plants_) plant.advance(step_s);
+  }
+}
+
+void Hardware::move_to(Nanoseconds now) {
+  if (!begun_) {
+    begun_ = true;
+    plants_at_ = now;
+  }
+  // As with boards in the shops, nobody is missed before somebody has been there.
+  if (settings_.watchdog > 0 && !tripped_ && fed_at_ > 0 && fed_at_ + settings_.watchdog < now) {
+    advance_plants(fed_at_ + settings_.watchdog);
+    tripped_ = true;
+    std::fill(outputs_kpa_.begin(), outputs_kpa_.end(), 0.0);
+    put_out();
+    if (settings_.on_trip) settings_.on_trip();
+  }
+  advance_plants(now);
+}
+
+void Hardware::greet(Nanoseconds now) {
+  move_to(now);
+  fed_at_ = now;
+  tripped_ = false;
+}
+
+bool Hardware::write(Nanoseconds now, std::span<const double> outputs_kpa) {
+  move_to(now);
+  fed_at_ = now;
+  if (tripped_ && settings_.trip_latches) return false;
+  tripped_ = false;
+  if (refuses_writes) return true;
+  std::copy(outputs_kpa.begin(), outputs_kpa.end(), outputs_kpa_.begin());
+  put_out();
+  return true;
+}
+
+void Hardware::read(std::size_t channel, Nanoseconds now, model::Reading& reading) const {
+  const simulation::Plant& plant = plants_[channel];
+  const bool blind = plant.sees_nothing();
+  if (!blind) reading.displacement_mm = plant.reading_mm();
+  reading.validity = blind ? model::Validity::out_of_range : model::Validity::valid;
+  reading.pressure_kpa = plant.measured_pressure_kpa();
+  reading.command_readback_kpa = outputs_kpa_[channel];
+  reading.sampled_at = now;
+}
+
+WorldBoard::WorldBoard(Hardware& hardware, Line& line, Scheduler& scheduler, OnWrite on_write,
+                       std::function<void()> on_exchange)
+    : hardware_(hardware),
+      line_(line),
+      scheduler_(scheduler),
+      on_write_(std::move(on_write)),
+      on_exchange_(std::move(on_exchange)) {}
+
+BusStatus WorldBoard::connect(std::chrono::nanoseconds deadline) noexcept {
+  pass(line_.latency);
+  if (line_.status == BusStatus::disconnected || line_.status == BusStatus::timed_out) {
+    pass(line_.status == BusStatus::timed_out ? deadline.count() : 0);
+    return line_.status;
+  }
+  hardware_.greet(scheduler_.now());
+  return BusStatus::ok;
+}
+
+BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<model::Reading> readings,
+                               std::chrono::nanoseconds deadline) noexcept {
+  const Nanoseconds began = scheduler_.now();
+  on_exchange_();
+  // As the bytes that were sent: what the caller does with its own meanwhile changes nothing.
+  const std::vector<double> sent(commands_kpa.begin(), commands_kpa.end());
+  pass(line_.latency / 2);
+  const BusStatus status = line_.status;
+  if (status == BusStatus::disconnected) return status;
+  if (status == BusStatus::exception) {
+    hardware_.move_to(scheduler_.now());
+    return status;
+  }
+  const bool arrives = status != BusStatus::timed_out || line_.reply_lost;
+  bool taken = true;
+  if (arrives) {
+    const Nanoseconds now = scheduler_.now();
+    hardware_.move_to(now);
+    if (!hardware_.ignores_writes()) on_write_(began, sent);
+    taken = hardware_.write(now, sent);
+  }
+  if (status == BusStatus::timed_out) {
+    scheduler_.sleep_until(began + deadline.count());
+    return status;
+  }
+  const Nanoseconds sampled = scheduler_.now();
+  std::vector<model::Reading> read(readings.begin(), readings.end());
+  for (std::size_t i = 0; i < read.size(); ++i) hardware_.read(i, sampled, read[i]);
+  pass(line_.latency / 2);
+  if (status != BusStatus::ok) return status;
+  if (!taken) return BusStatus::watchdog_tripped;
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    if (read[i].command_readback_kpa != sent[i]) return BusStatus::write_refused;
+  }
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    ++read[i].sequence;
+    readings[i] = read[i];
+  }
+  return BusStatus::ok;
+}
+
+}  // namespace softgrip::world

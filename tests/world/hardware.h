@@ -1,0 +1,93 @@
+#pragma once
+// The board and the fingers behind it, as they are: outputs, a watchdog of its own, slow air. Whoever is
+// connected may write; the line may lose what is said.
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "drivers/board/board.h"
+#include "simulation/plant/plant.h"
+#include "tests/world/scheduler.h"
+
+namespace softgrip::world {
+
+struct HardwareSettings {
+  std::vector<simulation::PlantSettings> plants;
+  Nanoseconds watchdog = 0;    ///< outputs go to 0 after so long without a request; 0: none
+  bool trip_latches = true;    ///< writes are refused until the next connection; else the next one is taken
+  Nanoseconds plant_step = 0;  ///< how often outputs reach the air
+  std::function<void()> on_trip;  ///< the watchdog has vented
+};
+
+class Hardware {
+ public:
+  explicit Hardware(HardwareSettings settings);
+
+  void move_to(Nanoseconds now);
+  /// A session was opened: a latched trip is over.
+  void greet(Nanoseconds now);
+  /// What is written now does not count: a latched trip refuses it, or the outputs do not follow.
+  [[nodiscard]] bool ignores_writes() const noexcept {
+    return refuses_writes || (tripped_ && settings_.trip_latches);
+  }
+  /// False while a latched trip refuses it.
+  bool write(Nanoseconds now, std::span<const double> outputs_kpa);
+  void read(std::size_t channel, Nanoseconds now, model::Reading& reading) const;
+
+  [[nodiscard]] std::span<const double> outputs_kpa() const noexcept { return outputs_kpa_; }
+  [[nodiscard]] std::size_t channels() const noexcept { return outputs_kpa_.size(); }
+  [[nodiscard]] Nanoseconds watchdog() const noexcept { return settings_.watchdog; }
+  [[nodiscard]] simulation::Plant& plant(std::size_t channel) { return plants_[channel]; }
+  bool refuses_writes = false;
+
+ private:
+  void advance_plants(Nanoseconds until);
+  void put_out();
+
+  HardwareSettings settings_;
+  std::vector<simulation::Plant> plants_;
+  std::vector<double> outputs_kpa_;
+  Nanoseconds plants_at_ = 0;
+  Nanoseconds fed_at_ = 0;
+  bool begun_ = false;
+  bool tripped_ = false;
+};
+
+/// What is between daemon and board.
+struct Line {
+  drivers::BusStatus status = drivers::BusStatus::ok;
+  bool reply_lost = false;  ///< with timed_out: the request arrives, only the reply does not
+  Nanoseconds latency = 800'000;
+};
+
+/// The board as a daemon sees it. It waits on the world's clock.
+class WorldBoard final : public drivers::Board {
+ public:
+  /// Told before a request takes effect: when the exchange began, and what it writes.
+  using OnWrite = std::function<void(Nanoseconds began, std::span<const double> commands_kpa)>;
+
+  /// `on_exchange`: told when an exchange begins.
+  WorldBoard(Hardware& hardware, Line& line, Scheduler& scheduler, OnWrite on_write,
+             std::function<void()> on_exchange);
+
+  [[nodiscard]] std::size_t channels() const noexcept override { return hardware_.channels(); }
+  [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds deadline) noexcept override;
+  [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
+                                            std::span<model::Reading> readings,
+                                            std::chrono::nanoseconds deadline) noexcept override;
+  [[nodiscard]] std::string describe() const override { return "a board in the world"; }
+  [[nodiscard]] Budget budget() const override { return {}; }
+  [[nodiscard]] bool has_watchdog() const noexcept override { return hardware_.watchdog() > 0; }
+
+ private:
+  void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }
+
+  Hardware& hardware_;
+  Line& line_;
+  Scheduler& scheduler_;
+  OnWrite on_write_;
+  std::function<void()> on_exchange_;
+};
+
+}  // namespace softgrip::world

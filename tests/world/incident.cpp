@@ -1,0 +1,179 @@
+#include "tests/world/incident.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "base/random.h"
+#include "drivers/board/board.h"
+#include "tests/world/daemon_in_world.h"
+
+namespace softgrip::world {
+namespace {
+
+using Kind = Incident::Kind;
+
+constexpr std::array<const char*, 21> names{
+    "start",     "stop",           "vent",       "acknowledge",  "flood",       "terminate",
+    "kill",      "pause",          "pause late", "pause all",    "line",        "replies lost",
+    "slow line", "writes refused", "foreign",    "sensor stuck", "sensor lost", "line leaks",
+    "part gone", "emergency stop", "disk full"};
+constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
+
+/// How often each happens, of all that happens.
+struct Share {
+  Kind kind;
+  double share;
+};
+constexpr std::array shares{
+    Share{Kind::start, 20},       Share{Kind::stop, 4},           Share{Kind::vent, 6},
+    Share{Kind::acknowledge, 14}, Share{Kind::flood, 2},          Share{Kind::terminate, 1},
+    Share{Kind::kill, 1},         Share{Kind::pause, 10},         Share{Kind::pause_late, 6},
+    Share{Kind::pause_all, 6},    Share{Kind::line, 6},           Share{Kind::replies_lost, 3},
+    Share{Kind::slow_line, 2},    Share{Kind::write_refused, 2},  Share{Kind::foreign, 2},
+    Share{Kind::sensor_stuck, 2}, Share{Kind::sensor_lost, 2},    Share{Kind::line_leaks, 2},
+    Share{Kind::part_gone, 6},    Share{Kind::emergency_stop, 3}, Share{Kind::disk_full, 2},
+};
+
+class Drawing {
+ public:
+  explicit Drawing(std::uint64_t seed) : seed_(seed) {}
+  double uniform() { return uniform_at(seed_, ++count_); }
+  unsigned below(std::size_t n) { return static_cast<unsigned>(uniform() * static_cast<double>(n)); }
+  double between(double low, double high) { return low * std::pow(high / low, uniform()); }
+
+ private:
+  std::uint64_t seed_;
+  std::uint64_t count_ = 0;
+};
+
+Kind draw_kind(Drawing& drawing) {
+  double sum = 0;
+  for (const Share& one : shares) sum += one.share;
+  double at = drawing.uniform() * sum;
+  for (const Share& one : shares) {
+    at -= one.share;
+    if (at < 0) return one.kind;
+  }
+  return Kind::start;
+}
+
+/// Below, at and above the watchdog's time; half of them near it.
+double pause_s(Drawing& drawing, Nanoseconds watchdog) {
+  const double limit_s = watchdog > 0 ? seconds(watchdog) : 0.5;
+  return drawing.uniform() < 0.5 ? limit_s * (0.9 + 0.4 * drawing.uniform()) : drawing.between(0.002, 3);
+}
+
+Incident draw_one(Drawing& drawing, const Draw& draw, Nanoseconds at) {
+  Incident one;
+  one.at = at;
+  one.kind = draw_kind(drawing);
+  double duration_s = drawing.between(0.01, 4);
+  one.target = drawing.below(draw.channels);
+  switch (one.kind) {
+    case Kind::start:
+      one.target = drawing.below(draw.sequences);
+      break;
+    case Kind::flood:
+      one.target = 10 + drawing.below(200);
+      break;
+    case Kind::pause:
+    case Kind::pause_late:
+      one.target = drawing.below(part_count - 1);
+      if (one.kind == Kind::pause_late && one.target == static_cast<unsigned>(Part::bus) && !draw.late_bus)
+        one.target = static_cast<unsigned>(Part::loop);
+      duration_s = pause_s(drawing, draw.watchdog);
+      break;
+    case Kind::pause_all:
+      duration_s = pause_s(drawing, draw.watchdog);
+      break;
+    case Kind::line: {
+      constexpr std::array<drivers::BusStatus, 4> ways{
+          drivers::BusStatus::disconnected, drivers::BusStatus::timed_out, drivers::BusStatus::bad_reply,
+          drivers::BusStatus::exception};
+      one.target = static_cast<unsigned>(ways[drawing.below(ways.size())]);
+      break;
+    }
+    case Kind::slow_line:
+      one.value = drawing.between(0.002, 0.03);
+      break;
+    case Kind::foreign:
+      one.value = drawing.uniform() < 0.5 ? 0 : 40 * drawing.uniform();
+      duration_s = drawing.between(0.005, 1);
+      break;
+    default:
+      break;
+  }
+  one.duration = nanoseconds(duration_s);
+  return one;
+}
+
+bool lasts(Kind kind) {
+  return kind >= Kind::pause;
+}
+
+}  // namespace
+
+std::string text_of(const Incident& incident) {
+  std::string text =
+      fmt::format("{:9.4f} s  {}", seconds(incident.at), names[static_cast<std::size_t>(incident.kind)]);
+  switch (incident.kind) {
+    case Kind::start:
+      text += fmt::format(" sequence {}", incident.target);
+      break;
+    case Kind::flood:
+      text += fmt::format(" of {} acknowledgements", incident.target);
+      break;
+    case Kind::pause:
+    case Kind::pause_late:
+      text += fmt::format(" {}", parts[incident.target]);
+      break;
+    case Kind::line:
+      text += fmt::format(" {}", drivers::name_of(static_cast<drivers::BusStatus>(incident.target)));
+      break;
+    case Kind::slow_line:
+      text += fmt::format(" {:.4f} s", incident.value);
+      break;
+    case Kind::foreign:
+      text += fmt::format(" {:.3f} kPa", incident.value);
+      break;
+    case Kind::sensor_stuck:
+    case Kind::sensor_lost:
+    case Kind::line_leaks:
+      text += fmt::format(" channel {}", incident.target);
+      break;
+    default:
+      break;
+  }
+  if (lasts(incident.kind)) text += fmt::format(" for {:.4f} s", seconds(incident.duration));
+  return text;
+}
+
+std::vector<Incident> draw_incidents(const Draw& draw) {
+  Drawing drawing(derived_seed(draw.seed, 1));
+  // From quiet worlds, in which sequences come to their end, to wild ones.
+  const double mean_pause_s = drawing.between(0.25, 4);
+  std::vector<Incident> incidents;
+  double at_s = 1 + drawing.uniform();
+  incidents.push_back({nanoseconds(at_s), Kind::start, 0, drawing.below(draw.sequences), 0});
+  for (;;) {
+    at_s += -mean_pause_s * std::log(drawing.uniform());
+    const Nanoseconds at = nanoseconds(at_s);
+    if (at >= draw.length) break;
+    incidents.push_back(draw_one(drawing, draw, at));
+    // Most starts are tried by somebody who has cleared the fault before.
+    if (incidents.back().kind != Kind::start || drawing.uniform() < 0.3) continue;
+    Incident clear;
+    clear.at = at - ns_per_s / 10;
+    clear.kind = Kind::acknowledge;
+    incidents.insert(std::prev(incidents.end()), clear);
+  }
+  std::stable_sort(incidents.begin(), incidents.end(),
+                   [](const Incident& a, const Incident& b) { return a.at < b.at; });
+  return incidents;
+}
+
+}  // namespace softgrip::world

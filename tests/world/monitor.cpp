@@ -1,0 +1,220 @@
+#include "tests/world/monitor.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace softgrip::world {
+namespace {
+
+using control::State;
+
+/// Of pressures that are the same but for arithmetic [kPa].
+constexpr double equal_kpa = 1e-9;
+/// Vent: from the client's line to commands that fall, beside the slew.
+constexpr Nanoseconds vent_bound = ns_per_s / 10;
+/// A watchdog that has tripped is a latched fault by then.
+constexpr Nanoseconds trip_bound = ns_per_s / 2;
+
+double lowest(const control::RigSettings& rig, std::size_t channel) {
+  return rig.channels[channel].limits.pressure_min_kpa;
+}
+
+bool may_follow(State before, State after) {
+  switch (after) {
+    case State::starting:
+      return before == State::faulted;
+    case State::idle:
+      return before != State::faulted;
+    case State::resynchronising:
+      return before == State::idle;
+    case State::running:
+      return before == State::resynchronising || before == State::idle;
+    case State::stopping:
+      return before == State::running || before == State::resynchronising || before == State::idle ||
+             before == State::stopping;
+    case State::faulted:
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Monitor::Monitor(const control::RigSettings& rig, Nanoseconds watchdog) : rig_(rig), watchdog_(watchdog) {
+  boots();
+}
+
+void Monitor::violate(Nanoseconds at, const char* invariant, std::string text) {
+  if (!violation_) violation_ = {at, invariant, std::move(text)};
+}
+
+void Monitor::boots() {
+  armed_ = armed_at_entry_ = false;
+  last_write_ = 0;
+  state_ = State::starting;
+  safe_kpa_.assign(rig_.channels.size(), 0);
+  last_kpa_ = safe_kpa_;
+  results_ = {};
+  steps_ = {};
+  vent_waits_.reset();
+  trip_untold_.reset();
+  dead_.reset();
+}
+
+void Monitor::ticked(Nanoseconds now, const control::TickOutput& output) {
+  watch_events(output);
+  watch_state(now, output);
+  watch_grips(now, output);
+  for (std::size_t i = 0; i < output.channel_count; ++i) {
+    const control::ChannelOutput& channel = output.channels[i];
+    safe_kpa_[i] = channel.safe_kpa;
+    const control::LimitSettings& limits = rig_.channels[i].limits;
+    if (!(channel.command_kpa >= limits.pressure_min_kpa - equal_kpa &&
+          channel.command_kpa <= limits.pressure_max_kpa + equal_kpa))
+      violate(now, "outputs stay in range", fmt::format("channel {}: {} kPa", i, channel.command_kpa));
+  }
+}
+
+void Monitor::watch_events(const control::TickOutput& output) {
+  using Kind = control::Event::Kind;
+  for (const control::Event& event : output.events) {
+    switch (event.kind) {
+      case Kind::sequence_started:
+        armed_ = true;
+        vent_waits_.reset();
+        break;
+      case Kind::fault_latched:
+      case Kind::sequence_finished:
+        armed_ = false;
+        break;
+      case Kind::state_changed:
+        if (static_cast<State>(event.detail) == State::stopping) armed_ = false;
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+void Monitor::watch_state(Nanoseconds now, const control::TickOutput& output) {
+  for (const control::Event& event : output.events) {
+    if (event.kind != control::Event::Kind::state_changed) continue;
+    const auto state = static_cast<State>(event.detail);
+    if (state != state_ && !may_follow(state_, state))
+      violate(now, "states follow each other as drawn",
+              fmt::format("{} after {}", control::name_of(state), control::name_of(state_)));
+    state_ = state;
+  }
+  if (output.events.lost() > 0) state_ = output.state;
+  if (output.state != state_)
+    violate(now, "states follow each other as drawn",
+            fmt::format("{} without an event after {}", control::name_of(output.state),
+                        control::name_of(state_)));
+  if (state_ == State::faulted) trip_untold_.reset();
+}
+
+void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
+  for (std::size_t i = 0; i < output.channel_count; ++i) {
+    const control::ChannelOutput& channel = output.channels[i];
+    const bool new_grip = channel.result == control::GripResult::holding && results_[i] != channel.result;
+    results_[i] = channel.result;
+    const Nanoseconds sampled = now - nanoseconds(channel.age_s);
+    // Its step is over with the answer: what counts is when that one began.
+    if (new_grip && channel.evidence == control::GripEvidence::displacement &&
+        (channel.validity != model::Validity::valid || sampled < step_began_[i]))
+      violate(now, "HOLDING rests on readings newer than the grip",
+              fmt::format("channel {}: validity {}, sampled {:.4f} s before the step", i,
+                          static_cast<int>(channel.validity), seconds(step_began_[i] - sampled)));
+    if (channel.step != steps_[i] || state_ != State::running) {
+      steps_[i] = channel.step;
+      step_began_[i] = now;
+    }
+  }
+}
+
+void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
+                    std::span<const double> commands_kpa, bool safe_outputs) {
+  const double period_s = 1 / rig_.rate_hz;
+  const double elapsed_s = last_write_ == 0 ? period_s : seconds(now - last_write_) + 2 * period_s;
+  last_write_ = now;
+  for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
+    const control::LimitSettings& limits = rig_.channels[i].limits;
+    const double rise_kpa = commands_kpa[i] - outputs_kpa[i];
+    if (!foreign_ && rise_kpa > equal_kpa && !armed_at_entry_)
+      violate(now, "nothing rises unasked",
+              fmt::format("channel {}: {:.3f} -> {:.3f} kPa in an exchange that began {:.4f} s ago", i,
+                          outputs_kpa[i], commands_kpa[i], seconds(now - began)));
+    if (!foreign_ && rise_kpa > limits.slew_up_kpa_per_s * elapsed_s + equal_kpa)
+      violate(now, "outputs rise within their slew",
+              fmt::format("channel {}: {:.3f} -> {:.3f} kPa", i, outputs_kpa[i], commands_kpa[i]));
+    // From what was written last: a board that refuses writes stays behind.
+    const double fall_kpa = last_kpa_[i] - commands_kpa[i];
+    if (!safe_outputs && fall_kpa > limits.slew_down_kpa_per_s * elapsed_s + equal_kpa)
+      violate(now, "outputs fall within their slew, but for safe ones that no loop shapes",
+              fmt::format("channel {}: {:.3f} -> {:.3f} kPa", i, last_kpa_[i], commands_kpa[i]));
+    last_kpa_[i] = commands_kpa[i];
+    if (commands_kpa[i] < limits.pressure_min_kpa - equal_kpa ||
+        commands_kpa[i] > limits.pressure_max_kpa + equal_kpa)
+      violate(now, "outputs stay in range", fmt::format("channel {}: {} kPa is written", i, commands_kpa[i]));
+  }
+  foreign_ = false;
+}
+
+void Monitor::tripped(Nanoseconds) {
+  armed_ = armed_at_entry_ = false;
+  // What is written next begins there.
+  last_kpa_.assign(last_kpa_.size(), 0);
+  if (!trip_untold_) trip_untold_ = 0;
+}
+
+void Monitor::asked(control::Request::Kind kind, Nanoseconds) {
+  if (kind == control::Request::Kind::vent && !vent_waits_) vent_waits_ = 0;
+  if (kind == control::Request::Kind::start) vent_waits_.reset();
+}
+
+void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa) {
+  const Nanoseconds duration = seen_ == 0 ? 0 : now - seen_;
+  seen_ = now;
+  bool down = true;
+  double slowest_s = 0;
+  for (std::size_t i = 0; i < outputs_kpa.size(); ++i) {
+    down = down && outputs_kpa[i] <= lowest(rig_, i) + equal_kpa;
+    const control::LimitSettings& limits = rig_.channels[i].limits;
+    slowest_s =
+        std::max(slowest_s, (limits.pressure_max_kpa - limits.pressure_min_kpa) / limits.slew_down_kpa_per_s);
+  }
+  if (excuse.no_daemon) {
+    dead_ = dead_.value_or(0) + duration;
+    if (watchdog_ > 0 && *dead_ > watchdog_ + 2 * duration && !down && !foreign_)
+      violate(now, "a board with a watchdog vents when the daemon is gone", "outputs are still up");
+    return;
+  }
+  if (excuse.paused || excuse.no_line) return;
+  if (vent_waits_) {
+    *vent_waits_ += duration;
+    if (down) vent_waits_.reset();
+  }
+  if (vent_waits_ && *vent_waits_ > vent_bound + nanoseconds(slowest_s))
+    violate(now, "a vent is carried out in time",
+            fmt::format("outputs are still up {:.3f} s of undisturbed time after it was asked",
+                        seconds(*vent_waits_)));
+  if (trip_untold_) *trip_untold_ += duration;
+  if (trip_untold_ && *trip_untold_ > trip_bound)
+    violate(now, "a watchdog that has tripped is a fault", "none was latched");
+}
+
+void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {
+  for (std::size_t i = 0; i < outputs_kpa.size(); ++i) {
+    if (!foreign_ && outputs_kpa[i] > safe_kpa_[i] + equal_kpa)
+      violate(now, "the last outputs are the safe ones",
+              fmt::format("channel {}: {} kPa, safe were {}", i, outputs_kpa[i], safe_kpa_[i]));
+  }
+}
+
+void Monitor::answer_is_late(Nanoseconds now, Nanoseconds asked_at) {
+  violate(now, "every request is answered",
+          fmt::format("one of {:.3f} s ago is not", seconds(now - asked_at)));
+}
+
+}  // namespace softgrip::world

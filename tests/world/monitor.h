@@ -1,0 +1,86 @@
+#pragma once
+// The invariants, each stated once, and judged wherever it could break: at every write that reaches the board
+// and after every tick.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "control/tick/settings.h"
+#include "control/tick/tick.h"
+#include "tests/world/scheduler.h"
+
+namespace softgrip::world {
+
+struct Violation {
+  Nanoseconds at = 0;
+  std::string invariant;  ///< its name
+  std::string text;
+};
+
+/// What the daemon and its surroundings were spared of, up to now: bounds count such time only.
+struct Excuse {
+  bool paused = false;   ///< a thread or the whole process stands still
+  bool no_line = false;  ///< something on the line or the board hinders exchanges, or none was good since
+  bool no_daemon = false;
+};
+
+class Monitor {
+ public:
+  Monitor(const control::RigSettings& rig, Nanoseconds watchdog);
+
+  /// After a tick of the loop.
+  void ticked(Nanoseconds now, const control::TickOutput& output);
+  /// Before a write of the daemon reaches the board, whose outputs are as given. `began`: its exchange.
+  void write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
+             std::span<const double> commands_kpa, bool safe_outputs);
+  /// The daemon looked at its permission to move when this exchange began.
+  void exchange_begins() noexcept { armed_at_entry_ = armed_; }
+  void foreign_wrote() noexcept { foreign_ = true; }
+  /// The board's watchdog has vented.
+  void tripped(Nanoseconds now);
+  void asked(control::Request::Kind kind, Nanoseconds now);
+  /// Time has passed, with these outputs.
+  void passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa);
+  /// A daemon begins to run: nothing of the last one's counts.
+  void boots();
+  /// It ended by itself, having written its safe outputs.
+  void left(Nanoseconds now, std::span<const double> outputs_kpa);
+  void answer_is_late(Nanoseconds now, Nanoseconds asked_at);
+  void recording_lacks(const std::string& text) { violate(0, "recordings are whole", text); }
+  void leaks(const std::string& text) { violate(0, "nothing leaks", text); }
+
+  [[nodiscard]] const std::optional<Violation>& violation() const noexcept { return violation_; }
+  [[nodiscard]] bool armed() const noexcept { return armed_; }
+  /// What the last tick would leave behind.
+  [[nodiscard]] const std::vector<double>& safe_kpa() const noexcept { return safe_kpa_; }
+
+ private:
+  void violate(Nanoseconds at, const char* invariant, std::string text);
+  void watch_events(const control::TickOutput& output);
+  void watch_state(Nanoseconds now, const control::TickOutput& output);
+  void watch_grips(Nanoseconds now, const control::TickOutput& output);
+
+  const control::RigSettings& rig_;
+  Nanoseconds watchdog_;
+  std::optional<Violation> violation_;
+  bool armed_ = false;  // a start was accepted, and nothing since forbids to rise
+  bool armed_at_entry_ = false;
+  bool foreign_ = false;  // another master has written since our last write
+  Nanoseconds last_write_ = 0;
+  Nanoseconds seen_ = 0;
+  control::State state_ = control::State::starting;
+  std::vector<double> safe_kpa_;
+  std::vector<double> last_kpa_;  // as written
+  std::array<control::GripResult, control::max_channels> results_{};
+  std::array<std::uint16_t, control::max_channels> steps_{};
+  std::array<Nanoseconds, control::max_channels> step_began_{};
+  std::optional<Nanoseconds> vent_waits_;   // unexcused time since it was asked
+  std::optional<Nanoseconds> trip_untold_;  // unexcused time since the board vented
+  std::optional<Nanoseconds> dead_;         // time without a daemon
+};
+
+}  // namespace softgrip::world

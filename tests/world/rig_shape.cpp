@@ -1,0 +1,53 @@
+#include "tests/world/rig_shape.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/random.h"
+
+namespace softgrip::world {
+
+RigShape draw_shape(const rig::RigFile& example, std::uint64_t seed) {
+  RigShape shape;
+  shape.rig = example;
+  shape.seed = seed;
+  std::uint64_t drawn = 0;
+  const auto one_of = [&](auto... values) {
+    const std::array all{values...};
+    return all[static_cast<std::size_t>(uniform_at(derived_seed(seed, 3), ++drawn) *
+                                        static_cast<double>(all.size()))];
+  };
+  control::RigSettings& settings = shape.rig.settings;
+  const double watchdog_s = one_of(0.0, 0.2, 0.5, 0.5, 1.0);
+  shape.watchdog = nanoseconds(watchdog_s);
+  shape.trip_latches = one_of(true, false);
+  settings.safety.board_vents_when_silent = shape.watchdog > 0;
+  settings.safety.safe_action[static_cast<std::size_t>(control::Phase::holding)] =
+      one_of(control::SafeAction::hold, control::SafeAction::vent);
+  settings.safety.on_emergency_stop =
+      one_of(control::SafeAction::vent, control::SafeAction::vent, control::SafeAction::hold);
+  // As patient as a rig file may be: below the board's watchdog.
+  const double most_cycles = watchdog_s > 0 ? 0.8 * watchdog_s * settings.rate_hz : 200;
+  settings.faults.bus_down_cycles =
+      static_cast<std::uint32_t>(std::clamp(one_of(2.0, 5.0, 30.0, most_cycles), 1.0, most_cycles));
+  settings.faults.invalid_reading_cycles = static_cast<std::uint32_t>(one_of(3, 5, 400));
+  settings.faults.readback_cycles = static_cast<std::uint32_t>(one_of(5, 10));
+  settings.faults.slipped_cycles = static_cast<std::uint32_t>(one_of(0, 0, 50));
+  settings.faults.pressure_cycles = static_cast<std::uint32_t>(one_of(0, 20));
+  shape.rig.loop.max_missed_commands = static_cast<std::uint32_t>(one_of(5, 10, 40));
+  const double slew = one_of(15.0, 60.0, 300.0);
+  for (control::ChannelSettings& channel : settings.channels) {
+    channel.limits.slew_up_kpa_per_s = slew;
+    channel.limits.slew_down_kpa_per_s = 2 * slew;
+  }
+  shape.text = fmt::format(
+      "watchdog {} s{}, bus_down_cycles {}, max_missed_commands {}, slew {}/{} kPa/s, holding: {}",
+      watchdog_s, shape.trip_latches ? ", latching" : ", cleared by a write", settings.faults.bus_down_cycles,
+      shape.rig.loop.max_missed_commands, slew, 2 * slew,
+      control::name_of(settings.safety.safe_action[static_cast<std::size_t>(control::Phase::holding)]));
+  return shape;
+}
+
+}  // namespace softgrip::world

@@ -1,0 +1,85 @@
+#include "tests/world/scheduler.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/random.h"
+
+namespace softgrip::world {
+namespace {
+
+/// Sleeps end late by up to this, mostly by much less.
+constexpr double latest_wake_ns = 300'000;
+
+}  // namespace
+
+ActorId Scheduler::add(std::string name, std::function<void()> body) {
+  Actor actor;
+  actor.name = std::move(name);
+  actor.fibre = std::make_unique<Fibre>(std::move(body));
+  actor.due = now_;
+  actors_.push_back(std::move(actor));
+  return actors_.size() - 1;
+}
+
+void Scheduler::kill(ActorId actor) {
+  actors_[actor].over = true;
+}
+
+void Scheduler::pause(ActorId actor, Nanoseconds until) {
+  actors_[actor].paused_until = std::max(actors_[actor].paused_until, until);
+}
+
+bool Scheduler::paused(ActorId actor) const {
+  return actors_[actor].paused_until > now_;
+}
+
+void Scheduler::wake(ActorId actor) {
+  actors_[actor].due = std::min(actors_[actor].due, now_);
+}
+
+Scheduler::Actor* Scheduler::next() {
+  Actor* first = nullptr;
+  for (Actor& actor : actors_) {
+    if (actor.over) continue;
+    if (first == nullptr || actor.goes_on() < first->goes_on()) first = &actor;
+  }
+  return first;
+}
+
+void Scheduler::run_until(Nanoseconds end, const std::function<void(ActorId)>& after) {
+  while (!stopped_) {
+    Actor* const actor = next();
+    if (actor == nullptr || actor->goes_on() > end) break;
+    now_ = std::max(now_, actor->goes_on());
+    running_ = static_cast<ActorId>(actor - actors_.data());
+    inside_ = true;
+    actor->fibre->resume();
+    inside_ = false;
+    // The vector may have grown meanwhile.
+    Actor& ran = actors_[running_];
+    if (ran.fibre->done()) ran.over = true;
+    after(running_);
+  }
+  now_ = std::max(now_, end);
+}
+
+void Scheduler::sleep_until(Nanoseconds due) {
+  const double u = uniform_at(seed_, ++drawn_);
+  Actor& self = actors_[running_];
+  self.due = std::max(due, now_) + static_cast<Nanoseconds>(latest_wake_ns * u * u * u);
+  Fibre& fibre = *self.fibre;
+  fibre.give_back();
+}
+
+void Scheduler::looked() {
+  if (!inside_) return;
+  Actor& self = actors_[running_];
+  if (self.pause_after_look == 0) return;
+  self.due = now_ + self.pause_after_look;
+  self.pause_after_look = 0;
+  Fibre& fibre = *self.fibre;
+  fibre.give_back();
+}
+
+}  // namespace softgrip::world

@@ -1,0 +1,90 @@
+#pragma once
+// The threads of a daemon as fibres on one simulated clock: one of them runs at a time, which one follows
+// from the seed alone. Any can be paused while it sleeps, or right after it has looked at the clock.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/clock.h"
+#include "tests/world/fibre.h"
+
+namespace softgrip::world {
+
+using ActorId = std::size_t;
+
+class Scheduler {
+ public:
+  explicit Scheduler(std::uint64_t seed, Nanoseconds begin) : seed_(seed), now_(begin) {}
+
+  /// A thread that begins now.
+  ActorId add(std::string name, std::function<void()> body);
+  /// It never goes on.
+  void kill(ActorId actor);
+  [[nodiscard]] bool done(ActorId actor) const { return actors_[actor].over; }
+
+  /// It does not go on before `until`.
+  void pause(ActorId actor, Nanoseconds until);
+  /// It stands still for `duration` after it has looked at the clock the next time: what it knows is old.
+  void pause_after_look(ActorId actor, Nanoseconds duration) { actors_[actor].pause_after_look = duration; }
+  [[nodiscard]] bool paused(ActorId actor) const;
+  /// What it waits for has come.
+  void wake(ActorId actor);
+
+  /// Runs whoever is due, up to and with `end`. `after` is told who ran, whenever one sleeps again.
+  void run_until(Nanoseconds end, const std::function<void(ActorId)>& after);
+  void stop() noexcept { stopped_ = true; }
+
+  [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
+  /// From within an actor. A sleep ends a little late, as the kernel's do.
+  void sleep_until(Nanoseconds due);
+  /// From within an actor, which has just looked at the clock.
+  void looked();
+
+ private:
+  struct Actor {
+    std::string name;
+    std::unique_ptr<Fibre> fibre;
+    Nanoseconds due = 0;
+    Nanoseconds paused_until = 0;
+    Nanoseconds pause_after_look = 0;
+    bool over = false;
+
+    [[nodiscard]] Nanoseconds goes_on() const noexcept { return due > paused_until ? due : paused_until; }
+  };
+  [[nodiscard]] Actor* next();
+
+  std::uint64_t seed_;
+  std::uint64_t drawn_ = 0;
+  Nanoseconds now_;
+  std::vector<Actor> actors_;
+  ActorId running_ = 0;
+  bool inside_ = false;
+  bool stopped_ = false;
+};
+
+/// The clock of the daemon in the world.
+class WorldClock final : public Clock {
+ public:
+  explicit WorldClock(Scheduler& scheduler) : scheduler_(scheduler) {}
+  [[nodiscard]] Nanoseconds now() const noexcept override {
+    const Nanoseconds seen = scheduler_.now();
+    before_last_ = std::exchange(last_, seen);
+    scheduler_.looked();
+    return seen;
+  }
+  void sleep_until(Nanoseconds due) const noexcept override { scheduler_.sleep_until(due); }
+  /// What it showed at the last look but one.
+  [[nodiscard]] Nanoseconds before_last() const noexcept { return before_last_; }
+
+ private:
+  Scheduler& scheduler_;
+  mutable Nanoseconds last_ = 0;
+  mutable Nanoseconds before_last_ = 0;
+};
+
+}  // namespace softgrip::world
