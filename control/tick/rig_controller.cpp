@@ -1,5 +1,6 @@
 #include "control/tick/rig_controller.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -70,11 +71,23 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   output_.events.clear();
   carry_out(supervisor_.tick(input, facts(input, time_s), output_.events), time_s);
   play(time_s);
+  stay_below_outputs(input.outputs_kpa);
   for (std::size_t i = 0; i < channels_.size(); ++i) control(i, input, time_s);
   conclude();
   output_.state = supervisor_.state();
   output_.first_fault = supervisor_.first_fault();
   return output_;
+}
+
+/// Only a sequence may raise a pressure: a command that never reached the board, or that the board has undone, is
+/// forgotten when it ends.
+void RigController::stay_below_outputs(std::span<const double> outputs_kpa) noexcept {
+  const State state = supervisor_.state();
+  if (state == State::running || state == State::resynchronising) return;
+  for (std::size_t i = 0; i < std::min(channels_.size(), outputs_kpa.size()); ++i) {
+    double& command_kpa = output_.channels[i].command_kpa;
+    command_kpa = std::min(command_kpa, outputs_kpa[i]);
+  }
 }
 
 Facts RigController::facts(const TickInput& input, double time_s) noexcept {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "control/elements/rest_watch.h"
@@ -51,6 +52,7 @@ class RigController {
   Rest look_for_rest(const PreparedSequence& sequence, double time_s) noexcept;
   void carry_out(const Orders& orders, double time_s) noexcept;
   void play(double time_s) noexcept;
+  void stay_below_outputs(std::span<const double> outputs_kpa) noexcept;
   void control(std::size_t index, const TickInput& input, double time_s) noexcept;
   [[nodiscard]] ChannelDemand demand(std::size_t index, double time_s) const noexcept;
   void tell_changes(std::size_t index) noexcept;

@@ -50,12 +50,16 @@ struct BusHealth {
   bool connected = false;             ///< a session is up
   FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
   std::uint32_t consecutive_failures = 0;
+  /// Counts how often the bus has stopped obeying: since then it writes nothing above TickInput::outputs_kpa, and
+  /// `fault` says why, until commands come from a tick that knew this number.
+  std::uint32_t inhibit = 0;
 };
 
 struct TickInput {
   Nanoseconds now = 0;
   std::span<const model::Reading> readings;  ///< one per channel
   BusHealth bus;
+  std::span<const double> outputs_kpa;  ///< what at least stands at the board's outputs; empty: not known
   Request request;
   bool emergency_stop = false;       ///< the level of the input, true = stop
   bool interlock_open = false;       ///< a start is refused while true; opening it does not end a sequence

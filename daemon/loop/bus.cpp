@@ -18,15 +18,6 @@ bool loses_session(BusStatus status) noexcept {
          status == BusStatus::bad_reply || status == BusStatus::watchdog_tripped;
 }
 
-/// After these the outputs are not where the controller believes they are.
-bool said_by_board(BusStatus status) noexcept {
-  return status == BusStatus::write_refused || status == BusStatus::watchdog_tripped;
-}
-
-/// The loop reads the newest report only; with several it cannot miss what the board said, however their
-/// grids jitter against each other.
-constexpr std::uint32_t reports_of_a_refusal = 3;
-
 }  // namespace
 
 FaultCode fault_of(BusStatus status) noexcept {
@@ -49,8 +40,9 @@ FaultCode fault_of(BusStatus status) noexcept {
   return FaultCode::bus_down;
 }
 
-Bus::Bus(drivers::Board& board, const rig::LoopSettings& loop, const rig::ReconnectSettings& reconnect,
-         const Clock& clock, Wires& wires, BusStatistics& statistics) noexcept
+Bus::Bus(drivers::Board& board, const control::RigSettings& rig, const rig::LoopSettings& loop,
+         const rig::ReconnectSettings& reconnect, const Clock& clock, Wires& wires,
+         BusStatistics& statistics) noexcept
     : board_(board),
       loop_(loop),
       reconnect_(reconnect),
@@ -58,7 +50,13 @@ Bus::Bus(drivers::Board& board, const rig::LoopSettings& loop, const rig::Reconn
       wires_(wires),
       statistics_(statistics),
       channels_(std::min(board.channels(), control::max_channels)),
-      pause_(reconnect.first_pause.count()) {}
+      watchdog_(board.watchdog_time().count()),
+      watchdog_margin_(rig::watchdog_margin(loop, board.watchdog_time()).count()),
+      pause_(reconnect.first_pause.count()) {
+  for (std::size_t i = 0; i < std::min(channels_, rig.channels.size()); ++i) {
+    lowest_kpa_[i] = rig.channels[i].limits.pressure_min_kpa;
+  }
+}
 
 void Bus::run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept {
   Nanoseconds give_up = 0;
@@ -76,8 +74,11 @@ void Bus::run(Grid grid, std::chrono::nanoseconds leave_deadline) noexcept {
 void Bus::step(Nanoseconds due) noexcept {
   statistics_.steps.add();
   statistics_.wake_up.add(clock_.now() - due);
-  if (!fetch_commands()) return;
+  if (!listen()) return;
+  const bool connected = session_ != Session::none;
   if (ensure_session()) {
+    // Connecting takes its time: what the loop has said meanwhile counts.
+    if (!connected && wires_.commands.fetch()) unheard_ = 0;
     exchange();
   } else {
     ++report_.health.consecutive_failures;
@@ -85,28 +86,32 @@ void Bus::step(Nanoseconds due) noexcept {
   publish();
 }
 
-bool Bus::fetch_commands() noexcept {
-  const bool fetched = wires_.commands.fetch();
-  const Commands& commands = wires_.commands.value();
-  if (fetched) unheard_ = 0;
-  switch (hearing_) {
-    case Hearing::nothing_yet:
-      if (fetched) hearing_ = Hearing::commands;
-      break;
-    case Hearing::commands:
-      if (fetched || commands.last || ++unheard_ != loop_.max_missed_commands) break;
-      hearing_ = Hearing::silence;
-      tell(BusEvent::Kind::loop_silent, BusStatus::ok);
-      break;
-    case Hearing::silence:
-      if (!fetched) ++unheard_;
-      // What the safe outputs did in the meantime the loop did not know; its motion must end first.
-      if (!fetched || commands.moving) break;
-      hearing_ = Hearing::commands;
-      tell(BusEvent::Kind::loop_back, BusStatus::ok);
-      break;
+/// False as long as the loop has never spoken.
+bool Bus::listen() noexcept {
+  if (wires_.commands.fetch()) {
+    spoken_ = true;
+    unheard_ = 0;
+    obey_if_heard();
+  } else if (spoken_ && !wires_.commands.value().last && ++unheard_ == loop_.max_missed_commands) {
+    inhibit(FaultCode::cycles_lost);
+    tell(BusEvent::Kind::loop_silent, BusStatus::ok);
   }
-  return hearing_ != Hearing::nothing_yet;
+  return spoken_;
+}
+
+void Bus::inhibit(FaultCode reason) noexcept {
+  inhibited_ = reason;
+  ++report_.health.inhibit;
+}
+
+void Bus::obey_if_heard() noexcept {
+  const Commands& commands = wires_.commands.value();
+  if (inhibited_ == FaultCode::none || commands.inhibit != report_.health.inhibit || commands.moving) return;
+  for (std::size_t i = 0; i < channels_; ++i) {
+    if (commands.command_kpa[i] > report_.outputs_kpa[i]) return;
+  }
+  if (inhibited_ == FaultCode::cycles_lost) tell(BusEvent::Kind::loop_back, BusStatus::ok);
+  inhibited_ = FaultCode::none;
 }
 
 bool Bus::ensure_session() noexcept {
@@ -132,13 +137,14 @@ void Bus::put_off_next_attempt() noexcept {
 }
 
 void Bus::exchange() noexcept {
-  const Commands& commands = wires_.commands.value();
-  const bool silent = hearing_ == Hearing::silence;
-  const auto& outputs = silent ? commands.safe_kpa : commands.command_kpa;
-  const Nanoseconds begin = clock_.now();
-  const BusStatus status =
-      board_.exchange(std::span(outputs).first(channels_), std::span(report_.readings).first(channels_),
-                      std::chrono::nanoseconds(nanoseconds(loop_.exchange_deadline_s)));
+  const Nanoseconds began = clock_.now();
+  const bool gap_known = judge_gap(began, watchdog_margin_);
+  choose_outputs();
+  const bool last = wires_.commands.value().last;
+  const BusStatus status = board_.exchange(std::span(written_kpa_).first(channels_),
+                                           std::span(report_.readings).first(channels_),
+                                           std::chrono::nanoseconds(nanoseconds(loop_.exchange_deadline_s)));
+  const Nanoseconds ended = clock_.now();
   statistics_.exchanges.add();
   if (status != BusStatus::ok) {
     if (loses_session(status)) {
@@ -150,30 +156,67 @@ void Bus::exchange() noexcept {
     note_failure(status);
     return;
   }
+  report_.outputs_kpa = written_kpa_;
+  // This thread may have been stopped on the way: what arrived came too late for the old outputs.
+  if (!gap_known) judge_gap(ended, 0);
+  last_good_ = began;
+  note_success(ended - began);
+  if (last) wires_.left_safely.store(true, std::memory_order_release);
+}
+
+void Bus::choose_outputs() noexcept {
+  const Commands& commands = wires_.commands.value();
+  written_kpa_ = silent() ? commands.safe_kpa : commands.command_kpa;
+  if (inhibited_ == FaultCode::none) return;
+  for (std::size_t i = 0; i < channels_; ++i) {
+    written_kpa_[i] = std::min(written_kpa_[i], report_.outputs_kpa[i]);
+  }
+}
+
+void Bus::note_success(Nanoseconds duration) noexcept {
   session_ = Session::proven;
   pause_ = reconnect_.first_pause.count();
-  statistics_.exchange.add(clock_.now() - begin);
-  report_.health = {true, silent ? FaultCode::cycles_lost : FaultCode::none, silent ? unheard_ : 0};
-  if (repeats_ > 0) {
-    --repeats_;
-    report_.health.fault = said_;
-  }
-  if (told_failed_) tell(BusEvent::Kind::recovered, status);
+  statistics_.exchange.add(duration);
+  report_.health.connected = true;
+  report_.health.fault = inhibited_;
+  report_.health.consecutive_failures = silent() ? unheard_ : 0;
+  if (told_failed_) tell(BusEvent::Kind::recovered, BusStatus::ok);
   told_failed_ = false;
-  if (commands.last) wires_.left_safely.store(true, std::memory_order_release);
 }
 
 void Bus::note_failure(BusStatus status) noexcept {
-  if (said_by_board(status)) {
-    said_ = fault_of(status);
-    repeats_ = reports_of_a_refusal;
+  // It may have been taken, or not.
+  for (std::size_t i = 0; i < channels_; ++i) {
+    report_.outputs_kpa[i] = std::min(report_.outputs_kpa[i], written_kpa_[i]);
   }
+  if (status == BusStatus::watchdog_tripped) take_down_outputs();
+  if (status == BusStatus::write_refused || status == BusStatus::watchdog_tripped) inhibit(fault_of(status));
   statistics_.failures.add();
   report_.health.connected = session_ != Session::none;
-  report_.health.fault = fault_of(status);
+  report_.health.fault = inhibited_ == FaultCode::none ? fault_of(status) : inhibited_;
   if (told_failed_) return;
   told_failed_ = true;
   tell(BusEvent::Kind::failed, status, board_.detail());
+}
+
+/// A board that has not been fed for longer than it waits has put its own safe value out. True if so.
+bool Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
+  if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return false;
+  take_down_outputs();
+  inhibit(FaultCode::board_watchdog_tripped);
+  std::array<char, sizeof(BusEvent::detail)> detail{};
+  std::snprintf(detail.data(), detail.size(),
+                "no good exchange for %.3f s: the board's own watchdog acts after %.3f s",
+                seconds(now - *last_good_), seconds(watchdog_));
+  tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
+  told_failed_ = true;
+  return true;
+}
+
+void Bus::take_down_outputs() noexcept {
+  for (std::size_t i = 0; i < channels_; ++i) {
+    report_.outputs_kpa[i] = std::min(report_.outputs_kpa[i], lowest_kpa_[i]);
+  }
 }
 
 void Bus::tell(BusEvent::Kind kind, BusStatus status, const char* detail) noexcept {

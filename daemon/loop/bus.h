@@ -1,13 +1,16 @@
 #pragma once
 // The bus thread: exchanges with the board in step with the loop, and rebuilds a lost session by itself.
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "base/clock.h"
 #include "base/grid.h"
 #include "control/elements/fault.h"
+#include "control/tick/settings.h"
 #include "daemon/loop/statistics.h"
 #include "daemon/loop/wires.h"
 #include "drivers/board/board.h"
@@ -19,14 +22,21 @@ namespace softgrip::daemon {
 [[nodiscard]] control::FaultCode fault_of(drivers::BusStatus status) noexcept;
 
 /// The only one that talks to the board. It writes nothing before the loop has sent its first commands, which
-/// are safe ones. When the loop falls silent while the board is there, it writes the safe outputs that came
-/// with the last commands, reports cycles_lost, and goes back to the loop's commands only when these no
-/// longer move.
+/// are safe ones.
+///
+/// When something has come between the loop's commands and the outputs, it is inhibited: it writes nothing that
+/// is above what stands there, reports why, and obeys again only when commands come from a tick that knew, that
+/// do not move, and that are not above the outputs. That is so when
+/// - the loop falls silent: the safe outputs that came with its last commands are written (cycles_lost);
+/// - the board's watchdog must have acted, by the time since the last good exchange, or says that it has: the
+///   lowest pressures are written (board_watchdog_tripped);
+/// - the board did not take a write (write_refused).
 class Bus {
  public:
-  /// All references outlive the bus.
-  Bus(drivers::Board& board, const rig::LoopSettings& loop, const rig::ReconnectSettings& reconnect,
-      const Clock& clock, Wires& wires, BusStatistics& statistics) noexcept;
+  /// All references outlive the bus. `rig`: one channel per channel of the board.
+  Bus(drivers::Board& board, const control::RigSettings& rig, const rig::LoopSettings& loop,
+      const rig::ReconnectSettings& reconnect, const Clock& clock, Wires& wires,
+      BusStatistics& statistics) noexcept;
 
   /// Tries to open the session before the first step, so that what connecting measures is known. Blocks up to
   /// connect_deadline.
@@ -40,13 +50,20 @@ class Bus {
   void step(Nanoseconds due) noexcept;
 
  private:
-  bool fetch_commands() noexcept;
+  bool listen() noexcept;
+  void inhibit(control::FaultCode reason) noexcept;
+  void obey_if_heard() noexcept;
   bool ensure_session() noexcept;
   void put_off_next_attempt() noexcept;
   void exchange() noexcept;
+  void choose_outputs() noexcept;
+  void note_success(Nanoseconds duration) noexcept;
   void note_failure(drivers::BusStatus status) noexcept;
+  bool judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
+  void take_down_outputs() noexcept;
   void tell(BusEvent::Kind kind, drivers::BusStatus status, const char* detail = "") noexcept;
   void publish() noexcept;
+  [[nodiscard]] bool silent() const noexcept { return unheard_ >= loop_.max_missed_commands; }
 
   drivers::Board& board_;
   const rig::LoopSettings& loop_;
@@ -55,6 +72,9 @@ class Bus {
   Wires& wires_;
   BusStatistics& statistics_;
   std::size_t channels_;
+  std::array<double, control::max_channels> lowest_kpa_{};
+  Nanoseconds watchdog_;         // the board's; 0: none
+  Nanoseconds watchdog_margin_;  // what an exchange that begins now may take until the board sees it
 
   /// With the board.
   enum class Session : std::uint8_t {
@@ -62,21 +82,16 @@ class Bus {
     opened,  // connect() succeeded
     proven,  // and an exchange in it was good
   };
-  /// Whose outputs are written.
-  enum class Hearing : std::uint8_t {
-    nothing_yet,  // nobody's: the loop has not sent anything
-    commands,     // the loop's
-    silence,      // the safe ones that came with the loop's last commands
-  };
 
   BusReport report_;
+  std::array<double, control::max_channels> written_kpa_{};
   Session session_ = Session::none;
-  Hearing hearing_ = Hearing::nothing_yet;
-  std::uint32_t unheard_ = 0;                           // steps since the loop's last commands
-  bool told_failed_ = false;                            // the log knows about the present failure
-  control::FaultCode said_ = control::FaultCode::none;  // by the board, and still to be reported ...
-  std::uint32_t repeats_ = 0;                           // ... so often
-  Nanoseconds pause_ = 0;                               // before the attempt after the next
+  bool spoken_ = false;                                      // the loop, at least once
+  control::FaultCode inhibited_ = control::FaultCode::none;  // why, or none
+  std::uint32_t unheard_ = 0;                                // steps since the loop's last commands
+  std::optional<Nanoseconds> last_good_;                     // when the last good exchange began
+  bool told_failed_ = false;                                 // the log knows about the present failure
+  Nanoseconds pause_ = 0;                                    // before the attempt after the next
   Nanoseconds next_attempt_ = 0;
 };
 

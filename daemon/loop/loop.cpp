@@ -60,6 +60,8 @@ void Loop::read(control::TickInput& input) noexcept {
   const BusReport& report = wires_.bus.value();
   input.readings = std::span(report.readings).first(channels_);
   input.bus = report.health;
+  input.outputs_kpa = std::span(report.outputs_kpa).first(channels_);
+  inhibit_ = report.health.inhibit;
   // An exchange that hangs reports nothing until its deadline; its cycles are without a good exchange all the
   // same. One missing report is the jitter of two grids.
   if (unreported_ > 1) input.bus.consecutive_failures += unreported_ - 1;
@@ -91,6 +93,7 @@ void Loop::command(bool last) noexcept {
     commands.safe_kpa[i] = channel.safe_kpa;
   }
   commands.moving = !last && control::moves(output_.state);
+  commands.inhibit = inhibit_;
   commands.last = last;
   wires_.commands.publish();
 }

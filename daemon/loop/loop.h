@@ -50,6 +50,7 @@ class Loop {
   std::uint32_t decimation_;
   std::uint64_t ticks_ = 0;
   std::uint32_t unreported_ = 0;  // ticks since the bus last reported
+  std::uint32_t inhibit_ = 0;     // as the bus last counted it
   std::uint32_t slipped_ = 0;     // told to the next tick
   Nanoseconds woken_ = 0;
   Nanoseconds ended_ = 0;

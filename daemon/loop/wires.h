@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 
 #include "control/tick/tick.h"
 #include "daemon/loop/broadcast.h"
@@ -21,13 +22,22 @@ struct Commands {
   std::array<double, control::max_channels> command_kpa{};
   /// What to write instead when the loop stops sending.
   std::array<double, control::max_channels> safe_kpa{};
-  bool moving = false;  ///< a sequence runs: not in starting, idle or faulted
+  bool moving = false;        ///< a sequence runs: not in starting, idle or faulted
+  std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit, as this tick knew it
   bool last = false;    ///< the loop has ended; write these until the board confirms them
 };
 
 /// From the bus to the loop: what came back.
 struct BusReport {
+  static constexpr auto anything = [] {
+    std::array<double, control::max_channels> outputs_kpa{};
+    outputs_kpa.fill(std::numeric_limits<double>::infinity());
+    return outputs_kpa;
+  }();
   std::array<model::Reading, control::max_channels> readings{};
+  /// At least this stands at the outputs: what was written last; the lower one where the board has not confirmed
+  /// it; the lowest where its watchdog has acted. Infinite before anything was written.
+  std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };
 

@@ -91,7 +91,7 @@ DaemonParts::DaemonParts(rig::RigFile rig_file, DaemonOptions run_options)
       events(events_kept),
       loader(rig.settings, rig.socket.sequence_directory),
       loop(controller, rig.recorder.decimation, clock, wires, loop_statistics),
-      bus(*board, rig.loop, rig.reconnect, clock, wires, bus_statistics),
+      bus(*board, rig.settings, rig.loop, rig.reconnect, clock, wires, bus_statistics),
       recorder(rig.recorder, provenance, options.record_folder, origin, wires, events, shelf),
       service(provenance.channel_names, origin, wires, events, shelf) {
   if (options.sequence) errand.emplace(options.sequence, patience);

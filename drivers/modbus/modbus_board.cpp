@@ -239,4 +239,14 @@ bool ModbusBoard::has_watchdog() const noexcept {
   });
 }
 
+std::chrono::nanoseconds ModbusBoard::watchdog_time() const noexcept {
+  double first_s = 0;
+  for (const ModbusModule& module : parts_->modules) {
+    const BoardWatchdog& watchdog = module.settings().map.watchdog;
+    if (!module.drives_outputs() || watchdog.kind == BoardWatchdog::Kind::none) continue;
+    first_s = first_s > 0 ? std::min(first_s, watchdog.timeout_s) : watchdog.timeout_s;
+  }
+  return std::chrono::nanoseconds(nanoseconds(first_s));
+}
+
 }  // namespace softgrip::drivers

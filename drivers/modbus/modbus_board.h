@@ -47,6 +47,7 @@ class ModbusBoard final : public Board {
   [[nodiscard]] Budget budget() const override;
   /// True if every module that drives outputs has one.
   [[nodiscard]] bool has_watchdog() const noexcept override;
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
 
  private:
   struct Parts;

@@ -230,6 +230,10 @@ bool SimulatedBoard::has_watchdog() const noexcept {
   return parts_->settings.watchdog_timeout_s > 0;
 }
 
+std::chrono::nanoseconds SimulatedBoard::watchdog_time() const noexcept {
+  return std::chrono::nanoseconds(nanoseconds(parts_->settings.watchdog_timeout_s));
+}
+
 Plant& SimulatedBoard::plant(std::size_t channel) {
   return parts_->plants.at(channel);
 }

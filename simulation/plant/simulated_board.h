@@ -75,6 +75,7 @@ class SimulatedBoard final : public drivers::Board {
   [[nodiscard]] std::string describe() const override;
   [[nodiscard]] Budget budget() const override;
   [[nodiscard]] bool has_watchdog() const noexcept override;
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
 
   /// The plant of a channel, to be poked by tests and by scripts at run time (from the exchanging thread).
   [[nodiscard]] Plant& plant(std::size_t channel);

@@ -2,6 +2,7 @@
 // A board that answers as it is told and remembers what was written.
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,16 +18,21 @@ class ScriptedBoard final : public drivers::Board {
   drivers::BusStatus next_connect = drivers::BusStatus::ok;
   drivers::BusStatus next_exchange = drivers::BusStatus::ok;
   std::vector<std::vector<double>> written;   ///< by good exchanges
+  std::chrono::nanoseconds watchdog{0};
+  std::function<void()> on_connect;   ///< while it connects
+  std::function<void()> on_exchange;  ///< before what was sent arrives
   std::vector<Nanoseconds> connect_attempts;  ///< when
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }
   [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds) noexcept override {
     connect_attempts.push_back(clock_.now());
+    if (on_connect) on_connect();
     return next_connect;
   }
   [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
                                             std::span<drivers::Reading> readings,
                                             std::chrono::nanoseconds) noexcept override {
+    if (on_exchange) on_exchange();
     if (next_exchange != drivers::BusStatus::ok) return next_exchange;
     written.emplace_back(commands_kpa.begin(), commands_kpa.end());
     for (drivers::Reading& reading : readings) {
@@ -39,7 +45,8 @@ class ScriptedBoard final : public drivers::Board {
   [[nodiscard]] const char* detail() const noexcept override { return "scripted"; }
   [[nodiscard]] std::string describe() const override { return "scripted board"; }
   [[nodiscard]] Budget budget() const override { return {}; }
-  [[nodiscard]] bool has_watchdog() const noexcept override { return false; }
+  [[nodiscard]] bool has_watchdog() const noexcept override { return watchdog.count() > 0; }
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override { return watchdog; }
 
  private:
   std::size_t channels_;

@@ -79,6 +79,9 @@ class WorldBoard final : public drivers::Board {
   [[nodiscard]] std::string describe() const override { return "a board in the world"; }
   [[nodiscard]] Budget budget() const override { return {}; }
   [[nodiscard]] bool has_watchdog() const noexcept override { return hardware_.watchdog() > 0; }
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
+    return std::chrono::nanoseconds(hardware_.watchdog());
+  }
 
  private:
   void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }

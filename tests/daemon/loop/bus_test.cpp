@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "tests/daemon/scripted_board.h"
@@ -17,18 +18,22 @@ constexpr Nanoseconds period = 5'000'000;
 
 class BusTest : public ::testing::Test {
  protected:
-  void command(double command_kpa, double safe_kpa, bool moving) {
+  void command(double command_kpa, double safe_kpa, bool moving, std::uint32_t inhibit = 0) {
     Commands commands;
     commands.command_kpa.fill(command_kpa);
     commands.safe_kpa.fill(safe_kpa);
     commands.moving = moving;
+    commands.inhibit = inhibit;
     wires_.commands.publish(commands);
   }
-  void step() {
-    bus_.step(clock_.now());
+  void step() { step(bus_); }
+  void step(Bus& bus) {
+    bus.step(clock_.now());
     clock_.advance(period);
     wires_.bus.fetch();
   }
+  Bus make_bus() { return Bus(board_, rig_, loop_, reconnect_, clock_, wires_, statistics_); }
+  FaultCode fault() { return wires_.bus.value().health.fault; }
   double last_written() const { return board_.written.back().front(); }
   std::vector<BusEvent::Kind> events() {
     std::vector<BusEvent::Kind> kinds;
@@ -38,11 +43,12 @@ class BusTest : public ::testing::Test {
 
   VirtualClock clock_;
   ScriptedBoard board_{2, clock_};
+  control::RigSettings rig_;
   rig::LoopSettings loop_;
   rig::ReconnectSettings reconnect_;
   Wires wires_{16};
   BusStatistics statistics_;
-  Bus bus_{board_, loop_, reconnect_, clock_, wires_, statistics_};
+  Bus bus_{board_, rig_, loop_, reconnect_, clock_, wires_, statistics_};
 };
 
 TEST_F(BusTest, WritesNothingBeforeTheLoopHasSpoken) {
@@ -62,7 +68,7 @@ TEST_F(BusTest, WritesTheNewestCommandsAndPublishesTheReadings) {
   EXPECT_EQ(events(), std::vector<BusEvent::Kind>{BusEvent::Kind::connected});
 }
 
-TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilItsCommandsNoLongerMove) {
+TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilATickThatKnowsCommandsNoMoreThanThem) {
   command(12, 3, true);
   step();
   for (std::uint32_t i = 1; i < loop_.max_missed_commands; ++i) {
@@ -71,17 +77,146 @@ TEST_F(BusTest, ASilentLoopMeansSafeOutputsUntilItsCommandsNoLongerMove) {
   }
   step();
   EXPECT_EQ(last_written(), 3);
-  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::cycles_lost);
+  EXPECT_EQ(fault(), FaultCode::cycles_lost);
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 3);
   command(14, 3, true);  // the loop is back in the middle of its motion, from where the board no longer is
   step();
   EXPECT_EQ(last_written(), 3);
-  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::cycles_lost);
-  command(4, 3, false);
+  command(4, 3, false);  // it ended its motion, but not because it knew
   step();
-  EXPECT_EQ(last_written(), 4);
-  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::none);
+  EXPECT_EQ(last_written(), 3);
+  command(4, 3, false, wires_.bus.value().health.inhibit);  // it knows, and wants to rise nevertheless
+  step();
+  EXPECT_EQ(last_written(), 3);
+  EXPECT_EQ(fault(), FaultCode::cycles_lost);
+  command(2, 2, false, wires_.bus.value().health.inhibit);
+  step();
+  EXPECT_EQ(last_written(), 2);
+  EXPECT_EQ(fault(), FaultCode::none);
+  command(5, 2, true, wires_.bus.value().health.inhibit);
+  step();
+  EXPECT_EQ(last_written(), 5);
   EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::loop_silent,
                                                    BusEvent::Kind::loop_back}));
+}
+
+TEST_F(BusTest, ALoopThatComesBackWithTheNextFallOfItsMotionIsFollowedDown) {
+  command(12, 9, true);
+  step();
+  for (std::uint32_t i = 0; i < loop_.max_missed_commands; ++i) step();
+  EXPECT_EQ(last_written(), 9);
+  command(7, 9, true);
+  step();
+  EXPECT_EQ(last_written(), 7);
+  command(8, 9, true);
+  step();
+  EXPECT_EQ(last_written(), 7);
+}
+
+class WatchedBusTest : public BusTest {
+ protected:
+  static constexpr Nanoseconds watchdog = 500'000'000;
+  static constexpr Nanoseconds margin = 50'000'000;  // the deadline of an exchange
+  WatchedBusTest() {
+    board_.watchdog = std::chrono::nanoseconds(watchdog);
+    rig_.channels.resize(2);
+    for (control::ChannelSettings& channel : rig_.channels) channel.limits.pressure_min_kpa = 1;
+  }
+};
+
+TEST_F(WatchedBusTest, AGapThatReachesTheWatchdogIsAFaultAndNothingRisesBehindIt) {
+  Bus bus = make_bus();
+  command(35, 35, true);
+  step(bus);
+  clock_.advance(watchdog);
+  command(35, 35, true);
+  step(bus);
+  EXPECT_EQ(last_written(), 1);
+  EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[1], 1);
+  command(35, 35, false);  // it latched something else: it does not know of this
+  step(bus);
+  EXPECT_EQ(last_written(), 1);
+  command(1, 1, false, wires_.bus.value().health.inhibit);
+  step(bus);
+  EXPECT_EQ(fault(), FaultCode::none);
+}
+
+TEST_F(WatchedBusTest, AGapIsCountedFromWhenTheLastGoodExchangeBegan) {
+  for (const Nanoseconds gap : {watchdog - margin - 1, watchdog - margin}) {
+    Bus bus = make_bus();
+    command(35, 35, true);
+    step(bus);
+    clock_.advance(gap - period);
+    command(35, 35, true);
+    step(bus);
+    EXPECT_EQ(last_written(), gap < watchdog - margin ? 35 : 1) << gap;
+  }
+}
+
+TEST_F(WatchedBusTest, FailedExchangesDoNotEndAGap) {
+  Bus bus = make_bus();
+  command(35, 35, true);
+  step(bus);
+  board_.next_exchange = BusStatus::exception;
+  for (Nanoseconds begin = clock_.now(); clock_.now() - begin < watchdog;) {
+    command(35, 35, true);
+    step(bus);
+  }
+  board_.next_exchange = BusStatus::ok;
+  step(bus);
+  EXPECT_EQ(last_written(), 1);
+  EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
+}
+
+TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
+  Bus bus = make_bus();
+  command(35, 35, true);
+  step(bus);
+  board_.on_exchange = [this] { clock_.advance(watchdog); };
+  command(35, 35, true);
+  step(bus);
+  board_.on_exchange = nullptr;
+  EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 1);
+  step(bus);
+  EXPECT_EQ(last_written(), 1);
+}
+
+TEST_F(BusTest, ABoardWithoutWatchdogKeepsItsOutputsThroughAnyGap) {
+  command(35, 35, true);
+  step();
+  clock_.advance(60 * ns_per_s);
+  command(35, 35, true);
+  step();
+  EXPECT_EQ(last_written(), 35);
+  EXPECT_EQ(fault(), FaultCode::none);
+}
+
+TEST_F(BusTest, WhatTheLoopSaidWhileTheSessionWasRebuiltIsWhatIsWritten) {
+  command(12, 0, true);
+  step();
+  board_.next_exchange = BusStatus::timed_out;
+  step();
+  board_.next_exchange = BusStatus::ok;
+  board_.on_connect = [this] { command(2, 0, false); };
+  command(13, 0, true);
+  step();
+  EXPECT_EQ(last_written(), 2);
+}
+
+TEST_F(BusTest, OutputsThatTheBoardDidNotConfirmAreTheLowerOnes) {
+  EXPECT_TRUE(std::isinf(wires_.bus.value().outputs_kpa[0]));
+  command(12, 0, true);
+  step();
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 12);
+  board_.next_exchange = BusStatus::exception;
+  command(13, 0, true);
+  step();
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 12);
+  command(11, 0, true);
+  step();
+  EXPECT_EQ(wires_.bus.value().outputs_kpa[0], 11);
 }
 
 TEST_F(BusTest, ALostSessionIsRebuiltWithGrowingPauses) {
@@ -169,20 +304,42 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
   EXPECT_EQ(board_.connect_attempts.size(), 1U);
 }
 
-TEST_F(BusTest, WhatTheBoardRefusedOnceIsReportedUntilTheLoopMustHaveSeenIt) {
+TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHeardIt) {
+  for (const BusStatus said : {BusStatus::watchdog_tripped, BusStatus::write_refused}) {
+    command(12, 0, false, wires_.bus.value().health.inhibit);
+    step();
+    EXPECT_EQ(last_written(), 12);
+    board_.next_exchange = said;
+    step();
+    EXPECT_EQ(wires_.bus.value().health.connected, said == BusStatus::write_refused)
+        << "only a new session clears a watchdog";
+    EXPECT_EQ(fault(), fault_of(said));
+    board_.next_exchange = BusStatus::ok;
+    const double outputs_kpa = said == BusStatus::watchdog_tripped ? 0 : 12;
+    for (int report = 0; report < 5; ++report) {
+      command(14, 0, true);
+      step();
+      EXPECT_EQ(fault(), fault_of(said));
+      EXPECT_TRUE(wires_.bus.value().health.connected);
+      EXPECT_EQ(last_written(), outputs_kpa);
+    }
+    command(outputs_kpa, 0, false, wires_.bus.value().health.inhibit);
+    step();
+    EXPECT_EQ(fault(), FaultCode::none);
+  }
+}
+
+TEST_F(BusTest, TheLastCommandsAreConfirmedThoughTheLoopNeverHeardOfTheFault) {
   command(12, 0, true);
   step();
-  board_.next_exchange = BusStatus::watchdog_tripped;
+  for (std::uint32_t i = 0; i < loop_.max_missed_commands; ++i) step();
+  Commands last;
+  last.last = true;
+  last.command_kpa.fill(12);
+  wires_.commands.publish(last);
   step();
-  EXPECT_FALSE(wires_.bus.value().health.connected) << "only a new session clears a watchdog";
-  board_.next_exchange = BusStatus::ok;
-  for (int report = 0; report < 3; ++report) {
-    step();
-    EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::board_watchdog_tripped);
-    EXPECT_TRUE(wires_.bus.value().health.connected);
-  }
-  step();
-  EXPECT_EQ(wires_.bus.value().health.fault, FaultCode::none);
+  EXPECT_TRUE(wires_.left_safely.load());
+  EXPECT_EQ(last_written(), 0);
 }
 
 TEST_F(BusTest, LeavesWhenTheBoardHasConfirmedTheLastCommands) {
@@ -204,11 +361,12 @@ TEST(BusThread, GivesUpLeavingWhenTheBoardDoesNotAnswer) {
   const MonotonicClock clock;
   ScriptedBoard board(1, clock);
   board.next_connect = BusStatus::disconnected;
+  const control::RigSettings rig;
   rig::LoopSettings loop;
   rig::ReconnectSettings reconnect;
   Wires wires(16);
   BusStatistics statistics;
-  Bus bus(board, loop, reconnect, clock, wires, statistics);
+  Bus bus(board, rig, loop, reconnect, clock, wires, statistics);
   Commands last;
   last.last = true;
   wires.commands.publish(last);
