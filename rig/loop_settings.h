@@ -31,8 +31,9 @@ struct LoopSettings {
   std::uint32_t max_missed_commands = 10;
 };
 
-/// A gap between exchanges that comes so close to the time of the board's watchdog counts as one that has reached
-/// it: an exchange may take until its deadline to reach the board. At most half of the watchdog's time.
+/// A gap between exchanges that comes so close to the time of the board's watchdog counts as one that has
+/// reached it: an exchange may take until its deadline to reach the board. At most half of the watchdog's
+/// time.
 [[nodiscard]] inline std::chrono::nanoseconds watchdog_margin(const LoopSettings& loop,
                                                               std::chrono::nanoseconds watchdog) noexcept {
   return std::min(std::chrono::nanoseconds(nanoseconds(loop.exchange_deadline_s)), watchdog / 2);

@@ -48,6 +48,13 @@ struct FaultInfo {
 /// Of one; for `none` and unknown numbers an entry with id "F000", name "none".
 [[nodiscard]] const FaultInfo& info_of(FaultCode code) noexcept;
 
+/// The bus says so when it has stopped obeying the loop: what stands at the outputs is not what was
+/// commanded.
+[[nodiscard]] constexpr bool inhibits(FaultCode code) noexcept {
+  return code == FaultCode::cycles_lost || code == FaultCode::board_watchdog_tripped ||
+         code == FaultCode::write_refused;
+}
+
 /// Why a request was refused.
 enum class RefusalCode : std::uint16_t {
   none = 0,

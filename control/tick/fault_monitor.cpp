@@ -85,9 +85,7 @@ Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
     return {};
   }
   const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
-  // Commands were not written for as long as the bus allows: that was the patience.
-  const bool inhibited = code == FaultCode::cycles_lost;
-  if (said_by_board(code) || inhibited || bus_cycles_ >= settings_.bus_down_cycles) {
+  if (inhibits(code) || bus_cycles_ >= settings_.bus_down_cycles) {
     return {code, whole_rig, static_cast<double>(bus_cycles_)};
   }
   return {};

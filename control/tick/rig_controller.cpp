@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -35,6 +36,8 @@ RigController::Channel::Channel(const RigSettings& rig, const ChannelSettings& s
       // Without sight a finger is at rest when its command has not been changed.
       rest(settings.displacement_used ? rig.rest_band_mm : 0, rig.rest_time_s),
       lowest_kpa(settings.limits.pressure_min_kpa),
+      longest_fall_kpa(settings.limits.slew_down_kpa_per_s / rig.rate_hz),
+      longest_age(nanoseconds(settings.plausibility.max_age_s)),
       sighted(settings.displacement_used) {}
 
 bool RigController::Channel::valid(const ChannelOutput& seen) const noexcept {
@@ -69,24 +72,42 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   if (began_ == no_tick) began_ = input.now;
   const double time_s = static_cast<double>(input.now - began_) * 1e-9;
   output_.events.clear();
+  forget_old_readings(input.now);
   carry_out(supervisor_.tick(input, facts(input, time_s), output_.events), time_s);
   play(time_s);
-  stay_below_outputs(input.outputs_kpa);
-  for (std::size_t i = 0; i < channels_.size(); ++i) control(i, input, time_s);
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const double last_kpa = output_.channels[i].command_kpa;
+    control(i, input, time_s);
+    stay_below_outputs(i, last_kpa, input);
+  }
   conclude();
   output_.state = supervisor_.state();
   output_.first_fault = supervisor_.first_fault();
   return output_;
 }
 
-/// Only a sequence may raise a pressure: a command that never reached the board, or that the board has undone, is
-/// forgotten when it ends.
-void RigController::stay_below_outputs(std::span<const double> outputs_kpa) noexcept {
-  const State state = supervisor_.state();
-  if (state == State::running || state == State::resynchronising) return;
-  for (std::size_t i = 0; i < std::min(channels_.size(), outputs_kpa.size()); ++i) {
-    double& command_kpa = output_.channels[i].command_kpa;
-    command_kpa = std::min(command_kpa, outputs_kpa[i]);
+/// Only a sequence may raise a pressure: a command that has not reached the board, or that the board has
+/// undone, is forgotten when it ends; at once where the outputs are known to be lower, else no faster than
+/// the slew allows, for what is on its way may still be written.
+void RigController::stay_below_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept {
+  if (may_rise(supervisor_.state()) || index >= input.outputs_kpa.size()) return;
+  double& command_kpa = output_.channels[index].command_kpa;
+  const double slewed_kpa = last_kpa - channels_[index].longest_fall_kpa;
+  const double outputs_kpa = input.outputs_kpa[index];
+  command_kpa =
+      std::min(command_kpa, inhibits(input.bus.fault) ? outputs_kpa : std::max(outputs_kpa, slewed_kpa));
+}
+
+/// What the tick before saw is what this one decides on. After a gap it says nothing any more, neither that a
+/// part is held nor that a finger rests.
+void RigController::forget_old_readings(Nanoseconds now) noexcept {
+  const Nanoseconds gap = last_now_ == no_tick ? 0 : now - last_now_;
+  last_now_ = now;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    ChannelOutput& seen = output_.channels[i];
+    if (gap <= channels_[i].longest_age || seen.validity != model::Validity::valid) continue;
+    seen.validity = model::Validity::stale;
+    seen.pressure_kpa = std::numeric_limits<double>::quiet_NaN();
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "control/elements/rest_watch.h"
@@ -43,7 +42,9 @@ class RigController {
     ChannelController controller;
     RestWatch rest;
     double lowest_kpa;
-    bool sighted;  ///< it uses its displacement
+    double longest_fall_kpa;  ///< in a tick
+    Nanoseconds longest_age;  ///< of a reading
+    bool sighted;             ///< it uses its displacement
     bool valid_before = true;
     bool resynchronise = false;
   };
@@ -52,7 +53,8 @@ class RigController {
   Rest look_for_rest(const PreparedSequence& sequence, double time_s) noexcept;
   void carry_out(const Orders& orders, double time_s) noexcept;
   void play(double time_s) noexcept;
-  void stay_below_outputs(std::span<const double> outputs_kpa) noexcept;
+  void forget_old_readings(Nanoseconds now) noexcept;
+  void stay_below_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept;
   void control(std::size_t index, const TickInput& input, double time_s) noexcept;
   [[nodiscard]] ChannelDemand demand(std::size_t index, double time_s) const noexcept;
   void tell_changes(std::size_t index) noexcept;
@@ -67,6 +69,7 @@ class RigController {
   TickOutput output_;
   double seeking_since_s_ = 0;
   Nanoseconds began_ = no_tick;
+  Nanoseconds last_now_ = no_tick;
 
   static constexpr Nanoseconds no_tick = -1;
 };

@@ -33,6 +33,11 @@ enum class State : std::uint8_t {
   return state == State::resynchronising || state == State::running || state == State::stopping;
 }
 
+/// A pressure may rise: a sequence was started, and nothing has ended it.
+[[nodiscard]] constexpr bool may_rise(State state) noexcept {
+  return state == State::resynchronising || state == State::running;
+}
+
 /// How a sequence ended.
 enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 [[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
@@ -50,8 +55,8 @@ struct BusHealth {
   bool connected = false;             ///< a session is up
   FaultCode fault = FaultCode::none;  ///< what the last failed exchange means; none after a good one
   std::uint32_t consecutive_failures = 0;
-  /// Counts how often the bus has stopped obeying: since then it writes nothing above TickInput::outputs_kpa, and
-  /// `fault` says why, until commands come from a tick that knew this number.
+  /// Counts how often the bus has stopped obeying: since then it writes nothing above TickInput::outputs_kpa,
+  /// and `fault` says why, until commands come from a tick that knew this number.
   std::uint32_t inhibit = 0;
 };
 

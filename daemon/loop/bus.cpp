@@ -106,7 +106,8 @@ void Bus::inhibit(FaultCode reason) noexcept {
 
 void Bus::obey_if_heard() noexcept {
   const Commands& commands = wires_.commands.value();
-  if (inhibited_ == FaultCode::none || commands.inhibit != report_.health.inhibit || commands.moving) return;
+  if (inhibited_ == FaultCode::none || commands.inhibit != report_.health.inhibit || commands.may_rise)
+    return;
   for (std::size_t i = 0; i < channels_; ++i) {
     if (commands.command_kpa[i] > report_.outputs_kpa[i]) return;
   }
@@ -141,9 +142,9 @@ void Bus::exchange() noexcept {
   const bool gap_known = judge_gap(began, watchdog_margin_);
   choose_outputs();
   const bool last = wires_.commands.value().last;
-  const BusStatus status = board_.exchange(std::span(written_kpa_).first(channels_),
-                                           std::span(report_.readings).first(channels_),
-                                           std::chrono::nanoseconds(nanoseconds(loop_.exchange_deadline_s)));
+  const BusStatus status =
+      board_.exchange(std::span(written_kpa_).first(channels_), std::span(report_.readings).first(channels_),
+                      std::chrono::nanoseconds(nanoseconds(loop_.exchange_deadline_s)));
   const Nanoseconds ended = clock_.now();
   statistics_.exchanges.add();
   if (status != BusStatus::ok) {
@@ -167,7 +168,7 @@ void Bus::exchange() noexcept {
 void Bus::choose_outputs() noexcept {
   const Commands& commands = wires_.commands.value();
   written_kpa_ = silent() ? commands.safe_kpa : commands.command_kpa;
-  if (inhibited_ == FaultCode::none) return;
+  if (commands.may_rise && inhibited_ == FaultCode::none) return;
   for (std::size_t i = 0; i < channels_; ++i) {
     written_kpa_[i] = std::min(written_kpa_[i], report_.outputs_kpa[i]);
   }

@@ -24,9 +24,10 @@ namespace softgrip::daemon {
 /// The only one that talks to the board. It writes nothing before the loop has sent its first commands, which
 /// are safe ones.
 ///
-/// When something has come between the loop's commands and the outputs, it is inhibited: it writes nothing that
-/// is above what stands there, reports why, and obeys again only when commands come from a tick that knew, that
-/// do not move, and that are not above the outputs. That is so when
+/// Outputs rise only while a sequence runs. When something has come between the loop's commands and the
+/// outputs, the bus is inhibited: it writes nothing above what stands there, reports why, and obeys again
+/// only when commands come from a tick that knew, in which no sequence runs, and that are not above the
+/// outputs. That is so when
 /// - the loop falls silent: the safe outputs that came with its last commands are written (cycles_lost);
 /// - the board's watchdog must have acted, by the time since the last good exchange, or says that it has: the
 ///   lowest pressures are written (board_watchdog_tripped);

@@ -92,7 +92,7 @@ void Loop::command(bool last) noexcept {
     commands.command_kpa[i] = last ? channel.safe_kpa : channel.command_kpa;
     commands.safe_kpa[i] = channel.safe_kpa;
   }
-  commands.moving = !last && control::moves(output_.state);
+  commands.may_rise = !last && control::may_rise(output_.state);
   commands.inhibit = inhibit_;
   commands.last = last;
   wires_.commands.publish();

@@ -22,9 +22,9 @@ struct Commands {
   std::array<double, control::max_channels> command_kpa{};
   /// What to write instead when the loop stops sending.
   std::array<double, control::max_channels> safe_kpa{};
-  bool moving = false;        ///< a sequence runs: not in starting, idle or faulted
+  bool may_rise = false;      ///< a sequence runs; else what rises is an old command that came late
   std::uint32_t inhibit = 0;  ///< control::BusHealth::inhibit, as this tick knew it
-  bool last = false;    ///< the loop has ended; write these until the board confirms them
+  bool last = false;          ///< the loop has ended; write these until the board confirms them
 };
 
 /// From the bus to the loop: what came back.
@@ -35,8 +35,8 @@ struct BusReport {
     return outputs_kpa;
   }();
   std::array<model::Reading, control::max_channels> readings{};
-  /// At least this stands at the outputs: what was written last; the lower one where the board has not confirmed
-  /// it; the lowest where its watchdog has acted. Infinite before anything was written.
+  /// At least this stands at the outputs: what was written last; the lower one where the board has not
+  /// confirmed it; the lowest where its watchdog has acted. Infinite before anything was written.
   std::array<double, control::max_channels> outputs_kpa = anything;
   control::BusHealth health;
 };

@@ -62,8 +62,8 @@ class Board {
   /// True if the outputs go to a safe value by themselves when the daemon stops talking.
   [[nodiscard]] virtual bool has_watchdog() const noexcept = 0;
 
-  /// After so long without a request that feeds it, the first of its outputs goes to its safe value by itself;
-  /// 0: none ever does.
+  /// After so long without a request that feeds it, the first of its outputs goes to its safe value by
+  /// itself; 0: none ever does.
   [[nodiscard]] virtual std::chrono::nanoseconds watchdog_time() const noexcept {
     return std::chrono::nanoseconds(0);
   }

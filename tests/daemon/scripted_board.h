@@ -17,10 +17,10 @@ class ScriptedBoard final : public drivers::Board {
 
   drivers::BusStatus next_connect = drivers::BusStatus::ok;
   drivers::BusStatus next_exchange = drivers::BusStatus::ok;
-  std::vector<std::vector<double>> written;   ///< by good exchanges
+  std::vector<std::vector<double>> written;  ///< by good exchanges
   std::chrono::nanoseconds watchdog{0};
-  std::function<void()> on_connect;   ///< while it connects
-  std::function<void()> on_exchange;  ///< before what was sent arrives
+  std::function<void()> on_connect;           ///< while it connects
+  std::function<void()> on_exchange;          ///< before what was sent arrives
   std::vector<Nanoseconds> connect_attempts;  ///< when
 
   [[nodiscard]] std::size_t channels() const noexcept override { return channels_; }

@@ -73,7 +73,33 @@ WorldBoard::WorldBoard(Hardware& hardware, Line& line, Scheduler& scheduler, OnW
       line_(line),
       scheduler_(scheduler),
       on_write_(std::move(on_write)),
-      on_exchange_(std::move(on_exchange)) {}
+      on_exchange_(std::move(on_exchange)),
+      carrier_(scheduler.add("line", [this] { carry(); })) {}
+
+void WorldBoard::carry() {
+  for (;;) {
+    const Nanoseconds now = scheduler_.now();
+    if (request_ && !request_->there && now >= request_->arrives) {
+      Request& request = *request_;
+      hardware_.move_to(now);
+      if (!hardware_.ignores_writes()) on_write_(request.began, request.sent);
+      request.taken = hardware_.write(now, request.sent);
+      for (std::size_t i = 0; i < request.read.size(); ++i) hardware_.read(i, now, request.read[i]);
+      request.there = true;
+    }
+    const bool under_way = request_ && !request_->there;
+    scheduler_.sleep_until(under_way ? request_->arrives : now + ns_per_s);
+  }
+}
+
+/// Sends it and waits for the reply.
+bool WorldBoard::ask(const Request& request) {
+  request_ = request;
+  scheduler_.wake(carrier_);
+  pass(line_.latency);
+  while (request_ && !request_->there) pass(line_.latency / 4);
+  return request_ && request_->taken;
+}
 
 BusStatus WorldBoard::connect(std::chrono::nanoseconds deadline) noexcept {
   pass(line_.latency);
@@ -89,39 +115,31 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
                                std::chrono::nanoseconds deadline) noexcept {
   const Nanoseconds began = scheduler_.now();
   on_exchange_();
-  // As the bytes that were sent: what the caller does with its own meanwhile changes nothing.
-  const std::vector<double> sent(commands_kpa.begin(), commands_kpa.end());
-  pass(line_.latency / 2);
   const BusStatus status = line_.status;
-  if (status == BusStatus::disconnected) return status;
-  if (status == BusStatus::exception) {
+  if (status == BusStatus::disconnected || status == BusStatus::exception) {
+    pass(line_.latency / 2);
     hardware_.move_to(scheduler_.now());
     return status;
   }
-  const bool arrives = status != BusStatus::timed_out || line_.reply_lost;
+  const bool lost = status == BusStatus::timed_out;
   bool taken = true;
-  if (arrives) {
-    const Nanoseconds now = scheduler_.now();
-    hardware_.move_to(now);
-    if (!hardware_.ignores_writes()) on_write_(began, sent);
-    taken = hardware_.write(now, sent);
+  if (!lost || line_.reply_lost) {
+    taken = ask({began,
+                 began + line_.latency / 2,
+                 {commands_kpa.begin(), commands_kpa.end()},
+                 false,
+                 false,
+                 {readings.begin(), readings.end()}});
   }
-  if (status == BusStatus::timed_out) {
-    scheduler_.sleep_until(began + deadline.count());
-    return status;
-  }
-  const Nanoseconds sampled = scheduler_.now();
-  std::vector<model::Reading> read(readings.begin(), readings.end());
-  for (std::size_t i = 0; i < read.size(); ++i) hardware_.read(i, sampled, read[i]);
-  pass(line_.latency / 2);
+  if (lost) scheduler_.sleep_until(began + deadline.count());
   if (status != BusStatus::ok) return status;
   if (!taken) return BusStatus::watchdog_tripped;
-  for (std::size_t i = 0; i < sent.size(); ++i) {
-    if (read[i].command_readback_kpa != sent[i]) return BusStatus::write_refused;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (request_->read[i].command_readback_kpa != commands_kpa[i]) return BusStatus::write_refused;
   }
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    ++read[i].sequence;
-    readings[i] = read[i];
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    ++request_->read[i].sequence;
+    readings[i] = request_->read[i];
   }
   return BusStatus::ok;
 }

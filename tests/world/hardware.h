@@ -3,6 +3,7 @@
 // connected may write; the line may lose what is said.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -61,7 +62,8 @@ struct Line {
   Nanoseconds latency = 800'000;
 };
 
-/// The board as a daemon sees it. It waits on the world's clock.
+/// The board as a daemon sees it. It waits on the world's clock. What was sent arrives whether the daemon
+/// goes on or stands still: an actor of its own carries it.
 class WorldBoard final : public drivers::Board {
  public:
   /// Told before a request takes effect: when the exchange began, and what it writes.
@@ -70,6 +72,9 @@ class WorldBoard final : public drivers::Board {
   /// `on_exchange`: told when an exchange begins.
   WorldBoard(Hardware& hardware, Line& line, Scheduler& scheduler, OnWrite on_write,
              std::function<void()> on_exchange);
+
+  /// Who spoke is gone: what is on its way is lost.
+  void hang_up() noexcept { request_.reset(); }
 
   [[nodiscard]] std::size_t channels() const noexcept override { return hardware_.channels(); }
   [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds deadline) noexcept override;
@@ -84,13 +89,26 @@ class WorldBoard final : public drivers::Board {
   }
 
  private:
+  /// What is on its way to the board, and then back.
+  struct Request {
+    Nanoseconds began = 0;
+    Nanoseconds arrives = 0;
+    std::vector<double> sent;
+    bool there = false;
+    bool taken = false;
+    std::vector<model::Reading> read;
+  };
   void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }
+  [[nodiscard]] bool ask(const Request& request);
+  void carry();
 
   Hardware& hardware_;
   Line& line_;
   Scheduler& scheduler_;
   OnWrite on_write_;
   std::function<void()> on_exchange_;
+  ActorId carrier_;
+  std::optional<Request> request_;
 };
 
 }  // namespace softgrip::world

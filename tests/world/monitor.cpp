@@ -51,7 +51,7 @@ void Monitor::violate(Nanoseconds at, const char* invariant, std::string text) {
 
 void Monitor::boots() {
   armed_ = armed_at_entry_ = false;
-  last_write_ = 0;
+  last_began_ = 0;
   state_ = State::starting;
   safe_kpa_.assign(rig_.channels.size(), 0);
   last_kpa_ = safe_kpa_;
@@ -136,8 +136,8 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
 void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
                     std::span<const double> commands_kpa, bool safe_outputs) {
   const double period_s = 1 / rig_.rate_hz;
-  const double elapsed_s = last_write_ == 0 ? period_s : seconds(now - last_write_) + 2 * period_s;
-  last_write_ = now;
+  const double elapsed_s = last_began_ == 0 ? period_s : seconds(began - last_began_) + 2 * period_s;
+  last_began_ = began;
   for (std::size_t i = 0; i < commands_kpa.size(); ++i) {
     const control::LimitSettings& limits = rig_.channels[i].limits;
     const double rise_kpa = commands_kpa[i] - outputs_kpa[i];
@@ -161,11 +161,12 @@ void Monitor::write(Nanoseconds began, Nanoseconds now, std::span<const double> 
   foreign_ = false;
 }
 
-void Monitor::tripped(Nanoseconds) {
+void Monitor::tripped(bool has_spoken) {
   armed_ = armed_at_entry_ = false;
   // What is written next begins there.
   last_kpa_.assign(last_kpa_.size(), 0);
-  if (!trip_untold_) trip_untold_ = 0;
+  // A daemon that has never spoken with the board cannot know.
+  if (!trip_untold_ && has_spoken) trip_untold_ = 0;
 }
 
 void Monitor::asked(control::Request::Kind kind, Nanoseconds) {

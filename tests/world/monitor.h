@@ -40,8 +40,8 @@ class Monitor {
   /// The daemon looked at its permission to move when this exchange began.
   void exchange_begins() noexcept { armed_at_entry_ = armed_; }
   void foreign_wrote() noexcept { foreign_ = true; }
-  /// The board's watchdog has vented.
-  void tripped(Nanoseconds now);
+  /// The board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can know.
+  void tripped(bool has_spoken);
   void asked(control::Request::Kind kind, Nanoseconds now);
   /// Time has passed, with these outputs.
   void passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa);
@@ -69,8 +69,8 @@ class Monitor {
   std::optional<Violation> violation_;
   bool armed_ = false;  // a start was accepted, and nothing since forbids to rise
   bool armed_at_entry_ = false;
-  bool foreign_ = false;  // another master has written since our last write
-  Nanoseconds last_write_ = 0;
+  bool foreign_ = false;        // another master has written since our last write
+  Nanoseconds last_began_ = 0;  // an exchange
   Nanoseconds seen_ = 0;
   control::State state_ = control::State::starting;
   std::vector<double> safe_kpa_;

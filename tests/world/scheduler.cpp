@@ -76,7 +76,8 @@ void Scheduler::looked() {
   if (!inside_) return;
   Actor& self = actors_[running_];
   if (self.pause_after_look == 0) return;
-  self.due = now_ + self.pause_after_look;
+  self.due = now_;
+  self.paused_until = std::max(self.paused_until, now_ + self.pause_after_look);
   self.pause_after_look = 0;
   Fibre& fibre = *self.fibre;
   fibre.give_back();

@@ -73,18 +73,21 @@ class WorldClock final : public Clock {
   explicit WorldClock(Scheduler& scheduler) : scheduler_(scheduler) {}
   [[nodiscard]] Nanoseconds now() const noexcept override {
     const Nanoseconds seen = scheduler_.now();
-    before_last_ = std::exchange(last_, seen);
+    if (std::exchange(slept_, false)) woke_ = seen;
     scheduler_.looked();
     return seen;
   }
-  void sleep_until(Nanoseconds due) const noexcept override { scheduler_.sleep_until(due); }
-  /// What it showed at the last look but one.
-  [[nodiscard]] Nanoseconds before_last() const noexcept { return before_last_; }
+  void sleep_until(Nanoseconds due) const noexcept override {
+    scheduler_.sleep_until(due);
+    slept_ = true;
+  }
+  /// What it showed at the first look after the last sleep.
+  [[nodiscard]] Nanoseconds woke() const noexcept { return woke_; }
 
  private:
   Scheduler& scheduler_;
-  mutable Nanoseconds last_ = 0;
-  mutable Nanoseconds before_last_ = 0;
+  mutable Nanoseconds woke_ = 0;
+  mutable bool slept_ = false;
 };
 
 }  // namespace softgrip::world

@@ -29,6 +29,8 @@ using control::Request;
 /// Between the end of a daemon and the next one.
 constexpr Nanoseconds restart_pause = ns_per_s;
 constexpr Nanoseconds longest_answer = 2 * ns_per_s;
+/// Of a loop that ticks as it should.
+constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds foreign_period = ns_per_s * 7 / 1000;
 
 std::size_t open_descriptors() {
@@ -112,7 +114,10 @@ class World {
     settings.on_trip = [this] {
       ++result_.trips;
       trace("the board's watchdog vents");
-      if (daemon_) monitor_.tripped(scheduler_.now());
+      if (!daemon_) return;
+      const bool has_spoken =
+          daemon_->bus_statistics.exchanges.value() > daemon_->bus_statistics.failures.value();
+      monitor_.tripped(has_spoken);
     };
     return settings;
   }
@@ -139,6 +144,7 @@ class World {
   /// What a daemon leaves behind, when it has ended.
   void bury() {
     if (!daemon_) return;
+    board_.hang_up();
     const bool whole = daemon_->ended() && !killed_;
     const std::string folder = daemon_->rig.recorder.directory;
     const daemon::RecorderStatus status = daemon_->recorder.status();
@@ -197,7 +203,6 @@ class World {
     bool any = false;
     for (std::size_t i = 0; i < part_count; ++i)
       any = any || scheduler_.paused(daemon_->actor(static_cast<Part>(i)));
-    any = any || late_until_ > scheduler_.now();
     if (any) undisturbed_since_ = scheduler_.now();
     return any;
   }
@@ -222,9 +227,11 @@ class World {
     if (ticks == 0 || ticks == ticked_) return;
     ticked_ = ticks;
     ++result_.ticks;
+    if (scheduler_.now() - last_tick_ > longest_tick_gap) last_tick_gap_end_ = scheduler_.now();
+    last_tick_ = scheduler_.now();
     const control::TickOutput& output = daemon_->controller.output();
     monitor_.ticked(scheduler_.now(), output);
-    recorded_.push_back(daemon_->loop_clock.before_last() - daemon_->origin);
+    recorded_.push_back(daemon_->loop_clock.woke() - daemon_->origin);
     for (const control::Event& event : output.events) note(event);
   }
 
@@ -244,7 +251,7 @@ class World {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
     // Without a loop nobody shapes a ramp.
-    const bool safe_outputs = daemon_->wires.leave.load() || scheduler_.paused(daemon_->actor(Part::loop)) ||
+    const bool safe_outputs = daemon_->wires.leave.load() || now - last_tick_ > longest_tick_gap ||
                               now - last_tick_gap_end_ < ns_per_s / 5 ||
                               std::equal(commands.begin(), commands.end(), monitor_.safe_kpa().begin());
     monitor_.write(began, now, outputs, commands, safe_outputs);
@@ -281,7 +288,7 @@ class World {
   bool disk_was_full_ = false;
   std::uint64_t ticked_ = 0;
   Nanoseconds boots_at_ = 0;
-  Nanoseconds late_until_ = 0;
+  Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;
   Nanoseconds undisturbed_since_ = 0;
   const Incident* foreign_ = nullptr;
@@ -343,7 +350,6 @@ void World::pause(const Incident& incident) {
   if (incident.kind == Kind::pause_all) {
     for (std::size_t i = 0; i < part_count; ++i)
       scheduler_.pause(daemon_->actor(static_cast<Part>(i)), until);
-    last_tick_gap_end_ = until;
     return;
   }
   const ActorId actor = daemon_->actor(static_cast<Part>(incident.target));
@@ -351,9 +357,7 @@ void World::pause(const Incident& incident) {
     scheduler_.pause(actor, until);
   } else {
     scheduler_.pause_after_look(actor, incident.duration);
-    late_until_ = std::max(late_until_, until + ns_per_s / 10);
   }
-  last_tick_gap_end_ = std::max(last_tick_gap_end_, until);
 }
 
 void World::to_line(const Incident& incident, bool begins) {

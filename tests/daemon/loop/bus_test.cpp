@@ -18,11 +18,11 @@ constexpr Nanoseconds period = 5'000'000;
 
 class BusTest : public ::testing::Test {
  protected:
-  void command(double command_kpa, double safe_kpa, bool moving, std::uint32_t inhibit = 0) {
+  void command(double command_kpa, double safe_kpa, bool may_rise, std::uint32_t inhibit = 0) {
     Commands commands;
     commands.command_kpa.fill(command_kpa);
     commands.safe_kpa.fill(safe_kpa);
-    commands.moving = moving;
+    commands.may_rise = may_rise;
     commands.inhibit = inhibit;
     wires_.commands.publish(commands);
   }
@@ -183,6 +183,17 @@ TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   EXPECT_EQ(last_written(), 1);
 }
 
+TEST_F(BusTest, OutputsRiseOnlyWhileASequenceRuns) {
+  command(12, 0, true);
+  step();
+  command(13, 0, false);  // it was on its way when the sequence ended
+  step();
+  EXPECT_EQ(last_written(), 12);
+  command(11, 0, false);
+  step();
+  EXPECT_EQ(last_written(), 11);
+}
+
 TEST_F(BusTest, ABoardWithoutWatchdogKeepsItsOutputsThroughAnyGap) {
   command(35, 35, true);
   step();
@@ -306,7 +317,7 @@ TEST_F(BusTest, AnAnswerThatRefusesKeepsTheSession) {
 
 TEST_F(BusTest, WhatTheBoardSaidOnceIsReportedAndNothingRisesUntilTheLoopHasHeardIt) {
   for (const BusStatus said : {BusStatus::watchdog_tripped, BusStatus::write_refused}) {
-    command(12, 0, false, wires_.bus.value().health.inhibit);
+    command(12, 0, true);
     step();
     EXPECT_EQ(last_written(), 12);
     board_.next_exchange = said;
