@@ -12,14 +12,22 @@ import asyncio
 import json
 import logging
 import os
+import pathlib
 import pty
 import select
 import sys
 import threading
 import tty
 
-from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
-from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from pymodbus_versions import (  # noqa: E402
+    ModbusSerialServer,
+    ModbusServerContext,
+    ModbusSlaveContext,
+    ModbusTcpServer,
+    block,
+    serve,
+)
 
 TABLES = {"coil": 1, "input": 4, "holding": 3}
 WRITTEN_BY = {5: "coil", 15: "coil", 6: "holding", 16: "holding", 22: "holding", 23: "holding"}
@@ -29,10 +37,7 @@ class Board(ModbusSlaveContext):
     """Registers that note what clients write."""
 
     def __init__(self):
-        def block():
-            return ModbusSequentialDataBlock(0, [0] * 65536)
-
-        super().__init__(di=block(), co=block(), hr=block(), ir=block(), zero_mode=True)
+        super().__init__(di=block(), co=block(), hr=block(), ir=block())
         self.writes = []
         self.local = threading.local()
 
@@ -68,10 +73,7 @@ def talk(board, loop):
 async def start(board):
     """Listens on a free port."""
     context = ModbusServerContext(slaves={1: board}, single=False)
-    server = ModbusTcpServer(context, address=("127.0.0.1", 0), allow_reuse_address=True)
-    asyncio.ensure_future(server.serve_forever())
-    await server.serving
-    return server.server.sockets[0].getsockname()[1]
+    return (await serve(ModbusTcpServer(context, address=("127.0.0.1", 0), ignore_missing_slaves=True))).getsockname()[1]
 
 
 def wire(one, other):
@@ -89,8 +91,7 @@ async def start_serial(board):
     threading.Thread(target=wire, args=(inner[0], outer[0]), daemon=True).start()
     context = ModbusServerContext(slaves={1: board, 2: board}, single=False)
     server = ModbusSerialServer(context, port=os.ttyname(inner[1]), baudrate=115200, ignore_missing_slaves=True)
-    await server.start()
-    asyncio.ensure_future(server.serve_forever())
+    await serve(server)
     return os.ttyname(outer[1])
 
 

@@ -9,12 +9,20 @@ import collections
 import json
 import logging
 import math
+import pathlib
 import sys
 import threading
 import time
 
-from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
-from pymodbus.server.async_io import ModbusTcpServer
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from pymodbus_versions import (  # noqa: E402
+    FIRST_REGISTER,
+    ModbusServerContext,
+    ModbusSlaveContext,
+    ModbusTcpServer,
+    block,
+    serve,
+)
 
 FIRST_OUTPUT = 10
 INPUT_REGISTERS = 4  # function codes as pymodbus hands them on
@@ -71,10 +79,7 @@ class Finger:
 
 class Board(ModbusSlaveContext):
     def __init__(self, object_mm):
-        def block():
-            return ModbusSequentialDataBlock(0, [0] * 64)
-
-        super().__init__(di=block(), co=block(), hr=block(), ir=block(), zero_mode=True)
+        super().__init__(di=block(), co=block(), hr=block(), ir=block())
         self.fingers = [Finger(object_mm), Finger(object_mm)]
         self.reads = 0
         self.writes = 0
@@ -85,8 +90,8 @@ class Board(ModbusSlaveContext):
             self.reads += 1
             for index, finger in enumerate(self.fingers):
                 finger.move()
-                self.store["i"].setValues(index, [finger.raw(self.reads)])
-                self.store["i"].setValues(4 + index, [finger.pressure_raw()])
+                self.store["i"].setValues(FIRST_REGISTER + index, [finger.raw(self.reads)])
+                self.store["i"].setValues(FIRST_REGISTER + 4 + index, [finger.pressure_raw()])
         return super().getValues(fc_as_hex, address, count)
 
     def setValues(self, fc_as_hex, address, values):  # noqa: N802
@@ -97,7 +102,7 @@ class Board(ModbusSlaveContext):
                 self.fingers[index].move()
                 self.fingers[index].command_kpa = value / 4095 * 100
                 self.highest_kpa = max(self.highest_kpa, self.fingers[index].command_kpa)
-        self.store["i"].setValues(address, list(values))  # read back under function 4
+        self.store["i"].setValues(FIRST_REGISTER + address, list(values))  # read back under function 4
         super().setValues(fc_as_hex, address, values)
 
     def told(self):
@@ -106,12 +111,9 @@ class Board(ModbusSlaveContext):
                 "displacements_mm": [finger.displacement_mm() for finger in self.fingers]}
 
 
-async def serve(board):
+async def start(board):
     context = ModbusServerContext(slaves={1: board}, single=False)
-    server = ModbusTcpServer(context, address=("127.0.0.1", 0), allow_reuse_address=True)
-    asyncio.ensure_future(server.serve_forever())
-    await server.serving
-    return server.server.sockets[0].getsockname()[1]
+    return (await serve(ModbusTcpServer(context, address=("127.0.0.1", 0)))).getsockname()[1]
 
 
 def main():
@@ -119,7 +121,7 @@ def main():
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)
     board = Board(float(sys.argv[1]) if len(sys.argv) > 1 else math.inf)
-    print(json.dumps({"port": loop.run_until_complete(serve(board))}), flush=True)
+    print(json.dumps({"port": loop.run_until_complete(start(board))}), flush=True)
 
     def talk():
         for _ in sys.stdin:

@@ -1,0 +1,54 @@
+"""What differs between the pymodbus of Debian 12 (3.0) and that of Debian 13 (3.8), in one place."""
+
+import asyncio
+
+from pymodbus import datastore
+from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext
+
+try:
+    from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
+
+    OLD = True
+except ModuleNotFoundError:
+    from pymodbus.server import ModbusSerialServer, ModbusTcpServer
+
+    OLD = False
+
+#: Where the blocks of a context begin. The newer one counts from 1 whatever it is told.
+FIRST_REGISTER = 0 if OLD else 1
+
+__all__ = [
+    "FIRST_REGISTER",
+    "ModbusSerialServer",
+    "ModbusServerContext",
+    "ModbusSlaveContext",
+    "ModbusTcpServer",
+    "block",
+    "serve",
+]
+
+
+class ModbusSlaveContext(datastore.ModbusSlaveContext):
+    """Registers counted from 0, as they are on the wire."""
+
+    def __init__(self, **blocks):
+        super().__init__(**blocks, **({"zero_mode": True} if OLD else {}))
+
+
+def block():
+    """All registers of a table."""
+    return ModbusSequentialDataBlock(FIRST_REGISTER, [0] * 65536)
+
+
+async def serve(server):
+    """Serves in the background; returns the listening socket of a TCP server."""
+    if not OLD:
+        await server.serve_forever(background=True)
+        return server.transport.sockets[0] if isinstance(server, ModbusTcpServer) else None
+    if isinstance(server, ModbusSerialServer):
+        await server.start()
+        asyncio.ensure_future(server.serve_forever())
+        return None
+    asyncio.ensure_future(server.serve_forever())
+    await server.serving
+    return server.server.sockets[0]
