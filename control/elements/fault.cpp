@@ -88,7 +88,7 @@ struct RefusalInfo {
   std::string_view id;
   std::string_view name;
 };
-constexpr std::array<RefusalInfo, 10> refusals{{
+constexpr std::array<RefusalInfo, 11> refusals{{
     {"R00", "none"},
     {"R01", "faulted"},
     {"R02", "not_idle"},
@@ -99,6 +99,7 @@ constexpr std::array<RefusalInfo, 10> refusals{{
     {"R07", "nothing_to_stop"},
     {"R08", "nothing_to_acknowledge"},
     {"R09", "cause_persists"},
+    {"R10", "overtaken"},
 }};
 
 const RefusalInfo& info_of(RefusalCode code) noexcept {

@@ -67,6 +67,7 @@ enum class RefusalCode : std::uint16_t {
   nothing_to_stop = 7,
   nothing_to_acknowledge = 8,
   cause_persists = 9,  ///< acknowledge while the cause of a latched fault is still there
+  overtaken = 10,      ///< a start behind which a stop or a vent was asked for before the loop could take it
 };
 /// "R01" ... and a name in snake_case.
 [[nodiscard]] std::string_view id_of(RefusalCode code) noexcept;

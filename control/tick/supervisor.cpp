@@ -1,5 +1,6 @@
 #include "control/tick/supervisor.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace softgrip::control {
@@ -69,6 +70,8 @@ std::uint32_t Supervisor::venting_on_leaving(Phase phase) const noexcept {
 void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orders,
                         EventList& events) noexcept {
   const Request& request = input.request;
+  const bool halts = request.kind == Request::Kind::stop || request.kind == Request::Kind::vent;
+  if (halts) halted_by_ = std::max(halted_by_, request.id);
   switch (request.kind) {
     case Request::Kind::none:
       break;
@@ -94,6 +97,7 @@ void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orde
 }
 
 RefusalCode Supervisor::refusal_of_start(const TickInput& input, const Facts& facts) const noexcept {
+  if (input.request.id < halted_by_) return RefusalCode::overtaken;
   if (state_ == State::faulted) return RefusalCode::faulted;
   if (input.emergency_stop) return RefusalCode::emergency_stop;
   if (state_ == State::starting) return RefusalCode::no_valid_reading;

@@ -82,6 +82,7 @@ class Supervisor {
   std::uint32_t venting_ = 0;
   const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to its end
   std::uint32_t start_request_ = 0;
+  std::uint32_t halted_by_ = 0;  ///< the newest request to stop or to vent
 };
 
 }  // namespace softgrip::control

@@ -70,7 +70,9 @@ void Loop::read(control::TickInput& input) noexcept {
   input.inputs_lost = inputs_lost(input.now);
   input.slipped_cycles = slipped_;
   slipped_ = 0;
-  wires_.requests.pop(input.request);
+  if (!wires_.vents.pop(input.request) && !wires_.stops.pop(input.request)) {
+    wires_.requests.pop(input.request);
+  }
 
   Nanoseconds oldest = input.now;
   for (const model::Reading& reading : input.readings) oldest = std::min(oldest, reading.sampled_at);

@@ -118,6 +118,8 @@ struct Wires {
   Ring<Record> records;
   Broadcast<StampedEvent> events{4096};
   Ring<PanelEvent> panel_events{64};
+  Ring<control::Request> vents{16};  ///< taken before ...
+  Ring<control::Request> stops{16};  ///< ... these, and these before ...
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< of the last tick
   std::atomic<bool> enable_on{false};                           ///< the enable output, as it was written

@@ -15,6 +15,11 @@ std::shared_ptr<const LoadedSequence> SequenceShelf::find(std::uint32_t request)
   return found == sequences_.end() ? nullptr : found->second;
 }
 
+void SequenceShelf::drop(std::uint32_t request) {
+  const std::scoped_lock lock(mutex_);
+  sequences_.erase(request);
+}
+
 void SequenceShelf::drop_before(std::uint32_t request) {
   const std::scoped_lock lock(mutex_);
   sequences_.erase(sequences_.begin(), sequences_.lower_bound(request));

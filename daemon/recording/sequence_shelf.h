@@ -26,6 +26,8 @@ class SequenceShelf {
   void put(std::uint32_t request, std::shared_ptr<const LoadedSequence> sequence);
   /// nullptr if there is none.
   [[nodiscard]] std::shared_ptr<const LoadedSequence> find(std::uint32_t request) const;
+  /// Its start was refused, or never reached the loop.
+  void drop(std::uint32_t request);
   /// Drops those of requests before `request`: a later start was accepted, so nothing runs from them.
   void drop_before(std::uint32_t request);
 

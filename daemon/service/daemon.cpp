@@ -89,7 +89,7 @@ DaemonParts::DaemonParts(rig::RigFile rig_file, DaemonOptions run_options)
       controller(rig.settings),
       wires(records_of(rig.settings)),
       events(events_kept),
-      loader(rig.settings, rig.socket.sequence_directory),
+      loader(std::make_shared<const SequenceLoader>(rig.settings, rig.socket.sequence_directory)),
       loop(controller, rig.recorder.decimation, clock, wires, loop_statistics),
       bus(*board, rig.settings, rig.loop, rig.reconnect, clock, wires, bus_statistics),
       recorder(rig.recorder, provenance, options.record_folder, origin, wires, events, shelf),

@@ -42,7 +42,7 @@ struct DaemonParts {
   Wires wires;
   EventLog events;
   SequenceShelf shelf;
-  SequenceLoader loader;
+  std::shared_ptr<const SequenceLoader> loader;
   LoopStatistics loop_statistics;
   BusStatistics bus_statistics;
   Loop loop;

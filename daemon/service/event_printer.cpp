@@ -1,11 +1,15 @@
 #include "daemon/service/event_printer.h"
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
+#include <mutex>
 #include <sstream>
 
 #include <spdlog/async.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
 namespace softgrip::daemon {
@@ -28,10 +32,49 @@ spdlog::level::level_enum level_of(Severity severity) {
   return spdlog::level::info;
 }
 
+/// How long a reader of the standard error may keep a line waiting, once.
+constexpr int patience_ms = 200;
+
+/// The standard error, which a reader may have stopped reading: a line that cannot be written is dropped, for
+/// who writes must be able to end.
+class StandardError final : public spdlog::sinks::base_sink<std::mutex> {
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t text;
+    formatter_->format(message, text);
+    std::string line(text.data(), text.size());
+    if (colours_ && message.color_range_end > message.color_range_start) {
+      line.insert(message.color_range_end, "\033[0m");
+      line.insert(message.color_range_start, colour_of(message.level));
+    }
+    write(line);
+  }
+  void flush_() override {}
+
+ private:
+  static const char* colour_of(spdlog::level::level_enum level) {
+    return level >= spdlog::level::err    ? "\033[31m\033[1m"
+           : level == spdlog::level::warn ? "\033[33m\033[1m"
+                                          : "\033[32m";
+  }
+  /// A pipe that is ready takes a line of ours in one piece, so this does not wait.
+  void write(const std::string& line) {
+    pollfd ready{STDERR_FILENO, POLLOUT, 0};
+    const bool writable = ::poll(&ready, 1, blocked_ ? 0 : patience_ms) > 0;
+    blocked_ = !writable;
+    // Nobody can be told that this failed.
+    if (writable) [[maybe_unused]]
+      const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+  }
+
+  bool colours_ = isatty(STDERR_FILENO) != 0;
+  bool blocked_ = false;
+};
+
 }  // namespace
 
 EventPrinter::EventPrinter(bool beside) {
-  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  auto sink = std::make_shared<StandardError>();
   if (beside) {
     // The writer's thread takes no signal: one that came to it would end the process without the safe
     // outputs.

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "base/exit_code.h"
 #include "daemon/loop/heartbeat.h"
 #include "daemon/loop/real_time.h"
 #include "daemon/loop/thread.h"
@@ -38,6 +39,10 @@ constexpr Nanoseconds look_pause = ns_per_s / 20;
 /// How long loop and bus may stand still beyond what the rig file allows them before the service manager's
 /// watchdog starves: a machine that is busy for a moment is no hung daemon.
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
+/// How long the thread that serves clients may take for one turn: nobody is heard meanwhile.
+constexpr Nanoseconds service_patience = 2 * ns_per_s;
+/// How long recorder and service thread may take to end when the outputs are safe already.
+constexpr Nanoseconds longest_end = 3 * ns_per_s;
 /// Between two looks of the service thread when nothing listens.
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 /// From the start of the threads to the first tick.
@@ -81,6 +86,8 @@ class RealRun {
   void look_after();
   void stop();
   [[nodiscard]] bool stop_loop_and_bus();
+  [[nodiscard]] bool wait_for(const std::function<bool()>& condition, Nanoseconds longest);
+  [[noreturn]] void end_without(const char* hangs, ExitCode code);
   void loop_body();
   void bus_body();
   void recorder_body();
@@ -108,6 +115,9 @@ class RealRun {
   Stop stop_service_;
   std::atomic<bool> loop_done_{false};
   std::atomic<bool> bus_done_{false};
+  std::atomic<bool> service_done_{false};
+  std::atomic<bool> recorder_done_{false};
+  Counter service_turns_;
   std::atomic<bool> errand_over_{false};
   std::atomic<bool> broken_{false};
   std::mutex broken_mutex_;
@@ -154,6 +164,7 @@ void RealRun::recorder_body() {
   const std::chrono::duration<double> pause(parts_.rig.recorder.flush_interval_s);
   while (!stop_recorder_.wait(pause)) parts_.recorder.drain();
   parts_.recorder.finish();
+  recorder_done_.store(true);
 }
 
 void RealRun::service_body() {
@@ -175,9 +186,10 @@ void RealRun::service_body() {
   if (server_) {
     server_->set_handlers(
         {[&](ClientId client, std::string_view line) { api.on_line(client, line, parts_.clock.now()); },
-         [&](ClientId client) { api.on_closed(client); }});
+         [&](ClientId client) { api.on_closed(client); }, is_urgent});
   }
   while (!stop_service_.is_set()) {
+    service_turns_.add();
     parts_.service.pump();
     if (parts_.errand) {
       parts_.errand->step(parts_.service, parts_.clock.now());
@@ -192,6 +204,7 @@ void RealRun::service_body() {
     }
   }
   parts_.service.pump();
+  service_done_.store(true);
 }
 
 void RealRun::start_threads() {
@@ -257,7 +270,7 @@ Heartbeat RealRun::make_heartbeat() const {
   const Nanoseconds pause = parts_.period() + heartbeat_patience;
   const Nanoseconds longest_bus_call = std::max<Nanoseconds>(
       parts_.rig.reconnect.connect_deadline.count(), nanoseconds(parts_.rig.loop.exchange_deadline_s));
-  return Heartbeat({pause, pause + longest_bus_call});
+  return Heartbeat({pause, pause + longest_bus_call, service_patience});
 }
 
 void RealRun::look_after() {
@@ -267,8 +280,8 @@ void RealRun::look_after() {
     const Nanoseconds now = parts_.clock.now();
     parts_.deliver_events();
     if (over(now)) return;
-    manager_.feed(now, heartbeat.beats(
-                           now, {parts_.loop_statistics.ticks.value(), parts_.bus_statistics.steps.value()}));
+    manager_.feed(now, heartbeat.beats(now, {parts_.loop_statistics.ticks.value(),
+                                             parts_.bus_statistics.steps.value(), service_turns_.value()}));
     if (now >= status_due) {
       manager_.status(status_line());
       status_due = now + ns_per_s;
@@ -276,34 +289,42 @@ void RealRun::look_after() {
   }
 }
 
+/// A thread that hangs cannot be joined, and without it nothing can be tidied up.
+void RealRun::end_without(const char* hangs, ExitCode code) {
+  parts_.tell("internal_error", Severity::error, fmt::format("{}; the process ends without it.", hangs));
+  parts_.deliver_events();
+  std::_Exit(static_cast<int>(code));
+}
+
+bool RealRun::wait_for(const std::function<bool()>& condition, Nanoseconds longest) {
+  const Nanoseconds give_up = parts_.clock.now() + longest;
+  while (!condition() && parts_.clock.now() < give_up)
+    parts_.clock.sleep_until(parts_.clock.now() + ns_per_s / 1000);
+  return condition();
+}
+
 bool RealRun::stop_loop_and_bus() {
   parts_.wires.leave.store(true);
-  const Nanoseconds longest = leave_deadline.count() + longest_join +
-                              std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
-                                                    nanoseconds(parts_.rig.loop.exchange_deadline_s));
-  const Nanoseconds give_up = parts_.clock.now() + longest;
-  while (!(loop_done_.load() && bus_done_.load()) && parts_.clock.now() < give_up) {
-    sleep_until(parts_.clock.now() + ns_per_s / 1000);
-  }
-  return loop_done_.load() && bus_done_.load();
+  return wait_for([this] { return loop_done_.load() && bus_done_.load(); },
+                  leave_deadline.count() + longest_join +
+                      std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
+                                            nanoseconds(parts_.rig.loop.exchange_deadline_s)));
 }
 
 void RealRun::stop() {
   parts_.tell("daemon_stopping", Severity::information, "Stopping: the safe outputs are written.");
   manager_.stopping();
-  const bool ended = stop_loop_and_bus();
+  if (!stop_loop_and_bus()) end_without("The loop or the bus thread hangs", ExitCode::failed);
   panel_.stop();
   stop_recorder_.set();
   stop_service_.set();
+  const bool done = wait_for([this] { return recorder_done_.load() && service_done_.load(); }, longest_end);
+  if (!done) {
+    end_without(recorder_done_.load() ? "The thread that serves clients hangs" : "The recorder hangs",
+                ExitCode::io);
+  }
   recorder_.join();
   service_.join();
-  if (!ended) {
-    // A thread that hangs cannot be joined, and without it nothing can be tidied up.
-    parts_.tell("internal_error", Severity::error,
-                "The loop or the bus thread hangs; the process ends without it.");
-    parts_.deliver_events();
-    std::_Exit(EXIT_FAILURE);
-  }
   loop_.join();
   bus_.join();
 }

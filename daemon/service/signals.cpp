@@ -1,24 +1,29 @@
 #include "daemon/service/signals.h"
 
-#include <cerrno>
+#include <cstddef>
 
 namespace softgrip::daemon {
 
+namespace {
+
+/// Every signal that would end the process but those that say that it is broken, and SIGKILL.
+constexpr std::array ending{SIGINT,  SIGTERM,   SIGHUP,  SIGQUIT, SIGUSR1, SIGUSR2,  SIGALRM,
+                            SIGXCPU, SIGVTALRM, SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
+
+}  // namespace
+
 Signals::Signals() noexcept {
   sigemptyset(&set_);
-  sigaddset(&set_, SIGINT);
-  sigaddset(&set_, SIGTERM);
-  sigaddset(&set_, SIGHUP);
+  for (const int signal : ending) sigaddset(&set_, signal);
+  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) sigaddset(&set_, signal);
   pthread_sigmask(SIG_BLOCK, &set_, &before_);
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &ignore, &pipe_before_);
-  sigaction(SIGXFSZ, &ignore, &size_before_);
+  for (std::size_t i = 0; i < ignored.size(); ++i) sigaction(ignored[i], &ignore, &ignored_before_[i]);
 }
 
 Signals::~Signals() {
-  sigaction(SIGPIPE, &pipe_before_, nullptr);
-  sigaction(SIGXFSZ, &size_before_, nullptr);
+  for (std::size_t i = 0; i < ignored.size(); ++i) sigaction(ignored[i], &ignored_before_[i], nullptr);
   // What came meanwhile was answered by the orderly stop; delivered now it would end the process.
   while (wait(0) > 0) {
   }

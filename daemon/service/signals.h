@@ -1,6 +1,7 @@
 #pragma once
 // Signals as something to wait for, not as interruptions.
 
+#include <array>
 #include <csignal>
 #include <ctime>
 
@@ -8,9 +9,10 @@
 
 namespace softgrip::daemon {
 
-/// As long as it lives, SIGINT, SIGTERM and SIGHUP are blocked in the calling thread and in those it starts,
-/// and SIGPIPE and SIGXFSZ are ignored: a peer that is gone and a file that is too large are errors of the
-/// call.
+/// As long as it lives, every signal that asks a process to end is blocked in the calling thread and in those
+/// it starts; and ignored are SIGPIPE and SIGXFSZ, because a peer that is gone and a file that is too large
+/// are errors of the call, and what a terminal sends to stop a process, because a loop that stands still
+/// holds nothing.
 class Signals {
  public:
   Signals() noexcept;
@@ -26,8 +28,8 @@ class Signals {
  private:
   sigset_t set_{};
   sigset_t before_{};
-  struct sigaction pipe_before_ {};
-  struct sigaction size_before_ {};
+  static constexpr std::array ignored{SIGPIPE, SIGXFSZ, SIGTSTP, SIGTTIN, SIGTTOU};
+  std::array<struct sigaction, ignored.size()> ignored_before_{};
 };
 
 }  // namespace softgrip::daemon

@@ -173,4 +173,10 @@ tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view l
   return request;
 }
 
+bool is_urgent(std::string_view line) {
+  const auto request = parse_client_request(line);
+  return request && (request->command == ClientRequest::Command::stop ||
+                     request->command == ClientRequest::Command::vent);
+}
+
 }  // namespace softgrip::daemon

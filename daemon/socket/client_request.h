@@ -45,4 +45,7 @@ struct ClientError {
 /// command, a wrong type and a number out of range are errors.
 [[nodiscard]] tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view line);
 
+/// Whether it asks to stop or to vent.
+[[nodiscard]] bool is_urgent(std::string_view line);
+
 }  // namespace softgrip::daemon

@@ -28,12 +28,8 @@ bool is_plain_name(const std::string& name) {
 
 }  // namespace
 
-SequenceLoader::SequenceLoader(const control::RigSettings& rig, std::string directory)
-    : rig_(rig), directory_(std::move(directory)) {}
-
-bool SequenceLoader::plans() const noexcept {
-  return control::plans_sequences(rig_);
-}
+SequenceLoader::SequenceLoader(control::RigSettings rig, std::string directory)
+    : rig_(std::move(rig)), directory_(std::move(directory)) {}
 
 SequenceLoader::Result SequenceLoader::load_file(const std::string& path, const std::stop_token& stop) const {
   document::Problems problems;
@@ -43,18 +39,22 @@ SequenceLoader::Result SequenceLoader::load_file(const std::string& path, const 
 
 SequenceLoader::Result SequenceLoader::load_named(const std::string& name,
                                                   const std::stop_token& stop) const {
-  if (!is_plain_name(name)) {
+  const auto refused = [](const std::string& file, std::string message, std::string hint) {
     document::Problems problems;
-    problems.add({name,
-                  {},
-                  "",
-                  "this is no name of a file in the daemon's sequence directory",
-                  fmt::format("a file of {}, or send the text itself", directory_)});
+    problems.add({file, {}, "", std::move(message), std::move(hint)});
     return tl::unexpected(std::move(problems));
+  };
+  if (!is_plain_name(name)) {
+    return refused(name, "this is no name of a file in the daemon's sequence directory",
+                   fmt::format("a file of {}, or send the text itself", directory_));
   }
   std::string path = directory_ + "/" + name;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) path += ".yaml";
+  // A pipe would be waited for.
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+    return refused(path, "this is no regular file", "a YAML file");
+  }
   return load_file(path, stop);
 }
 

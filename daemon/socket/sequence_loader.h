@@ -16,18 +16,17 @@ namespace softgrip::daemon {
 
 class SequenceLoader {
  public:
-  /// `directory`: where names given by clients are looked up. `rig` outlives the loader.
-  SequenceLoader(const control::RigSettings& rig, std::string directory);
+  /// `directory`: where names given by clients are looked up.
+  SequenceLoader(control::RigSettings rig, std::string directory);
 
-  /// Reading takes time: some channel's motion is planned (feedforward `planned`), up to a second for ten
-  /// seconds of it. Reading is thread-safe.
-  [[nodiscard]] bool plans() const noexcept;
-
-  // Planning can be asked to stop: the sequence is then refused for that reason.
+  // Loading takes time: up to a second for ten seconds of motion where some channel's is planned (feedforward
+  // `planned`), for ever where the directory is on a mount that is gone. It is thread-safe. Planning can be
+  // asked to stop: the sequence is then refused for that reason.
   using Result = tl::expected<std::shared_ptr<const LoadedSequence>, document::Problems>;
   /// A file, wherever it is: what the user of the daemon's own command line named.
   [[nodiscard]] Result load_file(const std::string& path, const std::stop_token& stop = {}) const;
-  /// A file in the directory; `name` may leave the ending `.yaml` out, and may not lead out of the directory.
+  /// A regular file in the directory; `name` may leave the ending `.yaml` out, and may not lead out of the
+  /// directory.
   [[nodiscard]] Result load_named(const std::string& name, const std::stop_token& stop = {}) const;
   /// The text itself; `name` stands for a file name in messages.
   [[nodiscard]] Result load_text(const std::string& name, const std::string& text,
@@ -37,7 +36,7 @@ class SequenceLoader {
   [[nodiscard]] Result fit(std::optional<control::Sequence> sequence, document::Problems problems,
                            const std::stop_token& stop) const;
 
-  const control::RigSettings& rig_;
+  control::RigSettings rig_;
   std::string directory_;
 };
 

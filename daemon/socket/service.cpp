@@ -25,11 +25,33 @@ std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
   request.kind = kind;
   request.id = last_request_ + 1;
   request.sequence = sequence ? &sequence->prepared : nullptr;
-  if (sequence) shelf_.put(request.id, std::move(sequence));
-  if (!wires_.requests.push(request)) return std::nullopt;
+  if (!push(request, std::move(sequence))) {
+    const bool vents = kind == control::Request::Kind::vent;
+    if (!vents && kind != control::Request::Kind::stop) return std::nullopt;
+    return answers_.try_emplace(vents ? last_vent_ : last_stop_).first->first;
+  }
   ++last_request_;
   answers_[request.id] = {};
   return request.id;
+}
+
+bool Service::push(const control::Request& request, std::shared_ptr<const LoadedSequence> sequence) {
+  switch (request.kind) {
+    case control::Request::Kind::vent:
+      if (!wires_.vents.push(request)) return false;
+      last_vent_ = request.id;
+      return true;
+    case control::Request::Kind::stop:
+      if (!wires_.stops.push(request)) return false;
+      last_stop_ = request.id;
+      return true;
+    default:
+      break;
+  }
+  if (sequence) shelf_.put(request.id, std::move(sequence));
+  if (wires_.requests.push(request)) return true;
+  shelf_.drop(request.id);
+  return false;
 }
 
 void Service::pump() {
@@ -63,6 +85,8 @@ void Service::take(const StampedEvent& stamped) {
     sequence_request_ = event.request;
     shelf_.drop_before(event.request);
   }
+  // The loop has let go of it.
+  if (event.kind == Kind::request_refused) shelf_.drop(event.request);
   if (event.kind == Kind::sequence_finished) {
     ending_ = {event.request, static_cast<control::SequenceEnd>(event.detail)};
   }

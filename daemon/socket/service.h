@@ -22,6 +22,8 @@ class Service {
           SequenceShelf& shelf);
 
   /// Hands a request to the loop; returns its id, or nothing if the loop has not taken the last ones yet.
+  /// Vent and stop have lanes of their own, which pass whatever else waits, and always return an id: if their
+  /// lane is full, that of one that waits in it and will do the same.
   std::optional<std::uint32_t> submit(control::Request::Kind kind,
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr);
 
@@ -35,6 +37,8 @@ class Service {
     control::RefusalCode refusal = control::RefusalCode::none;
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
+  /// Nobody waits for the answer any more.
+  void forget(std::uint32_t request) { answers_.erase(request); }
 
   /// How the newest sequence ended that has ended, and which request had started it.
   struct Ending {
@@ -53,6 +57,7 @@ class Service {
 
  private:
   void take(const StampedEvent& event);
+  bool push(const control::Request& request, std::shared_ptr<const LoadedSequence> sequence);
 
   std::vector<std::string> channel_names_;
   Nanoseconds origin_;
@@ -61,6 +66,8 @@ class Service {
   EventLog& log_;
   SequenceShelf& shelf_;
   std::uint32_t last_request_ = 0;
+  std::uint32_t last_vent_ = 0;
+  std::uint32_t last_stop_ = 0;
   std::map<std::uint32_t, Answer> answers_;  // of requests that were submitted and not taken
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;

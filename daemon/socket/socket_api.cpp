@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
+#include <thread>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -44,8 +46,9 @@ Json json_of(const std::vector<document::Problem>& problems) {
 
 }  // namespace
 
-SocketApi::SocketApi(StatusSources sources, const SequenceLoader& loader, const EventLog& events, Send send)
-    : sources_(sources), loader_(loader), events_(events), send_(std::move(send)) {}
+SocketApi::SocketApi(StatusSources sources, std::shared_ptr<const SequenceLoader> loader,
+                     const EventLog& events, Send send)
+    : sources_(sources), loader_(std::move(loader)), events_(events), send_(std::move(send)) {}
 
 SocketApi::~SocketApi() {
   if (planned_) abandon_planned();
@@ -93,24 +96,27 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
 
 void SocketApi::on_closed(ClientId client) {
   watches_.erase(client);
-  std::erase_if(asked_, [client](const auto& entry) { return entry.second.client == client; });
+  std::erase_if(asked_, [this, client](const auto& entry) {
+    if (entry.second.client != client) return false;
+    if (asked_.count(entry.first) == 1) sources_.service.forget(entry.first);
+    return true;
+  });
   if (planned_ && planned_->client == client) abandon_planned();
 }
 
 Nanoseconds SocketApi::on_time(Nanoseconds now) {
   take_planned(now);
   for (auto entry = asked_.begin(); entry != asked_.end();) {
-    const auto& [request, asked] = *entry;
+    const std::uint32_t request = entry->first;
+    const auto end = asked_.upper_bound(request);
     const Service::Answer said = sources_.service.take_answer(request);
-    if (said.kind != Service::Answer::Kind::pending) {
-      answer(asked, request, said);
-    } else if (now >= asked.give_up) {
-      fail(asked.client, asked.id, error_json("no_answer", "the loop did not answer within a second"));
-    } else {
-      ++entry;
+    if (said.kind == Service::Answer::Kind::pending && now < entry->second.give_up) {
+      entry = end;
       continue;
     }
-    entry = asked_.erase(entry);
+    for (auto waiting = entry; waiting != end; ++waiting) answer(waiting->second, request, said);
+    if (said.kind == Service::Answer::Kind::pending) sources_.service.forget(request);
+    entry = asked_.erase(entry, end);
   }
   Nanoseconds next = now + longest_pause;
   for (auto& [client, watch] : watches_) {
@@ -123,20 +129,20 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
   return next;
 }
 
+/// Nobody who asks for a vent or a stop waits for a plan, or for a disk.
 void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds now) {
-  const std::stop_source stop;
-  const auto load = [&loader = loader_, name = request.sequence, text = request.sequence_text,
-                     token = stop.get_token()] {
-    return text.empty() ? loader.load_named(name, token) : loader.load_text(name, text, token);
-  };
-  if (!loader_.plans()) {
-    loaded(client, request.id, load(), now);
-  } else if (planned_) {
-    fail(client, request.id, error_json("busy", "the sequence of an earlier start is still being planned"));
-  } else {
-    // Nobody who asks for a vent or a stop waits for a plan.
-    planned_ = Planned{client, request.id, std::async(std::launch::async, load), stop};
+  take_planned(now);
+  if (planned_) {
+    fail(client, request.id, error_json("busy", "the sequence of an earlier start is still being loaded"));
+    return;
   }
+  const std::stop_source stop;
+  std::packaged_task<SequenceLoader::Result()> load(
+      [loader = loader_, name = request.sequence, text = request.sequence_text, token = stop.get_token()] {
+        return text.empty() ? loader->load_named(name, token) : loader->load_text(name, text, token);
+      });
+  planned_ = Planned{client, request.id, load.get_future(), stop};
+  std::thread(std::move(load)).detach();
 }
 
 void SocketApi::abandon_planned() noexcept {
@@ -149,7 +155,7 @@ void SocketApi::refuse_planned() {
   if (!planned_ || planned_->abandoned) return;
   abandon_planned();
   fail(planned_->client, planned_->id,
-       error_json("abandoned", "a stop or a vent came while the sequence was being planned"));
+       error_json("abandoned", "a stop or a vent came while the sequence was being loaded"));
 }
 
 void SocketApi::take_planned(Nanoseconds now) {
@@ -181,10 +187,14 @@ void SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
     fail(client, id, error_json("busy", "the loop has not yet taken the requests before this one"));
     return;
   }
-  asked_[*number] = {client, id, now + longest_answer, std::move(remarks)};
+  asked_.insert({*number, {client, id, now + longest_answer, std::move(remarks)}});
 }
 
 void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer) {
+  if (answer.kind == Service::Answer::Kind::pending) {
+    fail(asked.client, asked.id, error_json("no_answer", "the loop did not answer within a second"));
+    return;
+  }
   if (answer.kind == Service::Answer::Kind::accepted) {
     Json result{{"request", request}};
     if (!asked.remarks.warnings().empty()) result["warnings"] = json_of(asked.remarks.warnings());

@@ -5,6 +5,7 @@
 #include <functional>
 #include <future>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -28,10 +29,11 @@ class SocketApi {
   /// yet read the last ones.
   using Send = std::function<void(ClientId client, std::string_view line, bool skippable)>;
 
-  SocketApi(StatusSources sources, const SequenceLoader& loader, const EventLog& events, Send send);
+  SocketApi(StatusSources sources, std::shared_ptr<const SequenceLoader> loader, const EventLog& events,
+            Send send);
   SocketApi(const SocketApi&) = delete;
   SocketApi& operator=(const SocketApi&) = delete;
-  /// What is being planned is stopped and waited for.
+  /// What is being planned is told to stop. It is not waited for: its thread may hang in the file system.
   ~SocketApi();
 
   /// One line of a client, without its line break.
@@ -54,7 +56,7 @@ class SocketApi {
     Nanoseconds due = 0;
   };
 
-  struct Planned {  // being read by a thread of its own
+  struct Planned {  // being loaded by a thread of its own
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
@@ -77,10 +79,10 @@ class SocketApi {
   void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
 
   StatusSources sources_;
-  const SequenceLoader& loader_;
+  std::shared_ptr<const SequenceLoader> loader_;
   const EventLog& events_;
   Send send_;
-  std::map<std::uint32_t, Asked> asked_;  // by the request's id in the loop
+  std::multimap<std::uint32_t, Asked> asked_;  // by the request's id in the loop
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
 };

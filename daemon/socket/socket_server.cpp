@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,7 +26,19 @@ namespace softgrip::daemon {
 
 namespace {
 
-constexpr int backlog = 16;
+constexpr int backlog = 128;
+/// New clients in one call: they must not keep those that are there from having their turn.
+constexpr int most_accepts = 4;
+/// A client that has just come keeps its place for so long, though it has not said anything yet; one that has
+/// spoken for so long after its last word, or after the last one that it took.
+constexpr Nanoseconds first_word = ns_per_s / 10;
+constexpr Nanoseconds longest_silence = 5 * ns_per_s;
+/// Clients beside those that have places.
+constexpr std::size_t most_standing = 32;
+/// Lines of one client in one call take no longer than this and one more line.
+constexpr std::chrono::microseconds longest_turn(500);
+/// Without a descriptor for it a new client cannot even be refused.
+constexpr Nanoseconds accept_pause = ns_per_s / 10;
 /// A client that takes nothing for so long has lost interest.
 constexpr Nanoseconds longest_stall = 10 * ns_per_s;
 /// How long a client that will send no more may wait for what it asked.
@@ -109,57 +124,130 @@ tl::expected<SocketServer, std::string> SocketServer::listen(const rig::SocketSe
     return problem;
   }
   if (::listen(listener.get(), backlog) != 0) return failure(settings.path, "listen");
-  return SocketServer(settings, std::move(listener));
+  struct stat status {};
+  if (lstat(settings.path.c_str(), &status) != 0) return failure(settings.path, "its own file");
+  SocketServer server(settings, std::move(listener));
+  server.device_ = status.st_dev;
+  server.inode_ = status.st_ino;
+  return server;
 }
 
 SocketServer::SocketServer(SocketServer&& other) noexcept = default;
 
 SocketServer::~SocketServer() {
-  if (listener_) unlink(settings_.path.c_str());
+  struct stat status {};
+  // Somebody may have removed it and another daemon have put its own there.
+  const bool there = listener_ && lstat(settings_.path.c_str(), &status) == 0;
+  if (there && status.st_dev == device_ && status.st_ino == inode_) unlink(settings_.path.c_str());
 }
 
 void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   now_ = now;
-  std::vector<pollfd> polled{{listener_.get(), POLLIN, 0}};
+  const bool accepts = now >= accepts_again_;
+  std::vector<pollfd> polled{{listener_.get(), static_cast<short>(accepts ? POLLIN : 0), 0}};
   std::vector<std::uint64_t> ids{0};
   for (const auto& [id, client] : clients_) {
-    // A client whose replies are not taken is not read either.
+    // A client whose replies are not taken is not read either, nor one that has more to say than its turn
+    // takes.
     const bool writes = !client.output.empty();
-    const auto events = static_cast<short>(writes ? POLLOUT : client.ended_at != 0 ? 0 : POLLIN);
-    polled.push_back({client.socket.get(), events, 0});
+    const bool reads = client.ended_at == 0 && !has_line(client);
+    polled.push_back({client.socket.get(), static_cast<short>(writes ? POLLOUT : reads ? POLLIN : 0), 0});
     ids.push_back(id);
   }
-  const Nanoseconds wait = std::max<Nanoseconds>(until - now, 0);
+  const Nanoseconds wait = lines_left_ ? 0 : std::max<Nanoseconds>(until - now, 0);
   const timespec timeout{wait / ns_per_s, wait % ns_per_s};
   if (::ppoll(polled.data(), polled.size(), &timeout, nullptr) > 0) {
     for (std::size_t i = 1; i < polled.size(); ++i) {
       Client& client = clients_.at(ids[i]);
       if ((polled[i].revents & POLLOUT) != 0) write_to(client, now);
-      if ((polled[i].revents & POLLIN) != 0) read_from(ids[i], client);
+      if ((polled[i].revents & POLLIN) != 0) read_from(client);
       if ((polled[i].revents & (POLLERR | POLLNVAL)) != 0) client.dead = true;
       if ((polled[i].revents & POLLHUP) != 0 && (polled[i].revents & POLLIN) == 0) client.dead = true;
     }
-    if ((polled[0].revents & POLLIN) != 0) accept_all();
+    if ((polled[0].revents & POLLIN) != 0) accept_some();
+  }
+  lines_left_ = false;
+  for (auto& [id, client] : clients_) {
+    take_lines(id, client);
+    lines_left_ = lines_left_ || (!client.dead && client.output.empty() && has_line(client));
   }
   sweep(now);
 }
 
-void SocketServer::accept_all() {
-  for (;;) {
-    Descriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+void SocketServer::accept_some() {
+  for (int i = 0; i < most_accepts; ++i) {
+    Descriptor socket = accept_one();
     if (!socket) return;
-    if (clients_.size() >= settings_.max_clients) {
-      const std::string line = error_line(std::nullopt, "too_many_clients",
-                                          fmt::format("at most {} clients at a time", settings_.max_clients));
-      // Best effort: the buffer of a new socket takes a line.
-      [[maybe_unused]] const ssize_t sent = ::send(socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
-      continue;
-    }
-    clients_[++last_id_].socket = std::move(socket);
+    const bool full = clients_.size() >= settings_.max_clients;
+    const bool stands = full && !displace_one(false);
+    if (clients_.size() >= settings_.max_clients + most_standing) displace_one(true);
+    Client& client = clients_[++last_id_];
+    client.socket = std::move(socket);
+    client.active_at = now_;
+    client.stands = stands;
+    read_from(client);  // what it has to say is usually there already
   }
 }
 
-void SocketServer::read_from(std::uint64_t id, Client& client) {
+/// Nothing if nobody waits, or if there is no descriptor even without the longest silent client.
+Descriptor SocketServer::accept_one() {
+  for (;;) {
+    Descriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    const bool none_left =
+        !socket && (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM);
+    if (!none_left) return socket;
+    if (displace_one(true)) continue;
+    accepts_again_ = now_ + accept_pause;
+    return socket;
+  }
+}
+
+/// It has had the time to say something, and has not for long.
+bool SocketServer::may_go(const Client& client) const {
+  return client.ended_at != 0 || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
+}
+
+/// Of those that may go, or of all if it must be: the one that stands, never spoke, was silent for longest,
+/// in this order. False if there is none.
+bool SocketServer::displace_one(bool whoever) {
+  const auto rank = [](const Client& client) {
+    return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
+  };
+  auto found = clients_.end();
+  for (auto entry = clients_.begin(); entry != clients_.end(); ++entry) {
+    const Client& client = entry->second;
+    if (!whoever && !may_go(client)) continue;
+    if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
+  }
+  if (found == clients_.end()) return false;
+  // Best effort: nobody waits for a client that does not read.
+  const std::string line = too_many();
+  [[maybe_unused]] const ssize_t sent =
+      ::send(found->second.socket.get(), line.data(), line.size(), MSG_NOSIGNAL);
+  const std::uint64_t id = found->first;
+  clients_.erase(found);
+  handlers_.on_closed(id);
+  return true;
+}
+
+std::string SocketServer::too_many() const {
+  return error_line(std::nullopt, "too_many_clients",
+                    fmt::format("at most {} clients at a time; stop and vent are heard all the same",
+                                settings_.max_clients));
+}
+
+void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line) {
+  if (!client.stands || (handlers_.is_urgent && handlers_.is_urgent(line))) {
+    handlers_.on_line(id, line);
+  } else {
+    send(id, too_many(), false);
+    client.closing = true;
+  }
+  // One word, and the time until its answer.
+  if (client.stands) client.ended_at = now_;
+}
+
+void SocketServer::read_from(Client& client) {
   if (client.closing) return;
   std::array<char, read_bytes> buffer;
   const ssize_t count = recv(client.socket.get(), buffer.data(), buffer.size(), 0);
@@ -173,21 +261,30 @@ void SocketServer::read_from(std::uint64_t id, Client& client) {
     return;
   }
   client.input.append(buffer.data(), static_cast<std::size_t>(count));
-  take_lines(id, client);
 }
 
+bool SocketServer::has_line(const Client& client) {
+  return client.input.find('\n') != std::string::npos;
+}
+
+/// As many as its turn allows, and no more as long as an answer waits to be taken.
 void SocketServer::take_lines(std::uint64_t id, Client& client) {
+  const auto began = std::chrono::steady_clock::now();
   std::size_t begin = 0;
   for (std::size_t end = client.input.find('\n'); end != std::string::npos && !client.dead;
        end = client.input.find('\n', begin)) {
     std::string_view line(client.input.data() + begin, end - begin);
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.size() > settings_.max_line_bytes) break;
-    if (!line.empty()) handlers_.on_line(id, line);
-    begin = end + 1;
+    client.active_at = now_;
+    client.spoke = true;
+    if (!line.empty()) hear(id, client, line);
+    begin = client.stands ? client.input.size() : end + 1;
+    if (!client.output.empty() || std::chrono::steady_clock::now() - began > longest_turn) break;
   }
   client.input.erase(0, begin);
-  if (client.input.size() > settings_.max_line_bytes) {
+  // The end of a line that is too long may be there or not.
+  if (std::min(client.input.find('\n'), client.input.size()) > settings_.max_line_bytes) {
     send(id,
          error_line(std::nullopt, "too_long",
                     fmt::format("a line has at most {} bytes", settings_.max_line_bytes)),
@@ -225,6 +322,7 @@ void SocketServer::write_to(Client& client, Nanoseconds now) {
     }
     client.output.erase(0, static_cast<std::size_t>(count));
     client.stalled_since = 0;
+    client.active_at = now;
   }
 }
 
@@ -232,7 +330,7 @@ void SocketServer::sweep(Nanoseconds now) {
   for (auto entry = clients_.begin(); entry != clients_.end();) {
     Client& client = entry->second;
     const bool stalled = client.stalled_since != 0 && now - client.stalled_since > longest_stall;
-    const bool left = client.ended_at != 0 && now - client.ended_at > answer_pause;
+    const bool left = client.ended_at != 0 && now - client.ended_at > answer_pause && !has_line(client);
     const bool done = (client.closing || left) && client.output.empty();
     if (!client.dead && !stalled && !done) {
       ++entry;

@@ -1,6 +1,8 @@
 #pragma once
 // Lines over a Unix domain socket, every bound enforced. Knows nothing of what the lines mean.
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -24,6 +26,8 @@ class SocketServer {
   struct Handlers {
     std::function<void(std::uint64_t client, std::string_view line)> on_line;
     std::function<void(std::uint64_t client)> on_closed;
+    /// Whether a line must be heard even of a client for which there is no place.
+    std::function<bool(std::string_view line)> is_urgent;
   };
 
   /// Creates the socket's file with the owner's rights first and the settings' then. A file left by a daemon
@@ -33,13 +37,16 @@ class SocketServer {
   SocketServer& operator=(const SocketServer&) = delete;
   SocketServer(SocketServer&& other) noexcept;
   SocketServer& operator=(SocketServer&&) = delete;
-  /// Removes the socket's file.
+  /// Removes the socket's file, if it still is its own.
   ~SocketServer();
 
   /// To be set before the first poll().
   void set_handlers(Handlers handlers) { handlers_ = std::move(handlers); }
 
-  /// Waits for something to happen, at most until `until`, and deals with it.
+  /// Waits for something to happen, at most until `until`, and deals with it: a part of it, if there is much,
+  /// so that every client has its turn in the next call. When all places are taken, a new client gets that of
+  /// one that has been silent for long; if there is none, it stands: it may say one line, which is refused
+  /// unless it is urgent.
   void poll(Nanoseconds now, Nanoseconds until);
 
   /// Queues a line for a client; unknown clients are ignored. `skippable`: dropped if the client has not yet
@@ -55,24 +62,37 @@ class SocketServer {
     std::string output;
     Nanoseconds stalled_since = 0;  // output is waiting and nothing was taken since; 0: not
     Nanoseconds ended_at = 0;       // will send no more; 0: may
+    Nanoseconds active_at = 0;      // it sent a line or took one, or it came
+    bool spoke = false;             // it has sent a line
+    bool stands = false;            // there was no place for it
     bool closing = false;           // after the output is gone
     bool dead = false;
   };
 
   SocketServer(const rig::SocketSettings& settings, Descriptor listener)
       : settings_(settings), listener_(std::move(listener)) {}
-  void accept_all();
-  void read_from(std::uint64_t id, Client& client);
+  void accept_some();
+  Descriptor accept_one();
+  [[nodiscard]] bool may_go(const Client& client) const;
+  bool displace_one(bool whoever);
+  [[nodiscard]] std::string too_many() const;
+  void hear(std::uint64_t id, Client& client, std::string_view line);
+  void read_from(Client& client);
   void take_lines(std::uint64_t id, Client& client);
+  [[nodiscard]] static bool has_line(const Client& client);
   void write_to(Client& client, Nanoseconds now);
   void sweep(Nanoseconds now);
 
   rig::SocketSettings settings_;
   Descriptor listener_;
+  dev_t device_ = 0;  // of the socket's file
+  ino_t inode_ = 0;
   Handlers handlers_;
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;
   Nanoseconds now_ = 0;
+  Nanoseconds accepts_again_ = 0;  // out of descriptors until then
+  bool lines_left_ = false;        // somebody's, for the next call
 };
 
 }  // namespace softgrip::daemon

@@ -5,12 +5,15 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "base/clock.h"
@@ -50,7 +53,8 @@ class SocketServerTest : public ::testing::Test {
                                lines_.emplace_back(line);
                                if (answer_) answer_(client, line);
                              },
-                             [this](std::uint64_t) { ++closed_; }});
+                             [this](std::uint64_t) { ++closed_; },
+                             [](std::string_view line) { return line.rfind("urgent", 0) == 0; }});
     }
     return *server_;
   }
@@ -167,31 +171,118 @@ TEST_F(SocketServerTest, AnEndlessLineIsCutOffBeforeItCostsMemory) {
   EXPECT_EQ(server().clients(), 0U);
 }
 
-TEST_F(SocketServerTest, OneClientTooManyIsToldSoAndTheOthersStay) {
+TEST_F(SocketServerTest, OneClientTooManyIsToldSoWhenItSpeaksAndTheOthersStay) {
   server();
   std::vector<Descriptor> clients;
   for (int i = 0; i < 4; ++i) clients.push_back(connect_to(settings_.path));
   turn();
-  EXPECT_EQ(server().clients(), 3U);
+  send_text(clients[3], "and I\n");
+  turn();
   EXPECT_NE(received(clients[3]).value_or("").find("too_many_clients"), std::string::npos);
+  EXPECT_FALSE(received(clients[3]));
+  EXPECT_EQ(server().clients(), 3U);
   send_text(clients[0], "still here\n");
   turn();
   EXPECT_EQ(lines_, std::vector<std::string>{"still here"});
 }
 
-TEST_F(SocketServerTest, AClientThatAsksForMoreThanItsBoundIsDropped) {
+TEST_F(SocketServerTest, AnUrgentLineIsHeardThoughAllPlacesAreTaken) {
+  answer_ = [this](std::uint64_t client, std::string_view) { server().send(client, "done\n", false); };
+  server();
+  std::vector<Descriptor> clients;
+  for (int i = 0; i < 3; ++i) {
+    clients.push_back(connect_to(settings_.path));
+    send_text(clients.back(), "hello\n");
+  }
+  turn();
+  lines_.clear();
+  const Descriptor late = connect_to(settings_.path);
+  send_text(late, "urgent: down\nand more\n");
+  turn(1);
+  turn(1);
+  EXPECT_EQ(lines_, std::vector<std::string>{"urgent: down"});
+  EXPECT_EQ(received(late), "done\n");
+  turn(2, 3 * ns_per_s);
+  EXPECT_FALSE(received(late)) << "one word was all";
+}
+
+TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
+  server();
+  std::vector<Descriptor> clients;
+  for (int i = 0; i < 3; ++i) {
+    clients.push_back(connect_to(settings_.path));
+    if (i != 1) send_text(clients.back(), "hello\n");
+    turn(1, ns_per_s / 100);
+    turn(1, ns_per_s / 100);
+  }
+  turn(1, ns_per_s);
+  clients.push_back(connect_to(settings_.path));
+  turn();
+  EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
+      << "it never spoke";
+  turn(1, 6 * ns_per_s);
+  send_text(clients[3], "hello\n");
+  turn();
+  clients.push_back(connect_to(settings_.path));
+  turn();
+  EXPECT_NE(received(clients[0]).value_or("").find("too_many_clients"), std::string::npos)
+      << "the longest silent";
+  EXPECT_EQ(received(clients[2]), "");
+  EXPECT_EQ(received(clients[3]), "");
+}
+
+TEST_F(SocketServerTest, ACrowdThatComesAndGoesLeavesRoomForAnUrgentLine) {
+  server();
+  std::vector<Descriptor> crowd;
+  for (int i = 0; i < 300; ++i) {
+    crowd.push_back(connect_to(settings_.path));
+    if (i % 3 != 0) send_text(crowd.back(), "noise\nnoise\nnoise\n");
+    turn(1);
+  }
+  lines_.clear();
+  const Descriptor late = connect_to(settings_.path);
+  send_text(late, "urgent: down\n");
+  turn(2);
+  EXPECT_NE(std::find(lines_.begin(), lines_.end(), "urgent: down"), lines_.end());
+}
+
+TEST_F(SocketServerTest, AClientThatSendsMuchWaitsForTheOthers) {
+  answer_ = [](std::uint64_t, std::string_view line) {
+    if (line == "slow") std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  };
+  server();
+  const Descriptor greedy = connect_to(settings_.path);
+  const Descriptor other = connect_to(settings_.path);
+  std::string questions;
+  for (int i = 0; i < 1000; ++i) questions += "slow\n";
+  send_text(greedy, questions);
+  turn(2);
+  send_text(other, "me\n");
+  turn(2);
+  EXPECT_NE(std::find(lines_.begin(), lines_.end(), "me"), lines_.end());
+  EXPECT_LT(lines_.size(), 10U);
+}
+
+TEST_F(SocketServerTest, AFileThatIsNoLongerItsOwnStays) {
+  server();
+  std::filesystem::remove(settings_.path);
+  auto another = SocketServer::listen(settings_);
+  ASSERT_TRUE(another);
+  server_.reset();
+  EXPECT_TRUE(std::filesystem::exists(settings_.path));
+}
+
+TEST_F(SocketServerTest, AnAnswerBeyondItsBoundDropsTheClient) {
   answer_ = [this](std::uint64_t client, std::string_view) {
-    server().send(client, std::string(50'000, 'a'), false);
+    server().send(client, std::string(400'000, 'a'), false);
   };
   server();
   const Descriptor client = connect_to(settings_.path);
   turn();
-  std::string questions;
-  for (int i = 0; i < 1000; ++i) questions += "more\n";
-  send_text(client, questions);
+  send_text(client, "more\nmore\n");
   turn();
   EXPECT_EQ(server().clients(), 0U);
-  EXPECT_LT(lines_.size(), 100U);
+  EXPECT_EQ(lines_.size(), 1U);
 }
 
 TEST_F(SocketServerTest, AClientThatDoesNotReadIsNotReadEitherAndThenDropped) {
