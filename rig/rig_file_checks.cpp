@@ -1,6 +1,8 @@
 // What only the whole rig shows.
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 
 #include "base/numbers.h"
 #include "document/number.h"
@@ -39,7 +41,8 @@ void check_watchdog(Context& context, MapReader& top) {
       "to accept it, write under `safety`: accept_no_watchdog: \"" + std::string(no_watchdog_words) + "\"");
 }
 
-void check_watchdog_time(Context& context, MapReader& top) {
+/// When the first output in use is put to its safe value by a board that nobody talks to [s]; 0: never.
+double watchdog_time_s(const Context& context) {
   double timeout_s = 0;
   if (const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
     for (const drivers::ChannelWiring& channel : context.wiring) {
@@ -50,6 +53,23 @@ void check_watchdog_time(Context& context, MapReader& top) {
   }
   if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board)) {
     timeout_s = simulated->watchdog_timeout_s;
+  }
+  return timeout_s;
+}
+
+/// As long as a gap of the bus is no fault, the sequence goes on behind it: from where the outputs no longer
+/// are, if the board has vented meanwhile.
+void check_watchdog_time(Context& context, MapReader& top) {
+  const double timeout_s = watchdog_time_s(context);
+  const std::chrono::nanoseconds timeout(nanoseconds(timeout_s));
+  const double longest_s = seconds((timeout - watchdog_margin(context.rig.loop, timeout)).count());
+  const double patience_s = context.rig.settings.faults.bus_down_cycles * context.period_s();
+  if (timeout_s > 0 && patience_s >= longest_s) {
+    top.report("faults",
+               "`bus_down_cycles` are over after " + written(patience_s) +
+                   " s: by then the board's watchdog (" + written(timeout_s) +
+                   " s, less what an exchange may take) has vented",
+               "at most " + written(std::ceil(longest_s / context.period_s()) - 1) + " cycles");
   }
   if (timeout_s > 0 && timeout_s < 3 * context.period_s()) {
     top.warn("board", "the board's watchdog acts after " + written(timeout_s) + " s, less than three cycles",

@@ -35,7 +35,9 @@ simulation::SimulatedChannel simulated_channel(const Context& context, std::size
   simulation::SimulatedChannel channel;
   channel.name = wiring.name;
   channel.measures_pressure = wiring.pressure.has_value();
+  channel.valve_min_kpa = context.rig.valves[index].range_min_kpa;
   channel.valve_max_kpa = context.rig.valves[index].range_max_kpa;
+  channel.vented_kpa = std::min(0.0, context.rig.settings.channels[index].limits.pressure_min_kpa);
   const drivers::InputWiring& sensor = wiring.displacement;
   const double a = sensor.scaling.y_at(sensor.valid_min);
   const double b = sensor.scaling.y_at(sensor.valid_max);

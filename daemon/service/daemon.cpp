@@ -120,6 +120,10 @@ void DaemonParts::conclude(Outcome& outcome) {
   outcome.slips = loop_statistics.slips_took_long.value() + loop_statistics.slips_woken_late.value();
   if (!options.record_folder.empty()) outcome.recording_error = recorder.status().error;
   outcome.left_safely = wires.left_safely.load(std::memory_order_acquire);
+  for (std::size_t i = 0; i < outcome.last.channel_count; ++i) {
+    const bool on = outcome.last.channels[i].safe_kpa > rig.settings.channels[i].limits.pressure_min_kpa;
+    if (on) outcome.vents_after_s = seconds(board->watchdog_time().count());
+  }
   if (outcome.ending != Ending::asked || !errand || !errand->over()) return;
   outcome.sequence_end = errand->end();
   switch (errand->state()) {
@@ -165,6 +169,7 @@ ExitCode exit_code_of(const Outcome& outcome) noexcept {
     case Ending::gpio_refused:
       return ExitCode::input_refused;
     case Ending::socket_failed:
+    case Ending::board_taken:
     case Ending::gpio_failed:
       return ExitCode::io;
     case Ending::sequence_refused:

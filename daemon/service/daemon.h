@@ -52,6 +52,7 @@ enum class Ending : std::uint8_t {
   not_idle,           ///< the rig did not become idle, so the sequence was not started
   real_time_refused,  ///< `real_time: required: true`, and something could not be verified
   socket_failed,      ///< the socket could not be opened
+  board_taken,        ///< another program drives the board
   gpio_refused,       ///< the rig file names a digital line that is not there, or not like that
   gpio_failed,        ///< a digital line is in use, or this user may not have it
   broken,             ///< an exception in a thread, or a loop that did not end
@@ -66,6 +67,7 @@ struct Outcome {
   std::vector<std::string> channel_names;
   std::string recording_error;  ///< why record_folder does not hold all of the run; empty: it does
   bool left_safely = false;     ///< the board confirmed the safe outputs at the end
+  double vents_after_s = 0;     ///< pressure was left on, and the board's watchdog vents it so soon; 0: neither
   std::uint64_t ticks = 0;
   std::uint64_t slips = 0;
   double wall_s = 0;  ///< how long it took

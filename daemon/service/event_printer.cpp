@@ -126,13 +126,16 @@ void EventPrinter::print_end(const Outcome& outcome) {
     logger_->info("{}: {}", outcome.channel_names[i], control::title_of(outcome.last.channels[i].result));
   }
   logger_->info("{} ticks, {} slips, {:.3f} s", outcome.ticks, outcome.slips, outcome.wall_s);
-  const bool never_began = outcome.ending == Ending::socket_failed ||
+  const bool never_began = outcome.ending == Ending::socket_failed || outcome.ending == Ending::board_taken ||
                            outcome.ending == Ending::gpio_refused || outcome.ending == Ending::gpio_failed;
   if (never_began) return;
   if (!outcome.recording_error.empty())
     logger_->error("the recording is not whole: {}", outcome.recording_error);
   if (outcome.left_safely) {
     logger_->info("the board confirmed the safe outputs");
+    if (outcome.vents_after_s > 0)
+      logger_->warn("they hold only until the board's watchdog vents them, {:g} s from now",
+                    outcome.vents_after_s);
   } else {
     logger_->error("the board did NOT confirm the safe outputs");
   }

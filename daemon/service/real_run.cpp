@@ -18,6 +18,7 @@
 #include "daemon/loop/heartbeat.h"
 #include "daemon/loop/real_time.h"
 #include "daemon/loop/thread.h"
+#include "daemon/service/board_lock.h"
 #include "daemon/service/daemon_parts.h"
 #include "daemon/service/panel_run.h"
 #include "daemon/service/service_manager.h"
@@ -343,6 +344,12 @@ bool RealRun::listen() {
 
 Outcome RealRun::run() {
   const ProcessorLatencyRequest latency = prepare_process(parts_.rig.real_time, report_);
+  const auto lock = BoardLock::take(parts_.rig);
+  if (!lock) {
+    outcome_.ending = Ending::board_taken;
+    outcome_.message = lock.error();
+    return outcome_;
+  }
   if (!panel_.open(outcome_) || !listen()) return outcome_;
   parts_.bus.open();
   start();

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/grid.h"
+#include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
 #include "daemon/socket/socket_server.h"
 
@@ -86,6 +87,8 @@ SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig, const std::string&
     return {SafeOutputsEnd::daemon_running,
             fmt::format("a daemon answers on {}; use `softgrip vent`", rig.socket.path)};
   }
+  const auto lock = BoardLock::take(rig);
+  if (!lock) return {SafeOutputsEnd::daemon_running, lock.error()};
   const MonotonicClock clock;
   const auto board = make_board(rig, clock);
   return write_safe_outputs(rig, *board, clock, unit_patience);

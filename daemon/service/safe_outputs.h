@@ -17,8 +17,9 @@ enum class SafeOutputsEnd {
   confirmed,    ///< the board took the lowest pressure of every channel, and the next exchange confirmed it
   board_holds,  ///< the board's own watchdog has tripped and holds its safe values
   not_needed,   ///< the service manager says that softgripd ended in order
-  daemon_running,  ///< a daemon answers on the rig's socket; it would write something else in a moment
-  board_silent,    ///< nothing confirmed within the time
+  daemon_running,  ///< a daemon answers on the rig's socket, or another program drives the board: it would
+                   ///< write something else in a moment
+  board_silent,  ///< nothing confirmed within the time
 };
 
 struct SafeOutputsReport {

@@ -1,5 +1,6 @@
 #include "daemon/service/startup_report.h"
 
+#include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -27,8 +28,18 @@ std::string bus_lines(const rig::RigFile& rig, const drivers::Board& board) {
 }
 
 std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board) {
-  if (board.has_watchdog())
-    return "watchdog: the board sets safe outputs by itself when softgripd falls silent\n";
+  if (board.has_watchdog()) {
+    const double time_s = seconds(board.watchdog_time().count());
+    std::string text = fmt::format(
+        "watchdog: the board sets safe outputs by itself {:g} s after softgripd fell silent\n", time_s);
+    const auto& actions = rig.settings.safety.safe_action;
+    if (rig.settings.safety.board_vents_when_silent &&
+        std::find(actions.begin(), actions.end(), control::SafeAction::hold) != actions.end())
+      text += fmt::format(
+          "hold: lasts as long as softgripd runs; {:g} s after its end the watchdog vents what it held\n",
+          time_s);
+    return text;
+  }
   return fmt::format("watchdog: NONE on the board; accepted in the rig file: \"{}\"\n",
                      rig.accept_no_watchdog);
 }

@@ -87,7 +87,7 @@ void SimulatedBoard::Parts::act_until(Nanoseconds time) noexcept {
     } else {
       move_to(trip_at);
       tripped = true;
-      for (Plant& plant : plants) plant.command(0);
+      for (std::size_t i = 0; i < plants.size(); ++i) plants[i].command(settings.channels[i].vented_kpa);
     }
   }
   move_to(time);
@@ -127,8 +127,9 @@ drivers::BusStatus SimulatedBoard::Parts::take_commands(std::span<const double> 
   drivers::BusStatus status = drivers::BusStatus::ok;
   for (std::size_t i = 0; i < plants.size(); ++i) {
     const SimulatedChannel& channel = settings.channels[i];
-    const double clamped = std::clamp(commands_kpa[i], 0.0, channel.valve_max_kpa);
-    const double output = quantised(clamped, 0, channel.valve_max_kpa, channel.output_bits);
+    const double clamped = std::clamp(commands_kpa[i], channel.valve_min_kpa, channel.valve_max_kpa);
+    const double output =
+        quantised(clamped, channel.valve_min_kpa, channel.valve_max_kpa, channel.output_bits);
     if (clamped != commands_kpa[i]) {
       std::snprintf(text.data(), text.size(),
                     "channel '%s': %g kPa is beyond the output's range, its end was written",
@@ -159,8 +160,8 @@ void SimulatedBoard::Parts::make_reading(std::size_t i, Nanoseconds now,
   reading.validity = outside || plant.sees_nothing() ? model::Validity::out_of_range : model::Validity::valid;
   reading.pressure_kpa = std::numeric_limits<double>::quiet_NaN();
   if (channel.measures_pressure) {
-    reading.pressure_kpa =
-        quantised(plant.measured_pressure_kpa(), 0, channel.valve_max_kpa, channel.input_bits);
+    reading.pressure_kpa = quantised(plant.measured_pressure_kpa(), channel.valve_min_kpa,
+                                     channel.valve_max_kpa, channel.input_bits);
   }
   reading.command_readback_kpa = plant.held_command_kpa();
   reading.sampled_at = now;

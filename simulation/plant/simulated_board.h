@@ -43,18 +43,20 @@ struct SimulatedChannel {
   std::string name;
   PlantSettings plant;
   bool measures_pressure = false;
-  double valve_max_kpa = 0;  ///< full scale of the output, above 0; commands outside [0, this] are refused
+  double valve_min_kpa = 0;  ///< lowest output, below 0 for vacuum
+  double valve_max_kpa = 0;  ///< full scale of the output, above the lowest; commands outside are refused
+  double vented_kpa = 0;     ///< what the watchdog puts out
   double sensor_min_mm = 0;  ///< measuring range of the sensor; beyond it readings are out of range
   double sensor_max_mm = 0;
-  int output_bits = 0;  ///< over [0, valve_max_kpa]; 0: not quantised
-  int input_bits =
-      0;  ///< over the measuring range, and over [0, valve_max_kpa] for pressure; 0: not quantised
+  int output_bits = 0;  ///< over the output's range; 0: not quantised
+  int input_bits = 0;   ///< over the measuring range, and over the output's for pressure; 0: not quantised
 };
 
 struct SimulatedBoardSettings {
   std::vector<SimulatedChannel> channels;
   std::vector<SimulatedEvent> events;  ///< in any order
-  /// Outputs go to 0 when no exchange came for so long [s], and stay there until connect(); 0: no watchdog.
+  /// Outputs go to `vented_kpa` when no exchange came for so long [s], and stay there until connect(); 0: no
+  /// watchdog.
   double watchdog_timeout_s = 0;
 };
 

@@ -29,7 +29,7 @@ PATIENCE_S = 30
 
 # Of the rig that the tests run: 100 Hz, and a bus that may be silent for 0.6 s.
 RATE_HZ = 100
-BUS_DOWN_CYCLES = 60
+BUS_DOWN_CYCLES = 30  # within the watchdog of the board
 
 
 def wait_for(what, condition, patience_s=PATIENCE_S, pause_s=0.02):

@@ -29,7 +29,7 @@ steps:
 def rig(folder, port):
     text = (folder / "config" / "rig_tcp.yaml").read_text()
     for pattern, replacement in ((r"port: \d+", f"port: {port}"), (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.15"),
-                                 (r"bus_down_cycles: \d+", "bus_down_cycles: 120"), (r"max_age_s: [\d.]+", "max_age_s: 0.6"),
+                                 (r"bus_down_cycles: \d+", "bus_down_cycles: 60"), (r"max_age_s: [\d.]+", "max_age_s: 0.6"),
                                  (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 120"),
                                  (r"max_missed_commands: \d+", "max_missed_commands: 120"),
                                  (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/clock.h"
+#include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
 #include "tools/command_line/configuration.h"
@@ -164,6 +165,8 @@ ExitCode run(Options options) {
   if (const auto ready = prepare_parent(options.out); !ready) return fail(ExitCode::io, ready.error());
   if (const auto code = refuse_beside_daemon(options, *rig)) return *code;
 
+  const auto lock = daemon::BoardLock::take(*rig);
+  if (!lock) return fail(ExitCode::state_refused, lock.error());
   const MonotonicClock clock;
   const auto board = daemon::make_board(*rig, clock);
   RealPace pace;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/clock.h"
+#include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
 #include "tools/client/daemon_command.h"
@@ -43,6 +44,11 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   doctor::examine_machine(rig, findings);
   doctor::examine_clock(findings);
   doctor::examine_disk(rig, findings);
+  const auto lock = daemon::BoardLock::take(rig);
+  if (!lock) {
+    findings.fail("board", lock.error(), "stop that program first");
+    return;
+  }
   const MonotonicClock clock;
   const auto board = daemon::make_board(rig, clock);
   doctor::examine_description(rig, *board, findings);

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/numbers.h"
+#include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
 #include "tools/commissioning/hand_drive.h"
@@ -35,6 +36,8 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     if (!consent(what_is_done(rig, positions_mm.size())))
       return tl::unexpected(NotPlayed{true, "not allowed to check the sensor"});
     if (daemon_runs(rig.rig.socket.path)) return failed(stop_the_daemon);
+    const auto lock = daemon::BoardLock::take(rig.rig);
+    if (!lock) return failed(lock.error());
     const MonotonicClock clock;
     const auto board = daemon::make_board(rig.rig, clock);
     RealPace pace;
