@@ -162,7 +162,7 @@ class Scenario:
         text = (self.folder / "config" / "rig_tcp.yaml").read_text()
         for pattern, replacement in ((r"port: \d+", f"port: {self.emulator.port}"),
                                      (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.15"),
-                                     (r"bus_down_cycles: \d+", "bus_down_cycles: 120"),
+                                     (r"bus_down_cycles: \d+", "bus_down_cycles: 60"),
                                      (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 120"),
                                      (r"max_missed_commands: \d+", "max_missed_commands: 120"),
                                      (r"max_age_s: [\d.]+", "max_age_s: 0.6"),
