@@ -17,6 +17,14 @@ if(SOFTGRIP_SANITIZE)
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()
 endif()
+if(NOT SOFTGRIP_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  # What Debian's package builds with, for whoever runs another build on a rig.
+  include(CheckCXXCompilerFlag)
+  check_cxx_compiler_flag(-fcf-protection SOFTGRIP_HAS_CF_PROTECTION)
+  add_compile_options(-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -fstack-protector-strong -fstack-clash-protection
+    $<$<BOOL:${SOFTGRIP_HAS_CF_PROTECTION}>:-fcf-protection>)
+  add_link_options(-Wl,-z,relro,-z,now)
+endif()
 if(SOFTGRIP_FUZZERS)
   # Coverage of all libraries steers the fuzzer; only its own targets get its main().
   add_compile_options(-fsanitize=fuzzer-no-link)

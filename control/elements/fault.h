@@ -25,6 +25,7 @@ enum class FaultCode : std::uint16_t {
   readback_mismatch = 301,      ///< the board's output is not what was written
   write_refused = 302,          ///< the board did not take the write
   board_watchdog_tripped = 303,
+  outputs_overwritten = 304,  ///< somebody else writes to the board
   model_unfit = 401,
   emergency_stop = 501,
   inputs_lost = 502,  ///< the digital inputs cannot be read
@@ -52,7 +53,7 @@ struct FaultInfo {
 /// commanded.
 [[nodiscard]] constexpr bool inhibits(FaultCode code) noexcept {
   return code == FaultCode::cycles_lost || code == FaultCode::board_watchdog_tripped ||
-         code == FaultCode::write_refused;
+         code == FaultCode::write_refused || code == FaultCode::outputs_overwritten;
 }
 
 /// Why a request was refused.

@@ -29,7 +29,7 @@ FaultCode code_of(model::Validity validity) noexcept {
 
 /// The board itself says so: no need to wait for more of the same.
 bool said_by_board(FaultCode code) noexcept {
-  return code == FaultCode::write_refused || code == FaultCode::board_watchdog_tripped;
+  return inhibits(code) && code != FaultCode::cycles_lost;
 }
 
 /// Commands of so many seconds, the one under way and the one that is being compared included.

@@ -52,7 +52,9 @@ void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) no
 
 SafeAction Supervisor::action_for(FaultCode code, Phase phase) const noexcept {
   const auto number = static_cast<unsigned>(code);
-  if (code == FaultCode::board_watchdog_tripped) return SafeAction::vent;
+  // What stands at the outputs is not what was held.
+  if (code == FaultCode::board_watchdog_tripped || code == FaultCode::outputs_overwritten)
+    return SafeAction::vent;
   // Inputs that cannot be read may hide an emergency stop.
   if (code == FaultCode::emergency_stop || code == FaultCode::inputs_lost) {
     return safety_.on_emergency_stop;

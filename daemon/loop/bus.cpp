@@ -34,6 +34,8 @@ FaultCode fault_of(BusStatus status) noexcept {
       return FaultCode::bus_exception;
     case BusStatus::write_refused:
       return FaultCode::write_refused;
+    case BusStatus::overwritten:
+      return FaultCode::outputs_overwritten;
     case BusStatus::watchdog_tripped:
       return FaultCode::board_watchdog_tripped;
   }
@@ -190,8 +192,11 @@ void Bus::note_failure(BusStatus status) noexcept {
   for (std::size_t i = 0; i < channels_; ++i) {
     report_.outputs_kpa[i] = std::min(report_.outputs_kpa[i], written_kpa_[i]);
   }
-  if (status == BusStatus::watchdog_tripped) take_down_outputs();
-  if (status == BusStatus::write_refused || status == BusStatus::watchdog_tripped) inhibit(fault_of(status));
+  const bool others = status == BusStatus::overwritten;
+  if (others || status == BusStatus::watchdog_tripped) take_down_outputs();
+  // A watchdog that has acted has overwritten them, too.
+  const bool known = others && inhibited_ == FaultCode::board_watchdog_tripped;
+  if (control::inhibits(fault_of(status)) && !known) inhibit(fault_of(status));
   statistics_.failures.add();
   report_.health.connected = session_ != Session::none;
   report_.health.fault = inhibited_ == FaultCode::none ? fault_of(status) : inhibited_;

@@ -31,7 +31,8 @@ namespace softgrip::daemon {
 /// - the loop falls silent: the safe outputs that came with its last commands are written (cycles_lost);
 /// - the board's watchdog must have acted, by the time since the last good exchange, or says that it has: the
 ///   lowest pressures are written (board_watchdog_tripped);
-/// - the board did not take a write (write_refused).
+/// - the board did not take a write (write_refused);
+/// - somebody else writes to the board: the lowest pressures are written (outputs_overwritten).
 class Bus {
  public:
   /// All references outlive the bus. `rig`: one channel per channel of the board.

@@ -112,7 +112,10 @@ bool RunFolder::sync() {
 bool RunFolder::replace_json(std::string_view text) {
   const std::string file = path_ + "/run.json";
   const std::string temporary = file + ".tmp";
-  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, file_mode);
+  // What lies there is a killed daemon's, or somebody's link to a file of ours: never written through.
+  unlink(temporary.c_str());
+  const int descriptor =
+      open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, file_mode);
   int error = descriptor < 0 ? errno : write_all(descriptor, text);
   // Without this a power failure may leave the new name with the old file's absence: an empty run.json.
   if (error == 0 && durable_ && fdatasync(descriptor) != 0) error = errno;

@@ -163,9 +163,8 @@ ExitCode exit_code_of(const Outcome& outcome) noexcept {
     case Ending::asked:
       return done;
     case Ending::sequence_ended:
-      if (outcome.sequence_end == control::SequenceEnd::done) return done;
-      return outcome.sequence_end == control::SequenceEnd::failed ? ExitCode::not_acceptable
-                                                                  : ExitCode::failed;
+      if (outcome.sequence_end == control::SequenceEnd::done || !outcome.left_safely) return done;
+      return ExitCode::not_acceptable;
     case Ending::gpio_refused:
       return ExitCode::input_refused;
     case Ending::socket_failed:

@@ -21,6 +21,7 @@ enum class BusStatus : std::uint8_t {
   bad_reply,         ///< wrong unit id, length, transaction id or function; the session is poisoned
   exception,         ///< the board answered with a Modbus exception
   write_refused,     ///< the read-back says that the output did not follow
+  overwritten,       ///< the outputs are not what the last exchange left there: somebody else writes, too
   watchdog_tripped,  ///< the board's own watchdog holds the outputs at their safe value
 };
 [[nodiscard]] const char* name_of(BusStatus status) noexcept;

@@ -19,6 +19,8 @@ const char* name_of(BusStatus status) noexcept {
       return "exception";
     case BusStatus::write_refused:
       return "write_refused";
+    case BusStatus::overwritten:
+      return "overwritten";
     case BusStatus::watchdog_tripped:
       return "watchdog_tripped";
   }

@@ -72,6 +72,7 @@ struct ModbusBoard::Parts {
   BusStatus open(Nanoseconds deadline) noexcept;
   BusStatus probe(Nanoseconds deadline) noexcept;
   BusStatus encode(std::span<const double> commands_kpa) noexcept;
+  BusStatus look_first(Nanoseconds deadline) noexcept;
   BusStatus transact(Nanoseconds deadline) noexcept;
   void fill(std::span<Reading> readings) const noexcept;
 };
@@ -125,18 +126,33 @@ BusStatus ModbusBoard::Parts::encode(std::span<const double> commands_kpa) noexc
   return result;
 }
 
+/// Reading before writing, of the modules that want it so in this exchange.
+BusStatus ModbusBoard::Parts::look_first(Nanoseconds deadline) noexcept {
+  for (ModbusModule& module : modules) {
+    module.begin_exchange();
+    if (!module.reads_first()) continue;
+    BusStatus status = module.read(deadline);
+    if (status == BusStatus::ok) status = module.check();
+    if (status != BusStatus::ok) return failed(status, module);
+  }
+  return BusStatus::ok;
+}
+
 BusStatus ModbusBoard::Parts::transact(Nanoseconds deadline) noexcept {
+  if (const BusStatus status = look_first(deadline); status != BusStatus::ok) return status;
   for (ModbusModule& module : modules) {
     if (const BusStatus status = module.write(deadline); status != BusStatus::ok) {
       return failed(status, module);
     }
   }
   for (ModbusModule& module : modules) {
+    if (module.reads_first()) continue;
     if (const BusStatus status = module.read(deadline); status != BusStatus::ok) {
       return failed(status, module);
     }
   }
   for (ModbusModule& module : modules) {
+    if (module.reads_first()) continue;
     if (const BusStatus status = module.check(); status != BusStatus::ok) return failed(status, module);
   }
   return BusStatus::ok;

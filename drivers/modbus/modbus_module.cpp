@@ -19,6 +19,9 @@ Nanoseconds now() noexcept {
   return MonotonicClock().now();
 }
 
+/// One exchange in so many begins with the reading.
+constexpr std::uint32_t reads_first_every = 8;
+
 ModbusRequest request_of(const FixedWrite& write) noexcept {
   return {.function = write.function, .address = write.address, .values = {&write.value, 1}};
 }
@@ -71,7 +74,7 @@ ModbusRequest ModbusModule::request_of(const ReadStep& step) const noexcept {
 ModbusRequest ModbusModule::request_of(std::size_t write) const noexcept {
   const WriteStep& step = plan_.writes[write];
   const auto values = std::span<const std::uint16_t>(output_words_).subspan(step.first_word, step.count);
-  if (write != 0 || !plan_.combined_read.has_value()) {
+  if (write != 0 || !combines()) {
     return {.function = step.function, .address = step.address, .values = values};
   }
   const ReadStep& read = plan_.reads[*plan_.combined_read];
@@ -99,7 +102,7 @@ BusStatus ModbusModule::read_step(std::size_t step, Nanoseconds deadline) noexce
 
 BusStatus ModbusModule::write_outputs(Nanoseconds deadline) noexcept {
   for (std::size_t i = 0; i < plan_.writes.size(); ++i) {
-    const bool combined = i == 0 && plan_.combined_read.has_value();
+    const bool combined = i == 0 && combines();
     if (combined) sampled_at_ = now();
     if (const BusStatus status = ask(request_of(i), deadline); status != BusStatus::ok) return status;
     if (combined) take_reply(*plan_.combined_read);
@@ -150,6 +153,8 @@ BusStatus ModbusModule::first_write(Nanoseconds deadline) noexcept {
 BusStatus ModbusModule::set_up(Nanoseconds deadline) noexcept {
   clear_due_ = drives_outputs() && !settings_.map.watchdog.clear.empty();
   setup_due_ = false;
+  exchanges_ = 0;
+  reads_first_ = false;
   accepted_.forget();
   if (settings_.map.setup.empty()) return BusStatus::ok;
   if (clear_due_ && plan_.tripped.has_value()) {
@@ -187,6 +192,11 @@ BusStatus ModbusModule::encode(std::span<const double> commands_kpa) noexcept {
   return status;
 }
 
+void ModbusModule::begin_exchange() noexcept {
+  const bool can_tell = settings_.map.read_back.has_value() && drives_outputs() && !clear_due_;
+  reads_first_ = can_tell && ++exchanges_ % reads_first_every == 0;
+}
+
 BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
   const BusStatus status = clear_due_ ? first_write(deadline) : write_outputs(deadline);
   if (status != BusStatus::ok) return name_refusal(status, deadline);
@@ -196,7 +206,7 @@ BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
 
 BusStatus ModbusModule::read(Nanoseconds deadline) noexcept {
   for (std::size_t step = 0; step < plan_.reads.size(); ++step) {
-    if (plan_.combined_read == step) continue;
+    if (combines() && plan_.combined_read == step) continue;
     if (step == plan_.sampling_read) sampled_at_ = now();
     if (const BusStatus status = read_step(step, deadline); status != BusStatus::ok) return status;
   }
@@ -223,15 +233,23 @@ BusStatus ModbusModule::check() noexcept {
                "the board's watchdog tripped: its outputs are at their safe value");
   }
   if (!settings_.map.read_back.has_value() || !drives_outputs()) return BusStatus::ok;
-  accepted_.note(requested_raws_);
+  if (!reads_first_) accepted_.note(requested_raws_);
   const RegisterKind kind = settings_.map.read_back->registers.kind;
   for (std::size_t i = 0; i < requested_raws_.size(); ++i) {
     if (!plan_.channels[i].read_back.has_value()) continue;
     const double raw = raw_at(*plan_.channels[i].read_back, kind);
-    if (!accepted_.accepts(i, raw)) {
-      return fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
+    if (accepted_.accepts(i, raw)) continue;
+    if (reads_first_) {
+      return fail(
+          BusStatus::overwritten,
+          "channel '%s': somebody else writes to the board: its output, not yet written again, reads back as "
+          "raw %g",
+          i, raw);
     }
+    return fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
   }
+  // The write comes now, and is seen in the next exchange.
+  if (reads_first_) accepted_.note(requested_raws_);
   return BusStatus::ok;
 }
 

@@ -45,9 +45,14 @@ class ModbusModule {
   [[nodiscard]] BusStatus encode(std::span<const double> commands_kpa) noexcept;
   /// The outputs; once per session what clears a tripped watchdog; what feeds it.
   [[nodiscard]] BusStatus write(Nanoseconds deadline) noexcept;
+  /// Now and then an exchange begins with the reading, so that what somebody else has written since the last
+  /// one is seen before it is overwritten: begin_exchange() decides that for the exchange that it begins.
+  void begin_exchange() noexcept;
+  [[nodiscard]] bool reads_first() const noexcept { return reads_first_; }
+
   /// What write() has not read yet.
   [[nodiscard]] BusStatus read(Nanoseconds deadline) noexcept;
-  /// What the board says of its outputs.
+  /// What the board says of its outputs; `overwritten` is said only where the reading was first.
   [[nodiscard]] BusStatus check() noexcept;
   /// Puts what the module knows of a channel into its reading.
   void fill(std::size_t channel, Reading& reading) const noexcept;
@@ -67,6 +72,7 @@ class ModbusModule {
   BusStatus name_refusal(BusStatus status, Nanoseconds deadline) noexcept;
   [[nodiscard]] ModbusRequest request_of(const ReadStep& step) const noexcept;
   [[nodiscard]] ModbusRequest request_of(std::size_t write) const noexcept;
+  [[nodiscard]] bool combines() const noexcept { return plan_.combined_read.has_value() && !reads_first_; }
   [[nodiscard]] bool is_tripped() const noexcept;
   [[nodiscard]] double raw_at(const Slot& slot, RegisterKind kind) const noexcept;
   [[nodiscard]] JudgedInput input(const InputWiring& wiring, const Slot& slot,
@@ -83,6 +89,8 @@ class ModbusModule {
   ReadBackHistory accepted_;
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one per read of the plan; bits as 0 or 1
   Nanoseconds sampled_at_ = 0;
+  std::uint32_t exchanges_ = 0;  ///< of the session
+  bool reads_first_ = false;
   bool clear_due_ = false;  ///< a session is new: a tripped watchdog may be cleared
   bool setup_due_ = false;  ///< it was tripped when the session was opened
   std::array<char, 200> own_detail_{};

@@ -118,7 +118,11 @@ void DaemonInWorld::serve() {
   service.pump();
   for (auto request = requests_.begin(); request != requests_.end();) {
     const auto id = service.submit(request->kind, request->sequence);
-    if (!id) break;  // busy: the client tries again
+    if (!id) {  // busy: this client tries again
+      ++request;
+      continue;
+    }
+    on_submit(request->kind, *id);
     unanswered_[*id] = {request->kind, request->at};
     request = requests_.erase(request);
   }

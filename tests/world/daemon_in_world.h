@@ -68,6 +68,9 @@ class DaemonInWorld {
   daemon::Recorder recorder;
   daemon::Service service;
 
+  /// The service has taken a request of a client.
+  std::function<void(control::Request::Kind kind, std::uint32_t id)> on_submit = [](auto, auto) {};
+
  private:
   struct Waiting {
     control::Request::Kind kind;

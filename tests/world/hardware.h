@@ -96,6 +96,7 @@ class WorldBoard final : public drivers::Board {
     std::vector<double> sent;
     bool there = false;
     bool taken = false;
+    bool overwritten = false;  ///< it read before it wrote, and found what nobody here had written
     std::vector<model::Reading> read;
   };
   void pass(Nanoseconds duration) { scheduler_.sleep_until(scheduler_.now() + duration); }
@@ -109,6 +110,8 @@ class WorldBoard final : public drivers::Board {
   std::function<void()> on_exchange_;
   ActorId carrier_;
   std::optional<Request> request_;
+  std::vector<double> left_;  // what the last good exchange of this session left at the outputs
+  unsigned exchanges_ = 0;
 };
 
 }  // namespace softgrip::world

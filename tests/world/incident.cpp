@@ -16,11 +16,17 @@ namespace {
 
 using Kind = Incident::Kind;
 
-constexpr std::array<const char*, 21> names{
-    "start",     "stop",           "vent",       "acknowledge",  "flood",       "terminate",
-    "kill",      "pause",          "pause late", "pause all",    "line",        "replies lost",
-    "slow line", "writes refused", "foreign",    "sensor stuck", "sensor lost", "line leaks",
-    "part gone", "emergency stop", "disk full"};
+constexpr std::array<const char*, 22> names{"start",          "start and stop at once",
+                                            "stop",           "vent",
+                                            "acknowledge",    "flood",
+                                            "terminate",      "kill",
+                                            "pause",          "pause late",
+                                            "pause all",      "line",
+                                            "replies lost",   "slow line",
+                                            "writes refused", "foreign",
+                                            "sensor stuck",   "sensor lost",
+                                            "line leaks",     "part gone",
+                                            "emergency stop", "disk full"};
 constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
 
 /// How often each happens, of all that happens.
@@ -29,13 +35,14 @@ struct Share {
   double share;
 };
 constexpr std::array shares{
-    Share{Kind::start, 20},       Share{Kind::stop, 4},           Share{Kind::vent, 6},
-    Share{Kind::acknowledge, 14}, Share{Kind::flood, 2},          Share{Kind::terminate, 1},
-    Share{Kind::kill, 1},         Share{Kind::pause, 10},         Share{Kind::pause_late, 6},
-    Share{Kind::pause_all, 6},    Share{Kind::line, 6},           Share{Kind::replies_lost, 3},
-    Share{Kind::slow_line, 2},    Share{Kind::write_refused, 2},  Share{Kind::foreign, 2},
-    Share{Kind::sensor_stuck, 2}, Share{Kind::sensor_lost, 2},    Share{Kind::line_leaks, 2},
-    Share{Kind::part_gone, 6},    Share{Kind::emergency_stop, 3}, Share{Kind::disk_full, 2},
+    Share{Kind::start, 20},       Share{Kind::hasty, 3},        Share{Kind::stop, 4},
+    Share{Kind::vent, 6},         Share{Kind::acknowledge, 14}, Share{Kind::flood, 2},
+    Share{Kind::terminate, 1},    Share{Kind::kill, 1},         Share{Kind::pause, 10},
+    Share{Kind::pause_late, 6},   Share{Kind::pause_all, 6},    Share{Kind::line, 6},
+    Share{Kind::replies_lost, 3}, Share{Kind::slow_line, 2},    Share{Kind::write_refused, 2},
+    Share{Kind::foreign, 2},      Share{Kind::sensor_stuck, 2}, Share{Kind::sensor_lost, 2},
+    Share{Kind::line_leaks, 2},   Share{Kind::part_gone, 6},    Share{Kind::emergency_stop, 3},
+    Share{Kind::disk_full, 2},
 };
 
 class Drawing {
@@ -76,6 +83,10 @@ Incident draw_one(Drawing& drawing, const Draw& draw, Nanoseconds at) {
   switch (one.kind) {
     case Kind::start:
       one.target = drawing.below(draw.sequences);
+      break;
+    case Kind::hasty:
+      one.target = drawing.below(draw.sequences);
+      one.value = drawing.uniform() < 0.5 ? 0 : 1;
       break;
     case Kind::flood:
       one.target = 10 + drawing.below(200);
@@ -123,6 +134,9 @@ std::string text_of(const Incident& incident) {
   switch (incident.kind) {
     case Kind::start:
       text += fmt::format(" sequence {}", incident.target);
+      break;
+    case Kind::hasty:
+      text += fmt::format(" of sequence {}{}", incident.target, incident.value > 0 ? ", by a vent" : "");
       break;
     case Kind::flood:
       text += fmt::format(" of {} acknowledgements", incident.target);

@@ -12,6 +12,7 @@ namespace softgrip::world {
 struct Incident {
   enum class Kind : std::uint8_t {
     start,  ///< a client starts a sequence; `target` says which
+    hasty,  ///< the same, and at once another client stops (`value` 0) or vents
     stop,
     vent,
     acknowledge,

@@ -55,6 +55,7 @@ void Monitor::boots() {
   state_ = State::starting;
   safe_kpa_.assign(rig_.channels.size(), 0);
   last_kpa_ = safe_kpa_;
+  halted_by_ = 0;
   results_ = {};
   steps_ = {};
   vent_waits_.reset();
@@ -63,7 +64,7 @@ void Monitor::boots() {
 }
 
 void Monitor::ticked(Nanoseconds now, const control::TickOutput& output) {
-  watch_events(output);
+  watch_events(now, output);
   watch_state(now, output);
   watch_grips(now, output);
   for (std::size_t i = 0; i < output.channel_count; ++i) {
@@ -76,13 +77,21 @@ void Monitor::ticked(Nanoseconds now, const control::TickOutput& output) {
   }
 }
 
-void Monitor::watch_events(const control::TickOutput& output) {
+void Monitor::submitted(control::Request::Kind kind, std::uint32_t id) {
+  const bool halts = kind == control::Request::Kind::stop || kind == control::Request::Kind::vent;
+  if (halts) halted_by_ = std::max(halted_by_, id);
+}
+
+void Monitor::watch_events(Nanoseconds now, const control::TickOutput& output) {
   using Kind = control::Event::Kind;
   for (const control::Event& event : output.events) {
     switch (event.kind) {
       case Kind::sequence_started:
         armed_ = true;
         vent_waits_.reset();
+        if (event.request < halted_by_)
+          violate(now, "a start does not outlive a stop or a vent that came after it",
+                  fmt::format("request {} started, {} was to end it", event.request, halted_by_));
         break;
       case Kind::fault_latched:
       case Kind::sequence_finished:

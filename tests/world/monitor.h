@@ -43,6 +43,7 @@ class Monitor {
   /// The board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can know.
   void tripped(bool has_spoken);
   void asked(control::Request::Kind kind, Nanoseconds now);
+  void submitted(control::Request::Kind kind, std::uint32_t id);
   /// Time has passed, with these outputs.
   void passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa);
   /// A daemon begins to run: nothing of the last one's counts.
@@ -60,7 +61,7 @@ class Monitor {
 
  private:
   void violate(Nanoseconds at, const char* invariant, std::string text);
-  void watch_events(const control::TickOutput& output);
+  void watch_events(Nanoseconds now, const control::TickOutput& output);
   void watch_state(Nanoseconds now, const control::TickOutput& output);
   void watch_grips(Nanoseconds now, const control::TickOutput& output);
 
@@ -72,6 +73,7 @@ class Monitor {
   bool foreign_ = false;        // another master has written since our last write
   Nanoseconds last_began_ = 0;  // an exchange
   Nanoseconds seen_ = 0;
+  std::uint32_t halted_by_ = 0;  // the newest request to stop or to vent
   control::State state_ = control::State::starting;
   std::vector<double> safe_kpa_;
   std::vector<double> last_kpa_;  // as written

@@ -138,6 +138,7 @@ class World {
     rig.recorder.mode =
         options_.record ? rig::RecorderSettings::Mode::sequences : rig::RecorderSettings::Mode::off;
     daemon_ = std::make_unique<DaemonInWorld>(rig, scheduler_, board_, folder);
+    daemon_->on_submit = [this](Request::Kind kind, std::uint32_t id) { monitor_.submitted(kind, id); };
     recorded_.clear();
   }
 
@@ -321,6 +322,10 @@ void World::to_daemon(const Incident& incident) {
   switch (incident.kind) {
     case Kind::start:
       ask(Request::Kind::start, library_.sequences[incident.target % library_.sequences.size()]);
+      break;
+    case Kind::hasty:
+      ask(Request::Kind::start, library_.sequences[incident.target % library_.sequences.size()]);
+      ask(incident.value > 0 ? Request::Kind::vent : Request::Kind::stop);
       break;
     case Kind::stop:
       ask(Request::Kind::stop);

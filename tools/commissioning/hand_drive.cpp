@@ -122,7 +122,8 @@ HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
     if (watch) watch(commands_, readings_);
     return {};
   }
-  const bool said_by_board = status == BusStatus::write_refused || status == BusStatus::watchdog_tripped;
+  const bool said_by_board = status == BusStatus::write_refused || status == BusStatus::overwritten ||
+                             status == BusStatus::watchdog_tripped;
   const double patience =
       std::max<double>(rig_.settings.faults.bus_down_cycles, silence_s / seconds(period_));
   failures_ += 1 + static_cast<std::uint32_t>((pace_.now() - began) / period_);

@@ -26,6 +26,7 @@ TEST(Faults, CodesAreStable) {
                                                                   {"F301", "readback_mismatch"},
                                                                   {"F302", "write_refused"},
                                                                   {"F303", "board_watchdog_tripped"},
+                                                                  {"F304", "outputs_overwritten"},
                                                                   {"F401", "model_unfit"},
                                                                   {"F501", "emergency_stop"},
                                                                   {"F502", "inputs_lost"},

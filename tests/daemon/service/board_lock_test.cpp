@@ -35,10 +35,13 @@ TEST(BoardLock, OneMasterPerBoardUnderWhateverSpelling) {
 TEST(BoardLock, ASerialLineHasOneMasterWhateverUnitItAsks) {
   rig::RigFile one = rig_at("", 0, 1);
   rig::RigFile two = rig_at("", 0, 2);
-  for (rig::RigFile* rig : {&one, &two})
-    std::get<drivers::ModbusSettings>(rig->board).links = {drivers::SerialLine{"/dev/null"}};
-  std::get<drivers::SerialLine>(std::get<drivers::ModbusSettings>(two.board).links[0]).device =
-      "/dev/../dev/null";
+  const auto device = [](rig::RigFile& rig) -> std::string& {
+    auto& links = std::get<drivers::ModbusSettings>(rig.board).links;
+    links = {drivers::SerialLine{}};
+    return std::get<drivers::SerialLine>(links[0]).device;
+  };
+  device(one) = "/dev/null";
+  device(two) = "/dev/../dev/null";
   const auto first = BoardLock::take(one);
   ASSERT_TRUE(first) << first.error();
   EXPECT_FALSE(BoardLock::take(two));

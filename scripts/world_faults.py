@@ -1,0 +1,95 @@
+"""Puts faults into a copy of the code, one at a time, and counts the seeds until a world finds each."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+COPY = ROOT / "build/worlds"
+MOST_SEEDS = 2000
+
+# What is broken, where, and how: text that must be there once, and what stands there instead.
+FAULTS = (
+    ("the gap of a paused bus is not compared with the board's watchdog (defect 1)", "daemon/loop/bus.cpp",
+     "if (watchdog_ == 0 ||", "if (watchdog_ >= 0 ||"),
+    ("a loop that was silent is obeyed at once (defect 2)", "daemon/loop/bus.cpp",
+     "inhibited_ == FaultCode::none || commands.inhibit != report_.health.inhibit || commands.may_rise",
+     "inhibited_ == FaultCode::none"),
+    ("what a sequence left on its way may rise after its end", "daemon/loop/bus.cpp",
+     "if (commands.may_rise && inhibited_ == FaultCode::none) return;", "if (inhibited_ == FaultCode::none) return;"),
+    ("a lost session writes what was commanded before it was rebuilt", "daemon/loop/bus.cpp",
+     "if (!connected && wires_.commands.fetch()) unheard_ = 0;", ""),
+    ("readings from before a gap count as evidence", "control/tick/rig_controller.cpp",
+     "if (gap <= channels_[i].longest_age ||", "if (gap >= 0 ||"),
+    ("a vent waits behind all other requests", "daemon/loop/loop.cpp",
+     "if (!wires_.vents.pop(input.request) && !wires_.stops.pop(input.request)) {\n    wires_.requests.pop(input.request);\n  }",
+     "if (!wires_.requests.pop(input.request) && !wires_.stops.pop(input.request)) {\n    wires_.vents.pop(input.request);\n  }"),
+    ("a start that a vent has overtaken moves nevertheless", "control/tick/supervisor.cpp",
+     "if (input.request.id < halted_by_) return RefusalCode::overtaken;", ""),
+    ("acknowledging a fault that is still there", "control/tick/supervisor.cpp",
+     "if (facts.cause_present) {", "if (false) {"),
+    ("a fault holds where it should vent", "control/tick/supervisor.cpp",
+     "if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;", ""),
+)
+
+
+def run(arguments, **keys):
+    return subprocess.run([str(a) for a in arguments], cwd=COPY, capture_output=True, text=True, **keys)
+
+
+def prepare():
+    shutil.rmtree(COPY, ignore_errors=True)
+    COPY.mkdir(parents=True)
+    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    for name in filter(None, files.split("\0")):
+        if (ROOT / name).is_file():
+            (COPY / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, COPY / name)
+    done = run(["cmake", "--preset", "release", "-DSOFTGRIP_TESTS=ON", "-DSOFTGRIP_WERROR=OFF"])
+    if done.returncode:
+        sys.exit(done.stderr)
+
+
+def build():
+    done = run(["cmake", "--build", "build/release", "--target", "softgrip-world"])
+    if done.returncode:
+        sys.exit(done.stdout[-3000:])
+
+
+def seeds_until_found():
+    """The first seed that finds it and what it violates, or None."""
+    first, count = 1, 20
+    while first <= MOST_SEEDS:
+        done = run(["build/release/tests/world/softgrip-world", "--first", first, "--count", count, "--jobs", os.cpu_count(),
+                    "--seconds", 60, "--stop"])
+        found = [(int(m.group(1)), m.group(2)) for m in re.finditer(r"^seed (\d+): (.*)$", done.stdout, re.MULTILINE)]
+        if found:
+            return min(found)
+        first, count = first + count, min(2 * count, 400)
+    return None
+
+
+def main():
+    prepare()
+    missed = 0
+    print("| what was put into the code | found by seed | the invariant it violates |\n|---|---|---|", flush=True)
+    for what, name, old, new in FAULTS:
+        path = COPY / name
+        text = path.read_text()
+        if text.count(old) != 1:
+            sys.exit(f"{name} does not hold this once: {old}")
+        path.write_text(text.replace(old, new))
+        build()
+        found = seeds_until_found()
+        path.write_text(text)
+        missed += found is None
+        seed, invariant = found or (f"none of {MOST_SEEDS}", "")
+        print(f"| {what} | {seed} | {invariant} |", flush=True)
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,121 @@
+"""Whatever stands still, and for however long: when it goes on, nothing rises that nobody asked for.
+
+The whole process (SIGSTOP), its loop, its bus or its service thread alone (ptrace), below, at and above the time of the
+board's watchdog, in every phase of a grip, over a real wire.
+"""
+
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import bench
+
+HANG_THREAD = pathlib.Path(__file__).parent / "vm/drive/hang_thread.py"
+WATCHDOG_S = 0.5  # of the board map
+# For how long what stands still, and what must come of it.
+PAUSES = (
+    ("process", 0.2, "anything"),   # shorter than the bus may be silent: the grip goes on, or a fault ends it
+    ("process", WATCHDOG_S, "F303"),
+    ("process", 0.8, "F303"),
+    ("softgrip-loop", 0.2, "anything"),
+    ("softgrip-loop", 1.5, "F901"),
+    ("softgrip-bus", 0.8, "faulted"),  # the loop has missed the bus before the bus can say what was
+    ("softgrip-serve", 0.8, "nothing"),
+)
+NOISE_KPA = 0.05  # the board's resolution
+
+
+class Pauses(bench.BenchTest):
+    def thread(self, daemon, name):
+        for task in pathlib.Path(f"/proc/{daemon.child.pid}/task").iterdir():
+            if (task / "comm").read_text().strip() == name:
+                return task.name
+        raise AssertionError(f"no thread {name}")
+
+    def pause(self, daemon, what, for_s):
+        if what == "process":
+            daemon.send(signal.SIGSTOP)
+            time.sleep(for_s)
+            daemon.send(signal.SIGCONT)
+            return
+        with subprocess.Popen([sys.executable, HANG_THREAD, self.thread(daemon, what)], stdout=subprocess.PIPE,
+                              text=True) as hang:
+            if hang.stdout.readline() != "hangs\n":
+                self.skipTest("this user may not trace another process")
+            time.sleep(for_s)
+            hang.kill()  # lets the thread go
+
+    def reach(self, daemon, emulator, phase):
+        pick = (self.folder / "config/sequences/pick_stone.yaml").read_text()
+        hold_s = 0.5 if phase == "releasing" else 20
+        (self.folder / "config/sequences/paused.yaml").write_text(pick.replace("hold_s: 5", f"hold_s: {hold_s}"))
+        daemon.wait_for_state("idle")
+        daemon.start("paused")
+        if phase == "closing":
+            bench.wait_for("the approach", lambda: min(emulator.commands_kpa()) > 5, pause_s=0.005)
+            return
+        for channel in ("left", "right"):
+            daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
+        if phase == "releasing":
+            daemon.wait_for_event("step_started", text="Step 3 begins: release.")
+
+    def outputs_for(self, emulator, seconds):
+        samples, end = [], time.monotonic() + seconds
+        while time.monotonic() < end:
+            samples.append(emulator.commands_kpa())
+            time.sleep(0.001)
+        return samples
+
+    def check(self, phase, what, for_s, expected):
+        emulator = self.emulator("--object", "stone", name=f"rig-{phase}-{what}-{for_s}")
+        daemon = self.daemon(self.rig(emulator.port))
+        try:
+            self.reach(daemon, emulator, phase)
+            before = emulator.commands_kpa()
+            self.pause(daemon, what, for_s)
+            samples = self.outputs_for(emulator, 1)
+            faults = [e["code"] for e in daemon.events() if e["kind"] == "fault_latched"]
+            if expected == "nothing":
+                self.assertEqual(faults, [])
+            elif expected == "faulted":
+                self.assertNotEqual(faults, [])
+            elif expected != "anything":
+                self.assertIn(expected, faults)
+            if faults:
+                self.check_nothing_rises(before, samples, vented=what != "softgrip-loop" and for_s >= WATCHDOG_S)
+                self.assertEqual(daemon.status()["state"], "faulted")
+        finally:
+            daemon.kill()
+            emulator.kill()
+
+    def check_nothing_rises(self, before, samples, vented):
+        for channel, lowest in enumerate([0, 0] if vented else before):
+            for sample in samples:
+                self.assertLessEqual(sample[channel], lowest + NOISE_KPA, [s[channel] for s in samples[:50]])
+                lowest = min(lowest, sample[channel])
+
+    def check_phase(self, phase):
+        for what, for_s, expected in PAUSES:
+            with self.subTest(phase=phase, what=what, for_s=for_s):
+                self.check(phase, what, for_s, expected)
+
+    def test_while_closing(self):
+        self.check_phase("closing")
+
+    def test_while_holding(self):
+        self.check_phase("holding")
+
+    def test_while_releasing(self):
+        self.check_phase("releasing")
+
+    def test_patience_beyond_the_watchdog_is_refused(self):
+        rig = self.rig(1502, ((r"bus_down_cycles: \d+", "bus_down_cycles: 90"),))
+        done = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("by then the board's watchdog (0.5 s", done.stderr)
+
+
+if __name__ == "__main__":
+    bench.main()
