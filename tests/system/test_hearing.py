@@ -52,23 +52,23 @@ class Hearing(bench.BenchTest):
         self.addCleanup(thread.join, 5)
         self.addCleanup(self.stop_.set)
 
-    def flood(self, line, reads):
-        def body():
-            client = self.raw()
-            client.settimeout(0.5)
+    def flood(self, line, reads=True):
+        """A client that sends as fast as it can, and takes its answers as fast, or never."""
+        client = self.raw()
+        client.settimeout(0.2)
+
+        def until_stopped(step):
             while not self.stop_.is_set():
                 try:
-                    client.sendall(line * 50)
-                    if reads:
-                        client.recv(1 << 20)
+                    step()
+                except TimeoutError:
+                    pass
                 except OSError:
-                    time.sleep(0.01)
-                    try:
-                        client = self.raw()
-                        client.settimeout(0.5)
-                    except OSError:
-                        pass
-        self.in_background(body)
+                    return
+
+        self.in_background(lambda: until_stopped(lambda: client.sendall(line * 500)))
+        if reads:
+            self.in_background(lambda: until_stopped(lambda: client.recv(1 << 20)))
 
     def check_vent(self):
         waited = self.vents()
@@ -95,7 +95,7 @@ class Hearing(bench.BenchTest):
     def test_beside_floods_of_acknowledgements(self):
         self.hold()
         for _ in range(4):
-            self.flood(b'{"command":"acknowledge"}\n', reads=True)
+            self.flood(b'{"command":"acknowledge"}\n')
         time.sleep(0.5)
         self.check_vent()
 
@@ -145,7 +145,7 @@ time.sleep(60)
     def test_stop_passes_what_waits(self):
         self.hold()
         for _ in range(4):
-            self.flood(b'{"command":"acknowledge"}\n', reads=True)
+            self.flood(b'{"command":"acknowledge"}\n')
         time.sleep(0.2)
         client = self.raw()
         client.sendall(b'{"command":"stop"}\n')
@@ -182,13 +182,17 @@ class Ending(bench.BenchTest):
         self.addCleanup(os.close, reader)
         daemon = subprocess.Popen([bench.SOFTGRIPD, "--config", rig], stderr=writer, cwd=self.folder,
                                   stdin=subprocess.DEVNULL)
-        os.set_blocking(writer, False)
+        self.addCleanup(daemon.wait)
+        self.addCleanup(daemon.kill)
         bench.wait_for("the socket", lambda: (self.folder / "softgripd.sock").exists())
+        # Not to block is a property of this descriptor alone: the daemon's must.
+        filler = os.open(f"/proc/self/fd/{writer}", os.O_WRONLY | os.O_NONBLOCK)
+        os.close(writer)
         try:
             while True:
-                os.write(writer, b"x" * 4096)  # until it is full
+                os.write(filler, b"x" * 4096)  # until it is full
         except BlockingIOError:
-            os.close(writer)
+            os.close(filler)
         began = time.monotonic()
         daemon.send_signal(signal.SIGTERM)
         self.assertEqual(daemon.wait(20), 0)
