@@ -9,6 +9,8 @@
 #include <functional>
 #include <set>
 
+#include "base/clock.h"
+
 namespace softgrip::daemon {
 namespace {
 
@@ -83,6 +85,35 @@ TEST(RigFile, OfTheSimulatedRigHoldsItsPlants) {
   EXPECT_TRUE(board.channels[0].measures_pressure);
   EXPECT_EQ(board.watchdog_timeout_s, 0.5);
   EXPECT_EQ(rig.seed, 1U);
+}
+
+TEST(RigFile, AVacuumIsSimulatedWithinTheValvesRange) {
+  Problems parsing;
+  Document document = document::parse_file(shipped("rig.yaml"), parsing);
+  for (Node::Entry& entry : document.root.entries) {
+    if (entry.key != "channels") continue;
+    for (Node& channel : entry.value.items) {
+      for (Node::Entry& part : channel.entries) {
+        for (Node::Entry& key : part.value.entries) {
+          if (key.key == "pressure_min_kpa") key.value.scalar = "-2";
+          if (key.key == "range_kpa") key.value.items[0].scalar = "-60";
+        }
+      }
+    }
+  }
+  Problems problems;
+  const auto rig = rig::read_rig(document, problems);
+  ASSERT_TRUE(rig.has_value()) << problems.format();
+  const auto& board = std::get<simulation::SimulatedBoardSettings>(rig->board);
+  EXPECT_EQ(board.channels[1].valve_min_kpa, -60);
+  EXPECT_EQ(board.channels[1].vented_kpa, -2);
+  VirtualClock clock;
+  simulation::SimulatedBoard simulated(board, clock);
+  std::vector<model::Reading> readings(2);
+  ASSERT_EQ(simulated.connect(std::chrono::seconds(1)), drivers::BusStatus::ok);
+  EXPECT_EQ(simulated.exchange(std::vector<double>{-2, -2}, readings, std::chrono::seconds(1)),
+            drivers::BusStatus::ok)
+      << simulated.detail();
 }
 
 TEST(RigFile, PathsAreRelativeToTheFile) {

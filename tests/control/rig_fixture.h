@@ -37,6 +37,7 @@ class SimulatedRig {
   bool interlock_open = false;
   std::uint32_t slipped_cycles = 0;  ///< for the next tick only
   FaultCode bus_fault = FaultCode::none;
+  std::vector<double> outputs_kpa;  ///< what the bus says of the outputs; empty: nothing
   struct OfChannel {
     std::optional<model::Validity> validity;  ///< the driver says so
     double offset_mm = 0;                     ///< added to the reading
@@ -52,6 +53,10 @@ class SimulatedRig {
 
   /// For the next tick only.
   void request(Request::Kind kind, const PreparedSequence* sequence = nullptr);
+  /// The same with a number of its own.
+  void request(const Request& request) { request_ = request; }
+  /// The whole process stands still for so long.
+  void pause(double seconds) { now_ += static_cast<Nanoseconds>(std::llround(seconds * 1e9)); }
   /// One period; all invariants of the commands are checked.
   const TickOutput& tick();
   void run(double seconds);

@@ -240,6 +240,57 @@ TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
   EXPECT_EQ(exchange(50, 10), BusStatus::ok);
 }
 
+TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
+  connect(shipped("adam-6024.yaml"));
+  for (int i = 0; i < 40; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
+  int until_noticed = 0;
+  BusStatus status = BusStatus::ok;
+  while (status == BusStatus::ok && until_noticed < 20) {
+    server_.set_holding(11, 0);
+    status = exchange(40, 60);
+    ++until_noticed;
+  }
+  EXPECT_EQ(status, BusStatus::overwritten);
+  EXPECT_LE(until_noticed, 8);
+  EXPECT_NE(std::string(board_->detail()).find("channel 'right': somebody else"), std::string::npos)
+      << board_->detail();
+  EXPECT_EQ(server_.holding_[11], 0) << "it is not written over before somebody has decided what to do";
+  EXPECT_EQ(exchange(0, 0), BusStatus::ok);
+}
+
+TEST_F(ModbusBoardTest, AnExchangeThatReadsFirstAsksNoMoreThanTheOthers) {
+  connect(shipped("adam-6024.yaml"));
+  ASSERT_EQ(exchange(1, 1), BusStatus::ok);
+  (void)server_.take_requests();
+  int first = 0;
+  for (int i = 0; i < 16; ++i) {
+    ASSERT_EQ(exchange(1, 1), BusStatus::ok);
+    const Requests requests = server_.take_requests();
+    ASSERT_EQ(requests.size(), 4U);
+    const bool writes_last = requests.back().function == 16;
+    EXPECT_NE(writes_last, requests.front().function == 16);
+    first += writes_last ? 1 : 0;
+  }
+  EXPECT_EQ(first, 2);
+}
+
+TEST_F(ModbusBoardTest, AnotherMasterIsNoticedThoughOneFunctionReadsAndWrites) {
+  wiring_ = test::two_fingers(false);
+  connect(shipped("softgrip-sim.yaml"));
+  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
+    for (std::size_t i = 0; i < request.written.size(); ++i) {
+      server.holding_[static_cast<std::uint16_t>(24 + i)] = request.written[i];
+    }
+  });
+  for (int i = 0; i < 40; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
+  BusStatus status = BusStatus::ok;
+  for (int i = 0; i < 8 && status == BusStatus::ok; ++i) {
+    server_.set_holding(24, 0);
+    status = exchange(40, 60);
+  }
+  EXPECT_EQ(status, BusStatus::overwritten) << board_->detail();
+}
+
 // Some boards show in the read-back what they were told one exchange ago, all the more with function 23.
 TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
   BoardMap map = shipped("adam-6024.yaml");

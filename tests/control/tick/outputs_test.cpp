@@ -1,0 +1,119 @@
+// What stands at the outputs is not always what was commanded, and what was seen before a gap is not what is.
+
+#include <gtest/gtest.h>
+
+#include "tests/control/rig_fixture.h"
+
+namespace softgrip::control {
+namespace {
+
+class Outputs : public testing::Test {
+ protected:
+  Outputs() { settings.safety.safe_action.fill(SafeAction::hold); }
+  void close_on_stone(SimulatedRig& rig) {
+    rig.stone(12);
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &pick);
+    ASSERT_TRUE(rig.run_until_step(1, 10));
+    rig.run(0.3);
+  }
+  static double command(const SimulatedRig& rig) { return rig.output().channels[0].command_kpa; }
+
+  RigSettings settings = two_finger_settings();
+  PreparedSequence pick = example_sequence("pick_stone", settings);
+};
+
+TEST_F(Outputs, ACommandThatNeverReachedTheBoardIsForgottenWithItsSequence) {
+  SimulatedRig rig(settings);
+  close_on_stone(rig);
+  const double last_kpa = command(rig);
+  ASSERT_GT(last_kpa, 5);
+  rig.outputs_kpa = {last_kpa - 0.5, 0.5};  // the right one is far behind
+  rig.request(Request::Kind::stop);
+  rig.tick();
+  EXPECT_DOUBLE_EQ(command(rig), last_kpa - 0.5);
+  const double fall_kpa = settings.channels[1].limits.slew_down_kpa_per_s / settings.rate_hz;
+  EXPECT_GE(rig.output().channels[1].command_kpa, last_kpa - 2 * fall_kpa)
+      << "what is on its way may be written";
+  rig.run(1);
+  EXPECT_DOUBLE_EQ(command(rig), last_kpa - 0.5);
+  EXPECT_DOUBLE_EQ(rig.output().channels[1].command_kpa, 0.5);
+}
+
+TEST_F(Outputs, WhileASequenceRunsItIsTheSequenceThatCommands) {
+  SimulatedRig rig(settings);
+  close_on_stone(rig);
+  const double last_kpa = command(rig);
+  rig.outputs_kpa = {last_kpa - 1, last_kpa - 1};  // the report of one exchange ago
+  rig.tick();
+  EXPECT_GT(command(rig), last_kpa - 1);
+}
+
+TEST_F(Outputs, WhatTheBusHasTakenBackIsGoneAtOnceAndStaysSo) {
+  for (const FaultCode said : {FaultCode::board_watchdog_tripped, FaultCode::outputs_overwritten,
+                               FaultCode::write_refused, FaultCode::cycles_lost}) {
+    SimulatedRig rig(settings);
+    close_on_stone(rig);
+    rig.bus_fault = said;
+    rig.outputs_kpa = {0, 0};
+    rig.tick();
+    EXPECT_EQ(rig.output().state, State::faulted);
+    EXPECT_EQ(rig.output().first_fault, said);
+    EXPECT_EQ(command(rig), 0);
+    EXPECT_EQ(rig.output().channels[0].safe_kpa, 0) << "what a silent loop leaves to be written";
+    rig.bus_fault = FaultCode::none;
+    rig.outputs_kpa.clear();
+    rig.run(0.5);
+    EXPECT_EQ(command(rig), 0);
+  }
+}
+
+TEST_F(Outputs, AnotherMasterIsNotFoughtWithWhatWasHeld) {
+  SimulatedRig rig(settings);
+  close_on_stone(rig);
+  rig.bus_fault = FaultCode::outputs_overwritten;
+  rig.tick();
+  rig.run(0.5);
+  EXPECT_EQ(command(rig), settings.channels[0].limits.pressure_min_kpa);
+}
+
+TEST_F(Outputs, HoldingIsNotConcludedFromWhatWasSeenBeforeAGap) {
+  int tried = 0;
+  for (double into_step_s = 0.2; into_step_s < 4; into_step_s += 0.1) {
+    SimulatedRig rig(settings);
+    rig.stone(12);
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &pick);
+    ASSERT_TRUE(rig.run_until_step(1, 10));
+    rig.run(into_step_s);
+    if (rig.result(0) != GripResult::none || rig.output().state != State::running) break;
+    rig.pause(1);
+    rig.tick();
+    EXPECT_NE(rig.result(0), GripResult::holding) << "a pause " << into_step_s << " s into the grip";
+    ++tried;
+  }
+  EXPECT_GE(tried, 10);
+}
+
+TEST_F(Outputs, AStartThatAVentHasOvertakenIsRefused) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  for (const Request::Kind kind : {Request::Kind::vent, Request::Kind::stop}) {
+    rig.request(Request{kind, 18, nullptr});
+    rig.tick();
+    ASSERT_TRUE(rig.run_until(State::idle, 5));
+    rig.events.clear();
+    rig.request(Request{Request::Kind::start, 17, &pick});
+    rig.tick();
+    EXPECT_EQ(rig.output().state, State::idle);
+    ASSERT_EQ(rig.count(Event::Kind::request_refused), 1U);
+    EXPECT_EQ(rig.events.front().detail, static_cast<std::uint16_t>(RefusalCode::overtaken));
+    EXPECT_EQ(rig.events.front().request, 17U);
+  }
+  rig.request(Request{Request::Kind::start, 19, &pick});
+  rig.tick();
+  EXPECT_EQ(rig.output().state, State::resynchronising);
+}
+
+}  // namespace
+}  // namespace softgrip::control
