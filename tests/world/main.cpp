@@ -101,6 +101,7 @@ Sum run_jobs(const Library& library, const Options& options) {
     if (child == 0) {
       close(pipe_ends[0]);
       const Sum sum = run_share(library, options, job);
+      std::fflush(stdout);
       const bool told = write(pipe_ends[1], &sum, sizeof sum) == sizeof sum;
       std::_Exit(told ? EXIT_SUCCESS : EXIT_FAILURE);
     }

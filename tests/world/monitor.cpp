@@ -1,6 +1,7 @@
 #include "tests/world/monitor.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,6 +57,7 @@ void Monitor::boots() {
   safe_kpa_.assign(rig_.channels.size(), 0);
   last_kpa_ = safe_kpa_;
   halted_by_ = 0;
+  seen_by_ = {};
   results_ = {};
   steps_ = {};
   vent_waits_.reset();
@@ -128,13 +130,16 @@ void Monitor::watch_grips(Nanoseconds now, const control::TickOutput& output) {
     const control::ChannelOutput& channel = output.channels[i];
     const bool new_grip = channel.result == control::GripResult::holding && results_[i] != channel.result;
     results_[i] = channel.result;
-    const Nanoseconds sampled = now - nanoseconds(channel.age_s);
+    // The sequence decides on what the tick before saw.
+    const Seen seen = std::exchange(seen_by_[i], {now, now - nanoseconds(channel.age_s), channel.validity});
+    const bool old = now - seen.at > nanoseconds(rig_.channels[i].plausibility.max_age_s);
     // Its step is over with the answer: what counts is when that one began.
     if (new_grip && channel.evidence == control::GripEvidence::displacement &&
-        (channel.validity != model::Validity::valid || sampled < step_began_[i]))
+        (seen.validity != model::Validity::valid || old || seen.sampled < step_began_[i]))
       violate(now, "HOLDING rests on readings newer than the grip",
-              fmt::format("channel {}: validity {}, sampled {:.4f} s before the step", i,
-                          static_cast<int>(channel.validity), seconds(step_began_[i] - sampled)));
+              fmt::format("channel {}: validity {}, seen {:.4f} s ago, sampled {:.4f} s before the step", i,
+                          static_cast<int>(seen.validity), seconds(now - seen.at),
+                          seconds(step_began_[i] - seen.sampled)));
     if (channel.step != steps_[i] || state_ != State::running) {
       steps_[i] = channel.step;
       step_began_[i] = now;

@@ -77,6 +77,12 @@ class Monitor {
   control::State state_ = control::State::starting;
   std::vector<double> safe_kpa_;
   std::vector<double> last_kpa_;  // as written
+  struct Seen {                   // by the tick before
+    Nanoseconds at = 0;
+    Nanoseconds sampled = 0;
+    model::Validity validity = model::Validity::none_yet;
+  };
+  std::array<Seen, control::max_channels> seen_by_{};
   std::array<control::GripResult, control::max_channels> results_{};
   std::array<std::uint16_t, control::max_channels> steps_{};
   std::array<Nanoseconds, control::max_channels> step_began_{};

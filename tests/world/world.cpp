@@ -193,7 +193,9 @@ class World {
         boots_at_ = now + restart_pause;
       } else {
         for (const auto& [id, asked] : daemon_->unanswered()) {
-          if (!is_paused() && now - std::max(asked.at, undisturbed_since_) > longest_answer)
+          // Who is asked while it ends hangs up instead.
+          if (!is_paused() && !daemon_->wires.leave.load() &&
+              now - std::max(asked.at, undisturbed_since_) > longest_answer)
             monitor_.answer_is_late(now, asked.at);
         }
       }
@@ -252,7 +254,11 @@ class World {
     const Nanoseconds now = scheduler_.now();
     const auto outputs = hardware_.outputs_kpa();
     // Without a loop nobody shapes a ramp.
-    const bool safe_outputs = daemon_->wires.leave.load() || now - last_tick_ > longest_tick_gap ||
+    // Nor where it is not known what stands there: the lower of what may.
+    const std::uint64_t failures = daemon_->bus_statistics.failures.value();
+    const bool unconfirmed = std::exchange(failures_, failures) != failures;
+    const bool safe_outputs = unconfirmed || daemon_->wires.leave.load() ||
+                              now - last_tick_ > longest_tick_gap ||
                               now - last_tick_gap_end_ < ns_per_s / 5 ||
                               std::equal(commands.begin(), commands.end(), monitor_.safe_kpa().begin());
     monitor_.write(began, now, outputs, commands, safe_outputs);
@@ -288,6 +294,7 @@ class World {
   bool disk_full_ = false;
   bool disk_was_full_ = false;
   std::uint64_t ticked_ = 0;
+  std::uint64_t failures_ = 0;  // of the bus, when it wrote last
   Nanoseconds boots_at_ = 0;
   Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;
