@@ -1,0 +1,159 @@
+// Every state that the supervisor can get into, by every combination of what can happen in a tick.
+
+#include "control/tick/supervisor.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <deque>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/control/settings_fixture.h"
+
+namespace softgrip::control {
+namespace {
+
+using Kind = Request::Kind;
+
+/// One tick's surroundings.
+struct Tick {
+  Kind request = Kind::none;
+  FaultCode fault = FaultCode::none;
+  bool cause_present = false;
+  bool bus_good = true;
+  bool all_ready = true;
+  bool all_lowest = false;
+  bool interlock_open = false;
+  Phase phase = Phase::idle;
+  Rest rest = Rest::pending;
+  bool sequence_ends = false;  // after the tick, if one runs
+};
+
+std::vector<Tick> all_ticks() {
+  std::vector<Tick> ticks;
+  for (const Kind request : {Kind::none, Kind::start, Kind::stop, Kind::vent, Kind::acknowledge}) {
+    for (const FaultCode fault : {FaultCode::none, FaultCode::bus_down, FaultCode::board_watchdog_tripped,
+                                  FaultCode::sensor_error, FaultCode::emergency_stop}) {
+      for (const Phase phase : {Phase::idle, Phase::closing, Phase::holding, Phase::releasing}) {
+        for (const Rest rest : {Rest::pending, Rest::at_rest, Rest::timed_out}) {
+          for (unsigned bits = 0; bits < 64; ++bits) {
+            const bool cause = (bits & 1U) != 0 || fault != FaultCode::none;
+            ticks.push_back({request, fault, cause, (bits & 2U) == 0, (bits & 4U) == 0, (bits & 8U) != 0,
+                             (bits & 16U) != 0, phase, rest, (bits & 32U) != 0});
+          }
+        }
+      }
+    }
+  }
+  return ticks;
+}
+
+/// The object's bytes are its state: it is plain values throughout.
+static_assert(std::is_trivially_copyable_v<Supervisor>);
+std::string bytes_of(const Supervisor& supervisor) {
+  std::string bytes(sizeof supervisor, '\0');
+  std::memcpy(bytes.data(), &supervisor, sizeof supervisor);
+  return bytes;
+}
+
+class SupervisorSearch : public testing::Test {
+ protected:
+  SupervisorSearch() { sequence_.interlock = Interlock::always; }
+
+  /// Takes a tick, and says what the supervisor broke by it.
+  std::string step(Supervisor& supervisor, const Tick& tick) {
+    const State before = supervisor.state();
+    TickInput input;
+    // A start is always newer than what would overtake it; that is a test of its own.
+    input.request = {tick.request, tick.request == Kind::start ? 2U : 1U,
+                     tick.request == Kind::start ? &sequence_ : nullptr};
+    input.interlock_open = tick.interlock_open;
+    input.emergency_stop = tick.fault == FaultCode::emergency_stop;
+    Facts facts;
+    facts.fault = {tick.fault, whole_rig, 0};
+    facts.cause_present = tick.cause_present;
+    facts.bus_good = tick.bus_good;
+    facts.ready = tick.all_ready ? all : 1;
+    facts.lowest = tick.all_lowest ? all : 0;
+    facts.phase = tick.phase;
+    facts.rest = tick.rest;
+    EventList events;
+    const Orders orders = supervisor.tick(input, facts, events);
+    std::string broken = judge(before, supervisor, tick, orders, events);
+    if (tick.sequence_ends && supervisor.state() == State::running) {
+      supervisor.sequence_ended(SequenceEnd::done, OnFail::release, tick.phase, events);
+      if (may_rise(supervisor.state())) broken = "a sequence that has ended runs on";
+    }
+    return broken;
+  }
+
+  static std::string judge(State before, const Supervisor& supervisor, const Tick& tick, const Orders& orders,
+                           const EventList& events) {
+    const State after = supervisor.state();
+    std::size_t answers = 0;
+    bool started = false;
+    bool acknowledged = false;
+    for (const Event& event : events) {
+      answers += event.request != 0 && event.kind != Event::Kind::sequence_finished ? 1 : 0;
+      started = started || event.kind == Event::Kind::sequence_started;
+      acknowledged = acknowledged || event.kind == Event::Kind::fault_acknowledged;
+    }
+    const bool halts = tick.request == Kind::vent || (tick.request == Kind::stop && may_rise(before));
+    if (tick.fault != FaultCode::none && after != State::faulted) return "a fault that is due does not latch";
+    if (halts && may_rise(after)) return "motion goes on after a stop or a vent";
+    if (tick.request == Kind::vent && supervisor.venting() != all && after != State::idle)
+      return "a vent is refused";
+    if (after == State::resynchronising && before != after && !started) return "motion that nobody asked for";
+    if (after == State::running && before != after && before != State::resynchronising)
+      return "motion without looking for rest";
+    if (orders.begin != nullptr && after != State::running) return "a sequence is played that does not run";
+    if (started && (tick.interlock_open || !tick.bus_good || !tick.all_ready) && tick.request == Kind::start)
+      return "a start that should have been refused";
+    if (before == State::faulted && after != State::faulted && !acknowledged) return "a fault goes by itself";
+    if (acknowledged && tick.cause_present) return "a fault is acknowledged whose cause is there";
+    if (may_rise(after) && supervisor.sequence() == nullptr) return "motion without a sequence";
+    if (!may_rise(after) && supervisor.sequence() != nullptr) return "a sequence without motion";
+    if (tick.request != Kind::none && answers == 0 && !orders.acknowledged_by)
+      return "a request without an answer";
+    if (after == State::faulted && (tick.fault == FaultCode::board_watchdog_tripped) &&
+        supervisor.venting() != all)
+      return "what the board has vented is held";
+    if (after == State::faulted && supervisor.venting_on_leaving(tick.phase) != supervisor.venting())
+      return "leaving undoes what a fault decided";
+    return {};
+  }
+
+  static constexpr std::uint32_t all = 3;
+  RigSettings settings_ = two_finger_settings();
+  PreparedSequence sequence_ = example_sequence("pick_stone", settings_);
+};
+
+TEST_F(SupervisorSearch, NoStateThatCanBeReachedBreaksAPromise) {
+  const std::vector<Tick> ticks = all_ticks();
+  std::set<std::string> seen;
+  std::deque<Supervisor> open{Supervisor(settings_)};
+  seen.insert(bytes_of(open.front()));
+  std::size_t steps = 0;
+  while (!open.empty()) {
+    const Supervisor from = open.front();
+    open.pop_front();
+    for (const Tick& tick : ticks) {
+      Supervisor to = from;
+      const std::string broken = step(to, tick);
+      ++steps;
+      ASSERT_EQ(broken, "") << "from " << name_of(from.state()) << " by request "
+                            << static_cast<int>(tick.request) << ", fault " << static_cast<int>(tick.fault)
+                            << ", phase " << static_cast<int>(tick.phase) << ", rest "
+                            << static_cast<int>(tick.rest) << " to " << name_of(to.state());
+      if (seen.insert(bytes_of(to)).second) open.push_back(to);
+    }
+    ASSERT_LT(seen.size(), 100'000U) << "these are no discrete states";
+  }
+  std::printf("%zu states, %zu steps\n", seen.size(), steps);
+  EXPECT_GT(seen.size(), 20U);
+}
+
+}  // namespace
+}  // namespace softgrip::control

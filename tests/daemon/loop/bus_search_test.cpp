@@ -1,0 +1,176 @@
+// The hand-over between loop, bus and the board's watchdog: every order of what can happen, so many steps
+// deep.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "daemon/loop/bus.h"
+#include "tests/daemon/scripted_board.h"
+
+namespace softgrip::daemon {
+namespace {
+
+using control::FaultCode;
+using drivers::BusStatus;
+
+constexpr Nanoseconds period = 5'000'000;
+constexpr Nanoseconds watchdog = 100'000'000;
+
+/// A board with one output and a watchdog that any write clears: the worst kind.
+class OneOutput final : public drivers::Board {
+ public:
+  explicit OneOutput(const VirtualClock& clock) : clock_(clock) {}
+  double output_kpa = 0;
+  BusStatus next = BusStatus::ok;
+
+  void look() {
+    if (fed_at_ < 0 || clock_.now() - fed_at_ < watchdog || output_kpa <= 0) return;
+    output_kpa = 0;
+    ++trips;
+  }
+  int trips = 0;
+
+  [[nodiscard]] std::size_t channels() const noexcept override { return 1; }
+  [[nodiscard]] BusStatus connect(std::chrono::nanoseconds) noexcept override { return BusStatus::ok; }
+  [[nodiscard]] BusStatus exchange(std::span<const double> commands_kpa, std::span<drivers::Reading>,
+                                   std::chrono::nanoseconds) noexcept override {
+    look();
+    const BusStatus status = next;
+    next = BusStatus::ok;
+    if (status == BusStatus::disconnected) return status;
+    fed_at_ = clock_.now();
+    // With a lost reply it takes what it does not confirm.
+    if (status != BusStatus::write_refused && status != BusStatus::overwritten) output_kpa = commands_kpa[0];
+    if (status == BusStatus::overwritten) output_kpa = 0;
+    return status;
+  }
+  [[nodiscard]] std::string describe() const override { return "one output"; }
+  [[nodiscard]] Budget budget() const override { return {}; }
+  [[nodiscard]] bool has_watchdog() const noexcept override { return true; }
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
+    return std::chrono::nanoseconds(watchdog);
+  }
+
+ private:
+  const VirtualClock& clock_;
+  Nanoseconds fed_at_ = -1;
+};
+
+/// The least that a controller does: rises while it runs, latches what the bus says, forgets what is not
+/// there, and starts again when asked.
+class LeastLoop {
+ public:
+  explicit LeastLoop(Wires& wires) : wires_(wires) {}
+  bool runs = true;
+
+  void tick() {
+    wires_.bus.fetch();
+    const BusReport& report = wires_.bus.value();
+    if (control::inhibits(report.health.fault) || report.health.consecutive_failures >= 2) runs = false;
+    if (runs) {
+      command_kpa_ += 1;
+    } else {
+      command_kpa_ = std::min(command_kpa_, report.outputs_kpa[0]);
+    }
+    Commands& commands = wires_.commands.draft();
+    commands.command_kpa[0] = command_kpa_;
+    commands.safe_kpa[0] = std::max(0.0, command_kpa_ - 2);
+    commands.may_rise = runs;
+    commands.inhibit = report.health.inhibit;
+    commands.last = false;
+    wires_.commands.publish();
+  }
+  /// Only a loop that has latched nothing is started.
+  bool start() {
+    wires_.bus.fetch();
+    const control::BusHealth& health = wires_.bus.value().health;
+    if (health.fault != FaultCode::none || health.consecutive_failures > 0) return false;
+    return runs = true;
+  }
+
+ private:
+  Wires& wires_;
+  double command_kpa_ = 0;
+};
+
+enum class Step { both, bus_alone, pause, line_down, reply_lost, refused, overwritten, started, count };
+
+/// What the path of steps breaks, or nothing.
+std::string follow(std::span<const Step> path) {
+  VirtualClock clock;
+  OneOutput board(clock);
+  control::RigSettings rig;
+  rig.channels.resize(1);
+  rig::LoopSettings loop;
+  loop.max_missed_commands = 2;
+  loop.exchange_deadline_s = 0.01;
+  rig::ReconnectSettings reconnect;
+  reconnect.first_pause = std::chrono::nanoseconds(0);
+  Wires wires(16);
+  BusStatistics statistics;
+  Bus bus(board, rig, loop, reconnect, clock, wires, statistics);
+  LeastLoop controller(wires);
+
+  bool may_rise = true;  // nothing has happened since the last start that forbids it
+  const auto exchange = [&]() -> std::string {
+    board.look();
+    const int trips = board.trips;
+    const double before_kpa = board.output_kpa;
+    bus.step(clock.now());
+    clock.advance(period);
+    if (board.output_kpa > before_kpa + 1e-9 && (!may_rise || trips > 0)) return "rises unasked";
+    return {};
+  };
+  for (int i = 0; i < 4; ++i) {
+    controller.tick();
+    if (const std::string broken = exchange(); !broken.empty()) return broken;
+  }
+  for (const Step step : path) {
+    if (step == Step::line_down) board.next = BusStatus::disconnected;
+    if (step == Step::reply_lost) board.next = BusStatus::timed_out;
+    if (step == Step::refused) board.next = BusStatus::write_refused;
+    if (step == Step::overwritten) board.next = BusStatus::overwritten;
+    if (step == Step::pause) clock.advance(watchdog);
+    if (step == Step::started && controller.start()) {
+      may_rise = true;
+      board.trips = 0;
+    }
+    if (step != Step::bus_alone) controller.tick();
+    if (!controller.runs) may_rise = false;
+    if (const std::string broken = exchange(); !broken.empty()) return broken;
+  }
+  // Left alone, everybody agrees in a few steps.
+  for (int i = 0; i < 6; ++i) {
+    controller.tick();
+    if (!controller.runs) may_rise = false;
+    if (const std::string broken = exchange(); !broken.empty()) return broken;
+  }
+  wires.bus.fetch();
+  if (wires.bus.value().health.fault != FaultCode::none) return "the bus never obeys again";
+  return {};
+}
+
+TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
+  constexpr std::size_t depth = 6;
+  constexpr auto kinds = static_cast<std::size_t>(Step::count);
+  std::array<std::size_t, depth> digits{};
+  std::array<Step, depth> path{};
+  std::size_t paths = 0;
+  for (bool more = true; more;) {
+    for (std::size_t i = 0; i < depth; ++i) path[i] = static_cast<Step>(digits[i]);
+    const std::string broken = follow(path);
+    ++paths;
+    std::string text;
+    for (const std::size_t digit : digits) text += std::to_string(digit) + " ";
+    ASSERT_EQ(broken, "") << text;
+    std::size_t i = 0;
+    while (i < depth && ++digits[i] == kinds) digits[i++] = 0;
+    more = i < depth;
+  }
+  EXPECT_EQ(paths, 262'144U);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon
