@@ -31,6 +31,7 @@ class Masters(bench.BenchTest):
         emulator = self.emulator()
         rig = self.rig(emulator.port)
         daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
         daemon.socket_path.unlink()
         second = bench.Process("second", [bench.SOFTGRIPD, "--config", rig], self.folder)
         self.assertEqual(second.wait(), 4)

@@ -84,12 +84,13 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
   EXPECT_EQ(code(Ending::not_idle), ExitCode::state_refused);
   EXPECT_EQ(code(Ending::real_time_refused), ExitCode::failed);
   EXPECT_EQ(code(Ending::socket_failed), ExitCode::io);
+  EXPECT_EQ(code(Ending::board_taken), ExitCode::io);
   EXPECT_EQ(code(Ending::broken), ExitCode::failed);
   using control::SequenceEnd;
   for (const auto& [end, expected] : {std::pair{SequenceEnd::done, ExitCode::done},
                                       std::pair{SequenceEnd::failed, ExitCode::not_acceptable},
-                                      std::pair{SequenceEnd::stopped, ExitCode::failed},
-                                      std::pair{SequenceEnd::faulted, ExitCode::failed}}) {
+                                      std::pair{SequenceEnd::stopped, ExitCode::not_acceptable},
+                                      std::pair{SequenceEnd::faulted, ExitCode::not_acceptable}}) {
     outcome.sequence_end = end;
     EXPECT_EQ(code(Ending::sequence_ended), expected);
   }
