@@ -167,7 +167,9 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
     case Stage::done:
       break;
   }
-  return Progress::passed;
+  // Nobody holds what cannot be looked at any more.
+  const bool doubted = step_->kind == StepKind::grip && !usable(step_->verify, seen);
+  return doubted ? Progress::pending : Progress::passed;
 }
 
 Progress ChannelPlayer::pass() noexcept {

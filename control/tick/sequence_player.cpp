@@ -43,7 +43,10 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
   const bool holds = now().step.kind == StepKind::hold;
   for_each_of_step([&](std::size_t i) {
     const Progress progress = channels_[i].tick(time_s, seen[i]);
-    if ((done_ & bit(i)) != 0 || progress == Progress::pending) return;
+    if ((refused_ & bit(i)) != 0) return;
+    // What was verified may be doubted again while the others are waited for.
+    if (progress == Progress::pending) done_ &= ~bit(i);
+    if (progress == Progress::pending || (done_ & bit(i)) != 0) return;
     done_ |= bit(i);
     if (progress == Progress::failed) {
       refused_ |= bit(i);

@@ -67,7 +67,7 @@ struct Outcome {
   std::vector<std::string> channel_names;
   std::string recording_error;  ///< why record_folder does not hold all of the run; empty: it does
   bool left_safely = false;     ///< the board confirmed the safe outputs at the end
-  double vents_after_s = 0;     ///< pressure was left on, and the board's watchdog vents it so soon; 0: neither
+  double vents_after_s = 0;  ///< pressure was left on, and the board's watchdog vents it so soon; 0: neither
   std::uint64_t ticks = 0;
   std::uint64_t slips = 0;
   double wall_s = 0;  ///< how long it took

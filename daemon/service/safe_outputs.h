@@ -19,7 +19,7 @@ enum class SafeOutputsEnd {
   not_needed,   ///< the service manager says that softgripd ended in order
   daemon_running,  ///< a daemon answers on the rig's socket, or another program drives the board: it would
                    ///< write something else in a moment
-  board_silent,  ///< nothing confirmed within the time
+  board_silent,    ///< nothing confirmed within the time
 };
 
 struct SafeOutputsReport {

@@ -65,9 +65,7 @@ class Board {
 
   /// After so long without a request that feeds it, the first of its outputs goes to its safe value by
   /// itself; 0: none ever does.
-  [[nodiscard]] virtual std::chrono::nanoseconds watchdog_time() const noexcept {
-    return std::chrono::nanoseconds(0);
-  }
+  [[nodiscard]] virtual std::chrono::nanoseconds watchdog_time() const noexcept = 0;
 };
 
 }  // namespace softgrip::drivers

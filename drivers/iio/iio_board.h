@@ -55,6 +55,7 @@ class IioBoard final : public Board {
   [[nodiscard]] std::string describe() const override;
   [[nodiscard]] Budget budget() const override;
   [[nodiscard]] bool has_watchdog() const noexcept override { return false; }
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override { return {}; }
 
  private:
   struct Parts;

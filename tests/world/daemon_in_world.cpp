@@ -123,7 +123,8 @@ void DaemonInWorld::serve() {
       continue;
     }
     on_submit(request->kind, *id);
-    unanswered_[*id] = {request->kind, request->at};
+    // Until then the service answers that it is busy.
+    unanswered_[*id] = {request->kind, scheduler_.now()};
     request = requests_.erase(request);
   }
   for (auto asked = unanswered_.begin(); asked != unanswered_.end();) {

@@ -27,6 +27,9 @@ class RecoveringBoard final : public drivers::Board {
   [[nodiscard]] std::string describe() const override { return "recovering board"; }
   [[nodiscard]] Budget budget() const override { return {}; }
   [[nodiscard]] bool has_watchdog() const noexcept override { return false; }
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
+    return std::chrono::nanoseconds(0);
+  }
 
  private:
   ScriptedBoard& inner_;

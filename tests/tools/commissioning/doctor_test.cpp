@@ -211,6 +211,9 @@ TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
     [[nodiscard]] std::string describe() const override { return "a slow board"; }
     [[nodiscard]] Budget budget() const override { return {0.0469, "9600 8N1: 46.9 ms"}; }
     [[nodiscard]] bool has_watchdog() const noexcept override { return true; }
+    [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
+      return std::chrono::seconds(1);
+    }
   };
   examine_description(rig_, SlowBoard(), findings_);
   expect("bus budget", Verdict::fail, "46.9 ms; a cycle is 5 ms");

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Which branches of control/, of the bus and of the loop the tests take: builds them with counters under build/coverage, runs
+# control_test, daemon_test and 100 worlds, and prints branches per file, the least covered first. Every branch that is
+# not taken: build/coverage/branches.txt.
+#   scripts/coverage.sh
+set -euo pipefail
+cd "$(dirname "$(realpath "$0")")/.."
+bash scripts/packages.sh build tests coverage
+build=build/coverage
+cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS="--coverage -O0" -DSOFTGRIP_TESTS=ON \
+  -DSOFTGRIP_BENCHMARKS=OFF >/dev/null
+cmake --build $build --target control_test daemon_test softgrip-world >$build/build.log || { tail -n 30 $build/build.log; exit 1; }
+find $build -name '*.gcda' -delete
+# What counts allocations or system calls does not hold with counters.
+$build/tests/control_test --gtest_brief=1 >$build/control.log 2>&1 || tail -n 5 $build/control.log
+$build/tests/daemon_test --gtest_brief=1 >$build/daemon.log 2>&1 || tail -n 5 $build/daemon.log
+$build/tests/world/softgrip-world --count 100 | tail -n 2
+# A throw that the compiler adds to a call is no branch of ours.
+gcovr -r . $build --branches --exclude-throw-branches --exclude-unreachable-branches --sort-percentage \
+  --filter 'control/' --filter 'daemon/loop/(bus|loop|heartbeat)' >$build/branches.txt
+grep -E '^(TOTAL|control/|daemon/)' $build/branches.txt | awk '{print $1, $2, $3, $4}' | column -t
