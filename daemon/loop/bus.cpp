@@ -141,7 +141,7 @@ void Bus::put_off_next_attempt() noexcept {
 
 void Bus::exchange() noexcept {
   const Nanoseconds began = clock_.now();
-  const bool gap_known = judge_gap(began, watchdog_margin_);
+  judge_gap(began, watchdog_margin_);
   choose_outputs();
   const bool last = wires_.commands.value().last;
   const BusStatus status =
@@ -161,7 +161,7 @@ void Bus::exchange() noexcept {
   }
   report_.outputs_kpa = written_kpa_;
   // This thread may have been stopped on the way: what arrived came too late for the old outputs.
-  if (!gap_known) judge_gap(ended, 0);
+  judge_gap(ended, 0);
   last_good_ = began;
   note_success(ended - began);
   if (last) wires_.left_safely.store(true, std::memory_order_release);
@@ -205,9 +205,9 @@ void Bus::note_failure(BusStatus status) noexcept {
   tell(BusEvent::Kind::failed, status, board_.detail());
 }
 
-/// A board that has not been fed for longer than it waits has put its own safe value out. True if so.
-bool Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
-  if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return false;
+/// A board that has not been fed for longer than it waits has put its own safe value out.
+void Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
+  if (watchdog_ == 0 || !last_good_ || now - *last_good_ < watchdog_ - margin) return;
   take_down_outputs();
   inhibit(FaultCode::board_watchdog_tripped);
   std::array<char, sizeof(BusEvent::detail)> detail{};
@@ -216,7 +216,7 @@ bool Bus::judge_gap(Nanoseconds now, Nanoseconds margin) noexcept {
                 seconds(now - *last_good_), seconds(watchdog_));
   tell(BusEvent::Kind::failed, BusStatus::watchdog_tripped, detail.data());
   told_failed_ = true;
-  return true;
+  last_good_.reset();  // once a gap: what is written until the next good exchange is no more than the lowest
 }
 
 void Bus::take_down_outputs() noexcept {

@@ -61,7 +61,7 @@ class Bus {
   void choose_outputs() noexcept;
   void note_success(Nanoseconds duration) noexcept;
   void note_failure(drivers::BusStatus status) noexcept;
-  bool judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
+  void judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
   void take_down_outputs() noexcept;
   void tell(BusEvent::Kind kind, drivers::BusStatus status, const char* detail = "") noexcept;
   void publish() noexcept;
@@ -86,7 +86,7 @@ class Bus {
   };
 
   BusReport report_;
-  std::array<double, control::max_channels> written_kpa_{};
+  std::array<double, control::max_channels> written_kpa_ = BusReport::anything;
   Session session_ = Session::none;
   bool spoken_ = false;                                      // the loop, at least once
   control::FaultCode inhibited_ = control::FaultCode::none;  // why, or none

@@ -169,6 +169,31 @@ TEST_F(WatchedBusTest, FailedExchangesDoNotEndAGap) {
   EXPECT_EQ(fault(), FaultCode::board_watchdog_tripped);
 }
 
+TEST_F(WatchedBusTest, AGapIsToldOnceHoweverLongExchangesFailBehindIt) {
+  Bus bus = make_bus();
+  command(35, 35, true);
+  step(bus);
+  clock_.advance(watchdog);
+  board_.next_exchange = BusStatus::exception;
+  for (int i = 0; i < 200; ++i) {
+    command(1, 1, false, wires_.bus.value().health.inhibit);
+    step(bus);
+  }
+  EXPECT_EQ(wires_.bus.value().health.inhibit, 1U);
+  EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::failed}));
+}
+
+TEST_F(WatchedBusTest, TheFirstWriteIsNotBelowTheRangeThoughConnectingFailedBefore) {
+  Bus bus = make_bus();
+  board_.next_connect = BusStatus::disconnected;
+  command(1, 1, false);
+  step(bus);
+  board_.next_connect = BusStatus::ok;
+  clock_.advance(ns_per_s);
+  step(bus);
+  EXPECT_EQ(last_written(), 1);
+}
+
 TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   Bus bus = make_bus();
   command(35, 35, true);
