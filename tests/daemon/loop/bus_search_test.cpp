@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -175,7 +176,11 @@ std::string follow(std::span<const Step> path) {
 }
 
 TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+  constexpr std::size_t depth = 4;  // a hundred times slower, and one thread all the same
+#else
   constexpr std::size_t depth = 6;
+#endif
   constexpr auto kinds = static_cast<std::size_t>(Step::count);
   std::array<std::size_t, depth> digits{};
   std::array<Step, depth> path{};
@@ -191,7 +196,7 @@ TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
     while (i < depth && ++digits[i] == kinds) digits[i++] = 0;
     more = i < depth;
   }
-  EXPECT_EQ(paths, 531'441U);
+  EXPECT_EQ(paths, static_cast<std::size_t>(std::pow(kinds, depth)));
 }
 
 }  // namespace
