@@ -95,6 +95,58 @@ TEST_F(Outputs, HoldingIsNotConcludedFromWhatWasSeenBeforeAGap) {
   EXPECT_GE(tried, 10);
 }
 
+TEST_F(Outputs, AVentIsOverWhenEveryFingerIsDown) {
+  for (const std::size_t slow : {0U, 1U}) {
+    RigSettings one_is_slow = settings;
+    one_is_slow.channels[slow].limits.slew_down_kpa_per_s /= 10;
+    const PreparedSequence sequence = example_sequence("pick_stone", one_is_slow);
+    SimulatedRig rig(one_is_slow);
+    rig.stone(12);
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &sequence);
+    ASSERT_TRUE(rig.run_until_step(1, 10));
+    rig.run(0.3);
+    rig.request(Request::Kind::vent);
+    rig.tick();
+    while (rig.output().state == State::stopping) rig.tick();
+    EXPECT_EQ(rig.output().state, State::idle);
+    EXPECT_EQ(rig.output().channels[slow].command_kpa, one_is_slow.channels[slow].limits.pressure_min_kpa);
+  }
+}
+
+TEST_F(Outputs, AReadingThatGoesAndComesIsTold) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.events.clear();
+  rig.fault[1].validity = model::Validity::sensor_error;
+  rig.tick();
+  ASSERT_EQ(rig.count(Event::Kind::reading_invalid), 1U);
+  EXPECT_EQ(rig.count(Event::Kind::reading_valid), 0U);
+  EXPECT_EQ(rig.events.back().channel, 1);
+  EXPECT_EQ(rig.events.back().detail, static_cast<std::uint16_t>(model::Validity::sensor_error));
+  rig.fault[1].validity.reset();
+  rig.tick();
+  EXPECT_EQ(rig.count(Event::Kind::reading_valid), 1U);
+}
+
+TEST_F(Outputs, AFaultThatIsBackAfterItWasAcknowledgedIsToldAgain) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  for (int round = 0; round < 2; ++round) {
+    rig.events.clear();
+    rig.emergency_stop = true;
+    rig.tick();
+    rig.emergency_stop = false;
+    rig.bus_fault = FaultCode::bus_down;  // the second one
+    rig.run(0.5);
+    EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U) << "round " << round;
+    rig.bus_fault = FaultCode::none;
+    rig.run(0.5);
+    rig.request(Request::Kind::acknowledge);
+    ASSERT_TRUE(rig.run_until(State::idle, 2));
+  }
+}
+
 TEST_F(Outputs, AStartThatAVentHasOvertakenIsRefused) {
   SimulatedRig rig(settings);
   ASSERT_TRUE(rig.run_until(State::idle, 1));
