@@ -1,6 +1,5 @@
 // What only the whole rig shows.
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -43,18 +42,11 @@ void check_watchdog(Context& context, MapReader& top) {
 
 /// When the first output in use is put to its safe value by a board that nobody talks to [s]; 0: never.
 double watchdog_time_s(const Context& context) {
-  double timeout_s = 0;
   if (const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
-    for (const drivers::ChannelWiring& channel : context.wiring) {
-      const drivers::BoardWatchdog& watchdog = modbus->modules[channel.valve.module].map.watchdog;
-      if (watchdog.kind == drivers::BoardWatchdog::Kind::none) continue;
-      timeout_s = timeout_s > 0 ? std::min(timeout_s, watchdog.timeout_s) : watchdog.timeout_s;
-    }
+    return seconds(drivers::ModbusBoard(*modbus).watchdog_time().count());
   }
-  if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board)) {
-    timeout_s = simulated->watchdog_timeout_s;
-  }
-  return timeout_s;
+  const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board);
+  return simulated != nullptr ? simulated->watchdog_timeout_s : 0;
 }
 
 /// As long as a gap of the bus is no fault, the sequence goes on behind it: from where the outputs no longer

@@ -20,8 +20,9 @@ import subprocess
 import sys
 import threading
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-COPIES = ROOT / "build/mutants"
+from source_copy import SOURCE, copy_sources
+
+COPIES = SOURCE / "build/mutants"
 TIMEOUT_S = 240
 #: Folder -> what is built, and what is run, in this order.
 FITTING = (
@@ -51,7 +52,7 @@ class Mutant:
 
 def mutants_of(name):
     """Every place of a file that an operator can turn over."""
-    lines = (ROOT / name).read_text().split("\n")
+    lines = (SOURCE / name).read_text().split("\n")
     found, in_comment = [], False
     for number, line in enumerate(lines, 1):
         code = line.split("//")[0]
@@ -93,11 +94,7 @@ class Copy:
 
     def prepare(self, targets):
         shutil.rmtree(self.root, ignore_errors=True)
-        files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-        for name in filter(None, files.split("\0")):
-            if (ROOT / name).is_file():
-                (self.root / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(ROOT / name, self.root / name)
+        copy_sources(self.root)
         done = self.run(["cmake", "--preset", "release", "-DSOFTGRIP_TESTS=ON", "-DSOFTGRIP_WERROR=OFF",
                          "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1"])
         if done.returncode == 0:
@@ -136,7 +133,7 @@ class Copy:
 
 def files_by_default():
     listed = subprocess.run(["git", "ls-files", "control/*.cpp", "daemon/loop/bus.cpp", "daemon/loop/loop.cpp",
-                             "daemon/loop/heartbeat.cpp"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+                             "daemon/loop/heartbeat.cpp"], cwd=SOURCE, capture_output=True, text=True, check=True).stdout.split()
     return sorted(set(listed))
 
 
@@ -146,7 +143,7 @@ def main():
     parser.add_argument("--per-file", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/mutants/report.md")
+    parser.add_argument("--out", type=pathlib.Path, default=SOURCE / "build/mutants/report.md")
     options = parser.parse_args()
 
     drawn = []

@@ -1,14 +1,14 @@
 """Puts faults into a copy of the code, one at a time, and counts the seeds until a world finds each."""
 
 import os
-import pathlib
 import re
 import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-COPY = ROOT / "build/worlds"
+from source_copy import SOURCE, copy_sources
+
+COPY = SOURCE / "build/worlds"
 MOST_SEEDS = 2000
 
 # What is broken, where, and how: text that must be there once, and what stands there instead.
@@ -42,12 +42,7 @@ def run(arguments, **keys):
 
 def prepare():
     shutil.rmtree(COPY, ignore_errors=True)
-    COPY.mkdir(parents=True)
-    files = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    for name in filter(None, files.split("\0")):
-        if (ROOT / name).is_file():
-            (COPY / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / name, COPY / name)
+    copy_sources(COPY)
     done = run(["cmake", "--preset", "release", "-DSOFTGRIP_TESTS=ON", "-DSOFTGRIP_WERROR=OFF"])
     if done.returncode:
         sys.exit(done.stderr)

@@ -174,13 +174,9 @@ class Planning {
 
 }  // namespace
 
-bool plans_sequences(const RigSettings& settings) noexcept {
-  return std::any_of(settings.channels.begin(), settings.channels.end(), planned);
-}
-
 std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,
                                    const std::stop_token& stop) {
-  if (!plans_sequences(settings)) return {};
+  if (std::none_of(settings.channels.begin(), settings.channels.end(), planned)) return {};
   static_cast<void>(Planning(sequence, settings, false, stop).run());
   if (sequence.planned_s > most_planned_s) return {};
   return Planning(sequence, settings, true, stop).run();

@@ -32,7 +32,4 @@ inline constexpr double most_planned_s = 600;
 [[nodiscard]] std::vector<MissedPlan> plan_steps(PreparedSequence& sequence, const RigSettings& settings,
                                                  const std::stop_token& stop = {});
 
-/// Some channel has feedforward `planned`: preparing a sequence takes time.
-[[nodiscard]] bool plans_sequences(const RigSettings& settings) noexcept;
-
 }  // namespace softgrip::control

@@ -95,6 +95,7 @@ class RealRun {
   void service_body();
   void note_broken(const std::string& what);
   [[nodiscard]] bool over(Nanoseconds now);
+  [[nodiscard]] Nanoseconds longest_bus_call() const;
   [[nodiscard]] Heartbeat make_heartbeat() const;
   [[nodiscard]] std::string status_line();
 
@@ -267,11 +268,15 @@ std::string RealRun::status_line() {
                      parts_.bus_statistics.failures.value());
 }
 
+/// The bus thread may rightly stand still for so long.
+Nanoseconds RealRun::longest_bus_call() const {
+  return std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
+                               nanoseconds(parts_.rig.loop.exchange_deadline_s));
+}
+
 Heartbeat RealRun::make_heartbeat() const {
   const Nanoseconds pause = parts_.period() + heartbeat_patience;
-  const Nanoseconds longest_bus_call = std::max<Nanoseconds>(
-      parts_.rig.reconnect.connect_deadline.count(), nanoseconds(parts_.rig.loop.exchange_deadline_s));
-  return Heartbeat({pause, pause + longest_bus_call, service_patience});
+  return Heartbeat({pause, pause + longest_bus_call(), service_patience});
 }
 
 void RealRun::look_after() {
@@ -307,9 +312,7 @@ bool RealRun::wait_for(const std::function<bool()>& condition, Nanoseconds longe
 bool RealRun::stop_loop_and_bus() {
   parts_.wires.leave.store(true);
   return wait_for([this] { return loop_done_.load() && bus_done_.load(); },
-                  leave_deadline.count() + longest_join +
-                      std::max<Nanoseconds>(parts_.rig.reconnect.connect_deadline.count(),
-                                            nanoseconds(parts_.rig.loop.exchange_deadline_s)));
+                  leave_deadline.count() + longest_join + longest_bus_call());
 }
 
 void RealRun::stop() {

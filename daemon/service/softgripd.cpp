@@ -68,12 +68,9 @@ void declare(CLI::App& program, Arguments& arguments) {
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or sequence refused, 4 I/O, 5 the rig's state "
       "does not\n"
-      "allow the sequence, 6 the sequence ended, but not done. SIGINT, SIGTERM and every other signal that "
-      "ends a "
-      "process\n"
-      "unless it is broken: the safe outputs are written and confirmed, the recording is closed, then it "
-      "ends. The configuration is read once; restart to "
-      "change it.");
+      "allow the sequence, 6 the sequence ended, but not done. SIGINT, SIGTERM and every other signal that\n"
+      "ends a process which is not broken: the safe outputs are written and confirmed, the recording is\n"
+      "closed, then it ends. The configuration is read once; restart to change it.");
 }
 
 /// fmt::print throws where nothing can be written, and then nothing could say why.

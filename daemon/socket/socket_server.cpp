@@ -271,7 +271,8 @@ bool SocketServer::has_line(const Client& client) {
 void SocketServer::take_lines(std::uint64_t id, Client& client) {
   const auto began = std::chrono::steady_clock::now();
   std::size_t begin = 0;
-  for (std::size_t end = client.input.find('\n'); end != std::string::npos && !client.dead;
+  for (std::size_t end = client.input.find('\n');
+       end != std::string::npos && !client.dead && client.output.empty();
        end = client.input.find('\n', begin)) {
     std::string_view line(client.input.data() + begin, end - begin);
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
@@ -280,7 +281,7 @@ void SocketServer::take_lines(std::uint64_t id, Client& client) {
     client.spoke = true;
     if (!line.empty()) hear(id, client, line);
     begin = client.stands ? client.input.size() : end + 1;
-    if (!client.output.empty() || std::chrono::steady_clock::now() - began > longest_turn) break;
+    if (std::chrono::steady_clock::now() - began > longest_turn) break;
   }
   client.input.erase(0, begin);
   // The end of a line that is too long may be there or not.

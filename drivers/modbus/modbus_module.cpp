@@ -71,10 +71,10 @@ ModbusRequest ModbusModule::request_of(const ReadStep& step) const noexcept {
   return {.function = step.function, .address = step.address, .count = step.count};
 }
 
-ModbusRequest ModbusModule::request_of(std::size_t write) const noexcept {
+ModbusRequest ModbusModule::request_of(std::size_t write, bool combined) const noexcept {
   const WriteStep& step = plan_.writes[write];
   const auto values = std::span<const std::uint16_t>(output_words_).subspan(step.first_word, step.count);
-  if (write != 0 || !combines()) {
+  if (!combined) {
     return {.function = step.function, .address = step.address, .values = values};
   }
   const ReadStep& read = plan_.reads[*plan_.combined_read];
@@ -104,7 +104,8 @@ BusStatus ModbusModule::write_outputs(Nanoseconds deadline) noexcept {
   for (std::size_t i = 0; i < plan_.writes.size(); ++i) {
     const bool combined = i == 0 && combines();
     if (combined) sampled_at_ = now();
-    if (const BusStatus status = ask(request_of(i), deadline); status != BusStatus::ok) return status;
+    if (const BusStatus status = ask(request_of(i, combined), deadline); status != BusStatus::ok)
+      return status;
     if (combined) take_reply(*plan_.combined_read);
   }
   return BusStatus::ok;
@@ -285,7 +286,9 @@ void ModbusModule::fill(std::size_t channel, Reading& reading) const noexcept {
 
 std::vector<TransactionSize> ModbusModule::transactions() const {
   std::vector<TransactionSize> sizes;
-  for (std::size_t i = 0; i < plan_.writes.size(); ++i) sizes.push_back(size_of(request_of(i)));
+  for (std::size_t i = 0; i < plan_.writes.size(); ++i) {
+    sizes.push_back(size_of(request_of(i, i == 0 && plan_.combined_read.has_value())));
+  }
   if (drives_outputs() && settings_.map.watchdog.feed_write.has_value()) {
     sizes.push_back(size_of(drivers::request_of(*settings_.map.watchdog.feed_write)));
   }

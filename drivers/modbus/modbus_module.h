@@ -71,7 +71,7 @@ class ModbusModule {
   BusStatus first_write(Nanoseconds deadline) noexcept;
   BusStatus name_refusal(BusStatus status, Nanoseconds deadline) noexcept;
   [[nodiscard]] ModbusRequest request_of(const ReadStep& step) const noexcept;
-  [[nodiscard]] ModbusRequest request_of(std::size_t write) const noexcept;
+  [[nodiscard]] ModbusRequest request_of(std::size_t write, bool combined) const noexcept;
   [[nodiscard]] bool combines() const noexcept { return plan_.combined_read.has_value() && !reads_first_; }
   [[nodiscard]] bool is_tripped() const noexcept;
   [[nodiscard]] double raw_at(const Slot& slot, RegisterKind kind) const noexcept;

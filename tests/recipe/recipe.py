@@ -9,8 +9,10 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+from source_copy import SOURCE, copy_sources  # noqa: E402
 
 
 class RecipeError(AssertionError):
@@ -36,12 +38,7 @@ class Tree:
     def __init__(self, folder):
         self.folder = pathlib.Path(folder) / "softgrip"
         self.build = self.folder / "build" / "release"
-        listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=SOURCE,
-                                check=True, capture_output=True, text=True).stdout
-        for name in filter(None, listed.split("\0")):
-            if (SOURCE / name).is_file():
-                (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(SOURCE / name, self.folder / name)
+        copy_sources(self.folder)
 
     def carry_out(self, page):
         """Returns how many fences of the page were carried out."""

@@ -183,7 +183,7 @@ void Monitor::tripped(bool has_spoken) {
   if (!trip_untold_ && has_spoken) trip_untold_ = 0;
 }
 
-void Monitor::asked(control::Request::Kind kind, Nanoseconds) {
+void Monitor::asked(control::Request::Kind kind) {
   if (kind == control::Request::Kind::vent && !vent_waits_) vent_waits_ = 0;
   if (kind == control::Request::Kind::start) vent_waits_.reset();
 }

@@ -42,7 +42,7 @@ class Monitor {
   void foreign_wrote() noexcept { foreign_ = true; }
   /// The board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can know.
   void tripped(bool has_spoken);
-  void asked(control::Request::Kind kind, Nanoseconds now);
+  void asked(control::Request::Kind kind);
   void submitted(control::Request::Kind kind, std::uint32_t id);
   /// Time has passed, with these outputs.
   void passed(Nanoseconds now, const Excuse& excuse, std::span<const double> outputs_kpa);
@@ -55,7 +55,6 @@ class Monitor {
   void leaks(const std::string& text) { violate(0, "nothing leaks", text); }
 
   [[nodiscard]] const std::optional<Violation>& violation() const noexcept { return violation_; }
-  [[nodiscard]] bool armed() const noexcept { return armed_; }
   /// What the last tick would leave behind.
   [[nodiscard]] const std::vector<double>& safe_kpa() const noexcept { return safe_kpa_; }
 

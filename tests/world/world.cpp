@@ -324,7 +324,7 @@ void World::to_daemon(const Incident& incident) {
   const auto ask = [this](Request::Kind kind,
                           std::shared_ptr<const daemon::LoadedSequence> sequence = nullptr) {
     daemon_->ask(kind, std::move(sequence));
-    monitor_.asked(kind, scheduler_.now());
+    monitor_.asked(kind);
   };
   switch (incident.kind) {
     case Kind::start:

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/grid.h"
+#include "daemon/loop/bus.h"
 #include "daemon/service/signals.h"
 #include "rig/rig_file.h"
 
@@ -122,8 +123,7 @@ HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
     if (watch) watch(commands_, readings_);
     return {};
   }
-  const bool said_by_board = status == BusStatus::write_refused || status == BusStatus::overwritten ||
-                             status == BusStatus::watchdog_tripped;
+  const bool said_by_board = control::inhibits(daemon::fault_of(status));
   const double patience =
       std::max<double>(rig_.settings.faults.bus_down_cycles, silence_s / seconds(period_));
   failures_ += 1 + static_cast<std::uint32_t>((pace_.now() - began) / period_);

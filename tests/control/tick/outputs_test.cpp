@@ -10,12 +10,13 @@ namespace {
 class Outputs : public testing::Test {
  protected:
   Outputs() { settings.safety.safe_action.fill(SafeAction::hold); }
-  void close_on_stone(SimulatedRig& rig) {
+  void close_on_stone(SimulatedRig& rig) { close_on_stone(rig, pick, 0.3); }
+  static void close_on_stone(SimulatedRig& rig, const PreparedSequence& sequence, double into_grip_s) {
     rig.stone(12);
     ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &pick);
+    rig.request(Request::Kind::start, &sequence);
     ASSERT_TRUE(rig.run_until_step(1, 10));
-    rig.run(0.3);
+    rig.run(into_grip_s);
   }
   static double command(const SimulatedRig& rig) { return rig.output().channels[0].command_kpa; }
 
@@ -81,11 +82,7 @@ TEST_F(Outputs, HoldingIsNotConcludedFromWhatWasSeenBeforeAGap) {
   int tried = 0;
   for (double into_step_s = 0.2; into_step_s < 4; into_step_s += 0.1) {
     SimulatedRig rig(settings);
-    rig.stone(12);
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &pick);
-    ASSERT_TRUE(rig.run_until_step(1, 10));
-    rig.run(into_step_s);
+    close_on_stone(rig, pick, into_step_s);
     if (rig.result(0) != GripResult::none || rig.output().state != State::running) break;
     rig.pause(1);
     rig.tick();
@@ -101,11 +98,7 @@ TEST_F(Outputs, AVentIsOverWhenEveryFingerIsDown) {
     one_is_slow.channels[slow].limits.slew_down_kpa_per_s /= 10;
     const PreparedSequence sequence = example_sequence("pick_stone", one_is_slow);
     SimulatedRig rig(one_is_slow);
-    rig.stone(12);
-    ASSERT_TRUE(rig.run_until(State::idle, 1));
-    rig.request(Request::Kind::start, &sequence);
-    ASSERT_TRUE(rig.run_until_step(1, 10));
-    rig.run(0.3);
+    close_on_stone(rig, sequence, 0.3);
     rig.request(Request::Kind::vent);
     rig.tick();
     while (rig.output().state == State::stopping) rig.tick();

@@ -302,6 +302,27 @@ TEST_F(SocketServerTest, AClientThatDoesNotReadIsNotReadEitherAndThenDropped) {
   EXPECT_EQ(server().clients(), 0U);
 }
 
+TEST_F(SocketServerTest, WhatAClientHasSentAtOnceWaitsAsLongAsItTakesNoAnswers) {
+  answer_ = [this](std::uint64_t client, std::string_view) {
+    server().send(client, std::string(250'000, 'a'), false);
+  };
+  server();
+  const Descriptor client = connect_to(settings_.path);
+  turn();
+  std::string questions;
+  for (int i = 0; i < 100; ++i) questions += "more\n";
+  send_text(client, questions);
+  turn(50);
+  EXPECT_EQ(server().clients(), 1U) << "its queue would be too long";
+  const std::size_t before = lines_.size();
+  EXPECT_LT(before, 5U);
+  for (int i = 0; i < 20; ++i) {
+    (void)received(client);
+    turn(1);
+  }
+  EXPECT_GT(lines_.size(), before);
+}
+
 TEST_F(SocketServerTest, ASlowWatcherMissesLinesAndThenIsDropped) {
   std::uint64_t watcher = 0;
   answer_ = [&](std::uint64_t client, std::string_view) { watcher = client; };
