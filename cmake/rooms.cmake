@@ -62,6 +62,9 @@ softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen C
 softgrip_room(sysid/identification
   USES base model model/file sysid/logs sysid/pages sysid/fitting
   LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
+softgrip_room(sysid/structure
+  USES base model sysid/logs sysid/fitting sysid/identification
+  LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/residual USES base sysid/logs LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/causes USES model sysid/logs sysid/fitting sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
@@ -106,7 +109,7 @@ softgrip_room(tools/studies
        sysid/identification)
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/pages
-       sysid/identification sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
+       sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
        tools/recordings tools/commissioning tools/investigation tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
 

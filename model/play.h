@@ -20,6 +20,11 @@ class Play {
     dragging_ = false;
   }
   [[nodiscard]] const T& output() const { return output_; }
+  /// Where the output would be if the input went straight to `input`.
+  template <class U>
+  [[nodiscard]] U peek(const U& input) const {
+    return dragged(input, U(output_));
+  }
 
   /// Passes the output on, in two segments when it begins to move inside.
   template <class Next>
@@ -51,9 +56,10 @@ class Play {
   }
 
  private:
-  [[nodiscard]] T dragged(const T& input, const T& from) const {
-    if (value_of(input) - value_of(reach_) > value_of(from)) return input - reach_;
-    if (value_of(input) + value_of(reach_) < value_of(from)) return input + reach_;
+  template <class U>
+  [[nodiscard]] U dragged(const U& input, const U& from) const {
+    if (value_of(input) - value_of(reach_) > value_of(from)) return U(input - reach_);
+    if (value_of(input) + value_of(reach_) < value_of(from)) return U(input + reach_);
     return from;
   }
 

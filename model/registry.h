@@ -9,14 +9,19 @@
 #include "model/blocks/actuator_threshold.h"
 #include "model/blocks/ageing.h"
 #include "model/blocks/asymmetric_bouc_wen.h"
+#include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/backlash.h"
 #include "model/blocks/bouc_wen.h"
+#include "model/blocks/chamber_lag.h"
+#include "model/blocks/characteristic.h"
 #include "model/blocks/contact.h"
 #include "model/blocks/duhem_hysteresis.h"
 #include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/outliers.h"
 #include "model/blocks/periodic_disturbance.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/pressure_dependent_creep.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/quantisation.h"
 #include "model/blocks/rate_dependent_levelling.h"
@@ -68,18 +73,23 @@ using Blocks = BlockList<TransportDelay,          //
                          ValveDeadband,           //
                          ValveStiction,           //
                          ValveLag,                //
+                         AsymmetricValveLag,      //
                          SupplySag,               //
                          PressureSaturation,      //
+                         ChamberLag,              //
                          ActuatorThreshold,       //
                          StressSoftening,         //
                          BoucWen,                 //
+                         PrandtlIshlinskii,       //
                          KelvinVoigt,             //
+                         PressureDependentCreep,  //
                          SlowCreep,               //
                          DuhemHysteresis,         //
                          AsymmetricBoucWen,       //
                          RelaxingFriction,        //
                          RateDependentWidth,      //
                          RateDependentLevelling,  //
+                         Characteristic,          //
                          Stiffening,              //
                          ThermalGain,             //
                          Ageing,                  //

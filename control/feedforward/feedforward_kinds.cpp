@@ -5,11 +5,12 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/pressure_saturation.h"
-#include "model/blocks/valve_lag.h"
+#include "model/catalogue.h"
 #include "model/dual.h"
 #include "model/named.h"
 
@@ -43,6 +44,18 @@ model::Model bouc_wen_of(const model::Model& model) {
   });
 }
 
+/// The sum of the time constants of the lags in the valve, in the direction of this name [s].
+double time_constants_s(const model::Model& model, std::string_view direction) {
+  double sum = 0;
+  for (const model::BlockSpec& block : valve_of(model).blocks) {
+    if (model::catalogue()[block.type].info.inverse != model::Inverse::lead) continue;
+    const auto own = model::find_parameter(block, direction);
+    const auto both = model::find_parameter(block, "time_constant_s");
+    if (own || both) sum += block.values[own ? *own : *both];
+  }
+  return sum;
+}
+
 }  // namespace
 
 BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSettings& limits, double tick_s)
@@ -67,10 +80,13 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
       tick_s_(tick_s),
       ceiling_kpa_(std::min(limits.pressure_max_kpa, value_in<model::PressureSaturation>(model, "limit_kpa")
                                                          .value_or(std::numeric_limits<double>::max()))),
-      lag_s_(value_in<model::ValveLag>(model, "time_constant_s").value_or(0)),
-      lag_share_(lag_s_ > 0 ? -std::expm1(-tick_s / lag_s_) : 1),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
       inverse_(body_of(model), tick_s) {
+  for (auto [lag, name] :
+       {std::pair{&filling_, "filling_time_constant_s"}, {&venting_, "venting_time_constant_s"}}) {
+    lag->time_constant_s = time_constants_s(model, name);
+    if (lag->time_constant_s > 0) lag->share = -std::expm1(-tick_s / lag->time_constant_s);
+  }
   // What follows the pressure at once moves with its slew; what creeps accelerates with it.
   const model::Chain<double> body(body_of(model), {}, tick_s);
   const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
@@ -92,23 +108,26 @@ ReferencePoint FullModelFeedforward::target(const FeedforwardQuery& query) const
 double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
   const double now = inverse_.pressure_kpa();
   double next = wanted_kpa;
-  if (lag_s_ > 0) {
+  const Lag& lag = lag_towards(wanted_kpa);
+  if (lag.time_constant_s > 0) {
     // The way that is left when the pressure has moved along with what it is wanted to be.
     const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
                                     limits_.slew_up_kpa_per_s * tick_s_);
     const double left = wanted_kpa - now - along;
-    const double brake = (left > 0 ? limits_.slew_down_kpa_per_s : limits_.slew_up_kpa_per_s) / lag_s_;
+    const double brake =
+        (left > 0 ? limits_.slew_down_kpa_per_s : limits_.slew_up_kpa_per_s) / lag.time_constant_s;
     const double stoppable = tick_s_ * std::sqrt(2 * brake * std::abs(left));
     if (std::abs(left) > stoppable) next = now + along + std::copysign(stoppable, left);
   }
   last_wanted_kpa_ = wanted_kpa;
-  const double ideal = lag_s_ > 0 ? now + (next - now) / lag_share_ : 0.5 * (now + next);
+  const double ideal = lag.time_constant_s > 0 ? now + (next - now) / lag.share : 0.5 * (now + next);
   return limit(limits_, ideal, command_kpa_, tick_s_).command_kpa;
 }
 
 double FullModelFeedforward::pressure_under(double command_kpa) const noexcept {
   const double now = inverse_.pressure_kpa();
-  const double next = lag_s_ > 0 ? now + lag_share_ * (command_kpa - now) : 2 * command_kpa - now;
+  const Lag& lag = lag_towards(command_kpa);
+  const double next = lag.time_constant_s > 0 ? now + lag.share * (command_kpa - now) : 2 * command_kpa - now;
   return std::min(next, ceiling_kpa_);
 }
 

@@ -60,7 +60,8 @@ class BoucWenFeedforward {
 /// now, the plan so far being the truth. From the plan follows the command:
 ///
 ///   behind a lag:  u = p[k-1] + (p[k] - p[k-1]) / (1 - exp(-T/tau)), held for the tick: the exact inverse of
-///                  a first-order lag under a held input, so lead and the hold's half sample are one;
+///                  a first-order lag under a held input, so lead and the hold's half sample are one; tau is
+///                  that of the direction in which the plan goes, and of several lags in series their sum;
 ///   without one:   u = (p[k-1] + p[k]) / 2, the middle of the stretch, for the same half sample.
 ///
 /// The derivative in the lead is one of the plan, which carries no sensor noise. The command stays inside the
@@ -88,8 +89,15 @@ class FullModelFeedforward {
   LimitSettings limits_;
   double tick_s_;
   double ceiling_kpa_;  ///< highest pressure that the model's valve lets through
-  double lag_s_;
-  double lag_share_;  ///< of the way to the command that the lag goes in a tick
+  /// The valve's lag in one direction.
+  struct Lag {
+    double time_constant_s = 0;
+    double share = 1;  ///< of the way to the command that it goes in a tick
+  };
+  [[nodiscard]] const Lag& lag_towards(double pressure_kpa) const noexcept {
+    return pressure_kpa >= inverse_.pressure_kpa() ? filling_ : venting_;
+  }
+  Lag filling_, venting_;
   double preview_s_;
   ActuatorInverse inverse_;
   double command_kpa_ = 0;                  ///< the last one

@@ -10,7 +10,9 @@
 #include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
 #include "model/blocks/asymmetric_bouc_wen.h"
+#include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/bouc_wen.h"
+#include "model/blocks/chamber_lag.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/valve_lag.h"
 #include "model/chain.h"
@@ -106,7 +108,8 @@ std::string without_inverse(const model::Model& model) {
     const bool undone = info.inverse == Inverse::implicit
                             ? !in_valve
                             : in_valve && (info.inverse == Inverse::preview ||
-                                           model::is<model::ValveLag, model::PressureSaturation>(info));
+                                           model::is<model::ValveLag, model::AsymmetricValveLag,
+                                                     model::ChamberLag, model::PressureSaturation>(info));
     if (undone) continue;
     names += (names.empty() ? "`" : ", `") + std::string(info.id) + "`";
   }
@@ -121,7 +124,9 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   });
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(
-        Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of"});
+        Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` "
+                "is the inverse "
+                "of the whole chain"});
   }
   return check_gain(part, limits.pressure_max_kpa, tick_s, 0, "");
 }

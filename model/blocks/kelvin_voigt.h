@@ -27,7 +27,7 @@ class KelvinVoigt {
                 Scale{2.0}, Neutral{1e9}),
       parameter("c#_kpa_s_per_mm", "kPa s/mm", "damping of branch #; its time constant is c/k", Typical{10.0},
                 Within{1e-9, 1e9}, Scale{5.0}, Neutral{1e9})};
-  static constexpr std::size_t max_parts = 8;
+  static constexpr std::size_t max_parts = 12;
 
   KelvinVoigt(std::span<const T> values, const Preparation& preparation)
       : compliance_(1.0 / values[0]), weights_((values.size() - 1) / 2) {

@@ -33,7 +33,7 @@ constexpr double same_place = 0.02;
 class Teller {
  public:
   Teller(const ShowProgress& show, std::size_t starts)
-      : show_(show), progress_{0, starts, std::numeric_limits<double>::infinity()} {}
+      : show_(show), progress_{0, starts, std::numeric_limits<double>::infinity(), {}} {}
   void finished(double rmse_mm) {
     const std::lock_guard lock(mutex_);
     ++progress_.done;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "sysid/fitting/fit_space.h"
@@ -16,6 +17,7 @@ struct Progress {
   std::size_t done = 0;
   std::size_t starts = 0;
   double best_rmse_mm = 0;
+  std::string stage;  ///< what is being done, where that is not a search from starts
 };
 
 /// Called from any thread, never from two at once. May be empty.

@@ -59,6 +59,35 @@ struct IdentifyOptions {
   ShowProgress progress;
 };
 
+/// What was found out about the structure, where it was not given.
+struct StructureEvidence {
+  /// A structure that was tried.
+  struct Candidate {
+    std::string structure;  ///< "bouc_wen", "prandtl_ishlinskii"
+    std::string description;
+    double rmse_mm = 0;          ///< of the readings it was fitted to
+    double heldout_rmse_mm = 0;  ///< of interleaved blocks, each while it was not fitted
+    bool chosen = false;
+  };
+  /// The chosen one without one of its ingredients, fitted and judged the same way.
+  struct Ablation {
+    std::string without;
+    double rmse_mm = 0;
+    double heldout_rmse_mm = 0;
+  };
+  /// Command to measured pressure.
+  struct Valve {
+    double delay_s = 0, filling_time_constant_s = 0, venting_time_constant_s = 0;
+    double rmse_kpa = 0, rmse_percent_of_range = 0, held_out_rmse_kpa = 0, noise_kpa = 0;
+    std::vector<Score> from_command;  ///< both stages in a row, by log
+  };
+  std::vector<Candidate> candidates;  ///< the simplest first
+  std::vector<Ablation> ablation;
+  double ridge = 0;
+  std::size_t blocks = 0;
+  std::optional<Valve> valve;  ///< where the pressure was measured and the command drives
+};
+
 /// The result.
 struct Identification {
   model::Model model;                ///< identified, with the start's blocks that were not fitted
@@ -80,10 +109,12 @@ struct Identification {
   bool converged = false;
   std::vector<std::string> warnings;
   double wall_s = 0;
+  std::optional<StructureEvidence> structure;  ///< where the structure was chosen
 };
 
 /// The base structure (Bouc-Wen, Kelvin-Voigt with `branches` branches) with values from the data's scale.
 [[nodiscard]] model::Model base_model(const std::vector<Log>& logs, std::size_t branches);
+[[nodiscard]] model::Model base_model(const std::vector<Record>& records, std::size_t branches);
 
 /// Fits `start` to the logs. Fails with a sentence: a parameter that does not exist, nothing to fit, a model
 /// that is nowhere defined.

@@ -32,6 +32,35 @@ Json estimates(const std::vector<Estimate>& list) {
   return json;
 }
 
+Json structure(const StructureEvidence& s) {
+  Json json{{"held_out", "interleaved_blocks"}, {"blocks", s.blocks}, {"ridge", s.ridge}};
+  for (const StructureEvidence::Candidate& c : s.candidates) {
+    if (c.chosen) {
+      json["id"] = c.structure;
+      json["description"] = c.description;
+    }
+    json["candidates"].push_back({{"id", c.structure},
+                                  {"description", c.description},
+                                  {"rmse_mm", c.rmse_mm},
+                                  {"heldout_rmse_mm", c.heldout_rmse_mm},
+                                  {"chosen", c.chosen}});
+  }
+  json["ablation"] = Json::array();
+  for (const StructureEvidence::Ablation& a : s.ablation)
+    json["ablation"].push_back(
+        {{"without", a.without}, {"rmse_mm", a.rmse_mm}, {"heldout_rmse_mm", a.heldout_rmse_mm}});
+  if (!s.valve) return json;
+  json["valve"] = {{"delay_s", s.valve->delay_s},
+                   {"filling_time_constant_s", s.valve->filling_time_constant_s},
+                   {"venting_time_constant_s", s.valve->venting_time_constant_s},
+                   {"rmse_kpa", s.valve->rmse_kpa},
+                   {"rmse_percent_of_range", s.valve->rmse_percent_of_range},
+                   {"sample_to_sample_noise_kpa", s.valve->noise_kpa}};
+  if (s.valve->held_out_rmse_kpa > 0) json["valve"]["held_out_rmse_kpa"] = s.valve->held_out_rmse_kpa;
+  add_scores(json["valve"]["from_command"], s.valve->from_command);
+  return json;
+}
+
 }  // namespace
 
 std::string identify_json(const IdentifyReport& report) {
@@ -64,7 +93,11 @@ std::string identify_json(const IdentifyReport& report) {
   for (const auto& [exponent, rmse_mm] : r.exponent_rmse_mm) {
     json["exponents"].push_back({{"exponent", exponent}, {"rmse_mm", rmse_mm}});
   }
-  if (!r.held_out.empty()) add_scores(json["held_out"], r.held_out);
+  if (!r.held_out.empty()) {
+    json["held_out"]["kind"] = "continuation";
+    add_scores(json["held_out"], r.held_out);
+  }
+  if (r.structure) json["structure"] = structure(*r.structure);
   if (!report.validation.empty()) {
     if (report.validation_logs != nullptr) json["validation"]["logs"] = logs_json(*report.validation_logs);
     add_scores(json["validation"], report.validation);

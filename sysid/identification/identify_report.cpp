@@ -167,6 +167,43 @@ void add_residuals(Page& page, const Identification& r) {
   }
 }
 
+/// What was tried, and what each ingredient of the chosen structure brings.
+void add_structure(Page& page, const StructureEvidence& s) {
+  page.section("Structure");
+  page.paragraph(
+      "Every structure was fitted to all readings, and again without each fifth of " +
+      std::to_string(s.blocks) +
+      " interleaved blocks, on which it was then judged. Chosen is the simplest within one standard "
+      "error of the best.");
+  Table tried{"Structures, the simplest first",
+              {"structure", "", "RMSE fitted [mm]", "RMSE held-out blocks [mm]"},
+              {false, false, true, true},
+              {}};
+  for (const StructureEvidence::Candidate& c : s.candidates) {
+    tried.rows.push_back({c.description, c.chosen ? "chosen" : "", significant(c.rmse_mm, 4),
+                          significant(c.heldout_rmse_mm, 4)});
+  }
+  page.table(tried);
+  if (!s.ablation.empty()) {
+    Table without{"The chosen structure without one ingredient",
+                  {"without", "RMSE fitted [mm]", "RMSE held-out blocks [mm]"},
+                  {false, true, true},
+                  {}};
+    for (const StructureEvidence::Ablation& a : s.ablation)
+      without.rows.push_back({a.without, significant(a.rmse_mm, 4), significant(a.heldout_rmse_mm, 4)});
+    page.table(without);
+  }
+  if (!s.valve) return;
+  page.paragraph(
+      "The pressure was measured, so command to pressure and pressure to displacement are two models "
+      "joined at it. Valve: dead time " +
+      significant(s.valve->delay_s, 3) + " s, time constant " +
+      significant(s.valve->filling_time_constant_s, 3) + " s filling and " +
+      significant(s.valve->venting_time_constant_s, 3) + " s venting; RMSE " +
+      significant(s.valve->rmse_kpa, 3) + " kPa, " + significant(s.valve->rmse_percent_of_range, 2) +
+      " % of the measured range (noise " + significant(s.valve->noise_kpa, 2) + " kPa).");
+}
+
 void add_notes(Page& page, const std::vector<Log>& logs) {
   std::vector<std::string> items;
   for (const Log& log : logs) {
@@ -214,9 +251,10 @@ std::string identify_html(const IdentifyReport& report) {
   page.table(score_table(r.records, r.scores));
   if (!r.held_out.empty()) {
     Table table = score_table(r.records, r.held_out);
-    table.caption = "Held out: the rest of each log, predicted from its start";
+    table.caption = "Held out, continuation: the rest of each log, predicted from its start";
     page.table(table);
   }
+  if (r.structure) add_structure(page, *r.structure);
   for (std::size_t i = 0; i < r.scores.size(); ++i) add_log_figures(page, r.records[i], r.scores[i]);
   if (!report.validation.empty()) {
     page.section("Validation");

@@ -113,7 +113,11 @@ std::vector<FitPoint> draw_starts(const FitSpace& space, const FitPoint& given,
 }
 
 model::Model base_model(const std::vector<Log>& logs, std::size_t branches) {
-  const CampaignSize scale = campaign_size(make_records(logs, {}));
+  return base_model(make_records(logs, {}), branches);
+}
+
+model::Model base_model(const std::vector<Record>& records, std::size_t branches) {
+  const CampaignSize scale = campaign_size(records);
   const double gain = scale.span_mm / std::max(scale.largest_kpa, 1e-6);
   model::Model model;
   model.name = "identified";

@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "base/statistics.h"
+#include "model/blocks/chamber_lag.h"
 #include "model/blocks/quantisation.h"
 #include "model/blocks/sensor_noise.h"
 #include "model/catalogue.h"
 #include "model/named.h"
+#include "sysid/logs/input_smoothing.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -45,6 +46,10 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   record.campaign_time_s = campaign_time_s;
   record.held = options.held;
   record.span_mm = span_mm(log);
+  if (options.drive == Drive::measured)
+    record.drive_noise_kpa = smooth_input(record.time_s, record.drive_kpa);
+  for (auto* column : {&record.temperature_c, &record.supply_kpa})
+    static_cast<void>(smooth_input(record.time_s, *column));
   for (auto* column : {&record.drive_kpa, &record.temperature_c, &record.supply_kpa}) fill_missing(*column);
   record.duration_s.resize(record.size());
   for (std::size_t i = 1; i < record.size(); ++i)
@@ -118,14 +123,7 @@ Record thinned_record(const Record& record, std::size_t stride) {
 }
 
 double fast_noise_mm(const Record& record) {
-  std::vector<double> differences;
-  const auto& y = record.reading_mm;
-  for (std::size_t i = 2; i < y.size(); ++i) {
-    const double second = y[i] - 2 * y[i - 1] + y[i - 2];
-    if (std::isfinite(second)) differences.push_back(std::abs(second));
-  }
-  // The median of |N(0, 6 sigma^2)| is 0.6745 sqrt(6) sigma.
-  return median_of(std::span(differences)) / (0.6745 * std::sqrt(6.0));
+  return white_noise_of(record.time_s, record.reading_mm);
 }
 
 model::Model deterministic_part(const model::Model& model, Drive drive) {
@@ -133,7 +131,8 @@ model::Model deterministic_part(const model::Model& model, Drive drive) {
   std::erase_if(part.blocks, [&](const model::BlockSpec& block) {
     const model::BlockInfo& info = model::catalogue()[block.type].info;
     return model::is<model::SensorNoise, model::Quantisation>(info) ||
-           (drive == Drive::measured && info.station == model::Station::valve);
+           (drive == Drive::measured && info.station == model::Station::valve &&
+            !model::is<model::ChamberLag>(info));
   });
   return part;
 }

@@ -55,6 +55,7 @@ struct Record {
   double sample_time_s = 0;       ///< 0 when irregular
   double campaign_time_s = 0;     ///< when it began, counted from the first log's start
   double span_mm = 0;             ///< of the readings
+  double drive_noise_kpa = 0;     ///< of a measured drive, before it was smoothed
   double largest_kpa = 0;         ///< of the drive
   double largest_before_kpa = 0;  ///< of the drive in the campaign's earlier records
   std::size_t readings = 0;       ///< how many are there
@@ -71,8 +72,9 @@ struct Record {
   }
 };
 
-/// The records of a campaign, in order. Measured pressures that are missing are taken straight between their
-/// neighbours. With Drive::measured every log must have a pressure_kpa column.
+/// The records of a campaign, in order. Measured inputs are smoothed with the noise that they show
+/// (input_smoothing.h); values that are missing are taken straight between their neighbours. With
+/// Drive::measured every log must have a pressure_kpa column.
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
 /// Every `stride`-th sample of a record, from the first on: for a first look at many starts.

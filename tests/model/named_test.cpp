@@ -54,8 +54,8 @@ TEST(Descriptor, AValueThatNoBlockHasIsAnError) {
   const Descriptor& lag = catalogue()[block_type<ValveLag>()];
   EXPECT_THROW((void)lag.spec(1), std::out_of_range);
   const Descriptor& spring = catalogue()[block_type<KelvinVoigt>()];
-  EXPECT_EQ(spring.name(16), "c8_kpa_s_per_mm");
-  EXPECT_THROW((void)spring.spec(17), std::out_of_range);
+  EXPECT_EQ(spring.name(24), "c12_kpa_s_per_mm");
+  EXPECT_THROW((void)spring.spec(25), std::out_of_range);
 }
 
 }  // namespace

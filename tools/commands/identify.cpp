@@ -15,6 +15,7 @@
 #include "sysid/identification/identify_report.h"
 #include "sysid/identification/validate.h"
 #include "sysid/pages/page.h"
+#include "sysid/structure/identify_structure.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
@@ -29,6 +30,7 @@ struct Options {
   std::vector<std::string> validate;
   std::string start;
   std::string out;
+  std::string structure;
   std::size_t branches = 2;
   LogInput logs;
   sysid::IdentifyOptions fit;
@@ -39,17 +41,28 @@ sysid::ShowProgress progress_on(const ProgressLine& line) {
   const auto show = line.show();
   if (!show) return {};
   return [show](const sysid::Progress& progress) {
+    if (!progress.stage.empty()) return show(progress.stage);
     show("start " + std::to_string(progress.done) + " of " + std::to_string(progress.starts) +
          ", best RMSE " + significant(progress.best_rmse_mm, 4) + " mm");
   };
 }
 
+/// The structure that is to be looked for, if none was given.
+std::optional<sysid::StructureQuestion> question_of(const Options& options) {
+  if (options.structure == "bouc_wen") return sysid::StructureQuestion::bouc_wen;
+  if (options.structure == "prandtl_ishlinskii") return sysid::StructureQuestion::prandtl_ishlinskii;
+  if (options.structure == "auto") return sysid::StructureQuestion::automatic;
+  return std::nullopt;
+}
+
 /// Fits with its progress shown.
 tl::expected<sysid::Identification, std::string> identified(const std::vector<sysid::Log>& logs,
                                                             const model::Model& start,
-                                                            sysid::IdentifyOptions fit) {
+                                                            const Options& options) {
   const ProgressLine line;
+  sysid::IdentifyOptions fit = options.fit;
   fit.progress = progress_on(line);
+  if (const auto question = question_of(options)) return sysid::identify_structure(logs, *question, fit);
   return sysid::identify(logs, start, fit);
 }
 
@@ -87,11 +100,33 @@ void print_scores(const char* title, const std::vector<sysid::Score>& scores) {
   }
 }
 
+void print_structure(const sysid::StructureEvidence& s) {
+  std::printf("Structures, RMSE of the fit and of %zu held-out interleaved blocks\n", s.blocks);
+  for (const sysid::StructureEvidence::Candidate& c : s.candidates) {
+    std::printf("  %c %-86s %8s  %8s mm\n", c.chosen ? '*' : ' ', c.description.c_str(),
+                significant(c.rmse_mm, 4).c_str(), significant(c.heldout_rmse_mm, 4).c_str());
+  }
+  for (const sysid::StructureEvidence::Ablation& a : s.ablation) {
+    std::printf("    without %-78s %8s  %8s mm\n", a.without.c_str(), significant(a.rmse_mm, 4).c_str(),
+                significant(a.heldout_rmse_mm, 4).c_str());
+  }
+  if (!s.valve) return;
+  std::printf(
+      "Valve, from command to measured pressure: delay %s s, lag %s s filling, %s s venting; RMSE %s kPa, %s "
+      "%% of "
+      "the range\n",
+      significant(s.valve->delay_s, 3).c_str(), significant(s.valve->filling_time_constant_s, 3).c_str(),
+      significant(s.valve->venting_time_constant_s, 3).c_str(), significant(s.valve->rmse_kpa, 3).c_str(),
+      significant(s.valve->rmse_percent_of_range, 2).c_str());
+  print_scores("Both stages in a row, from the command", s.valve->from_command);
+}
+
 void print_summary(const sysid::IdentifyReport& report, const std::string& out) {
   const sysid::Identification& r = report.result;
   std::printf("%s\n\n", sysid::verdict_of(r).c_str());
   print_scores("Fit", r.scores);
-  print_scores("Held out", r.held_out);
+  if (r.structure) print_structure(*r.structure);
+  print_scores("Held out, continuation", r.held_out);
   print_scores("Validation", report.validation);
   std::puts("Parameters, 95 % intervals");
   print_estimates(r.parameters);
@@ -116,10 +151,14 @@ ExitCode run(Options options) {
   auto start = start_model(options, *logs);
   if (!start) return start.error();
   options.fit.record = options.logs.record_options();
-  auto result = identified(*logs, *start, options.fit);
+  auto result = identified(*logs, *start, options);
   if (!result) return fail(ExitCode::input_refused, result.error());
+  if (question_of(options) && !options.start.empty())
+    result->warnings.push_back("--structure searches from the data's scale: nothing of " + options.start +
+                               " was used");
   if (options.start.empty()) {
-    start->name = "base structure, from the data's scale";
+    start->name =
+        question_of(options) ? "structures, from the data's scale" : "base structure, from the data's scale";
   } else {
     result->model.name = start->name + "_identified";
   }
@@ -167,6 +206,18 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
   command.add_option("--threads", fit.threads, "0: as many as there are cores")->capture_default_str();
 }
 
+/// Chooses among structures of its own: what belongs to the fit of a given one is refused beside it.
+void add_structure_option(CLI::App& command, Options& options) {
+  CLI::Option* const structure =
+      command
+          .add_option(
+              "--structure", options.structure,
+              "Choose among a few structures: auto, bouc_wen or prandtl_ishlinskii [that of the start]")
+          ->check(CLI::IsMember({"auto", "bouc_wen", "prandtl_ishlinskii"}));
+  for (const char* other : {"--branches", "--fix", "--free", "--exponents", "--robust", "--profile"})
+    structure->excludes(command.get_option(other));
+}
+
 }  // namespace
 
 void add_identify(CLI::App& program, ExitCode& outcome) {
@@ -180,6 +231,7 @@ void add_identify(CLI::App& program, ExitCode& outcome) {
       ->capture_default_str();
   command->add_option("--out", options->out, "Folder for model.yaml, identify.json, report.html")->required();
   add_fit_options(*command, options->fit);
+  add_structure_option(*command, *options);
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print identify.json");
   command->callback([options, &outcome] { outcome = run(*options); });

@@ -52,9 +52,14 @@ using All = List<ActuatorThreshold,        //
                  ValveLag>;
 
 /// Blocks that are no form of a cause: the base structure, and the sensor's random error.
-using NoCauses = List<model::BoucWen<double>,      //
-                      model::KelvinVoigt<double>,  //
-                      model::SensorNoise<double>,  //
+using NoCauses = List<model::AsymmetricValveLag<double>,      //
+                      model::ChamberLag<double>,              //
+                      model::BoucWen<double>,                 //
+                      model::PrandtlIshlinskii<double>,       //
+                      model::KelvinVoigt<double>,             //
+                      model::PressureDependentCreep<double>,  //
+                      model::Characteristic<double>,          //
+                      model::SensorNoise<double>,             //
                       model::Quantisation<double>>;
 
 }  // namespace softgrip::sysid::causes

@@ -8,6 +8,11 @@
 #include <random>
 
 #include "control/feedforward/running_model.h"
+#include "model/blocks/characteristic.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/pressure_dependent_creep.h"
+#include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
 namespace softgrip::control {
@@ -20,6 +25,43 @@ using sim::tick_s;
 double wanted_mm(double t) {
   const double rise = 1 - std::exp(-t * t);
   return rise * (12 - 4 * std::cos(0.7 * t) - 2 * std::cos(2.3 * t + 0.4) + 0.6 * std::sin(9 * t));
+}
+
+/// Twelve plays, seven branches of creep, creep that depends on the pressure and a bend.
+model::Model play_body() {
+  model::Model m;
+  std::vector<double> plays{0, 0.15}, ladder{1e9};
+  for (int i = 1; i < 12; ++i) plays.insert(plays.end(), {57 * std::pow(i / 12.0, 1.5), 0.03});
+  for (int i = 0; i < 7; ++i) ladder.insert(ladder.end(), {40, 40 * 0.05 * std::pow(3.0, i)});
+  m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(), plays});
+  m = model::with_block(std::move(m), {model::block_type<model::KelvinVoigt>(), ladder});
+  m = model::with_block(std::move(m), {model::block_type<model::PressureDependentCreep>(), {20, 0.02, 3}});
+  return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {1.5, 30}});
+}
+
+TEST(ActuatorInverse, OfPlaysIsTheIdentityOverAHundredThousandSteps) {
+  const model::Model body = play_body();
+  ASSERT_TRUE(model::validate(body).empty()) << model::validate(body).front();
+  ActuatorInverse inverse(body, tick_s);
+  model::Chain<double> finger(body, {}, tick_s);
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> pressure(0, 60);
+  std::uniform_int_distribution<int> ticks(1, 60);
+  double at = 0, worst_mm = 0, worst_kpa = 0;
+  for (int k = 0; k < 100'000;) {
+    const double to = pressure(random), from = at;
+    const int count = ticks(random);
+    for (int i = 1; i <= count; ++i, ++k) {
+      at = from + (to - from) * i / count;
+      finger.step(tick_s, at);
+      const auto solution = inverse.solve(finger.reading_mm(), 0, 60);
+      inverse.advance(solution.pressure_kpa);
+      worst_kpa = std::max(worst_kpa, std::abs(solution.pressure_kpa - at));
+      worst_mm = std::max(worst_mm, std::abs(inverse.displacement_mm() - finger.reading_mm()));
+    }
+  }
+  EXPECT_LT(worst_mm, 1e-9) << "seed 31";
+  EXPECT_LT(worst_kpa, 1e-7) << "seed 31";
 }
 
 TEST(ActuatorInverse, FollowedByTheChainItIsTheIdentity) {

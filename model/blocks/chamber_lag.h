@@ -1,0 +1,38 @@
+#pragma once
+// First-order lag between the point at which the pressure is measured and the finger's chamber.
+
+#include "model/block.h"
+#include "model/two_way_lag.h"
+
+namespace softgrip::model {
+
+/// See TwoWayLag.
+template <class T>
+class ChamberLag {
+ public:
+  static constexpr BlockInfo info =
+      block_info("chamber_lag", Station::valve, Kind::pressure, Inverse::lead, "Chamber lag",
+                 "First-order lag of the chamber behind the point at which the pressure is measured.",
+                 "tau p' = q - p, tau = filling where q > p, venting where q < p");
+  static constexpr std::array parameters{
+      parameter("filling_time_constant_s", "s", "time constant while the pressure rises", Typical{0.1},
+                Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0}),
+      parameter("venting_time_constant_s", "s", "time constant while it falls", Typical{0.2},
+                Within{0.0, 10.0}, Scale{0.05}, Neutral{0.0})};
+
+  ChamberLag(std::span<const T> values, const Preparation& preparation)
+      : lag_(values[0], values[1], preparation.sample_time_s) {}
+
+  void reset(const T& input) { lag_.reset(input); }
+  [[nodiscard]] T output() const { return lag_.output(); }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    lag_.step(in, next);
+  }
+
+ private:
+  TwoWayLag<T> lag_;
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,47 @@
+#pragma once
+// A bent map between what the elements sum up to and the displacement.
+
+#include "model/block.h"
+#include "model/characteristic_map.h"
+#include "model/static_map.h"
+
+namespace softgrip::model {
+
+/// See CharacteristicMap: monotone for every curvature.
+template <class T>
+class Characteristic {
+ public:
+  static constexpr BlockInfo info =
+      block_info("characteristic", Station::actuator, Kind::displacement, Inverse::implicit, "Characteristic",
+                 "The displacement over the sum of the elements is bent, loading and unloading alike.",
+                 "z = span (exp(a y/span) - 1) / (exp(a) - 1) from 0 to span, straight beyond");
+  static constexpr std::array parameters{
+      parameter("curvature", "", "a: above 0 the finger gives way more the further it is out", Typical{0.5},
+                Within{-4.0, 4.0}, Scale{0.2}, Neutral{0.0}),
+      parameter("span_mm", "mm", "where the bend ends; the data's span", Typical{20.0}, Within{1e-6, 1e6},
+                Scale{1.0})};
+
+  Characteristic(std::span<const T> values, const Preparation&) : map_{values[0], values[1]} {}
+
+  void reset(const T& input) { output_ = map_.value(input); }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    const Segment<T> out = mapped(
+        in, [this](const T& y) { return map_.value(y); }, output_);
+    output_ = out.end;
+    next(out);
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_mm, const Surroundings&) const {
+    return map_.value(end_mm);
+  }
+
+ private:
+  CharacteristicMap<T> map_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

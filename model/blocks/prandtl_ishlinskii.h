@@ -1,0 +1,83 @@
+#pragma once
+// Hysteresis as a sum of play operators (Kuhnen, European Journal of Control 9, 2003, section 2).
+
+#include <cstddef>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "model/block.h"
+#include "model/play.h"
+
+namespace softgrip::model {
+
+/// y += w1 play_r1(p) + w2 play_r2(p) + ..., a play with threshold 0 being the elastic gain. Rate
+/// independent. With weights that are not negative it rises with the pressure, and so has an inverse.
+template <class T>
+class PrandtlIshlinskii {
+ public:
+  static constexpr BlockInfo info =
+      block_info("prandtl_ishlinskii", Station::actuator, Kind::element, Inverse::implicit,
+                 "Prandtl-Ishlinskii hysteresis", "Rate-independent hysteresis as a sum of play operators.",
+                 "y += w1 o1 + w2 o2 + ..., |p - o| <= r in every operator, o moves only when it must");
+  static constexpr std::array<ParameterSpec, 0> parameters{};
+  static constexpr std::array repeated{
+      parameter("r#_kpa", "kPa", "threshold of operator #, above that of the one before; 0: elastic",
+                Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}),
+      parameter("w#_mm_per_kpa", "mm/kPa", "weight of operator #", Typical{0.1}, Within{0.0, 1e4}, Scale{0.1},
+                Neutral{0.0})};
+  static constexpr std::size_t max_parts = 24;
+
+  PrandtlIshlinskii(std::span<const T> values, const Preparation&) {
+    for (std::size_t i = 0; i + 1 < values.size(); i += 2)
+      operators_.push_back({Play<T>(values[i]), values[i + 1]});
+  }
+
+  static std::string_view objection(std::span<const double> values) {
+    for (std::size_t i = 2; i < values.size(); i += 2) {
+      if (values[i] <= values[i - 2]) return "the thresholds must rise from operator to operator";
+    }
+    return {};
+  }
+
+  void reset(const T& input) {
+    output_ = T(0.0);
+    for (Operator& each : operators_) {
+      each.play.reset(input);
+      output_ += each.weight * each.play.output();
+    }
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    const T begin = output_;
+    T end(0.0), mean(0.0);
+    const bool lasts = !is_zero(in.duration_s);
+    for (Operator& each : operators_) {
+      each.play.step(in, [&](const Segment<T>& part) {
+        if (lasts) mean += each.weight * part.mean * (part.duration_s / in.duration_s);
+      });
+      end += each.weight * each.play.output();
+    }
+    output_ = end;
+    return {in.duration_s, begin, end, lasts ? mean : T((begin + end) * 0.5)};
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+    U sum(0.0);
+    for (const Operator& each : operators_) sum = sum + each.weight * each.play.peek(end_kpa);
+    return sum;
+  }
+
+ private:
+  struct Operator {
+    Play<T> play;
+    T weight;
+  };
+
+  std::vector<Operator> operators_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model

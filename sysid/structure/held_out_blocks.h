@@ -1,0 +1,47 @@
+#pragma once
+// Interleaved blocks: contiguous stretches of readings that are held out in turn. What is held out this way
+// lies between what was fitted; what comes after it (continuation) is a harder question and has its own name
+// wherever it is printed.
+
+#include <cstddef>
+#include <vector>
+
+#include "sysid/fitting/fit_space.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+class HeldOutBlocks {
+ public:
+  static constexpr std::size_t folds = 5;
+
+  explicit HeldOutBlocks(const std::vector<Record>& records);
+
+  [[nodiscard]] std::size_t count() const { return blocks_.size(); }
+  /// The records without the readings of a fold's blocks, nor those within a tenth of a block beside them.
+  [[nodiscard]] const std::vector<Record>& without(std::size_t fold) const { return fitted_[fold]; }
+  /// Fills in the mean square of the fold's blocks under a model that was fitted without them [mm^2].
+  void judge(const FitPoint& point, std::size_t fold, std::vector<double>& losses_mm2) const;
+
+ private:
+  struct Block {
+    std::size_t record, first, last;
+  };
+
+  const std::vector<Record>& records_;
+  std::vector<Block> blocks_;
+  std::vector<std::vector<Record>> fitted_;  ///< by fold
+};
+
+/// Root of the mean over blocks [mm].
+[[nodiscard]] double held_out_rmse_mm(const std::vector<double>& losses_mm2);
+
+/// Mean of worse minus better over blocks, and its standard error [mm^2].
+struct LossDifference {
+  double mean_mm2 = 0;
+  double standard_error_mm2 = 0;
+};
+[[nodiscard]] LossDifference loss_difference(const std::vector<double>& worse,
+                                             const std::vector<double>& better);
+
+}  // namespace softgrip::sysid

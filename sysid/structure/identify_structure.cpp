@@ -1,0 +1,185 @@
+#include "sysid/structure/identify_structure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/numbers.h"
+#include "model/blocks/characteristic.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/pressure_dependent_creep.h"
+#include "model/named.h"
+#include "sysid/fitting/residuals.h"
+#include "sysid/identification/combinations.h"
+#include "sysid/identification/estimates.h"
+#include "sysid/structure/published_element.h"
+#include "sysid/structure/valve_stage.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+/// A search that ends within this of the best RMSE has reached it.
+constexpr double reached_share = 1e-3;
+constexpr std::size_t fewest_readings = 100;
+
+/// What stands where it was put before the fit: thresholds, hinges and their time constants, the bend's end.
+bool stays(const model::Model& model, std::size_t flat) {
+  const model::ParameterPlace place = model::place_of(model, flat);
+  const model::BlockSpec& block = model.blocks[place.block];
+  if (model::is<model::PrandtlIshlinskii>(block)) return place.value % 2 == 0;
+  if (model::is<model::PressureDependentCreep>(block)) return place.value % 3 != 1;
+  return model::is<model::Characteristic>(block) && place.value == 1;
+}
+
+std::vector<Record> fitted_part(std::vector<Record> records, double share) {
+  for (Record& record : records) {
+    const auto last = static_cast<std::size_t>(share * static_cast<double>(record.size()));
+    for (std::size_t i = last; i < record.size(); ++i)
+      record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+    record.readings = static_cast<std::size_t>(std::count_if(
+        record.reading_mm.begin(), record.reading_mm.end(), [](double y) { return std::isfinite(y); }));
+  }
+  return records;
+}
+
+StructureEvidence evidence_of(const StructureChoice& choice) {
+  StructureEvidence evidence;
+  evidence.ridge = choice.ridge;
+  evidence.blocks = choice.blocks;
+  for (std::size_t i = 0; i < choice.trials.size(); ++i) {
+    const StructureTrial& t = choice.trials[i];
+    evidence.candidates.push_back({std::string(name_of(t.structure.hysteresis)), description_of(t.structure),
+                                   t.rmse_mm, t.heldout_rmse_mm, i == choice.chosen});
+  }
+  for (const StructureChoice::Without& w : choice.ablation)
+    evidence.ablation.push_back({w.ingredient, w.trial.rmse_mm, w.trial.heldout_rmse_mm});
+  return evidence;
+}
+
+/// Intervals of the numbers that the fit moved, those that stand at zero or at a bound without one.
+void add_estimates(const StructureTrial& trial, Identification& result) {
+  std::vector<std::size_t> free;
+  for (const std::size_t flat : free_numbers(trial.point.model)) {
+    if (!stays(trial.point.model, flat)) free.push_back(flat);
+  }
+  const auto residuals = residuals_for(result.records, FitSpace(trial.point.model, result.records, free));
+  const std::vector<double> z = residuals->space().z(trial.point);
+  const Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
+  const FittedPoint fit{*residuals, z, uncertainty};
+  result.parameters = parameter_estimates(fit);
+  for (Estimate& e : result.parameters) {
+    if (!e.free) e.note = "where it was put before the fit";
+  }
+  result.starts = start_estimates(fit);
+  result.combinations = combination_estimates(fit);
+  result.loose = uncertainty.loose;
+  result.noise = uncertainty.noise;
+}
+
+void add_scores(const StructureTrial& trial, const std::vector<Record>& whole, Identification& result) {
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    const Record& fitted = result.records[k];
+    const StartState& start = trial.point.starts[k];
+    result.scores.push_back(score_of(result.fitted, fitted, start, fitted.reading_mm));
+    result.fast_noise_mm = std::max(result.fast_noise_mm, fast_noise_mm(whole[k]));
+    if (fitted.readings == whole[k].readings) continue;
+    std::vector<double> rest = whole[k].reading_mm;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      if (std::isfinite(fitted.reading_mm[i])) rest[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    result.held_out.push_back(score_of(result.fitted, whole[k], start, rest));
+  }
+}
+
+MultiStart multistart_of(const StructureTrial& trial) {
+  MultiStart multistart{trial.start_rmse_mm.size(), 0, trial.start_rmse_mm};
+  const double lowest = *std::min_element(multistart.rmse_mm.begin(), multistart.rmse_mm.end());
+  const auto reached = std::count_if(multistart.rmse_mm.begin(), multistart.rmse_mm.end(),
+                                     [&](double r) { return r <= lowest * (1 + reached_share) + 1e-6; });
+  multistart.share_at_best = static_cast<double>(reached) / static_cast<double>(multistart.starts);
+  return multistart;
+}
+
+void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Identification& result) {
+  const ValveStage stage = fit_valve_stage(logs, options.fit_share, options.record.held);
+  StructureEvidence::Valve valve{stage.delay_s,      stage.filling_s,         stage.venting_s, stage.rmse_kpa,
+                                 stage.rmse_percent, stage.held_out_rmse_kpa, stage.noise_kpa, {}};
+  // Both in a row, from the measured pressure at which each log begins.
+  std::vector<Log> driven = logs;
+  for (Log& log : driven) log.pressure_kpa = predicted_pressure_kpa(stage, log, options.record.held);
+  RecordOptions measured = options.record;
+  measured.drive = Drive::measured;
+  const std::vector<Record> records = make_records(driven, measured);
+  for (std::size_t k = 0; k < records.size(); ++k)
+    valve.from_command.push_back(
+        score_of(result.fitted, records[k], result.scores[k].start, logs[k].displacement_mm));
+  result.model = with_valve(result.fitted, stage);
+  constexpr double far_off_percent = 5;
+  if (stage.rmse_percent > far_off_percent) {
+    result.warnings.push_back("the valve is no dead time with a lag: between command and measured pressure " +
+                              significant(stage.rmse_kpa, 3) + " kPa are left, " +
+                              significant(stage.rmse_percent, 2) + " % of its range");
+  }
+  result.structure->valve = std::move(valve);
+}
+
+void add_warnings(Identification& result) {
+  if (!result.converged) result.warnings.emplace_back("the search stopped before it converged");
+  if (const double ratio = beta_over_gain(result.fitted); ratio > 1)
+    result.warnings.push_back(wrong_way_sentence(ratio) + ", run softgrip diagnose");
+  for (const Record& record : result.records) {
+    if (record.start_unknown)
+      result.warnings.push_back(record.name + " does not start from rest: its start state was estimated");
+  }
+}
+
+}  // namespace
+
+tl::expected<Identification, std::string> identify_structure(const std::vector<Log>& logs,
+                                                             StructureQuestion question,
+                                                             const IdentifyOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  if (logs.empty()) return Failure("no logs to identify from");
+  const bool measured =
+      std::all_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
+  if (options.record.drive == Drive::measured && !measured) return Failure("a log has no measured pressure");
+  const bool two_stages = options.record.drive == Drive::command && measured;
+  RecordOptions record = options.record;
+  if (two_stages) record.drive = Drive::measured;
+
+  const std::vector<Record> whole = make_records(logs, record);
+  Identification result;
+  result.records = fitted_part(whole, options.fit_share);
+  std::size_t readings = 0;
+  for (const Record& each : result.records) readings += each.readings;
+  if (readings < fewest_readings)
+    return Failure("only " + std::to_string(readings) + " readings to fit: too few to choose a structure (" +
+                   std::to_string(fewest_readings) + " are needed)");
+
+  StructureChoiceOptions choice_options{question,     record.drive,    options.starts,
+                                        options.seed, options.threads, {}};
+  if (options.progress) {
+    choice_options.progress = [&](const std::string& stage) { options.progress({0, 0, 0, stage}); };
+  }
+  const StructureChoice choice = choose_structure(result.records, choice_options);
+  const StructureTrial& chosen = choice.trials[choice.chosen];
+  if (!std::isfinite(chosen.rmse_mm)) return Failure("the model's answer is not finite from any start");
+  result.fitted = chosen.point.model;
+  result.fitted.name = "identified";
+  result.model = result.fitted;
+  result.rmse_mm = chosen.rmse_mm;
+  result.converged = chosen.converged;
+  result.multistart = multistart_of(chosen);
+  add_scores(chosen, whole, result);
+  add_estimates(chosen, result);
+  result.structure = evidence_of(choice);
+  add_warnings(result);
+  if (two_stages) join_valve(logs, options, result);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return result;
+}
+
+}  // namespace softgrip::sysid

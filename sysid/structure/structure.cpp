@@ -1,0 +1,25 @@
+#include "sysid/structure/structure.h"
+
+namespace softgrip::sysid {
+
+std::string_view name_of(HysteresisForm form) {
+  return form == HysteresisForm::play ? "prandtl_ishlinskii" : "bouc_wen";
+}
+
+std::string description_of(const BaseStructure& s) {
+  if (s.published) {
+    return s.lag ? "Bouc-Wen, two Kelvin-Voigt branches, delay and lag"
+                 : "Bouc-Wen, two Kelvin-Voigt branches";
+  }
+  std::string text = !s.hysteretic                          ? "elastic gain"
+                     : s.hysteresis == HysteresisForm::play ? "play operators"
+                                                            : "Bouc-Wen";
+  if (s.creep) text += ", creep ladder";
+  if (s.hinged_creep) text += ", pressure-dependent creep";
+  if (s.delay) text += ", delay";
+  if (s.lag) text += s.two_way ? ", lag (filling and venting)" : ", lag";
+  if (s.characteristic) text += ", characteristic";
+  return text;
+}
+
+}  // namespace softgrip::sysid

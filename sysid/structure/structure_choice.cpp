@@ -1,0 +1,192 @@
+#include "sysid/structure/structure_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "base/parallel.h"
+#include "sysid/fitting/minimise.h"
+#include "sysid/identification/identify.h"
+#include "sysid/structure/held_out_blocks.h"
+#include "sysid/structure/published_element.h"
+#include "sysid/structure/structure_fit.h"
+#include "sysid/structure/structure_model.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
+/// In a fold the nonlinear numbers are not far from those of all readings.
+constexpr int fold_iterations = 5;
+
+class Judge {
+ public:
+  Judge(const std::vector<Record>& records, const StructureChoiceOptions& options)
+      : records_(records), options_(options), grid_(grid_for(records)), blocks_(records) {}
+
+  [[nodiscard]] std::size_t blocks() const { return blocks_.count(); }
+
+  /// @param iterations  in every fold, from the numbers of the whole; 0: they stay
+  [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge, int iterations) const {
+    StructureTrial trial;
+    trial.structure = structure;
+    trial.block_losses_mm2.assign(blocks_.count(), 0);
+    structure.published ? judge_published(trial) : judge_ladder(trial, ridge, iterations);
+    trial.heldout_rmse_mm = held_out_rmse_mm(trial.block_losses_mm2);
+    return trial;
+  }
+
+ private:
+  void judge_published(StructureTrial& trial) const {
+    PublishedElement found = fit_published(records_, options_.drive, options_.starts, options_.seed);
+    trial.point = std::move(found.point);
+    trial.rmse_mm = found.rmse_mm;
+    trial.converged = found.converged;
+    trial.start_rmse_mm = std::move(found.start_rmse_mm);
+    for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold)
+      blocks_.judge(refit_published(blocks_.without(fold), trial.point), fold, trial.block_losses_mm2);
+  }
+
+  void judge_ladder(StructureTrial& trial, double ridge, int iterations) const {
+    StructureFitOptions options;
+    options.ridge = trial.ridge = ridge;
+    const FittedStructure whole = fit_form(records_, trial.structure, grid_, options);
+    trial.point = point_of(whole, records_, options_.drive);
+    trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
+    trial.converged = whole.converged;
+    trial.start_rmse_mm = whole.start_rmse_mm;
+    options.most_iterations = iterations;
+    for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold) {
+      const std::vector<Record>& fitted = blocks_.without(fold);
+      const FittedStructure fit = fit_form(fitted, trial.structure, grid_, options, &whole.numbers);
+      blocks_.judge(point_of(fit, fitted, options_.drive), fold, trial.block_losses_mm2);
+    }
+  }
+
+  const std::vector<Record>& records_;
+  const StructureChoiceOptions& options_;
+  StructureGrid grid_;
+  HeldOutBlocks blocks_;
+};
+
+/// The simplest first.
+std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
+  const bool delay = options.drive == Drive::command;
+  std::vector<BaseStructure> list;
+  const auto ladder = [delay](HysteresisForm hysteresis, bool bent, bool hinged) {
+    return BaseStructure{
+        .hysteresis = hysteresis, .delay = delay, .characteristic = bent, .hinged_creep = hinged};
+  };
+  if (options.question != StructureQuestion::prandtl_ishlinskii) {
+    list.push_back({.hysteresis = HysteresisForm::bouc_wen,
+                    .delay = delay,
+                    .lag = delay,
+                    .two_way = false,
+                    .characteristic = false,
+                    .published = true});
+    for (const bool bent : {false, true}) list.push_back(ladder(HysteresisForm::bouc_wen, bent, false));
+  }
+  if (options.question != StructureQuestion::bouc_wen) {
+    for (const bool bent : {false, true}) list.push_back(ladder(HysteresisForm::play, bent, false));
+    list.push_back(ladder(HysteresisForm::play, true, true));
+  }
+  return list;
+}
+
+/// A structure without one of its ingredients, if it has it.
+struct Ingredient {
+  const char* name;
+  std::optional<BaseStructure> (*without)(BaseStructure);
+};
+constexpr std::array ingredients{
+    Ingredient{"hysteresis", [](BaseStructure s) { return s.hysteretic = false, std::optional(s); }},
+    Ingredient{"creep",
+               [](BaseStructure s) -> std::optional<BaseStructure> {
+                 if (!s.creep && !s.hinged_creep) return std::nullopt;
+                 s.creep = s.hinged_creep = false;
+                 return s;
+               }},
+    Ingredient{"dependence of creep on pressure",
+               [](BaseStructure s) -> std::optional<BaseStructure> {
+                 if (!s.hinged_creep) return std::nullopt;
+                 s.hinged_creep = false;
+                 return s;
+               }},
+    Ingredient{"delay and lag",
+               [](BaseStructure s) -> std::optional<BaseStructure> {
+                 if (!s.lag && !s.delay) return std::nullopt;
+                 s.lag = s.delay = false;
+                 return s;
+               }},
+    Ingredient{"a lag of its own for venting",
+               [](BaseStructure s) -> std::optional<BaseStructure> {
+                 if (!s.lag || !s.two_way) return std::nullopt;
+                 s.two_way = false;
+                 return s;
+               }},
+    Ingredient{"characteristic", [](BaseStructure s) -> std::optional<BaseStructure> {
+                 if (!s.characteristic) return std::nullopt;
+                 s.characteristic = false;
+                 return s;
+               }}};
+
+std::size_t best_of(const std::vector<StructureTrial>& trials) {
+  return static_cast<std::size_t>(std::min_element(trials.begin(), trials.end(),
+                                                   [](const StructureTrial& a, const StructureTrial& b) {
+                                                     return a.heldout_rmse_mm < b.heldout_rmse_mm;
+                                                   }) -
+                                  trials.begin());
+}
+
+/// The first that is within one standard error of the best.
+std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials) {
+  const std::size_t best = best_of(trials);
+  for (std::size_t i = 0; i < best; ++i) {
+    const LossDifference behind = loss_difference(trials[i].block_losses_mm2, trials[best].block_losses_mm2);
+    if (behind.mean_mm2 <= behind.standard_error_mm2) return i;
+  }
+  return best;
+}
+
+void ablate(const Judge& judge, const StructureChoiceOptions& options, StructureChoice& choice) {
+  const StructureTrial& chosen = choice.trials[choice.chosen];
+  if (chosen.structure.published) return;
+  std::vector<StructureChoice::Without> list;
+  for (const Ingredient& ingredient : ingredients) {
+    if (const auto rest = ingredient.without(chosen.structure))
+      list.push_back({ingredient.name, {}}), list.back().trial.structure = *rest;
+  }
+  parallel_for(list.size(), options.threads, [&](std::size_t i) {
+    list[i].trial = judge.judge(list[i].trial.structure, choice.ridge, fold_iterations);
+  });
+  choice.ablation = std::move(list);
+}
+
+}  // namespace
+
+StructureChoice choose_structure(const std::vector<Record>& records, const StructureChoiceOptions& options) {
+  const Judge judge(records, options);
+  const std::vector<BaseStructure> structures = candidates(options);
+  const auto say = [&](const std::string& text) {
+    if (options.progress) options.progress(text);
+  };
+  StructureChoice choice;
+  choice.blocks = judge.blocks();
+  std::vector<StructureTrial> by_ridge(ridges.size());
+  say("choosing the ridge");
+  parallel_for(ridges.size(), options.threads,
+               [&](std::size_t i) { by_ridge[i] = judge.judge(structures.back(), ridges[i], 0); });
+  choice.ridge = ridges[best_of(by_ridge)];
+  say("comparing " + std::to_string(structures.size()) + " structures");
+  choice.trials.resize(structures.size());
+  parallel_for(structures.size(), options.threads, [&](std::size_t i) {
+    choice.trials[i] = judge.judge(structures[i], choice.ridge, fold_iterations);
+  });
+  choice.chosen = simplest_of_the_best(choice.trials);
+  say("taking one ingredient away after the other");
+  ablate(judge, options, choice);
+  return choice;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,57 @@
+#pragma once
+// Which structure a finger has: a few fixed ones, judged on readings that they were not fitted to.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sysid/fitting/fit_space.h"
+#include "sysid/structure/structure.h"
+
+namespace softgrip::sysid {
+
+/// What is asked for.
+enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
+
+struct StructureChoiceOptions {
+  StructureQuestion question = StructureQuestion::automatic;
+  Drive drive = Drive::command;  ///< with the measured pressure no dead time is looked for
+  std::size_t starts = 20;       ///< of the published element's search
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  std::function<void(const std::string&)> progress;
+};
+
+/// One structure, fitted to everything and, fold by fold, without the blocks on which it is then judged.
+struct StructureTrial {
+  BaseStructure structure;
+  FitPoint point;
+  double ridge = 0;
+  double rmse_mm = 0;  ///< of the readings it was fitted to
+  bool converged = false;
+  std::vector<double> start_rmse_mm;     ///< where the search from each start ended
+  std::vector<double> block_losses_mm2;  ///< mean square of each block while it was held out
+  double heldout_rmse_mm = 0;            ///< root of their mean
+};
+
+struct StructureChoice {
+  std::vector<StructureTrial> trials;  ///< the simplest first
+  std::size_t chosen = 0;
+  double ridge = 0;
+  std::size_t blocks = 0;
+  /// The chosen structure without one of its ingredients each, fitted and judged the same way.
+  struct Without {
+    std::string ingredient;
+    StructureTrial trial;
+  };
+  std::vector<Without> ablation;
+};
+
+/// The ridge is chosen first, with the richest structure; then the simplest structure whose held-out loss is
+/// within one standard error (of the difference, block by block) of the best (Breiman et al. 1984,
+/// section 3.4.3).
+[[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
+                                               const StructureChoiceOptions& options);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,292 @@
+#include "sysid/structure/structure_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "sysid/fitting/score.h"
+#include "sysid/structure/structure_columns.h"
+#include "sysid/structure/structure_projection.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// What a squared deviation by one of its widths costs a number, in the logarithm of the mean square.
+constexpr double prior = 0.05;
+/// From one time constant of the ladder to the next.
+constexpr double ladder_ratio = 3;
+
+/// A nonlinear number as the search sees it: t, of the order of one.
+struct Coordinate {
+  std::function<double(const NonlinearNumbers&)> get;
+  std::function<void(NonlinearNumbers&, double)> set;
+  double centre = 0;
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+Coordinate straight(double NonlinearNumbers::*member, double width, double centre, double lower,
+                    double upper) {
+  return {[=](const NonlinearNumbers& n) { return n.*member / width; },
+          [=](NonlinearNumbers& n, double t) { n.*member = t * width; }, centre / width, lower / width,
+          upper / width};
+}
+
+Coordinate logarithmic(double NonlinearNumbers::*member, double width, double centre, double lower,
+                       double upper) {
+  return {[=](const NonlinearNumbers& n) { return std::log(n.*member) / width; },
+          [=](NonlinearNumbers& n, double t) { n.*member = std::exp(t * width); }, std::log(centre) / width,
+          std::log(lower) / width, std::log(upper) / width};
+}
+
+class Search {
+ public:
+  Search(const std::vector<Record>& records, const BaseStructure& structure, const StructureGrid& grid,
+         const StructureFitOptions& options)
+      : records_(records),
+        structure_(structure),
+        grid_(grid),
+        options_(options),
+        layout_(structure, grid, records) {
+    const std::vector<RowPlace> rows = rows_of(records);
+    readings_.resize(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      readings_(static_cast<Eigen::Index>(i)) = records[rows[i].record].reading_mm[rows[i].sample];
+    row_weights_ = Eigen::VectorXd::Ones(readings_.size());
+    add_coordinates();
+  }
+
+  struct State {
+    NonlinearNumbers numbers;
+    Projection projection;
+    Eigen::VectorXd residual;  ///< errors and penalties
+    double value = std::numeric_limits<double>::infinity();
+  };
+
+  [[nodiscard]] State at(const NonlinearNumbers& numbers) {
+    if (!cached_ || !same_columns(numbers)) {
+      columns_ = structure_columns(records_, structure_, grid_, numbers);
+      cached_for_ = numbers;
+      cached_ = true;
+    }
+    State state;
+    state.numbers = numbers;
+    const ProjectionProblem problem{columns_,     layout_,           readings_,
+                                    row_weights_, grid_.largest_kpa, options_.ridge};
+    state.projection = project(problem, {structure_.characteristic ? numbers.curvature : 0, grid_.span_mm});
+    const Projection& p = state.projection;
+    state.residual.resize(p.error_mm.size() + p.penalty_mm.size());
+    state.residual << p.error_mm, p.penalty_mm;
+    state.value = std::log(std::max(state.residual.squaredNorm(), 1e-300));
+    for (const Coordinate& c : coordinates_) state.value += prior * std::pow(c.get(numbers) - c.centre, 2);
+    return state;
+  }
+
+  State run(NonlinearNumbers start, bool& converged) {
+    State best = at(start);
+    double damping = 1e-2;
+    converged = coordinates_.empty();
+    for (int i = 0; i < options_.most_iterations && !converged; ++i) {
+      const Normal normal = normal_at(best);
+      bool improved = false;
+      for (int attempt = 0; attempt < 8; ++attempt) {
+        State trial = at(moved(best.numbers, step(normal, best.numbers, damping)));
+        if (trial.value < best.value) {
+          converged = best.value - trial.value < 1e-6;
+          best = std::move(trial);
+          damping = std::max(damping / 5, 1e-7);
+          improved = true;
+          break;
+        }
+        damping *= 5;
+      }
+      if (!improved) converged = true;
+    }
+    return best;
+  }
+
+ private:
+  struct Normal {
+    Eigen::MatrixXd curvature;
+    Eigen::VectorXd gradient;
+  };
+
+  void add_coordinates() {
+    using N = NonlinearNumbers;
+    if (structure_.delay) coordinates_.push_back(straight(&N::delay_s, 0.2, 0, 0, 5));
+    if (structure_.lag) {
+      if (structure_.two_way) {
+        coordinates_.push_back(logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10));
+        coordinates_.push_back(logarithmic(&N::venting_s, 1.5, 0.1, 1e-4, 10));
+      } else {
+        Coordinate both = logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10);
+        const auto set = both.set;
+        both.set = [set](N& n, double t) {
+          set(n, t);
+          n.venting_s = n.filling_s;
+        };
+        coordinates_.push_back(std::move(both));
+      }
+    }
+    if (structure_.characteristic) coordinates_.push_back(straight(&N::curvature, 1, 0, -4, 4));
+    if (structure_.hysteretic && structure_.hysteresis == HysteresisForm::bouc_wen) {
+      const double growing = 3 / grid_.largest_kpa;
+      coordinates_.push_back(logarithmic(&N::growing_per_kpa, 1.5, growing, growing / 300, growing * 300));
+      coordinates_.push_back(straight(&N::narrowing, 0.3, 0.5, 0.02, 1));
+    }
+    for (std::size_t r = 0; r < records_.size(); ++r) {
+      if (!records_[r].start_unknown) continue;
+      const double width = grid_.largest_kpa, first = records_[r].drive_kpa.front();
+      coordinates_.push_back({[=](const N& n) { return n.peak_before_kpa[r] / width; },
+                              [=](N& n, double t) { n.peak_before_kpa[r] = t * width; }, first / width,
+                              first / width, 1});
+    }
+  }
+
+  [[nodiscard]] bool same_columns(NonlinearNumbers numbers) const {
+    numbers.curvature = cached_for_.curvature;
+    return numbers == cached_for_;
+  }
+
+  Normal normal_at(const State& state) {
+    const auto n = static_cast<Eigen::Index>(coordinates_.size());
+    Eigen::MatrixXd jacobian(state.residual.size(), n);
+    Normal normal{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
+      const double t = c.get(state.numbers);
+      const double h = t + 1e-4 > c.upper ? -1e-4 : 1e-4;
+      NonlinearNumbers beside = state.numbers;
+      c.set(beside, t + h);
+      jacobian.col(k) = (at(beside).residual - state.residual) / h;
+    }
+    const double sum = state.residual.squaredNorm();
+    normal.curvature = jacobian.transpose() * jacobian / sum;
+    normal.gradient = jacobian.transpose() * state.residual / sum;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
+      normal.curvature(k, k) += prior;
+      normal.gradient(k) += prior * (c.get(state.numbers) - c.centre);
+    }
+    return normal;
+  }
+
+  Eigen::VectorXd step(const Normal& normal, const NonlinearNumbers& from, double damping) const {
+    Eigen::MatrixXd damped = normal.curvature;
+    damped.diagonal() *= 1 + damping;
+    Eigen::VectorXd gradient = normal.gradient;
+    // A number at its bound that would leave its range stays out of the step.
+    for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
+      const double t = c.get(from);
+      const bool stuck = (t <= c.lower + 1e-9 && gradient(k) > 0) || (t >= c.upper - 1e-9 && gradient(k) < 0);
+      if (!stuck) continue;
+      const double keep = damped(k, k);
+      damped.row(k).setZero();
+      damped.col(k).setZero();
+      damped(k, k) = keep;
+      gradient(k) = 0;
+    }
+    return -damped.ldlt().solve(gradient);
+  }
+
+  [[nodiscard]] NonlinearNumbers moved(NonlinearNumbers numbers, const Eigen::VectorXd& by) const {
+    const NonlinearNumbers from = numbers;
+    for (std::size_t k = 0; k < coordinates_.size(); ++k) {
+      const Coordinate& c = coordinates_[k];
+      const double change = std::clamp(by(static_cast<Eigen::Index>(k)), -1.0, 1.0);
+      c.set(numbers, std::clamp(c.get(from) + change, c.lower, c.upper));
+    }
+    return numbers;
+  }
+
+  const std::vector<Record>& records_;
+  BaseStructure structure_;
+  const StructureGrid& grid_;
+  StructureFitOptions options_;
+  ColumnLayout layout_;
+  Eigen::VectorXd readings_, row_weights_;
+  std::vector<Coordinate> coordinates_;
+  Eigen::MatrixXd columns_;
+  NonlinearNumbers cached_for_;
+  bool cached_ = false;
+};
+
+/// Readings for a search: every k-th; the pressure is walked through all samples.
+std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t most) {
+  std::size_t readings = 0;
+  for (const Record& record : records) readings += record.readings;
+  const std::size_t stride = (readings + most - 1) / std::max<std::size_t>(most, 1);
+  if (stride <= 1) return records;
+  for (Record& record : records) {
+    std::size_t seen = 0;
+    for (double& y : record.reading_mm) {
+      if (!std::isfinite(y)) continue;
+      if (seen++ % stride != 0) y = std::numeric_limits<double>::quiet_NaN();
+    }
+    record.readings = (seen + stride - 1) / stride;
+  }
+  return records;
+}
+
+std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, const StructureGrid& grid) {
+  std::vector<double> peaks;
+  for (const Record& record : records) peaks.push_back(record.start_unknown ? record.drive_kpa.front() : 0);
+  NonlinearNumbers quick{0.02, 0.15, 0.15, 0, 2 / grid.largest_kpa, 0.5, peaks};
+  NonlinearNumbers late{0.15, 0.05, 0.05, 0, 6 / grid.largest_kpa, 0.5, peaks};
+  return {quick, late};
+}
+
+}  // namespace
+
+StructureGrid grid_for(const std::vector<Record>& records) {
+  StructureGrid grid;
+  double longest_s = 0;
+  std::size_t cycles = 0;
+  for (const Record& record : records) {
+    grid.largest_kpa = std::max(grid.largest_kpa, record.largest_kpa);
+    grid.span_mm = std::max(grid.span_mm, record.span_mm);
+    longest_s = std::max(longest_s, record.length_s());
+    cycles += cycle_starts(record).size();
+  }
+  const int plays = cycles > 2 ? 12 : 6;
+  for (int i = 1; i <= plays; ++i)
+    grid.thresholds_kpa.push_back(0.95 * std::pow(static_cast<double>(i) / plays, 1.5) * grid.largest_kpa);
+  for (double tau = 0.05; tau < 3 * longest_s && grid.ladder_s.size() < 10; tau *= ladder_ratio)
+    grid.ladder_s.push_back(tau);
+  grid.hinges_kpa = {0.25 * grid.largest_kpa, 0.5 * grid.largest_kpa, 0.75 * grid.largest_kpa};
+  for (double tau = 0.25; tau < longest_s && grid.hinge_ladder_s.size() < 5; tau *= 5)
+    grid.hinge_ladder_s.push_back(tau);
+  return grid;
+}
+
+FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure& structure,
+                         const StructureGrid& grid, const StructureFitOptions& options,
+                         const NonlinearNumbers* near) {
+  const std::vector<Record> few = with_fewer_readings(records, options.most_rows);
+  Search look(few, structure, grid, options);
+  FittedStructure fit{structure, grid, {}, {}, 0, options.ridge, false, {}};
+  double best = std::numeric_limits<double>::infinity();
+  std::vector<NonlinearNumbers> starts = near != nullptr ? std::vector{*near} : starts_for(records, grid);
+  for (NonlinearNumbers& start : starts) {
+    if (!structure.delay) start.delay_s = 0;
+    if (!structure.lag) start.filling_s = start.venting_s = 0;
+    bool converged = false;
+    Search::State found = look.run(start, converged);
+    fit.start_rmse_mm.push_back(std::sqrt(found.projection.mean_square_mm2));
+    if (!(found.value < best)) continue;
+    best = found.value;
+    fit.numbers = found.numbers;
+    fit.converged = converged;
+  }
+  Search all(records, structure, grid, options);
+  const Search::State end = all.at(fit.numbers);
+  fit.weights = end.projection.weights;
+  fit.mean_square_mm2 = end.projection.mean_square_mm2;
+  return fit;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,41 @@
+#pragma once
+// A structure fitted to records: its few nonlinear numbers are searched, all weights follow (variable
+// projection).
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "model/model.h"
+#include "sysid/logs/record.h"
+#include "sysid/structure/structure.h"
+
+namespace softgrip::sysid {
+
+struct StructureFitOptions {
+  double ridge = 1e-5;           ///< see ProjectionProblem
+  int most_iterations = 40;      ///< from each start
+  std::size_t most_rows = 4000;  ///< readings that the search looks at; the weights are then fitted to all
+};
+
+/// A structure with numbers.
+struct FittedStructure {
+  BaseStructure structure;
+  StructureGrid grid;
+  NonlinearNumbers numbers;
+  Eigen::VectorXd weights;  ///< by ColumnLayout
+  double mean_square_mm2 = 0;
+  double ridge = 0;
+  bool converged = false;
+  std::vector<double> start_rmse_mm;  ///< where the search from each start ended
+};
+
+/// Thresholds, time constants and hinges for these records. With few cycles of data there are fewer plays.
+[[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
+
+/// From several starts of its own, or from `near`, where numbers are known already.
+[[nodiscard]] FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure& structure,
+                                       const StructureGrid& grid, const StructureFitOptions& options,
+                                       const NonlinearNumbers* near = nullptr);
+
+}  // namespace softgrip::sysid

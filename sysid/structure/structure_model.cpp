@@ -1,0 +1,110 @@
+#include "sysid/structure/structure_model.h"
+
+#include <algorithm>
+
+#include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/chamber_lag.h"
+#include "model/blocks/characteristic.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/pressure_dependent_creep.h"
+#include "model/blocks/transport_delay.h"
+#include "model/named.h"
+#include "sysid/structure/structure_columns.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// A spring that is as good as rigid: alpha or the elastic play alone is the instantaneous gain.
+constexpr double rigid_kpa_per_mm = 1e9;
+/// A branch that is only there for its time constant [mm/kPa].
+constexpr double next_to_no_creep = 1e-7;
+
+class Builder {
+ public:
+  Builder(const FittedStructure& fit, const ColumnLayout& layout) : fit_(fit), layout_(layout) {}
+
+  model::Model model(Drive drive) {
+    const NonlinearNumbers& n = fit_.numbers;
+    if (fit_.structure.delay && n.delay_s > 0) add<model::TransportDelay>({n.delay_s});
+    if (fit_.structure.lag && drive == Drive::command)
+      add<model::AsymmetricValveLag>({n.filling_s, n.venting_s});
+    if (fit_.structure.lag && drive == Drive::measured) add<model::ChamberLag>({n.filling_s, n.venting_s});
+    add_hysteresis();
+    add_creep();
+    add_hinged_creep();
+    if (fit_.structure.characteristic && n.curvature != 0)
+      add<model::Characteristic>({n.curvature, fit_.grid.span_mm});
+    return std::move(model_);
+  }
+
+ private:
+  template <template <class> class Block>
+  void add(std::vector<double> values) {
+    model_ = model::with_block(std::move(model_), {model::block_type<Block>(), std::move(values)});
+  }
+  [[nodiscard]] double weight(Eigen::Index column) const { return fit_.weights(column); }
+
+  void add_hysteresis() {
+    const double elastic = weight(ColumnLayout::elastic());
+    if (fit_.structure.hysteresis == HysteresisForm::bouc_wen) {
+      const double beta = fit_.structure.hysteretic ? weight(ColumnLayout::hysteresis(0)) : 0;
+      const double eta = fit_.numbers.growing_per_kpa * fit_.numbers.narrowing;
+      add<model::BoucWen>({elastic + beta, beta, fit_.numbers.growing_per_kpa - eta, eta, 1});
+      return;
+    }
+    std::vector<double> parts{0, elastic};
+    for (std::size_t i = 0; i < layout_.hysteretic(); ++i) {
+      if (const double w = weight(ColumnLayout::hysteresis(i)); w > 0)
+        parts.insert(parts.end(), {fit_.grid.thresholds_kpa[i], w});
+    }
+    add<model::PrandtlIshlinskii>(std::move(parts));
+  }
+
+  void add_creep() {
+    bool needed = false;
+    for (std::size_t r = 0; r < layout_.records(); ++r) needed |= layout_.unsettled(r) >= 0;
+    std::vector<double> values{rigid_kpa_per_mm};
+    for (std::size_t b = 0; b < layout_.branches(); ++b) {
+      const double w = weight(layout_.creep(b));
+      if (w <= 0 && !needed) continue;
+      const double k = 1 / std::max(w, next_to_no_creep);
+      values.insert(values.end(), {k, k * fit_.grid.ladder_s[b]});
+    }
+    if (values.size() > 1) add<model::KelvinVoigt>(std::move(values));
+  }
+
+  void add_hinged_creep() {
+    std::vector<double> parts;
+    for (std::size_t h = 0; h < layout_.hinges(); ++h) {
+      for (std::size_t b = 0; b < layout_.hinge_branches(); ++b) {
+        const double w = weight(layout_.hinged(h, b));
+        if (w > 0) parts.insert(parts.end(), {fit_.grid.hinges_kpa[h], w, fit_.grid.hinge_ladder_s[b]});
+      }
+    }
+    if (!parts.empty()) add<model::PressureDependentCreep>(std::move(parts));
+  }
+
+  const FittedStructure& fit_;
+  const ColumnLayout& layout_;
+  model::Model model_;
+};
+
+}  // namespace
+
+FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive) {
+  const ColumnLayout layout(fit.structure, fit.grid, records);
+  FitPoint point{Builder(fit, layout).model(drive), {}};
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    StartState start;
+    if (layout.offset(r) >= 0) start.offset_mm = fit.weights(layout.offset(r));
+    if (records[r].start_unknown) start.peak_before_kpa = fit.numbers.peak_before_kpa[r];
+    for (std::size_t b = 0; layout.unsettled(r) >= 0 && b < layout.branches(); ++b)
+      start.unsettled_mm.push_back(fit.weights(layout.unsettled(r) + static_cast<Eigen::Index>(b)));
+    point.starts.push_back(std::move(start));
+  }
+  return point;
+}
+
+}  // namespace softgrip::sysid

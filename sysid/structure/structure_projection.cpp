@@ -1,0 +1,112 @@
+#include "sysid/structure/structure_projection.h"
+
+#include <limits>
+
+#include "sysid/fitting/bounded_solve.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr int most_steps = 12;
+constexpr double settled_share = 1e-7;
+
+class Projector {
+ public:
+  Projector(const ProjectionProblem& problem, const model::CharacteristicMap<double>& map)
+      : p_(problem), map_(map) {
+    const Eigen::Index n = p_.columns.cols(), own = p_.layout.own();
+    lower_ = Eigen::VectorXd::Zero(n);
+    upper_ = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+    ridge_ = Eigen::VectorXd::Constant(n, p_.largest_kpa * p_.largest_kpa);
+    for (Eigen::Index c = own; c < n; ++c) {
+      lower_(c) = -std::numeric_limits<double>::infinity();
+      ridge_(c) = 1;
+    }
+    for (std::size_t r = 0; r < p_.layout.records(); ++r) {
+      if (p_.layout.offset(r) >= 0) ridge_(p_.layout.offset(r)) = 0;
+    }
+    fitted_ = std::max(1.0, p_.row_weights.sum());
+    ridge_ *= p_.ridge * fitted_;
+  }
+
+  Projection run() {
+    Eigen::VectorXd x;
+    if (map_.curvature == 0) {
+      x = solve(p_.columns, p_.readings_mm);
+    } else {
+      x = first_guess();
+      double last = cost(x);
+      for (int i = 0; i < most_steps; ++i) {
+        const Eigen::VectorXd next = linearised(inner(x));
+        Eigen::VectorXd trial = next;
+        double now = cost(trial);
+        for (int halving = 0; halving < 6 && !(now <= last); ++halving) {
+          trial = (x + trial) / 2;
+          now = cost(trial);
+        }
+        if (!(now <= last)) break;
+        x = trial;
+        const bool settled = last - now <= settled_share * last;
+        last = now;
+        if (settled) break;
+      }
+    }
+    Projection result;
+    result.error_mm = errors(x);
+    result.penalty_mm = ridge_.cwiseSqrt().cwiseProduct(x);
+    result.mean_square_mm2 = result.error_mm.cwiseAbs2().dot(p_.row_weights) / fitted_;
+    result.weights = std::move(x);
+    return result;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Index own() const { return p_.layout.own(); }
+  [[nodiscard]] Eigen::VectorXd inner(const Eigen::VectorXd& x) const {
+    return p_.columns.leftCols(own()) * x.head(own());
+  }
+  [[nodiscard]] Eigen::VectorXd beside(const Eigen::VectorXd& x) const {
+    const Eigen::Index n = p_.columns.cols() - own();
+    return p_.columns.rightCols(n) * x.tail(n);
+  }
+  [[nodiscard]] Eigen::VectorXd errors(const Eigen::VectorXd& x) const {
+    return inner(x).unaryExpr([this](double z) { return map_.value(z); }) + beside(x) - p_.readings_mm;
+  }
+  [[nodiscard]] double cost(const Eigen::VectorXd& x) const {
+    return errors(x).cwiseAbs2().dot(p_.row_weights) + ridge_.dot(x.cwiseAbs2());
+  }
+
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) const {
+    const Eigen::MatrixXd weighted = p_.row_weights.asDiagonal() * columns;
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+    gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+    gram.diagonal() += ridge_;
+    return solve_bounded(gram, weighted.transpose() * target, lower_, upper_).x;
+  }
+  /// One Gauss-Newton step from where the characteristic's input is `z`.
+  [[nodiscard]] Eigen::VectorXd linearised(const Eigen::VectorXd& z) const {
+    const Eigen::VectorXd slope = z.unaryExpr([this](double v) { return map_.slope(v); });
+    const Eigen::VectorXd value = z.unaryExpr([this](double v) { return map_.value(v); });
+    Eigen::MatrixXd columns = p_.columns;
+    columns.leftCols(own()) = slope.asDiagonal() * p_.columns.leftCols(own());
+    return solve(columns, p_.readings_mm - value + slope.cwiseProduct(z));
+  }
+  [[nodiscard]] Eigen::VectorXd first_guess() const {
+    const Eigen::VectorXd flat = solve(p_.columns, p_.readings_mm);
+    const Eigen::VectorXd motion = p_.readings_mm - beside(flat);
+    return linearised(motion.unaryExpr([this](double y) { return map_.inverse(y); }));
+  }
+
+  const ProjectionProblem& p_;
+  const model::CharacteristicMap<double>& map_;
+  Eigen::VectorXd lower_, upper_, ridge_;
+  double fitted_ = 1;
+};
+
+}  // namespace
+
+Projection project(const ProjectionProblem& problem, const model::CharacteristicMap<double>& map) {
+  return Projector(problem, map).run();
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,127 @@
+#include "model/blocks/prandtl_ishlinskii.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "model/model.h"
+#include "tests/model/drive.h"
+
+namespace softgrip::model::testing {
+namespace {
+
+using Block = PrandtlIshlinskii<double>;
+
+const std::vector<double> operators{0, 0.2, 2, 0.1, 5, 0.07, 20, 0.05};
+
+Block fresh() {
+  return {std::span<const double>(operators), Preparation{}};
+}
+
+Segment<double> straight(double from, double to) {
+  return Segment<double>::straight(0.01, from, to);
+}
+
+TEST(PrandtlIshlinskii, FirstLoadingIsTheInitialCurve) {
+  Block block = fresh();
+  for (double p = 0; p < 50; p += 0.5) {
+    const double wanted =
+        0.2 * p + 0.1 * std::max(p - 2, 0.0) + 0.07 * std::max(p - 5, 0.0) + 0.05 * std::max(p - 20, 0.0);
+    EXPECT_NEAR(block.output(), wanted, 1e-12) << p;
+    block.step(straight(p, p + 0.5), {});
+  }
+}
+
+TEST(PrandtlIshlinskii, ReturnsOnTheSameCurveTwiceAsLarge) {
+  // Masing's rule: from a reversal every branch is the initial curve, doubled in both directions.
+  Block virgin = fresh();
+  Block back = fresh();
+  back.step(straight(0, 60), {});
+  const double at_turn = back.output();
+  for (double p = 0; p < 30; p += 0.5) {
+    EXPECT_NEAR(at_turn - back.output(), 2 * virgin.output(), 1e-12) << p;
+    virgin.step(straight(p, p + 0.5), {});
+    back.step(straight(60 - 2 * p, 60 - 2 * p - 1), {});
+  }
+}
+
+TEST(PrandtlIshlinskii, AnInnerLoopIsWipedOut) {
+  Block plain = fresh(), looped = fresh();
+  for (const auto& [from, to] : {std::pair{0.0, 40.0}, {40.0, 10.0}}) {
+    plain.step(straight(from, to), {});
+    looped.step(straight(from, to), {});
+  }
+  for (const auto& [from, to] : {std::pair{10.0, 30.0}, {30.0, 18.0}, {18.0, 25.0}, {25.0, 10.0}})
+    looped.step(straight(from, to), {});
+  plain.step(straight(10, 5), {});
+  looped.step(straight(10, 5), {});
+  EXPECT_NEAR(plain.output(), looped.output(), 1e-12);
+}
+
+TEST(PrandtlIshlinskii, KeepsNoMemoryOfTheRate) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> pressure(0, 60);
+  Block slow = fresh(), quick = fresh();
+  double at = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double to = pressure(random);
+    slow.step(Segment<double>::straight(100, at, to), {});
+    quick.step(Segment<double>::straight(0, at, to), {});
+    EXPECT_NEAR(slow.output(), quick.output(), 1e-12) << "seed 11, turn " << i;
+    at = to;
+  }
+}
+
+TEST(PrandtlIshlinskii, MeanIsThatOfManySmallSteps) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> pressure(0, 60);
+  Block whole = fresh(), parts = fresh();
+  double at = 0;
+  for (int i = 0; i < 50; ++i) {
+    const double to = pressure(random);
+    const Segment<double> out = whole.step(straight(at, to), {});
+    double mean = 0;
+    constexpr int count = 2000;
+    for (int k = 0; k < count; ++k) {
+      const double a = at + (to - at) * k / count, b = at + (to - at) * (k + 1) / count;
+      mean += parts.step(Segment<double>::straight(0.01 / count, a, b), {}).mean / count;
+    }
+    EXPECT_NEAR(out.mean, mean, 1e-9) << "seed 12, turn " << i;
+    at = to;
+  }
+}
+
+TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
+  // Around a closed loop the work of the pressure on the displacement is never negative.
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> pressure(0, 60);
+  for (int loop = 0; loop < 50; ++loop) {
+    Block block = fresh();
+    const double low = pressure(random), high = pressure(random);
+    double at = 0, work = 0;
+    const auto go = [&](double to, bool counts) {
+      constexpr int count = 200;
+      const double from = at;
+      for (int k = 0; k < count; ++k) {
+        const double next = from + (to - from) * (k + 1) / count, before = block.output();
+        block.step(straight(at, next), {});
+        if (counts) work += 0.5 * (at + next) * (block.output() - before);
+        at = next;
+      }
+    };
+    go(high, false), go(low, false), go(high, true), go(low, true);
+    EXPECT_GE(work, -1e-9) << "seed 13, loop " << loop;
+  }
+}
+
+TEST(PrandtlIshlinskii, ThresholdsRise) {
+  EXPECT_TRUE(Block::objection(operators).empty());
+  EXPECT_FALSE(Block::objection(std::vector<double>{2, 0.1, 2, 0.2}).empty());
+  EXPECT_FALSE(Block::objection(std::vector<double>{5, 0.1, 2, 0.2}).empty());
+}
+
+}  // namespace
+}  // namespace softgrip::model::testing

@@ -1,0 +1,90 @@
+#include "sysid/logs/input_smoothing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace softgrip::sysid {
+namespace {
+
+struct Signal {
+  std::vector<double> time_s, truth, measured;
+};
+
+/// Triangles with holds, as a regulator gives them, sampled irregularly.
+Signal triangles(double noise, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> interval(0.005, 0.015);
+  Signal s;
+  for (double t = 0; t < 40; t += interval(random)) {
+    const double phase = std::fmod(t, 10.0);
+    s.time_s.push_back(t);
+    s.truth.push_back(phase < 4 ? 10 * phase : phase < 6 ? 40 : 10 * (10 - phase));
+    s.measured.push_back(s.truth.back() + noise * normal(random));
+  }
+  return s;
+}
+
+double rms(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+TEST(InputSmoothing, FindsTheNoiseOfASignal) {
+  for (const double noise : {0.05, 0.3, 1.0}) {
+    const Signal s = triangles(noise, 3);
+    EXPECT_NEAR(white_noise_of(s.time_s, s.measured), noise, 0.06 * noise);
+  }
+}
+
+TEST(InputSmoothing, TakesMostOfTheNoiseAwayAndKeepsTheCorners) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Signal s = triangles(0.3, seed);
+    const std::vector<double> smooth = smoothed(s.time_s, s.measured, white_noise_of(s.time_s, s.measured));
+    EXPECT_LT(rms(smooth, s.truth), 0.1) << "seed " << seed;
+    for (std::size_t i = 0; i < smooth.size(); ++i) EXPECT_NEAR(smooth[i], s.truth[i], 0.6) << s.time_s[i];
+  }
+}
+
+TEST(InputSmoothing, HasNoDelay) {
+  const Signal s = triangles(0.3, 5);
+  const std::vector<double> smooth = smoothed(s.time_s, s.measured, 0.3);
+  double up = 0, down = 0;
+  int ups = 0, downs = 0;
+  for (std::size_t i = 0; i < s.truth.size(); ++i) {
+    const double phase = std::fmod(s.time_s[i], 10.0);
+    if (phase > 1 && phase < 3) up += smooth[i] - s.truth[i], ++ups;
+    if (phase > 7 && phase < 9) down += smooth[i] - s.truth[i], ++downs;
+  }
+  EXPECT_NEAR(up / ups - down / downs, 0, 0.02) << "10 kPa/s: 1 ms is 0.02 kPa between the branches";
+}
+
+TEST(InputSmoothing, AnswersDoNotDependOnTheUnit) {
+  Signal s = triangles(0.3, 6);
+  const std::vector<double> one = smoothed(s.time_s, s.measured, 0.3);
+  for (double& v : s.measured) v *= 1000;
+  const std::vector<double> other = smoothed(s.time_s, s.measured, 300);
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(other[i], 1000 * one[i], 1e-3);
+}
+
+TEST(InputSmoothing, BridgesWhatWasNotMeasured) {
+  Signal s = triangles(0.1, 7);
+  for (std::size_t i = 100; i < 130; ++i) s.measured[i] = std::nan("");
+  s.measured.front() = std::nan("");
+  const std::vector<double> smooth = smoothed(s.time_s, s.measured, 0.1);
+  for (std::size_t i = 100; i < 130; ++i) EXPECT_NEAR(smooth[i], s.truth[i], 0.3);
+}
+
+TEST(InputSmoothing, LeavesAColumnWithoutNoiseAsItIs) {
+  Signal s = triangles(0, 8);
+  EXPECT_EQ(smooth_input(s.time_s, s.measured), 0);
+  EXPECT_EQ(s.measured, s.truth);
+  std::vector<double> constant(s.time_s.size(), 500.0);
+  EXPECT_EQ(smooth_input(s.time_s, constant), 0);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

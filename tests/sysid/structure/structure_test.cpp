@@ -1,0 +1,239 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "model/blocks/characteristic.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/transport_delay.h"
+#include "model/catalogue.h"
+#include "model/chain.h"
+#include "model/named.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/structure/identify_structure.h"
+#include "sysid/structure/published_element.h"
+#include "sysid/structure/structure.h"
+#include "sysid/structure/structure_choice.h"
+#include "sysid/structure/structure_columns.h"
+#include "sysid/structure/structure_fit.h"
+#include "sysid/structure/structure_model.h"
+#include "sysid/structure/structure_projection.h"
+#include "sysid/structure/valve_stage.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using model::SignalName;
+
+/// A finger of plays, creep over three decades, a bend, and a valve that vents slowly. Its thresholds and
+/// time constants stand on no grid of the fit.
+model::Model play_finger() {
+  model::Model m;
+  m.name = "play_finger";
+  m.source = "made for this test";
+  m = model::with_block(std::move(m), {model::block_type<model::TransportDelay>(), {0.06}});
+  m = model::with_block(std::move(m), {*model::find_block("asymmetric_valve_lag"), {0.08, 0.2}});
+  m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
+                                       {0, 0.2, 1.3, 0.06, 4.1, 0.05, 9.7, 0.04, 17, 0.03}});
+  m = model::with_block(std::move(m),
+                        {model::block_type<model::KelvinVoigt>(), {1e9, 25, 7.5, 30, 75, 40, 1100}});
+  return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
+}
+
+Log scaled(Log log, double mm) {
+  for (double& y : log.displacement_mm) y *= mm;
+  return log;
+}
+
+/// The rest of a log as a model predicts it from its start, against the truth without noise.
+double continuation_rmse_mm(const model::Model& truth, const model::Model& found, SignalName signal,
+                            double share) {
+  const Log log = simulated(truth, signal, 100, 0, 1);
+  const std::vector<Record> records = make_records({log}, {});
+  const std::vector<double> left =
+      residual(records[0], predict(found, records[0], rest_starts(found, records)[0]));
+  const auto first = static_cast<std::size_t>(share * static_cast<double>(left.size()));
+  return rms(std::span(left).subspan(first));
+}
+
+TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
+  const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 97, 0.03, 4)};
+  for (const Start start : {Start::rest, Start::unknown}) {
+    RecordOptions options;
+    options.start = start;
+    const std::vector<Record> records = make_records(logs, options);
+    const StructureGrid grid = grid_for(records);
+    for (const BaseStructure& structure : {BaseStructure{}, BaseStructure{.hinged_creep = true},
+                                           BaseStructure{.hysteresis = HysteresisForm::bouc_wen}}) {
+      const FittedStructure fit = fit_form(records, structure, grid, {});
+      const FitPoint point = point_of(fit, records, Drive::command);
+      ASSERT_TRUE(model::validate(point.model).empty()) << model::validate(point.model).front();
+      const std::vector<double> left =
+          residual(records[0], predict(point.model, records[0], point.starts[0]));
+      EXPECT_NEAR(rms(left), std::sqrt(fit.mean_square_mm2), 2e-5) << description_of(structure);
+    }
+  }
+}
+
+TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {
+  const std::vector<Record> records =
+      make_records({simulated(loaded("bench_twin"), SignalName::tp1, 100, 0.05, 2)}, {});
+  const PublishedElement whole = fit_published(records, Drive::command, 6, 1);
+  EXPECT_TRUE(whole.converged);
+  EXPECT_NEAR(whole.rmse_mm, 0.05, 0.002);
+  std::vector<Record> part = records;
+  for (std::size_t i = 2000; i < 2600; ++i) part[0].reading_mm[i] = std::nan("");
+  part[0].readings -= 600;
+  const FitPoint again = refit_published(part, whole.point);
+  const std::vector<double> left = residual(records[0], predict(again.model, records[0], again.starts[0]));
+  EXPECT_LT(rms(std::span(left).subspan(2000, 600)), 1.1 * 0.05);
+}
+
+TEST(StructureProjection, WeightsAreNeverNegative) {
+  // A reading that falls where a play would rise: the best weight is none.
+  std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3)}, {});
+  for (double& y : records[0].reading_mm) y = -y;
+  const BaseStructure structure{.characteristic = false};
+  const StructureGrid grid = grid_for(records);
+  const Eigen::MatrixXd columns =
+      structure_columns(records, structure, grid, {0.05, 0.1, 0.1, 0, 0, 0.5, {0}});
+  const ColumnLayout layout(structure, grid, records);
+  const Eigen::VectorXd readings = Eigen::Map<const Eigen::VectorXd>(
+      records[0].reading_mm.data(), static_cast<Eigen::Index>(records[0].reading_mm.size()));
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(readings.size());
+  const Projection found =
+      project({columns, layout, readings, all, grid.largest_kpa, 1e-6}, {0, grid.span_mm});
+  for (Eigen::Index i = 0; i < layout.own(); ++i) EXPECT_GE(found.weights(i), 0);
+  EXPECT_NEAR(found.weights.head(layout.own()).sum(), 0, 1e-3);
+}
+
+TEST(IdentifyStructure, FindsThePublishedElementWithItsDelayAndItsLag) {
+  const model::Model twin = loaded("bench_twin");
+  std::vector<Log> logs;
+  for (const SignalName signal : {SignalName::tp1, SignalName::steps, SignalName::sp2})
+    logs.push_back(simulated(twin, signal, 100, 0.05, 3));
+  const auto found = identify_structure(logs, StructureQuestion::automatic);
+  ASSERT_TRUE(found) << found.error();
+  const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
+                                   [](const auto& c) { return c.chosen; });
+  EXPECT_EQ(chosen->structure, "bouc_wen");
+  EXPECT_LT(found->rmse_mm, 1.02 * 0.05);
+  int checked = 0;
+  for (const Estimate& e : found->parameters) {
+    const double truth = e.name == "transport_delay.delay_s"     ? 0.13
+                         : e.name == "valve_lag.time_constant_s" ? 0.044
+                                                                 : 0;
+    if (truth == 0) continue;
+    ASSERT_TRUE(e.ci95) << e.name;
+    EXPECT_LE(e.ci95->lower, truth) << e.name;
+    EXPECT_GE(e.ci95->upper, truth) << e.name;
+    ++checked;
+  }
+  EXPECT_EQ(checked, 2);
+}
+
+TEST(IdentifyStructure, FindsAFingerOfPlays) {
+  const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 5),
+                              simulated(play_finger(), SignalName::sp2, 100, 0.03, 6)};
+  const auto found = identify_structure(logs, StructureQuestion::automatic);
+  ASSERT_TRUE(found) << found.error();
+  const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
+                                   [](const auto& c) { return c.chosen; });
+  EXPECT_EQ(chosen->structure, "prandtl_ishlinskii");
+  EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
+  EXPECT_LT(continuation_rmse_mm(play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03) << "another log";
+  ASSERT_FALSE(found->structure->ablation.empty());
+  for (const auto& without : found->structure->ablation) {
+    if (without.without != "hysteresis" && without.without != "creep") continue;
+    EXPECT_GT(without.heldout_rmse_mm, 1.5 * chosen->heldout_rmse_mm) << without.without;
+  }
+}
+
+TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
+  const Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 7);
+  const auto one = identify_structure({log}, StructureQuestion::prandtl_ishlinskii);
+  ASSERT_TRUE(one);
+  for (const double factor : {1e-3, 0.1, 1e3}) {
+    const auto other = identify_structure({scaled(log, factor)}, StructureQuestion::prandtl_ishlinskii);
+    ASSERT_TRUE(other) << other.error();
+    EXPECT_NEAR(other->rmse_mm, factor * one->rmse_mm, 1e-3 * factor * one->rmse_mm) << factor;
+    ASSERT_EQ(other->structure->candidates.size(), one->structure->candidates.size());
+    for (std::size_t i = 0; i < one->structure->candidates.size(); ++i)
+      EXPECT_EQ(other->structure->candidates[i].chosen, one->structure->candidates[i].chosen) << factor;
+  }
+}
+
+TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
+  // All weights free and the search's numbers those of the truth: a linear problem, whose minimum no fit of
+  // the same structure may miss by more than the ridge costs.
+  const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
+  const std::vector<Record> records = make_records(logs, {});
+  const StructureGrid grid = grid_for(records);
+  const NonlinearNumbers truth{0.06, 0.08, 0.2, 0.6, 0, 0.5, {0}};
+  StructureFitOptions options;
+  options.ridge = 1e-7;
+  const FittedStructure searched = fit_form(records, {}, grid, options);
+  options.most_iterations = 0;
+  const FittedStructure relaxed = fit_form(records, {}, grid, options, &truth);
+  EXPECT_LT(searched.mean_square_mm2, 1.01 * relaxed.mean_square_mm2);
+}
+
+TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
+  // The valve's blocks give the measured pressure, the rest the displacement.
+  const model::Model whole = play_finger();
+  Log log = simulated(whole, SignalName::tp1, 100, 0.03, 9);
+  const model::Model valve =
+      model::only(whole, [](const model::BlockInfo& info) { return info.station == model::Station::valve; });
+  model::Chain<double> chain(valve, {}, 0.01);
+  std::mt19937_64 random(10);
+  std::normal_distribution<double> noise(0, 0.3);
+  chain.reset(log.pressure_command_kpa.front());
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    if (i > 0) chain.step(log.time_s[i] - log.time_s[i - 1], log.pressure_command_kpa[i]);
+    log.pressure_kpa.push_back(chain.pressure_kpa() + noise(random));
+  }
+  const auto found = identify_structure({log}, StructureQuestion::automatic);
+  ASSERT_TRUE(found) << found.error();
+  ASSERT_TRUE(found->structure->valve);
+  EXPECT_NEAR(found->structure->valve->delay_s, 0.06, 0.01);
+  EXPECT_NEAR(found->structure->valve->filling_time_constant_s, 0.08, 0.01);
+  EXPECT_NEAR(found->structure->valve->venting_time_constant_s, 0.2, 0.01);
+  EXPECT_NEAR(found->structure->valve->rmse_kpa, 0.3, 0.03);
+  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "0.3 kPa of noise on the input must not turn its hysteresis";
+  EXPECT_TRUE(model::validate(found->model).empty());
+}
+
+TEST(ValveStage, BeginsWhereThePressureWasWhateverTheCommandIs) {
+  Log log;
+  log.name = "log";
+  double p = 8;
+  for (int i = 0; i < 4000; ++i) {
+    const double t = 0.01 * i, u = i < 500 ? 40 : i < 2000 ? 10 : 30;
+    log.time_s.push_back(t);
+    log.pressure_command_kpa.push_back(u);
+    log.displacement_mm.push_back(0);
+    log.pressure_kpa.push_back(p);
+    p += 0.01 * (u - p) / (u > p ? 0.3 : 0.8);
+  }
+  const ValveStage stage = fit_valve_stage({log}, 1, true);
+  EXPECT_NEAR(stage.filling_s, 0.3, 0.02);
+  EXPECT_NEAR(stage.venting_s, 0.8, 0.02);
+  EXPECT_LT(stage.rmse_percent, 1);
+}
+
+TEST(IdentifyStructure, SaysWhyItCannot) {
+  Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 5);
+  EXPECT_FALSE(identify_structure({}, StructureQuestion::automatic));
+  IdentifyOptions measured;
+  measured.record.drive = Drive::measured;
+  EXPECT_FALSE(identify_structure({log}, StructureQuestion::automatic, measured));
+  const auto few = identify_structure({slice(log, 0, 50)}, StructureQuestion::automatic);
+  ASSERT_FALSE(few);
+  EXPECT_NE(few.error().find("too few"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid
