@@ -75,7 +75,7 @@ softgrip_room(sysid/diagnosis/gauge
   USES base document model sysid/logs sysid/fitting sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/verdict
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
 softgrip_room(sysid/diagnosis/experiments
   USES base sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes sysid/diagnosis/search

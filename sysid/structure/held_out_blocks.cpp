@@ -54,6 +54,27 @@ void HeldOutBlocks::judge(const FitPoint& point, std::size_t fold, std::vector<d
   }
 }
 
+HeldOutContinuation::HeldOutContinuation(const std::vector<Record>& records)
+    : records_(records), fitted_(records) {
+  for (Record& record : fitted_) hide(record, record.size() / 2, record.size());
+}
+
+std::vector<double> HeldOutContinuation::judge(const FitPoint& point) const {
+  constexpr std::size_t parts = 5;
+  std::vector<double> losses;
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const std::vector<double> left =
+        residual(records_[r], predict(point.model, records_[r], point.starts[r]));
+    const std::size_t begin = left.size() / 2, length = left.size() - begin;
+    for (std::size_t k = 0; k < parts; ++k) {
+      const std::size_t first = begin + k * length / parts, last = begin + (k + 1) * length / parts;
+      const double root = rms(std::span(left).subspan(first, last - first));
+      losses.push_back(root * root);
+    }
+  }
+  return losses;
+}
+
 double held_out_rmse_mm(const std::vector<double>& losses_mm2) {
   double sum = 0;
   for (const double loss : losses_mm2) sum += loss;

@@ -33,6 +33,20 @@ class HeldOutBlocks {
   std::vector<std::vector<Record>> fitted_;  ///< by fold
 };
 
+/// Continuation: the first half of every record is fitted, the second judged. With few cycles of data what
+/// lies between fitted readings flatters a model that only follows them.
+class HeldOutContinuation {
+ public:
+  explicit HeldOutContinuation(const std::vector<Record>& records);
+  [[nodiscard]] const std::vector<Record>& first_half() const { return fitted_; }
+  /// Mean squares of contiguous parts of the second halves under a model that was fitted to the first [mm^2].
+  [[nodiscard]] std::vector<double> judge(const FitPoint& point) const;
+
+ private:
+  const std::vector<Record>& records_;
+  std::vector<Record> fitted_;
+};
+
 /// Root of the mean over blocks [mm].
 [[nodiscard]] double held_out_rmse_mm(const std::vector<double>& losses_mm2);
 

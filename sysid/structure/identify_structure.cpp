@@ -6,14 +6,10 @@
 #include <limits>
 
 #include "base/numbers.h"
-#include "model/blocks/characteristic.h"
-#include "model/blocks/prandtl_ishlinskii.h"
-#include "model/blocks/pressure_dependent_creep.h"
-#include "model/named.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
-#include "sysid/structure/published_element.h"
+#include "sysid/structure/structure_model.h"
 #include "sysid/structure/valve_stage.h"
 
 namespace softgrip::sysid {
@@ -24,15 +20,6 @@ using Failure = tl::unexpected<std::string>;
 /// A search that ends within this of the best RMSE has reached it.
 constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
-
-/// What stands where it was put before the fit: thresholds, hinges and their time constants, the bend's end.
-bool stays(const model::Model& model, std::size_t flat) {
-  const model::ParameterPlace place = model::place_of(model, flat);
-  const model::BlockSpec& block = model.blocks[place.block];
-  if (model::is<model::PrandtlIshlinskii>(block)) return place.value % 2 == 0;
-  if (model::is<model::PressureDependentCreep>(block)) return place.value % 3 != 1;
-  return model::is<model::Characteristic>(block) && place.value == 1;
-}
 
 std::vector<Record> fitted_part(std::vector<Record> records, double share) {
   for (Record& record : records) {
@@ -55,17 +42,14 @@ StructureEvidence evidence_of(const StructureChoice& choice) {
                                    t.rmse_mm, t.heldout_rmse_mm, i == choice.chosen});
   }
   for (const StructureChoice::Without& w : choice.ablation)
-    evidence.ablation.push_back({w.ingredient, w.trial.rmse_mm, w.trial.heldout_rmse_mm});
+    evidence.ablation.push_back(
+        {std::string(name_of(w.ingredient)), w.trial.rmse_mm, w.trial.heldout_rmse_mm});
   return evidence;
 }
 
 /// Intervals of the numbers that the fit moved, those that stand at zero or at a bound without one.
 void add_estimates(const StructureTrial& trial, Identification& result) {
-  std::vector<std::size_t> free;
-  for (const std::size_t flat : free_numbers(trial.point.model)) {
-    if (!stays(trial.point.model, flat)) free.push_back(flat);
-  }
-  const auto residuals = residuals_for(result.records, FitSpace(trial.point.model, result.records, free));
+  const auto residuals = residuals_for(result.records, fitted_space(trial.point, result.records));
   const std::vector<double> z = residuals->space().z(trial.point);
   const Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
   const FittedPoint fit{*residuals, z, uncertainty};

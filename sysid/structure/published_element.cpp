@@ -1,7 +1,9 @@
 #include "sysid/structure/published_element.h"
 
 #include <algorithm>
+#include <limits>
 
+#include "model/blocks/bouc_wen.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_lag.h"
@@ -9,6 +11,7 @@
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/search.h"
+#include "sysid/identification/combinations.h"
 #include "sysid/identification/identify.h"
 #include "sysid/identification/start_points.h"
 
@@ -24,6 +27,14 @@ std::vector<std::size_t> free_numbers(const model::Model& model) {
     flat.push_back(i);
   }
   return flat;
+}
+
+bool rises_everywhere(const model::Model& model) {
+  const std::vector<double>& v = model.blocks[*model::position_of<model::BoucWen>(model)].values;
+  const double growing = v[2] + v[3];
+  const double steepest =
+      growing > 0 ? std::max(1.0, 2 * v[3] / growing) : std::numeric_limits<double>::infinity();
+  return beta_over_gain(model) * steepest < 1;
 }
 
 PublishedElement fit_published(const std::vector<Record>& records, Drive drive, std::size_t starts,

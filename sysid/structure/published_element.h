@@ -22,6 +22,9 @@ struct PublishedElement {
 /// From where it stands, for records of the same samples.
 [[nodiscard]] FitPoint refit_published(const std::vector<Record>& records, const FitPoint& from);
 
+/// Whether it rises with the pressure everywhere: beta times its steepest slope is below alpha + 1/k0.
+[[nodiscard]] bool rises_everywhere(const model::Model& model);
+
 /// What a fit of it may move, by flat index: everything but the exponent and k0 (which enters with alpha as
 /// one sum).
 [[nodiscard]] std::vector<std::size_t> free_numbers(const model::Model& model);

@@ -14,7 +14,7 @@ std::string description_of(const BaseStructure& s) {
   std::string text = !s.hysteretic                          ? "elastic gain"
                      : s.hysteresis == HysteresisForm::play ? "play operators"
                                                             : "Bouc-Wen";
-  if (s.creep) text += ", creep ladder";
+  if (s.creep) text += s.slow_creep ? ", creep ladder" : ", creep ladder without its slow end";
   if (s.hinged_creep) text += ", pressure-dependent creep";
   if (s.delay) text += ", delay";
   if (s.lag) text += s.two_way ? ", lag (filling and venting)" : ", lag";

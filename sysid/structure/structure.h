@@ -21,6 +21,7 @@ struct BaseStructure {
   HysteresisForm hysteresis = HysteresisForm::play;
   bool hysteretic = true;      ///< false: the elastic gain alone
   bool creep = true;           ///< a ladder of Kelvin-Voigt branches
+  bool slow_creep = true;      ///< the ladder reaches beyond a tenth of the longest record
   bool delay = true;           ///< dead time between the drive and the finger
   bool lag = true;             ///< a first-order lag behind it
   bool two_way = true;         ///< filling and venting have a time constant each
@@ -44,6 +45,7 @@ struct StructureGrid {
   double span_mm = 0;                  ///< of the readings, from zero
   std::vector<double> thresholds_kpa;  ///< of the plays besides the elastic one, ascending
   std::vector<double> ladder_s;        ///< time constants of the creep branches, ascending
+  double slow_from_s = 0;              ///< branches from here on are slow creep
   std::vector<double> hinges_kpa;      ///< where pressure-dependent creep begins, ascending
   std::vector<double> hinge_ladder_s;  ///< its time constants
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "base/parallel.h"
 #include "sysid/fitting/minimise.h"
@@ -43,6 +42,7 @@ class Judge {
     trial.point = std::move(found.point);
     trial.rmse_mm = found.rmse_mm;
     trial.converged = found.converged;
+    trial.invertible = rises_everywhere(trial.point.model);
     trial.start_rmse_mm = std::move(found.start_rmse_mm);
     for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold)
       blocks_.judge(refit_published(blocks_.without(fold), trial.point), fold, trial.block_losses_mm2);
@@ -94,46 +94,54 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   return list;
 }
 
-/// A structure without one of its ingredients, if it has it.
-struct Ingredient {
-  const char* name;
-  std::optional<BaseStructure> (*without)(BaseStructure);
-};
-constexpr std::array ingredients{
-    Ingredient{"hysteresis", [](BaseStructure s) { return s.hysteretic = false, std::optional(s); }},
-    Ingredient{"creep",
-               [](BaseStructure s) -> std::optional<BaseStructure> {
-                 if (!s.creep && !s.hinged_creep) return std::nullopt;
-                 s.creep = s.hinged_creep = false;
-                 return s;
-               }},
-    Ingredient{"dependence of creep on pressure",
-               [](BaseStructure s) -> std::optional<BaseStructure> {
-                 if (!s.hinged_creep) return std::nullopt;
-                 s.hinged_creep = false;
-                 return s;
-               }},
-    Ingredient{"delay and lag",
-               [](BaseStructure s) -> std::optional<BaseStructure> {
-                 if (!s.lag && !s.delay) return std::nullopt;
-                 s.lag = s.delay = false;
-                 return s;
-               }},
-    Ingredient{"a lag of its own for venting",
-               [](BaseStructure s) -> std::optional<BaseStructure> {
-                 if (!s.lag || !s.two_way) return std::nullopt;
-                 s.two_way = false;
-                 return s;
-               }},
-    Ingredient{"characteristic", [](BaseStructure s) -> std::optional<BaseStructure> {
-                 if (!s.characteristic) return std::nullopt;
-                 s.characteristic = false;
-                 return s;
-               }}};
+constexpr std::array ingredients{Ingredient::hysteresis,
+                                 Ingredient::play_operators,
+                                 Ingredient::creep,
+                                 Ingredient::slow_creep,
+                                 Ingredient::pressure_dependent_creep,
+                                 Ingredient::delay,
+                                 Ingredient::lag,
+                                 Ingredient::venting_lag,
+                                 Ingredient::characteristic};
+
+/// The structure without the ingredient; as it is where it does not have it.
+BaseStructure without(BaseStructure s, Ingredient ingredient) {
+  switch (ingredient) {
+    case Ingredient::hysteresis:
+      s.hysteretic = false;
+      break;
+    case Ingredient::play_operators:
+      s.hysteresis = HysteresisForm::bouc_wen;
+      break;
+    case Ingredient::creep:
+      s.creep = s.hinged_creep = false;
+      break;
+    case Ingredient::slow_creep:
+      s.slow_creep = false;
+      break;
+    case Ingredient::pressure_dependent_creep:
+      s.hinged_creep = false;
+      break;
+    case Ingredient::delay:
+      s.delay = false;
+      break;
+    case Ingredient::lag:
+      s.lag = false;
+      break;
+    case Ingredient::venting_lag:
+      s.two_way = false;
+      break;
+    case Ingredient::characteristic:
+      s.characteristic = false;
+      break;
+  }
+  return s;
+}
 
 std::size_t best_of(const std::vector<StructureTrial>& trials) {
   return static_cast<std::size_t>(std::min_element(trials.begin(), trials.end(),
                                                    [](const StructureTrial& a, const StructureTrial& b) {
+                                                     if (a.invertible != b.invertible) return a.invertible;
                                                      return a.heldout_rmse_mm < b.heldout_rmse_mm;
                                                    }) -
                                   trials.begin());
@@ -143,6 +151,7 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials) {
   const std::size_t best = best_of(trials);
   for (std::size_t i = 0; i < best; ++i) {
+    if (!trials[i].invertible) continue;
     const LossDifference behind = loss_difference(trials[i].block_losses_mm2, trials[best].block_losses_mm2);
     if (behind.mean_mm2 <= behind.standard_error_mm2) return i;
   }
@@ -153,9 +162,11 @@ void ablate(const Judge& judge, const StructureChoiceOptions& options, Structure
   const StructureTrial& chosen = choice.trials[choice.chosen];
   if (chosen.structure.published) return;
   std::vector<StructureChoice::Without> list;
-  for (const Ingredient& ingredient : ingredients) {
-    if (const auto rest = ingredient.without(chosen.structure))
-      list.push_back({ingredient.name, {}}), list.back().trial.structure = *rest;
+  for (const Ingredient ingredient : ingredients) {
+    const BaseStructure rest = without(chosen.structure, ingredient);
+    if (rest == chosen.structure) continue;
+    list.push_back({ingredient, {}});
+    list.back().trial.structure = rest;
   }
   parallel_for(list.size(), options.threads, [&](std::size_t i) {
     list[i].trial = judge.judge(list[i].trial.structure, choice.ridge, fold_iterations);
@@ -164,6 +175,14 @@ void ablate(const Judge& judge, const StructureChoiceOptions& options, Structure
 }
 
 }  // namespace
+
+std::string_view name_of(Ingredient ingredient) {
+  constexpr std::array<std::string_view, 9> names{
+      "hysteresis", "play operators (Bouc-Wen instead)",      "creep",
+      "slow creep", "dependence of creep on pressure",        "delay",
+      "lag",        "a time constant of its own for venting", "characteristic"};
+  return names[static_cast<std::size_t>(ingredient)];
+}
 
 StructureChoice choose_structure(const std::vector<Record>& records, const StructureChoiceOptions& options) {
   const Judge judge(records, options);
@@ -187,6 +206,13 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   say("taking one ingredient away after the other");
   ablate(judge, options, choice);
   return choice;
+}
+
+FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
+  if (trial.structure.published) return refit_published(records, trial.point);
+  StructureFitOptions options;
+  options.ridge = trial.ridge;
+  return point_of(fit_form(records, trial.structure, grid_for(records), options), records, drive);
 }
 
 }  // namespace softgrip::sysid

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sysid/fitting/fit_space.h"
@@ -23,6 +24,20 @@ struct StructureChoiceOptions {
   std::function<void(const std::string&)> progress;
 };
 
+/// What a structure can be made without, to see what it brings.
+enum class Ingredient {
+  hysteresis,
+  play_operators,  ///< instead of them Bouc-Wen's element
+  creep,
+  slow_creep,
+  pressure_dependent_creep,
+  delay,
+  lag,
+  venting_lag,  ///< one time constant for both directions
+  characteristic
+};
+[[nodiscard]] std::string_view name_of(Ingredient ingredient);
+
 /// One structure, fitted to everything and, fold by fold, without the blocks on which it is then judged.
 struct StructureTrial {
   BaseStructure structure;
@@ -30,6 +45,7 @@ struct StructureTrial {
   double ridge = 0;
   double rmse_mm = 0;  ///< of the readings it was fitted to
   bool converged = false;
+  bool invertible = true;  ///< the published element may move the wrong way first; it is then not chosen
   std::vector<double> start_rmse_mm;     ///< where the search from each start ended
   std::vector<double> block_losses_mm2;  ///< mean square of each block while it was held out
   double heldout_rmse_mm = 0;            ///< root of their mean
@@ -42,7 +58,7 @@ struct StructureChoice {
   std::size_t blocks = 0;
   /// The chosen structure without one of its ingredients each, fitted and judged the same way.
   struct Without {
-    std::string ingredient;
+    Ingredient ingredient;
     StructureTrial trial;
   };
   std::vector<Without> ablation;
@@ -53,5 +69,9 @@ struct StructureChoice {
 /// section 3.4.3).
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
+
+/// The same structure with the same ridge fitted to other readings of the same records.
+[[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,
+                                 Drive drive);
 
 }  // namespace softgrip::sysid

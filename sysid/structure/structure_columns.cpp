@@ -65,6 +65,7 @@ class Finger {
         delay_(std::vector<double>{structure.delay ? numbers.delay_s : 0},
                {.sample_time_s = record.sample_time_s}),
         ladder_(grid.ladder_s, record.drive_kpa.front()),
+        steepest_(steepest_state(numbers)),
         q_(record.drive_kpa.front()) {
     delay_.reset(q_);
     lag_.reset(q_);
@@ -86,7 +87,8 @@ class Finger {
     row(ColumnLayout::elastic()) = q_;
     for (std::size_t i = 0; i < plays_.size() && i < layout.hysteretic(); ++i)
       row(layout.hysteresis(i)) = plays_[i];
-    if (structure_.hysteresis == HysteresisForm::bouc_wen && layout.hysteretic() == 1) row(1) = q_ - g_;
+    if (structure_.hysteresis == HysteresisForm::bouc_wen && layout.hysteretic() == 1)
+      row(1) = steepest_ * q_ - g_;
     for (std::size_t b = 0; b < layout.branches(); ++b) row(layout.creep(b)) = ladder_.values()[b];
     for (std::size_t h = 0; h < layout.hinges(); ++h) {
       for (std::size_t b = 0; b < layout.hinge_branches(); ++b)
@@ -123,17 +125,29 @@ class Finger {
   std::vector<Ladder> hinged_;
   std::vector<double> plays_;
   double g_ = 0;
+  double steepest_;  ///< dg/dp is never above it
   double q_;
 };
 
+std::size_t branches_of(const BaseStructure& structure, const StructureGrid& grid) {
+  if (!structure.creep) return 0;
+  if (structure.slow_creep) return grid.ladder_s.size();
+  return static_cast<std::size_t>(
+      std::lower_bound(grid.ladder_s.begin(), grid.ladder_s.end(), grid.slow_from_s) - grid.ladder_s.begin());
+}
+
 }  // namespace
+
+double steepest_state(const NonlinearNumbers& numbers) {
+  return std::max(1.0, 2 * numbers.narrowing);
+}
 
 ColumnLayout::ColumnLayout(const BaseStructure& structure, const StructureGrid& grid,
                            const std::vector<Record>& records)
     : hysteretic_(!structure.hysteretic                              ? 0
                   : structure.hysteresis == HysteresisForm::bouc_wen ? 1
                                                                      : grid.thresholds_kpa.size()),
-      branches_(structure.creep ? grid.ladder_s.size() : 0),
+      branches_(branches_of(structure, grid)),
       hinges_(structure.hinged_creep ? grid.hinges_kpa.size() : 0),
       hinge_branches_(structure.hinged_creep ? grid.hinge_ladder_s.size() : 0) {
   count_ = own();

@@ -20,7 +20,8 @@ class ColumnLayout {
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);
 
   [[nodiscard]] static constexpr Eigen::Index elastic() { return 0; }
-  /// Play by play, or the one of Bouc-Wen's element (pressure minus its normalised state).
+  /// Play by play, or the one of Bouc-Wen's element: steepest_state() times the pressure, minus its state
+  /// over beta.
   [[nodiscard]] static constexpr Eigen::Index hysteresis(std::size_t i) {
     return 1 + static_cast<Eigen::Index>(i);
   }
@@ -47,6 +48,10 @@ class ColumnLayout {
   std::vector<Eigen::Index> offset_, unsettled_;
   Eigen::Index count_ = 0;
 };
+
+/// The largest slope of Bouc-Wen's normalised state over pressure, at the turn of a saturated loop: 2
+/// eta/(gamma + eta), 1 at least. An elastic gain of beta times it keeps the element monotone.
+[[nodiscard]] double steepest_state(const NonlinearNumbers& numbers);
 
 /// Which samples are rows: those with a reading.
 struct RowPlace {

@@ -16,6 +16,8 @@ namespace {
 
 /// What a squared deviation by one of its widths costs a number, in the logarithm of the mean square.
 constexpr double prior = 0.05;
+/// What follows the pressure at once has at least this share of the finger's gain over all pressures.
+constexpr double least_elastic_share = 0.01;
 /// From one time constant of the ladder to the next.
 constexpr double ladder_ratio = 3;
 
@@ -55,7 +57,6 @@ class Search {
     readings_.resize(static_cast<Eigen::Index>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i)
       readings_(static_cast<Eigen::Index>(i)) = records[rows[i].record].reading_mm[rows[i].sample];
-    row_weights_ = Eigen::VectorXd::Ones(readings_.size());
     add_coordinates();
   }
 
@@ -66,7 +67,7 @@ class Search {
     double value = std::numeric_limits<double>::infinity();
   };
 
-  [[nodiscard]] State at(const NonlinearNumbers& numbers) {
+  [[nodiscard]] State at(const NonlinearNumbers& numbers, const Eigen::VectorXd* near = nullptr) {
     if (!cached_ || !same_columns(numbers)) {
       columns_ = structure_columns(records_, structure_, grid_, numbers);
       cached_for_ = numbers;
@@ -74,9 +75,14 @@ class Search {
     }
     State state;
     state.numbers = numbers;
-    const ProjectionProblem problem{columns_,     layout_,           readings_,
-                                    row_weights_, grid_.largest_kpa, options_.ridge};
-    state.projection = project(problem, {structure_.characteristic ? numbers.curvature : 0, grid_.span_mm});
+    const ProjectionProblem problem{columns_,
+                                    layout_,
+                                    readings_,
+                                    grid_.largest_kpa,
+                                    least_elastic_share * grid_.span_mm / grid_.largest_kpa,
+                                    options_.ridge};
+    state.projection =
+        project(problem, {structure_.characteristic ? numbers.curvature : 0, grid_.span_mm}, near);
     const Projection& p = state.projection;
     state.residual.resize(p.error_mm.size() + p.penalty_mm.size());
     state.residual << p.error_mm, p.penalty_mm;
@@ -93,7 +99,7 @@ class Search {
       const Normal normal = normal_at(best);
       bool improved = false;
       for (int attempt = 0; attempt < 8; ++attempt) {
-        State trial = at(moved(best.numbers, step(normal, best.numbers, damping)));
+        State trial = at(moved(best.numbers, step(normal, best.numbers, damping)), &best.projection.weights);
         if (trial.value < best.value) {
           converged = best.value - trial.value < 1e-6;
           best = std::move(trial);
@@ -161,7 +167,7 @@ class Search {
       const double h = t + 1e-4 > c.upper ? -1e-4 : 1e-4;
       NonlinearNumbers beside = state.numbers;
       c.set(beside, t + h);
-      jacobian.col(k) = (at(beside).residual - state.residual) / h;
+      jacobian.col(k) = (at(beside, &state.projection.weights).residual - state.residual) / h;
     }
     const double sum = state.residual.squaredNorm();
     normal.curvature = jacobian.transpose() * jacobian / sum;
@@ -208,7 +214,7 @@ class Search {
   const StructureGrid& grid_;
   StructureFitOptions options_;
   ColumnLayout layout_;
-  Eigen::VectorXd readings_, row_weights_;
+  Eigen::VectorXd readings_;
   std::vector<Coordinate> coordinates_;
   Eigen::MatrixXd columns_;
   NonlinearNumbers cached_for_;
@@ -257,6 +263,7 @@ StructureGrid grid_for(const std::vector<Record>& records) {
     grid.thresholds_kpa.push_back(0.95 * std::pow(static_cast<double>(i) / plays, 1.5) * grid.largest_kpa);
   for (double tau = 0.05; tau < 3 * longest_s && grid.ladder_s.size() < 10; tau *= ladder_ratio)
     grid.ladder_s.push_back(tau);
+  grid.slow_from_s = longest_s / 10;
   grid.hinges_kpa = {0.25 * grid.largest_kpa, 0.5 * grid.largest_kpa, 0.75 * grid.largest_kpa};
   for (double tau = 0.25; tau < longest_s && grid.hinge_ladder_s.size() < 5; tau *= 5)
     grid.hinge_ladder_s.push_back(tau);

@@ -15,7 +15,7 @@ namespace softgrip::sysid {
 struct StructureFitOptions {
   double ridge = 1e-5;           ///< see ProjectionProblem
   int most_iterations = 40;      ///< from each start
-  std::size_t most_rows = 4000;  ///< readings that the search looks at; the weights are then fitted to all
+  std::size_t most_rows = 2500;  ///< readings that the search looks at; the weights are then fitted to all
 };
 
 /// A structure with numbers.

@@ -11,6 +11,7 @@
 #include "model/blocks/pressure_dependent_creep.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
+#include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_columns.h"
 
 namespace softgrip::sysid {
@@ -51,7 +52,8 @@ class Builder {
     if (fit_.structure.hysteresis == HysteresisForm::bouc_wen) {
       const double beta = fit_.structure.hysteretic ? weight(ColumnLayout::hysteresis(0)) : 0;
       const double eta = fit_.numbers.growing_per_kpa * fit_.numbers.narrowing;
-      add<model::BoucWen>({elastic + beta, beta, fit_.numbers.growing_per_kpa - eta, eta, 1});
+      add<model::BoucWen>(
+          {elastic + steepest_state(fit_.numbers) * beta, beta, fit_.numbers.growing_per_kpa - eta, eta, 1});
       return;
     }
     std::vector<double> parts{0, elastic};
@@ -91,7 +93,24 @@ class Builder {
   model::Model model_;
 };
 
+/// What stands where it was put before the fit: thresholds, hinges and their time constants, the bend's end.
+bool stays(const model::Model& model, std::size_t flat) {
+  const model::ParameterPlace place = model::place_of(model, flat);
+  const model::BlockSpec& block = model.blocks[place.block];
+  if (model::is<model::PrandtlIshlinskii>(block)) return place.value % 2 == 0;
+  if (model::is<model::PressureDependentCreep>(block)) return place.value % 3 != 1;
+  return model::is<model::Characteristic>(block) && place.value == 1;
+}
+
 }  // namespace
+
+FitSpace fitted_space(const FitPoint& point, const std::vector<Record>& records) {
+  std::vector<std::size_t> free;
+  for (const std::size_t flat : free_numbers(point.model)) {
+    if (!stays(point.model, flat)) free.push_back(flat);
+  }
+  return FitSpace(point.model, records, free);
+}
 
 FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive) {
   const ColumnLayout layout(fit.structure, fit.grid, records);

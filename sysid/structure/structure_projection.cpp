@@ -7,8 +7,8 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr int most_steps = 12;
-constexpr double settled_share = 1e-7;
+constexpr int most_steps = 20;
+constexpr double settled_share = 1e-8;
 
 class Projector {
  public:
@@ -25,16 +25,17 @@ class Projector {
     for (std::size_t r = 0; r < p_.layout.records(); ++r) {
       if (p_.layout.offset(r) >= 0) ridge_(p_.layout.offset(r)) = 0;
     }
-    fitted_ = std::max(1.0, p_.row_weights.sum());
+    lower_(ColumnLayout::elastic()) = p_.least_elastic;
+    fitted_ = std::max(1.0, static_cast<double>(p_.columns.rows()));
     ridge_ *= p_.ridge * fitted_;
   }
 
-  Projection run() {
+  Projection run(const Eigen::VectorXd* near) {
     Eigen::VectorXd x;
     if (map_.curvature == 0) {
       x = solve(p_.columns, p_.readings_mm);
     } else {
-      x = first_guess();
+      x = near != nullptr && near->size() == p_.columns.cols() ? *near : first_guess();
       double last = cost(x);
       for (int i = 0; i < most_steps; ++i) {
         const Eigen::VectorXd next = linearised(inner(x));
@@ -54,7 +55,7 @@ class Projector {
     Projection result;
     result.error_mm = errors(x);
     result.penalty_mm = ridge_.cwiseSqrt().cwiseProduct(x);
-    result.mean_square_mm2 = result.error_mm.cwiseAbs2().dot(p_.row_weights) / fitted_;
+    result.mean_square_mm2 = result.error_mm.squaredNorm() / fitted_;
     result.weights = std::move(x);
     return result;
   }
@@ -72,16 +73,15 @@ class Projector {
     return inner(x).unaryExpr([this](double z) { return map_.value(z); }) + beside(x) - p_.readings_mm;
   }
   [[nodiscard]] double cost(const Eigen::VectorXd& x) const {
-    return errors(x).cwiseAbs2().dot(p_.row_weights) + ridge_.dot(x.cwiseAbs2());
+    return errors(x).squaredNorm() + ridge_.dot(x.cwiseAbs2());
   }
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) const {
-    const Eigen::MatrixXd weighted = p_.row_weights.asDiagonal() * columns;
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
     gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
     gram.diagonal() += ridge_;
-    return solve_bounded(gram, weighted.transpose() * target, lower_, upper_).x;
+    return solve_bounded(gram, columns.transpose() * target, lower_, upper_).x;
   }
   /// One Gauss-Newton step from where the characteristic's input is `z`.
   [[nodiscard]] Eigen::VectorXd linearised(const Eigen::VectorXd& z) const {
@@ -105,8 +105,9 @@ class Projector {
 
 }  // namespace
 
-Projection project(const ProjectionProblem& problem, const model::CharacteristicMap<double>& map) {
-  return Projector(problem, map).run();
+Projection project(const ProjectionProblem& problem, const model::CharacteristicMap<double>& map,
+                   const Eigen::VectorXd* near) {
+  return Projector(problem, map).run(near);
 }
 
 }  // namespace softgrip::sysid

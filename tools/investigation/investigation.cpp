@@ -66,6 +66,9 @@ class Investigator {
       return tl::unexpected(written.error());
     if (result_.last.verdict == Verdict::unexplained)
       return end(InvestigationEnd::unexplained, "structure is left that no cause of the library explains");
+    if (result_.last.verdict == Verdict::partly_explained)
+      return end(InvestigationEnd::unexplained,
+                 "beside what is named, structure is left that nothing explains");
     if (result_.last.verdict != Verdict::ambiguous) return end(InvestigationEnd::settled, "");
     const auto& gauge_check = consequences.experiment.gauge_check;
     if (!consequences.experiment.best && gauge_check && options_.take_gauge)

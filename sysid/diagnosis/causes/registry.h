@@ -8,6 +8,7 @@
 #include "sysid/diagnosis/causes/asymmetric_hysteresis.h"
 #include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/causes/contact.h"
+#include "sysid/diagnosis/causes/hysteresis_shape.h"
 #include "sysid/diagnosis/causes/inertia.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/periodic_disturbance.h"
@@ -33,6 +34,7 @@ using All = List<ActuatorThreshold,        //
                  AsymmetricHysteresis,     //
                  Backlash,                 //
                  Contact,                  //
+                 HysteresisShape,          //
                  Inertia,                  //
                  Outliers,                 //
                  PeriodicDisturbance,      //
@@ -55,7 +57,6 @@ using All = List<ActuatorThreshold,        //
 using NoCauses = List<model::AsymmetricValveLag<double>,      //
                       model::ChamberLag<double>,              //
                       model::BoucWen<double>,                 //
-                      model::PrandtlIshlinskii<double>,       //
                       model::KelvinVoigt<double>,             //
                       model::PressureDependentCreep<double>,  //
                       model::Characteristic<double>,          //

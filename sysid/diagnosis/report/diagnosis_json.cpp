@@ -1,5 +1,6 @@
 #include "sysid/diagnosis/report/diagnosis_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +19,12 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json cause_json(const NamedCause& named) {
+/// What the recalibrated model leaves beyond the noise, held out [mm^2].
+double excess_mm2(const Diagnosis& d) {
+  return std::max(d.recalibrated_rmse_mm * d.recalibrated_rmse_mm - d.noise_mm * d.noise_mm, 0.0);
+}
+
+Json cause_json(const NamedCause& named, const Diagnosis& d) {
   Json parameters = Json::object();
   for (const CauseParameter& p : named.parameters) {
     Json one{{"value", p.value}};
@@ -29,7 +35,24 @@ Json cause_json(const NamedCause& named) {
           {"form", model::catalogue()[named.block_type].info.id},
           {"station", model::name_of(named.cause.station)},
           {"parameters", std::move(parameters)},
-          {"heldout_gain_percent", spread(named.heldout_gain_percent)}};
+          {"heldout_gain_percent", spread(named.heldout_gain_percent)},
+          {"inclusion", named.inclusion},
+          {"share_percent",
+           excess_mm2(d) > 0 ? std::clamp(100 * named.gain_mm2.value / excess_mm2(d), 0.0, 100.0) : 0.0}};
+}
+
+/// Where the misfit goes, in mean squares of held-out readings.
+Json budget_json(const Diagnosis& d) {
+  Json causes = Json::object();
+  for (const NamedCause& named : d.causes) causes[std::string(named.cause.id)] = spread(named.gain_mm2);
+  const double noise_mm2 = d.noise_mm * d.noise_mm;
+  return {{"unit", "mm^2"},
+          {"as_given", number(d.as_given_rmse_mm * d.as_given_rmse_mm)},
+          {"recalibrated", number(d.recalibrated_rmse_mm * d.recalibrated_rmse_mm)},
+          {"causes", std::move(causes)},
+          {"extended", number(d.extended_rmse_mm * d.extended_rmse_mm)},
+          {"left", std::max(d.extended_rmse_mm * d.extended_rmse_mm - noise_mm2, 0.0)},
+          {"noise", noise_mm2}};
 }
 
 Json candidates_json(const std::vector<CandidateScore>& candidates) {
@@ -153,7 +176,7 @@ Json json_of(const Diagnosis& d) {
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();
   for (const NamedCause& named : d.causes) {
-    json["causes"].push_back(cause_json(named));
+    json["causes"].push_back(cause_json(named, d));
     Json ids = Json::array();
     for (const Cause& rival : named.rivals) ids.push_back(rival.id);
     json["alternatives"].push_back(std::move(ids));
@@ -169,6 +192,8 @@ Json json_of(const Diagnosis& d) {
   }
   json["gain_percent"] = spread(d.gain);
   json["unexplained_percent"] = d.unexplained_percent;
+  json["budget"] = budget_json(d);
+  json["base"] = d.base.empty() ? Json(nullptr) : Json(d.base);
   json["next_experiment"] = nullptr;
   json["null_calibration"] = nullptr;
   if (const auto& nulls = d.null_calibration) {
@@ -186,7 +211,7 @@ Json json_of(const Diagnosis& d) {
   }
   json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
   json["partial_causes"] = Json::array();
-  for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named));
+  for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, d));
   json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},
                           {"left", d.structure_left.excess_mm}};
   Json candidates = Json::object();

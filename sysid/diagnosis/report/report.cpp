@@ -29,6 +29,7 @@ Tone tone_of(Verdict verdict) {
     case Verdict::cause_found:
       return Tone::good;
     case Verdict::ambiguous:
+    case Verdict::partly_explained:
       return Tone::doubtful;
     case Verdict::unexplained:
       return Tone::bad;
@@ -45,10 +46,6 @@ const ConditionEvidence* find(const ResidualEvidence& evidence, const std::strin
   const auto found = std::find_if(evidence.conditions.begin(), evidence.conditions.end(),
                                   [&](const ConditionEvidence& e) { return e.condition.id == id; });
   return found == evidence.conditions.end() ? nullptr : &*found;
-}
-
-bool is_extended(const Diagnosis& d) {
-  return !d.extended.causes.empty();
 }
 
 void add_logs(Page& page, const Diagnosis& d) {
@@ -261,6 +258,32 @@ void add_next(Page& page, const DiagnosisReport& report) {
 
 }  // namespace
 
+/// Where the misfit goes, from the given model to the noise.
+void add_budget(Page& page, const Diagnosis& d) {
+  const auto text = [](double mm2) { return significant(mm2, 3); };
+  const double noise_mm2 = d.noise_mm * d.noise_mm;
+  const double recalibrated_mm2 = d.recalibrated_rmse_mm * d.recalibrated_rmse_mm;
+  const double extended_mm2 = d.extended_rmse_mm * d.extended_rmse_mm;
+  page.section("The budget of the misfit");
+  Table table{"Mean squares of held-out readings; what one finding takes is measured by leaving it out",
+              {"", "mean square [mm²]", "95 %", "inclusion"},
+              {false, true, true, true},
+              {}};
+  table.rows.push_back({"as given", text(d.as_given_rmse_mm * d.as_given_rmse_mm), "", ""});
+  table.rows.push_back({"recalibrated", text(recalibrated_mm2), "", ""});
+  for (const NamedCause& named : d.causes) {
+    table.rows.push_back({"– " + std::string(named.cause.title), text(named.gain_mm2.value),
+                          text(named.gain_mm2.lower) + " to " + text(named.gain_mm2.upper),
+                          fixed(named.inclusion, 2)});
+  }
+  table.rows.push_back({"extended", text(extended_mm2), "", ""});
+  table.rows.push_back({"of which noise", text(noise_mm2), "", ""});
+  table.rows.push_back({"left", text(std::max(extended_mm2 - noise_mm2, 0.0)), "", ""});
+  page.table(table);
+  if (!d.base.empty())
+    page.paragraph("The given base does not hold; the extended model's is: " + d.base + ".");
+}
+
 std::string diagnosis_html(const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
   Page page("Diagnosis of " + report.given.name, verdict_sentence(d), tone_of(d.verdict));
@@ -271,6 +294,7 @@ std::string diagnosis_html(const DiagnosisReport& report) {
   provenance.emplace_back("seed", std::to_string(report.seed));
   provenance.emplace_back("time taken", significant(d.wall_s, 3) + " s");
   page.provenance(std::move(provenance));
+  add_budget(page, d);
   add_wrong(page, d);
   add_causes(page, d);
   if (d.gauge) add_gauge_section(page, *d.gauge);

@@ -22,7 +22,7 @@ struct Shown {
 std::vector<Shown> shown(const Diagnosis& d) {
   std::vector<Shown> list{{"as given", Colour::error, &d.as_given},
                           {"recalibrated", Colour::model, &d.recalibrated}};
-  if (!d.extended.causes.empty()) list.push_back({"extended", Colour::good, &d.extended});
+  if (is_extended(d)) list.push_back({"extended", Colour::good, &d.extended});
   return list;
 }
 
@@ -164,7 +164,7 @@ Chart spectrum_chart(const Diagnosis& d) {
   };
   add("as given", Colour::error, d.evidence->as_given);
   add("recalibrated", Colour::model, d.evidence->recalibrated);
-  if (!d.extended.causes.empty()) add("extended", Colour::good, d.evidence->extended);
+  if (is_extended(d)) add("extended", Colour::good, d.evidence->extended);
   const SpectrumEvidence& s = d.evidence->recalibrated.spectrum;
   if (!s.frequency_hz.empty()) {
     // White noise of this deviation, up to half the sampling rate.
@@ -185,7 +185,7 @@ Chart gain_chart(const Diagnosis& d) {
   bars.colour = Colour::model;
   bars.x = {0, 1};
   bars.y = {d.as_given_rmse_mm, d.recalibrated_rmse_mm};
-  if (!d.extended.causes.empty()) {
+  if (is_extended(d)) {
     chart.x.categories.emplace_back("extended");
     bars.x.push_back(2);
     bars.y.push_back(d.extended_rmse_mm);

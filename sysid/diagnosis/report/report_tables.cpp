@@ -65,7 +65,7 @@ Table rmse_table(const Diagnosis& d) {
                         d.records.size() > 1 ? or_dash(d.as_given_rmse_mm, 3) : dash, excess(d.as_given)});
   table.rows.push_back({"recalibrated", fitted(d.recalibrated), or_dash(d.recalibrated_rmse_mm, 3),
                         other(d.recalibrated_other_logs_rmse_mm), excess(d.recalibrated)});
-  if (!d.extended.causes.empty()) {
+  if (is_extended(d)) {
     table.rows.push_back({"extended", fitted(d.extended), or_dash(d.extended_rmse_mm, 3),
                           other(d.extended_other_logs_rmse_mm), excess(d.extended)});
   }
@@ -131,7 +131,7 @@ Table cause_parameter_table(const NamedCause& named) {
 }
 
 Table moved_table(const Diagnosis& d, const model::Model& given) {
-  const bool extended = !d.extended.causes.empty();
+  const bool extended = is_extended(d);
   Table table;
   table.header = {"parameter", "unit", "as given", "recalibrated"};
   table.numeric = {false, false, true, true};

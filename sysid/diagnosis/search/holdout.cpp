@@ -145,6 +145,21 @@ Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::ui
   });
 }
 
+double winning_share(const BlockLosses& ours, const BlockLosses& other, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<std::size_t> pick(0, ours.size() - 1);
+  double won = 0;
+  for (std::size_t draw = 0; draw < draws; ++draw) {
+    double ahead = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      const std::size_t block = pick(random);
+      ahead += other[block] - ours[block];
+    }
+    won += ahead > 0 ? 1 : ahead == 0 ? 0.5 : 0;
+  }
+  return won / static_cast<double>(draws);
+}
+
 double rmse_mm(const BlockLosses& losses) {
   if (losses.empty()) return 0;
   return std::sqrt(std::accumulate(losses.begin(), losses.end(), 0.0) / static_cast<double>(losses.size()));

@@ -51,6 +51,8 @@ struct Spread {
 [[nodiscard]] Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
 /// 100 (1 - rms(after)/rms(before)) by the same bootstrap [%].
 [[nodiscard]] Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed);
+/// How often `ours` loses less than `other` when whole blocks are drawn in pairs; ties count half.
+[[nodiscard]] double winning_share(const BlockLosses& ours, const BlockLosses& other, std::uint64_t seed);
 /// Root of the mean over blocks [mm].
 [[nodiscard]] double rmse_mm(const BlockLosses& losses);
 

@@ -197,12 +197,16 @@ class Selector {
     const BlockLosses& rest_losses = losses_without(index);
     chosen.gain_percent = gain_percent(rest_losses, result_.extended_losses, options_.seed);
     const double gained = square(rmse_mm(rest_losses)) - square(rmse_mm(result_.extended_losses));
+    chosen.gain_mm2 = mean_difference(rest_losses, result_.extended_losses, options_.seed);
+    chosen.inclusion = winning_share(result_.extended_losses, rest_losses, options_.seed);
     const auto twin = twin_of(chosen.cause, result_.extended.point.model);
     if (twin) chosen.rivals.push_back(*twin);
     for (const Scored& s : scored) {
       if (s.losses.empty() || s.candidate.cause == chosen.cause) continue;
       if (twin && s.candidate.cause == *twin) continue;
       if (is_free_form(s)) continue;
+      chosen.inclusion =
+          std::min(chosen.inclusion, winning_share(result_.extended_losses, s.losses, options_.seed));
       const Spread behind = mean_difference(s.losses, result_.extended_losses, options_.seed);
       // How far an object gives way tells it from a sensor that clips, and of a hard one a few readings say
       // little.
@@ -213,6 +217,7 @@ class Selector {
         chosen.rivals.push_back(s.candidate.cause);
       }
     }
+    if (twin) chosen.inclusion /= 2;
     chosen.candidates = describe(scored, rest_losses);
     result_.chosen.push_back(std::move(chosen));
   }

@@ -109,8 +109,12 @@ std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data
                      rmse_mm(beyond.extended_losses),
                      gain_percent(plain.base_losses, beyond.extended_losses, options.seed)};
   result.selection = plain;
-  result.selection.chosen = {
-      {dead_band, {}, gain_percent(plain.base_losses, beyond.base_losses, options.seed), {}}};
+  result.selection.chosen = {{dead_band,
+                              {},
+                              gain_percent(plain.base_losses, beyond.base_losses, options.seed),
+                              {},
+                              mean_difference(plain.base_losses, beyond.base_losses, options.seed),
+                              winning_share(beyond.base_losses, plain.base_losses, options.seed)}};
   for (ChosenCause& more : beyond.chosen) result.selection.chosen.push_back(std::move(more));
   result.selection.left = beyond.left;
   extend(result.selection, data, beyond.extended, dead_band, found->band_kpa, division);

@@ -13,10 +13,12 @@
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
+#include "sysid/diagnosis/verdict/base_findings.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/uncertainty.h"
+#include "sysid/structure/valve_stage.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -186,10 +188,14 @@ class Diagnostician {
     if (d_.null_calibration) clock.ended("nulls");
     name(selection);
     conclude(selection);
-    if (d_.verdict == Verdict::unexplained) {
-      if (auto strangers = strangers_among(data_.records, d_.recalibrated)) d_.warnings.push_back(*strangers);
-    }
     clock.ended("held-out logs and intervals");
+    if (d_.verdict == Verdict::unexplained) {
+      if (auto strangers = strangers_among(data_.records, d_.recalibrated)) {
+        d_.warnings.push_back(*strangers);
+      } else if (!d_.null_calibration && look_for_base(selection)) {
+        clock.ended("base");
+      }
+    }
     return std::move(d_);
   }
 
@@ -262,6 +268,38 @@ class Diagnostician {
     return true;
   }
 
+  /// Where no cause on the given base explains the data, the base itself may be the finding.
+  bool look_for_base(const Selection& selection) {
+    const BaseQuestion question{options_.record.drive, d_.noise_mm, options_.seed, options_.threads,
+                                options_.progress};
+    auto found = find_base(data_, selection.base, selection.extended, question);
+    if (!found) return false;
+    d_.base = found->description;
+    d_.extended = std::move(found->fit);
+    d_.recalibrated_rmse_mm = rmse_mm(found->recalibrated_losses);
+    d_.extended_rmse_mm = rmse_mm(found->losses);
+    d_.extended_other_logs_rmse_mm.reset();
+    d_.recalibrated_other_logs_rmse_mm.reset();
+    d_.gain = gain_percent(found->recalibrated_losses, found->losses, options_.seed);
+    d_.structure_left = structure_of(d_.extended.residual_mm, d_.noise_mm);
+    d_.unexplained_percent =
+        std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
+    model::Model model = d_.extended.point.model;
+    // For the daemon, which commands: what the valve does stands in front again.
+    if (options_.record.drive == Drive::measured)
+      model = with_valve(std::move(model), fit_valve_stage(logs_, 1, options_.record.held));
+    d_.extended_model = named_model(std::move(model), "extended");
+    d_.causes = std::move(found->named);
+    d_.partial = std::move(found->possible);
+    const bool rivals = std::any_of(d_.causes.begin(), d_.causes.end(),
+                                    [](const NamedCause& c) { return !c.rivals.empty(); });
+    const bool whole = !sysid::leaves_too_much(d_.structure_left, selection.base_structure, d_.noise_mm);
+    if (!d_.causes.empty()) {
+      d_.verdict = !whole ? Verdict::partly_explained : rivals ? Verdict::ambiguous : Verdict::cause_found;
+    }
+    return true;
+  }
+
   void measure(const Selection& selection, const Division& division) {
     d_.extended = selection.extended;
     d_.structure_recalibrated = selection.base_structure;
@@ -329,6 +367,8 @@ class Diagnostician {
         named.parameters.front() = {"band_kpa", "kPa", d_.staircase->band_kpa, d_.staircase->band_ci95, true};
       }
       named.heldout_gain_percent = chosen.gain_percent;
+      named.gain_mm2 = chosen.gain_mm2;
+      named.inclusion = chosen.inclusion;
       named.rivals = chosen.rivals;
       named.candidates = chosen.candidates;
       causes_.push_back(std::move(named));
@@ -398,6 +438,8 @@ const char* name_of(Verdict verdict) {
       return "cause_found";
     case Verdict::ambiguous:
       return "ambiguous";
+    case Verdict::partly_explained:
+      return "partly_explained";
     case Verdict::unexplained:
       return "unexplained";
   }

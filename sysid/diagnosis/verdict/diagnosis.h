@@ -18,32 +18,14 @@
 #include "sysid/diagnosis/search/null_calibration.h"
 #include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
 #include "sysid/identification/identify.h"
 #include "sysid/logs/log.h"
 
 namespace softgrip::sysid {
 
-enum class Verdict { adequate, recalibrate, cause_found, ambiguous, unexplained };
+enum class Verdict { adequate, recalibrate, cause_found, ambiguous, partly_explained, unexplained };
 [[nodiscard]] const char* name_of(Verdict verdict);
-
-/// A parameter of a named cause.
-struct CauseParameter {
-  std::string name;
-  std::string unit;
-  double value = 0;
-  Interval ci95;
-  bool has_interval = false;
-};
-
-/// A cause as the verdict names it.
-struct NamedCause {
-  Cause cause;
-  std::size_t block_type = 0;  ///< of the form in which it was found
-  std::vector<CauseParameter> parameters;
-  Spread heldout_gain_percent;
-  std::vector<Cause> rivals;
-  std::vector<CandidateScore> candidates;
-};
 
 struct DiagnosisOptions {
   RecordOptions record;
@@ -58,7 +40,7 @@ struct DiagnosisOptions {
 
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;
-  std::vector<NamedCause> causes;   ///< of cause_found and ambiguous
+  std::vector<NamedCause> causes;   ///< of cause_found, ambiguous and partly_explained
   std::vector<NamedCause> partial;  ///< of unexplained: what explains part of it
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
@@ -74,6 +56,7 @@ struct Diagnosis {
   OutlierEvidence outliers;
   std::optional<StaircaseEvidence> staircase;  ///< where the named dead band is one
   std::optional<GaugeEvidence> gauge;          ///< where gauge readings were given
+  std::string base;  ///< what a richer base is made of, where the given one does not hold; empty: it holds
   Structure structure_recalibrated;
   Structure structure_left;
   StructureFit as_given;
@@ -87,6 +70,11 @@ struct Diagnosis {
   double wall_s = 0;
   std::vector<std::pair<std::string, double>> stages_s;  ///< what the wall time went into
 };
+
+/// Whether the extended model is another than the recalibrated one.
+[[nodiscard]] inline bool is_extended(const Diagnosis& d) {
+  return !d.extended.causes.empty() || !d.base.empty();
+}
 
 /// Takes the time of a diagnosis' stages, one after the other.
 class StageClock {

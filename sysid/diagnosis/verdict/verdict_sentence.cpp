@@ -65,13 +65,17 @@ std::string sentence_of_logs(const Diagnosis& d) {
       return "The structure is right and its numbers are not: recalibrated, the error falls from " +
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
     case Verdict::cause_found:
-      if (d.extended.causes.empty()) return outlier_sentence(d);
+      if (!is_extended(d)) return outlier_sentence(d);
       if (d.staircase) return staircase_sentence(d, before, after);
       return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
              " to " + after + ".";
     case Verdict::ambiguous:
       return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) +
              "): with it the held-out error falls from " + before + " to " + after + ".";
+    case Verdict::partly_explained:
+      return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
+             " to " + after + "; " + significant(d.structure_left.excess_mm, 2) + " mm of structure stays, " +
+             significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
     case Verdict::unexplained:
       return unexplained_sentence(d, before, after);
   }

@@ -148,7 +148,7 @@ TEST(SimulatedAllocation, TenSecondsWithEverythingThatCanHappen) {
   SimulatedBoard board(settings, clock);
   ASSERT_EQ(board.connect(1s), BusStatus::ok);
   std::array<Reading, 2> readings;
-  std::array<int, 7> seen{};
+  std::array<int, 8> seen{};
   const std::size_t made = allocations_of([&] {
     for (int i = 0; i < 2000; ++i) {
       const std::array commands{30 + 10.0 * (i % 3), i % 500 == 499 ? 101.0 : 20.0};

@@ -103,9 +103,7 @@ TEST(StructureProjection, WeightsAreNeverNegative) {
   const ColumnLayout layout(structure, grid, records);
   const Eigen::VectorXd readings = Eigen::Map<const Eigen::VectorXd>(
       records[0].reading_mm.data(), static_cast<Eigen::Index>(records[0].reading_mm.size()));
-  const Eigen::VectorXd all = Eigen::VectorXd::Ones(readings.size());
-  const Projection found =
-      project({columns, layout, readings, all, grid.largest_kpa, 1e-6}, {0, grid.span_mm});
+  const Projection found = project({columns, layout, readings, grid.largest_kpa, 0, 1e-6}, {0, grid.span_mm});
   for (Eigen::Index i = 0; i < layout.own(); ++i) EXPECT_GE(found.weights(i), 0);
   EXPECT_NEAR(found.weights.head(layout.own()).sum(), 0, 1e-3);
 }

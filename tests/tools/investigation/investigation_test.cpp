@@ -31,7 +31,7 @@ model::Model loaded(const std::string& name) {
 /// The finger that is investigated: softer than the given model after its largest load.
 model::Model finger() {
   return model::with_block(loaded("bench_twin"),
-                           {sysid::find_cause("stress_softening")->forms.front().type, {0.006}});
+                           {sysid::find_cause("stress_softening")->forms.front().type, {0.006, 0}});
 }
 
 /// Two loads, the second larger, and no repetition.

@@ -55,7 +55,7 @@ std::vector<double> poor_command() {
 
 model::Model softened() {
   return model::with_block(loaded("bench_twin"),
-                           {find_cause("stress_softening")->forms.front().type, {0.004}});
+                           {find_cause("stress_softening")->forms.front().type, {0.004, 0}});
 }
 
 /// A diagnosis that names softening, fitted to what a softening finger did, with the given rivals.

@@ -1,0 +1,33 @@
+#pragma once
+// A cause as a verdict names it, with what speaks for it.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "sysid/diagnosis/search/selection.h"
+#include "sysid/identification/identify.h"
+
+namespace softgrip::sysid {
+
+/// A parameter of a named cause.
+struct CauseParameter {
+  std::string name;
+  std::string unit;
+  double value = 0;
+  Interval ci95;
+  bool has_interval = false;
+};
+
+struct NamedCause {
+  Cause cause;
+  std::size_t block_type = 0;  ///< of the form in which it was found
+  std::vector<CauseParameter> parameters;
+  Spread heldout_gain_percent;
+  Spread gain_mm2;       ///< what the held-out mean square falls by with it
+  double inclusion = 1;  ///< the weight of the structures in the confidence set that contain it
+  std::vector<Cause> rivals;
+  std::vector<CandidateScore> candidates;
+};
+
+}  // namespace softgrip::sysid
