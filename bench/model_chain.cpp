@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/play_model.h"
 #include "model/chain.h"
 #include "model/dual.h"
 #include "model/file/model_file.h"
@@ -32,9 +33,9 @@ std::vector<double> command() {
   return values;
 }
 
-void step_chain(benchmark::State& state, const std::string& name) {
+void step_chain(benchmark::State& state, const Model& model) {
   const std::vector<double> u = command();
-  Chain<double> chain(preset(name), {}, dt);
+  Chain<double> chain(model, {}, dt);
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(chain.step(dt, u[i]));
@@ -42,9 +43,9 @@ void step_chain(benchmark::State& state, const std::string& name) {
   }
 }
 
-void step_irregular(benchmark::State& state, const std::string& name) {
+void step_irregular(benchmark::State& state, const Model& model) {
   const std::vector<double> u = command();
-  Chain<double> chain(preset(name));
+  Chain<double> chain(model);
   std::size_t i = 0;
   for (auto _ : state) {
     benchmark::DoNotOptimize(chain.step(dt * (1.0 + 1e-6 * static_cast<double>(i % 97)), u[i]));
@@ -53,9 +54,9 @@ void step_irregular(benchmark::State& state, const std::string& name) {
 }
 
 template <class U>
-void peek_chain(benchmark::State& state, const std::string& name) {
+void peek_chain(benchmark::State& state, const Model& model) {
   const std::vector<double> u = command();
-  Chain<double> chain(preset(name), {}, dt);
+  Chain<double> chain(model, {}, dt);
   for (std::size_t i = 0; i < 4321; ++i) chain.step(dt, u[i]);
   double p = chain.pressure_kpa();
   for (auto _ : state) {
@@ -66,19 +67,23 @@ void peek_chain(benchmark::State& state, const std::string& name) {
   }
 }
 
-void peek_value(benchmark::State& state, const std::string& name) {
-  peek_chain<double>(state, name);
+void peek_value(benchmark::State& state, const Model& model) {
+  peek_chain<double>(state, model);
 }
-void peek_derivative(benchmark::State& state, const std::string& name) {
-  peek_chain<Dual<double>>(state, name);
+void peek_derivative(benchmark::State& state, const Model& model) {
+  peek_chain<Dual<double>>(state, model);
 }
 
-BENCHMARK_CAPTURE(step_chain, zhang2025, "zhang2025");
-BENCHMARK_CAPTURE(step_chain, bench_twin, "bench_twin");
-BENCHMARK_CAPTURE(step_irregular, zhang2025, "zhang2025");
-BENCHMARK_CAPTURE(step_irregular, bench_twin, "bench_twin");
-BENCHMARK_CAPTURE(peek_value, zhang2025, "zhang2025");
-BENCHMARK_CAPTURE(peek_derivative, zhang2025, "zhang2025");
+BENCHMARK_CAPTURE(step_chain, zhang2025, preset("zhang2025"));
+BENCHMARK_CAPTURE(step_chain, bench_twin, preset("bench_twin"));
+BENCHMARK_CAPTURE(step_chain, twelve_plays, bench::play_model());
+BENCHMARK_CAPTURE(step_irregular, zhang2025, preset("zhang2025"));
+BENCHMARK_CAPTURE(step_irregular, bench_twin, preset("bench_twin"));
+BENCHMARK_CAPTURE(step_irregular, twelve_plays, bench::play_model());
+BENCHMARK_CAPTURE(peek_value, zhang2025, preset("zhang2025"));
+BENCHMARK_CAPTURE(peek_value, twelve_plays, bench::play_model());
+BENCHMARK_CAPTURE(peek_derivative, zhang2025, preset("zhang2025"));
+BENCHMARK_CAPTURE(peek_derivative, twelve_plays, bench::play_model());
 
 }  // namespace
 }  // namespace softgrip::model

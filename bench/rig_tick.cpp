@@ -1,5 +1,6 @@
 // What a whole tick of a rig costs: two fingers on full_model and PID, sequence, supervisor, fault monitor.
-// Only RigController::tick is timed; the plants step outside.
+// Only RigController::tick is timed; the plants step outside. Models that are to be compared run in turn:
+// --benchmark_enable_random_interleaving=true --benchmark_repetitions=9.
 
 #include <benchmark/benchmark.h>
 
@@ -12,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "bench/play_model.h"
 #include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "control/tick/rig_controller.h"
@@ -31,11 +33,14 @@ Value or_exit(const std::optional<Value>& value, const document::Problems& probl
   return *value;
 }
 
-control::RigSettings settings(double rate_hz) {
+model::Model bench_twin() {
   document::Problems problems;
+  return or_exit(model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems), problems);
+}
+
+control::RigSettings settings(const model::Model& model, double rate_hz) {
   control::ChannelSettings channel;
-  channel.model =
-      or_exit(model::load_model(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", problems), problems);
+  channel.model = model;
   channel.pid = {0.5, 3, 0.01, 0.02, 1, control::AntiWindup::back_calculation, 0.3};
   channel.feedforward.kind = control::FeedforwardKind::full_model;
   channel.limits = {0, 60, 300, 600, -1, 35, 2};
@@ -50,8 +55,8 @@ control::RigSettings settings(double rate_hz) {
 }
 
 /// The sine of config/sequences/track_sine.yaml, again and again.
-void rig_tick(benchmark::State& state) {
-  const control::RigSettings rig = settings(static_cast<double>(state.range(0)));
+void rig_tick(benchmark::State& state, const model::Model& model) {
+  const control::RigSettings rig = settings(model, static_cast<double>(state.range(0)));
   const double period_s = 1 / rig.rate_hz;
   document::Problems problems;
   const auto sequence = or_exit(
@@ -100,6 +105,15 @@ void rig_tick(benchmark::State& state) {
   state.counters["p99_ns"] = at(0.99);
   state.counters["p99.9_ns"] = at(0.999);
 }
-BENCHMARK(rig_tick)->ArgName("rate_hz")->Arg(200)->Arg(1000)->UseManualTime();
+BENCHMARK_CAPTURE(rig_tick, bench_twin, bench_twin())
+    ->ArgName("rate_hz")
+    ->Arg(200)
+    ->Arg(1000)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(rig_tick, twelve_plays, bench::play_model())
+    ->ArgName("rate_hz")
+    ->Arg(200)
+    ->Arg(1000)
+    ->UseManualTime();
 
 }  // namespace
