@@ -65,7 +65,7 @@ TEST(Catalogue, NamesEndWithTheirUnits) {
 }
 
 TEST(Model, PresetsAreValid) {
-  for (const std::string name : {"zhang2025", "bench_twin"})
+  for (const std::string name : {"zhang2025", "bench_twin", "soft_arm_play"})
     EXPECT_TRUE(validate(preset(name)).empty()) << name;
 }
 

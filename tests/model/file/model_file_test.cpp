@@ -67,6 +67,15 @@ TEST(ModelFile, RandomModelsComeBackBitForBit) {
   }
 }
 
+TEST(ModelFile, PresetsComeBackBitForBit) {
+  for (const std::string name : {"zhang2025", "bench_twin", "soft_arm_play"}) {
+    const Model model = preset(name);
+    const Outcome outcome = read(to_yaml(model));
+    ASSERT_TRUE(outcome.model) << name << "\n" << outcome.problems.format();
+    EXPECT_EQ(*outcome.model, model) << to_yaml(model);
+  }
+}
+
 TEST(ModelFile, PresetsHoldTheNumbersOfTheirSources) {
   const Model published = preset("zhang2025");
   EXPECT_EQ(number(published, "bouc_wen.alpha_mm_per_kpa"), 0.07079);
