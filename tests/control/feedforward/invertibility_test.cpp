@@ -48,6 +48,17 @@ TEST(Invertibility, TheTwinIsAcceptedForBothKinds) {
   EXPECT_TRUE(check(twin, FeedforwardKind::bouc_wen));
 }
 
+TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
+  const model::Model arm = model_named("soft_arm_play");
+  EXPECT_TRUE(check(arm, FeedforwardKind::full_model));
+  const auto part = check(arm, FeedforwardKind::bouc_wen);
+  ASSERT_FALSE(part);
+  EXPECT_EQ(
+      part.error().text,
+      "the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` is the "
+      "inverse of the whole chain");
+}
+
 // Positive where it starts and negative where hysteresis takes it: only the walk through the range finds it.
 TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   const model::Model twin = model_named("bench_twin");
