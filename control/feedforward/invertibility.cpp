@@ -31,6 +31,15 @@ constexpr std::string_view usual_cause =
     ": the model moves the wrong way first; a latency in the data is the usual cause, run `softgrip "
     "diagnose`";
 
+constexpr std::string_view creep_alone =
+    ": creep alone moves the model there, nothing elastic does (a play with threshold 0, a spring); "
+    "feedforward "
+    "`planned` needs none";
+
+/// Below this nothing follows the pressure at once: a Kelvin-Voigt spring that does nothing still gives way
+/// by 1e-9 mm/kPa.
+constexpr double least_gain_mm_per_kpa = 1e-8;
+
 /// The smallest slope of displacement over pressure that was met, and where.
 struct Worst {
   double gain_mm_per_kpa = std::numeric_limits<double>::max();
@@ -92,10 +101,12 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, double pressur
   std::string text = wrong_way(model::Chain<double>(model), stiff, stiff_name);
   if (!text.empty()) return tl::unexpected(Refusal{std::move(text)});
   const Worst worst = worst_gain(model, pressure_max_kpa, tick_s);
-  if (worst.gain_mm_per_kpa > 0) return {};
+  if (worst.gain_mm_per_kpa >= least_gain_mm_per_kpa) return {};
+  const bool wrong_way_first = !(worst.gain_mm_per_kpa >= 0);
   return tl::unexpected(Refusal{"the instantaneous gain is " + significant(worst.gain_mm_per_kpa) +
                                 " mm/kPa at " + significant(worst.pressure_kpa) + " kPa while the pressure " +
-                                (worst.rising ? "rises" : "falls") + std::string(usual_cause)});
+                                (worst.rising ? "rises" : "falls") +
+                                std::string(wrong_way_first ? usual_cause : creep_alone)});
 }
 
 /// Blocks that full_model cannot undo, by name. The sensor does not move the finger and is left alone.
@@ -125,8 +136,7 @@ tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const Limi
   if (!model::position_of<model::BoucWen>(part)) {
     return tl::unexpected(
         Refusal{"the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` "
-                "is the inverse "
-                "of the whole chain"});
+                "is the inverse of the whole chain"});
   }
   return check_gain(part, limits.pressure_max_kpa, tick_s, 0, "");
 }

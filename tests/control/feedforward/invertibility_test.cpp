@@ -4,6 +4,8 @@
 
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/chamber_lag.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
@@ -57,6 +59,24 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
       part.error().text,
       "the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` is the "
       "inverse of the whole chain");
+}
+
+// Inside their thresholds plays stand still, and only creep moves the finger then.
+TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
+  const model::Model creep =
+      model::with_block({}, {model::block_type<model::KelvinVoigt>(), {1e9, 40, 20, 40, 200}});
+  const auto with_plays = [&](double threshold_kpa) {
+    return model::with_block(creep,
+                             {model::block_type<model::PrandtlIshlinskii>(), {threshold_kpa, 0.1, 10, 0.1}});
+  };
+  for (const model::Model& dead : {creep, with_plays(5)}) {
+    const auto refused = check(dead, FeedforwardKind::full_model);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().text.find("creep alone moves the model"), std::string::npos)
+        << refused.error().text;
+    EXPECT_TRUE(check(dead, FeedforwardKind::planned));
+  }
+  EXPECT_TRUE(check(with_plays(0), FeedforwardKind::full_model));
 }
 
 // Positive where it starts and negative where hysteresis takes it: only the walk through the range finds it.
