@@ -1,4 +1,5 @@
-"""softgripd for hours: 1 kHz over TCP against softgrip-rig, sequence after sequence, with other work on the machine.
+"""softgripd for hours: 1 kHz over TCP against softgrip-rig, sequence after sequence, with other work on the machine, and
+between them clients that come and go, pauses and a full disk (soak_disturbances.py).
 
 scripts/soak.sh runs it. Once a minute a line goes into soak.csv: memory, descriptors, slips, drops, faults. At the end
 a verdict: exit code 0, or 6 if anything grew, got lost or tripped.
@@ -19,6 +20,7 @@ import tempfile
 import time
 
 import bench
+import soak_disturbances
 
 RATE_HZ = 1000
 # What stands still for less than 100 ms on a shared machine is the machine's doing and no fault of a bus.
@@ -72,8 +74,10 @@ def rig(folder, port):
 
 
 class Soak:
-    def __init__(self, folder, out, with_load):
+    def __init__(self, folder, out, with_load, seed):
         self.folder = folder
+        self.runs = soak_disturbances.Runs(folder)
+        self.disturbances = soak_disturbances.Disturbances(self, self.runs, seed)
         self.out = out
         self.sequences = self.faults = self.rows = self.missing = self.newest = 0
         self.unexpected = []
@@ -93,14 +97,15 @@ class Soak:
             os.waitpid(self.load, 0)
         code = self.daemon.end()
         self.emulator.end()
+        self.runs.end()
         return code
 
-    def take_events(self):
-        """New events; faults among them are counted and told."""
+    def take_events(self, awaited=()):
+        """New events; faults among them are counted and told, but for the awaited kinds."""
         events = self.daemon.events(self.newest)
         for event in events:
             self.newest = event["id"]
-            if event["kind"] in ("fault_latched", "internal_error", "recording_failed"):
+            if event["kind"] in ("fault_latched", "internal_error", "recording_failed") and event["kind"] not in awaited:
                 self.faults += 1
                 print(f"  {event['time_s']:.1f} s: {event['kind']} {event.get('code', '')}: {event['text']}", flush=True)
         return events
@@ -157,6 +162,11 @@ class Soak:
             self.rows += rows - 1
             shutil.rmtree(recording)
 
+    def remove_recordings(self):
+        """What a full disk has cut off is nobody's to read."""
+        for recording in self.runs.path.iterdir():
+            shutil.rmtree(recording)
+
     def sample(self, minute, writer):
         pid = self.daemon.child.pid
         status = dict(line.split(":", 1) for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines())
@@ -187,6 +197,7 @@ class Soak:
                         due = int(minute) + 1
                     if minute >= minutes:
                         break
+                self.disturbances.round()
             self.take_events()
             self.sample((time.monotonic() - began) / 60, writer)
 
@@ -214,6 +225,7 @@ class Soak:
               f"failed, {last['sequences']} sequences, {self.faults} faults, {last['dropped_rows']} rows dropped")
         print(f"memory {settled['rss_kib']} -> {last['rss_kib']} KiB, descriptors {settled['descriptors']} -> "
               f"{last['descriptors']}; {self.rows} recorded rows read back, {self.missing} ticks missing in them")
+        print("disturbed by " + ", ".join(f"{count} {what}" for what, count in self.disturbances.done.items()))
         return wrong
 
 
@@ -222,12 +234,14 @@ def main():
     parser.add_argument("minutes", type=float, nargs="?", default=60)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("soak-output"))
     parser.add_argument("--no-load", action="store_true", help="leave the machine to the daemon")
+    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 31), help="of the disturbances")
     arguments = parser.parse_args()
+    print(f"seed {arguments.seed}", flush=True)
     arguments.out.mkdir(parents=True, exist_ok=True)
     folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_soak_"))
     try:
         shutil.copytree(bench.SOURCE / "config", folder / "config")
-        soak = Soak(folder, arguments.out, not arguments.no_load)
+        soak = Soak(folder, arguments.out, not arguments.no_load, arguments.seed)
         print((soak.daemon.errors() + soak.daemon.output()).strip(), flush=True)
         try:
             soak.run(arguments.minutes)

@@ -1,0 +1,128 @@
+"""What disturbs the soak between its sequences and during them: clients that come and go, pauses of the process below and
+above the board's watchdog, a full disk. Each says what must come of it; what it says else counts as unexpected.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import time
+
+import bench
+
+SHORT_PAUSE_S = 0.03  # within what the rig of the soak rides through
+LONG_PAUSE_S = 0.8    # longer than the board's watchdog
+SETTLED_KPA = 0.1
+RUNS_MIB = 64         # the disk of the recordings, where it is one of its own
+
+
+class Runs:
+    """The folder of the recordings as a file system of its own, where mounting is allowed."""
+
+    def __init__(self, folder):
+        self.path = folder / "runs"
+        self.path.mkdir()
+        self.mounted = os.geteuid() == 0 and subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", f"size={RUNS_MIB}m", "softgrip-soak", self.path], capture_output=True).returncode == 0
+        self.ballast = self.path / "ballast"
+
+    def fill(self):
+        with open(self.ballast, "wb", buffering=0) as file:
+            try:
+                while file.write(bytes(1 << 16)):
+                    pass
+            except OSError:
+                return
+
+    def free(self):
+        self.ballast.unlink(missing_ok=True)
+
+    def end(self):
+        if self.mounted:
+            subprocess.run(["umount", self.path], capture_output=True)
+
+
+class Disturbances:
+    """One after the other, each with a sequence of its own. `soak` gives daemon, emulator and the list `unexpected`."""
+
+    def __init__(self, soak, runs, seed):
+        self.soak, self.runs, self.chance = soak, runs, random.Random(seed)
+        self.done = {"clients": 0, "short pauses": 0, "long pauses": 0, "full disks": 0}
+
+    def start(self, sequence="pick_stone"):
+        self.soak.emulator.ask("object back")
+        self.soak.emulator.ask("object stone")
+        self.soak.daemon.start(sequence)
+        time.sleep(self.chance.uniform(0.5, 6))  # approach, closing, holding
+
+    def finish(self, what):
+        """The sequence ends as if nothing had been."""
+        bench.wait_for(f"the end beside {what}", lambda: self.soak.daemon.status()["state"] in ("idle", "faulted"), 60, 0.25)
+        self.soak.take_events()
+        ended = self.soak.daemon.status()["sequence"]["ended"]
+        if ended != "done":
+            self.soak.unexpected.append(f"{what}: the sequence ended {ended}")
+
+    def clients(self):
+        """They connect, ask, and go: with their answer, without it, in the middle of a line, without a word."""
+        self.start()
+        for number in range(200):
+            client = bench.Lines(self.soak.folder / "softgripd.sock")
+            if number % 4 == 0:
+                client.ask('{"command": "status"}')
+            elif number % 4 == 1:
+                client.socket.sendall(b'{"command": "events"}\n' * 10)
+            elif number % 4 == 2:
+                client.socket.sendall(b'{"command": "sta')
+            client.close()
+            self.done["clients"] += 1
+        self.finish("clients that come and go")
+
+    def stopped(self, for_s):
+        self.soak.daemon.send(signal.SIGSTOP)
+        time.sleep(for_s)
+        self.soak.daemon.send(signal.SIGCONT)
+
+    def short_pause(self):
+        self.start()
+        self.stopped(SHORT_PAUSE_S)
+        self.done["short pauses"] += 1
+        self.finish(f"a pause of {SHORT_PAUSE_S} s")
+
+    def long_pause(self):
+        """The board has vented meanwhile: a fault, and nothing rises until it is acknowledged and somebody starts."""
+        self.start()
+        self.stopped(LONG_PAUSE_S)
+        highest, end = 0, time.monotonic() + 1
+        while time.monotonic() < end:
+            highest = max(highest, *self.soak.emulator.commands_kpa())
+        self.done["long pauses"] += 1
+        codes = {event["code"] for event in self.soak.take_events(awaited=("fault_latched",))
+                 if event["kind"] == "fault_latched"}
+        if "F303" not in codes:
+            self.soak.unexpected.append(f"a pause of {LONG_PAUSE_S} s: faults {sorted(codes)}")
+        if highest > SETTLED_KPA:
+            self.soak.unexpected.append(f"a pause of {LONG_PAUSE_S} s: {highest} kPa after the board had vented")
+
+    def full_disk(self):
+        if not self.runs.mounted:
+            return
+        self.start()
+        self.runs.fill()
+        bench.wait_for("the end on a full disk", lambda: self.soak.daemon.status()["state"] in ("idle", "faulted"), 60, 0.25)
+        time.sleep(1.2)  # the recording's tail
+        events = self.soak.take_events(awaited=("recording_failed",))
+        self.done["full disks"] += 1
+        if self.soak.daemon.status()["sequence"]["ended"] != "done":
+            self.soak.unexpected.append(f"a full disk: ended {self.soak.daemon.status()['sequence']['ended']}")
+        if not any(event["kind"] == "recording_failed" for event in events):
+            self.soak.unexpected.append("a full disk: nobody said that the recording failed")
+        self.runs.free()
+        self.soak.remove_recordings()
+
+    def round(self):
+        for one in (self.clients, self.short_pause, self.long_pause, self.full_disk):
+            one()
+            self.soak.recover()
+            time.sleep(1.2)  # the recording's tail
+            self.soak.read_recordings()
