@@ -25,7 +25,6 @@ constexpr Range long_time_s{0, 86400};
 constexpr Range ramp_s{0.01, 600};
 constexpr Range window_s{0.02, 60};
 constexpr std::size_t most_steps = 200;
-constexpr std::size_t most_points = 5000;
 
 template <class Enum>
 std::vector<std::string> names(std::initializer_list<Enum> values) {
@@ -263,13 +262,9 @@ class FileReader {
     }
   }
 
+  /// How many there may be is bounded by the values that a document may have.
   void points(MapReader& map, std::vector<Point>& points) {
-    const auto items = map.sequence("points", true);
-    if (items.size() > most_points) {
-      map.report("points", "more than " + std::to_string(most_points) + " points");
-      return;
-    }
-    for (const Node* item : items) {
+    for (const Node* item : map.sequence("points", true)) {
       MapReader inner(document_, *item, problems_, "point");
       const Point point{inner.number("time_s", long_time_s), inner.number("pressure_kpa", pressure_kpa)};
       if (points.empty() ? point.time_s != 0 : point.time_s < points.back().time_s) {

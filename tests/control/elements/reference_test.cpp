@@ -142,6 +142,45 @@ TEST(Reference, RefusesWhatHasNoMeaning) {
   EXPECT_EQ(reference.at(3).value, 0);
 }
 
+TEST(Reference, WhatFindsNoRoomChangesNothing) {
+  Reference reference;
+  reference.start(0, 0);
+  for (std::size_t i = 1; i <= Reference::capacity; ++i) {
+    ASSERT_TRUE(reference.ramp_for(static_cast<double>(i), 1));
+  }
+  const double end_s = reference.end_s();
+  EXPECT_FALSE(reference.ramp_to(0, 1));
+  EXPECT_FALSE(reference.ramp_for(0, 1));
+  EXPECT_FALSE(reference.hold_for(1));
+  EXPECT_FALSE(reference.sine(1, 1, 1, 1));
+  EXPECT_FALSE(
+      reference.follow({&reference, [](const void*, double) noexcept { return ReferencePoint{}; }}, 1));
+  EXPECT_EQ(reference.end_s(), end_s);
+  EXPECT_EQ(reference.final_value(), static_cast<double>(Reference::capacity));
+}
+
+TEST(Reference, ARampToWhereItIsTakesNoTimeAndAnswersYes) {
+  Reference reference;
+  reference.start(2, 5);
+  EXPECT_TRUE(reference.ramp_to(5, 10));
+  EXPECT_EQ(reference.end_s(), 2);
+  EXPECT_EQ(reference.at(3).value, 5);
+  EXPECT_FALSE(reference.sine(1, 1, 1, 0)) << "no cycle is no sine";
+}
+
+TEST(Reference, OneThatIsAlreadyGoingBrakesAndThenGoes) {
+  Reference reference;
+  reference.start(0, {5, 20, 0});
+  ASSERT_TRUE(reference.ramp_to(5, 10));
+  EXPECT_GT(reference.end_s(), 0);
+  EXPECT_NEAR(reference.at(reference.end_s()).value, 5, 1e-12);
+  expect_consistent(reference, 1e-3, reference.end_s());
+  reference.start(0, {5, 0, 30});
+  ASSERT_TRUE(reference.ramp_to(6, 10));
+  EXPECT_NEAR(reference.at(reference.end_s()).value, 6, 1e-12);
+  EXPECT_NEAR(reference.at(reference.end_s()).rate, 0, 1e-9);
+}
+
 // Whatever is appended and cut in whatever order, the reference never steps.
 TEST(Reference, NeverStepsUnderRandomUse) {
   const unsigned seed = 20250117;

@@ -135,11 +135,30 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
   }
 }
 
+TEST(Invertibility, PlanningNeedsAFingerThatMovesWithThePressure) {
+  const model::Model twin = model_named("bench_twin");
+  EXPECT_TRUE(check(twin, FeedforwardKind::planned));
+  const model::Model valve_only =
+      model::only(twin, [](const model::BlockInfo& info) { return info.station == model::Station::valve; });
+  const auto nothing = check(valve_only, FeedforwardKind::planned);
+  ASSERT_FALSE(nothing);
+  EXPECT_NE(nothing.error().text.find("no element that moves the finger"), std::string::npos);
+  model::Model backwards =
+      model::only(twin, [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });
+  backwards = with_value(backwards, "bouc_wen.alpha_mm_per_kpa", -0.1);
+  const auto refused = check(backwards, FeedforwardKind::planned);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().text.find("planning needs one above 0"), std::string::npos)
+      << refused.error().text;
+}
+
 TEST(Invertibility, ExtraLatencyHasBounds) {
   const model::Model twin = model_named("bench_twin");
   EXPECT_FALSE(check_feedforward(twin, {FeedforwardKind::full_model, -0.001}, limits, sim::tick_s));
   EXPECT_FALSE(check_feedforward(twin, {FeedforwardKind::full_model, std::nan("")}, limits, sim::tick_s));
   EXPECT_TRUE(check_feedforward(twin, {FeedforwardKind::full_model, 0.002}, limits, sim::tick_s));
+  EXPECT_TRUE(check_feedforward(twin, {FeedforwardKind::full_model, 1}, limits, sim::tick_s));
+  EXPECT_FALSE(check_feedforward(twin, {FeedforwardKind::full_model, 1.001}, limits, sim::tick_s));
 }
 
 }  // namespace

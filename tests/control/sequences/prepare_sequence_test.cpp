@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <stop_token>
 #include <string>
 
 #include "control/sequences/prepare_sequence.h"
@@ -20,6 +22,21 @@ TEST(Profile, IsLinearBetweenPointsAndJumpsWhereTwoShareATime) {
   EXPECT_EQ(value_at(profile, 2), 10);
   EXPECT_EQ(value_at(profile, 9), 0);
   EXPECT_EQ(duration_s(profile), 3);
+}
+
+TEST(Profile, OfNoPointsOrOneStandsStill) {
+  Profile profile;
+  EXPECT_EQ(duration_s(profile), 0);
+  EXPECT_EQ(value_at(profile, 1), 0);
+  profile.points = {{0, 7}};
+  EXPECT_EQ(duration_s(profile), 0);
+  EXPECT_EQ(value_at(profile, 1), 7);
+}
+
+TEST(Profile, BeginsWithItsFirstPointWheneverThatIs) {
+  Profile profile;
+  profile.points = {{1, 3}, {2, 5}};
+  EXPECT_EQ(value_at(profile, 0.5), 3);
 }
 
 TEST(Profile, RepeatsItsCycle) {
@@ -113,7 +130,13 @@ INSTANTIATE_TEST_SUITE_P(
         Misfit{"loud_signal", "  - pressure: {signal: tp1, scale: 2}\n", "kPa"},
         Misfit{"loud_points",
                "  - pressure: {points: [{time_s: 0, pressure_kpa: 0}, {time_s: 1, pressure_kpa: 70}]}\n",
-               "goes to 70 kPa"}),
+               "goes to 70 kPa"},
+        Misfit{"channel_like_no_other",
+               "  - move: {channels: [thumbscrew], pressure_kpa: 5, duration_s: 1}\n",
+               "the rig has no channel 'thumbscrew'"},
+        Misfit{"too_little_pressure", "  - move: {pressure_kpa: -5, duration_s: 1}\n", "goes to -5 kPa"},
+        Misfit{"too_near", "  - move: {channels: [left], displacement_mm: -2, duration_s: 1}\n",
+               "goes to -2 mm"}),
     name_of_misfit);
 
 TEST(Prepare, ChannelsAreThoseOfTheStepElseOfTheSequenceElseAll) {
@@ -135,6 +158,72 @@ steps:
       problems);
   ASSERT_TRUE(mixed);
   EXPECT_FALSE(prepare(*mixed, settings, problems));
+}
+
+std::optional<PreparedSequence> prepared(const std::string& steps, const RigSettings& settings,
+                                         document::Problems& problems, const std::stop_token& stop = {}) {
+  const auto sequence =
+      read_sequence(document::parse("seq.yaml", "name: x\nsteps:\n" + steps, problems), problems);
+  return sequence ? prepare(*sequence, settings, problems, stop) : std::nullopt;
+}
+
+TEST(Prepare, WhatIsExactlyAllowedIsTaken) {
+  RigSettings settings = two_finger_settings();
+  settings.rate_hz = 10;
+  for (const char* steps :
+       {"  - move: {displacement_mm: -1, duration_s: 1}\n",
+        "  - move: {displacement_mm: 35, duration_s: 1}\n", "  - move: {pressure_kpa: 0, duration_s: 1}\n",
+        "  - move: {pressure_kpa: 60, duration_s: 1}\n",
+        "  - grip: {pressure_kpa: 40, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, timeout_s: 3, "
+        "on_fail: vent}\n  - hold: {hold_s: 1, reverify_every_s: 0.2, on_fail: vent}\n"}) {
+    document::Problems problems;
+    EXPECT_TRUE(prepared(steps, settings, problems)) << steps << problems.format();
+  }
+}
+
+TEST(Prepare, LessThanTwoPeriodsShowNothing) {
+  RigSettings settings = two_finger_settings();
+  settings.rate_hz = 10;
+  const auto grip_and_hold = [](const char* window_s, const char* every_s) {
+    return "  - grip: {pressure_kpa: 40, settle_s: 0.1, verify: {by: detection, window_s: " +
+           std::string(window_s) +
+           "}, timeout_s: 3, on_fail: vent}\n  - hold: {hold_s: 1, reverify_every_s: " + every_s +
+           ", on_fail: vent}\n";
+  };
+  document::Problems window;
+  EXPECT_FALSE(prepared(grip_and_hold("0.19", "0.2"), settings, window));
+  EXPECT_NE(window.format().find("window_s is shorter than two periods"), std::string::npos)
+      << window.format();
+  document::Problems hold;
+  EXPECT_FALSE(prepared(grip_and_hold("0.2", "0.19"), settings, hold));
+  EXPECT_NE(hold.format().find("reverify_every_s is shorter than two periods"), std::string::npos)
+      << hold.format();
+}
+
+TEST(Prepare, AFingerWithNothingToFollowADisplacementIsNotSentToOne) {
+  const char* move = "  - move: {channels: [left], displacement_mm: 5, duration_s: 1}\n";
+  RigSettings settings = two_finger_settings();
+  settings.channels[0].feedforward.kind = FeedforwardKind::none;
+  settings.channels[0].pid.kp_kpa_per_mm = settings.channels[0].pid.ki_kpa_per_mm_s = 0;
+  document::Problems problems;
+  EXPECT_FALSE(prepared(move, settings, problems));
+  EXPECT_NE(problems.format().find("neither feedforward nor gains"), std::string::npos) << problems.format();
+  settings.channels[0].pid.ki_kpa_per_mm_s = 1;
+  document::Problems none;
+  EXPECT_TRUE(prepared(move, settings, none)) << none.format();
+  settings.channels[0].pid = {1, 0, 0, 0.02, 1, AntiWindup::back_calculation, 0.3};
+  EXPECT_TRUE(prepared(move, settings, none)) << none.format();
+}
+
+TEST(Prepare, AStoppedPlanningIsARefusalWithItsReason) {
+  RigSettings settings = two_finger_settings();
+  settings.channels[0].feedforward.kind = FeedforwardKind::planned;
+  std::stop_source stop;
+  stop.request_stop();
+  document::Problems problems;
+  EXPECT_FALSE(
+      prepared("  - move: {displacement_mm: 5, duration_s: 1}\n", settings, problems, stop.get_token()));
+  EXPECT_NE(problems.format().find("its planning was stopped"), std::string::npos) << problems.format();
 }
 
 TEST(Prepare, ReleaseGoesForwardOnly) {

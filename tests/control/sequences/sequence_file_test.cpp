@@ -80,6 +80,26 @@ steps:
   EXPECT_EQ(sequence->steps[5].profile.cycles, 2U);
 }
 
+/// A pressure step of so many points, a second apart.
+std::string with_points(int count) {
+  std::string points;
+  for (int i = 0; i < count; ++i) {
+    points += (i > 0 ? ", " : "") + std::string("{time_s: ") + std::to_string(i) + ", pressure_kpa: 1}";
+  }
+  return with_step("pressure: {points: [" + points + "]}");
+}
+
+std::string with_steps(int count) {
+  std::string text = "name: x\nsteps:\n";
+  for (int i = 0; i < count; ++i) text += "  - move: {pressure_kpa: 5, duration_s: 1}\n";
+  return text;
+}
+
+/// A grip that verifies as given.
+std::string with_verify(const std::string& verify) {
+  return with_step("grip: {pressure_kpa: 5, settle_s: 0" + verify + ", timeout_s: 9, on_fail: vent}");
+}
+
 struct Broken {
   const char* what;
   std::string text;
@@ -153,7 +173,29 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{
             "twice",
             "name: x\nchannels: [a, a]\nsteps:\n  - hold: {hold_s: 1, reverify_every_s: 1, on_fail: vent}\n",
-            2, "listed twice"}),
+            2, "listed twice"},
+        Broken{"kind_like_no_other", with_step("xyzzyxyzzy: {}"), 3, "unknown kind of step 'xyzzyxyzzy'"},
+        Broken{"step_that_is_a_list", with_step("[move]"), 3, "one key"},
+        Broken{"too_many_steps", with_steps(201), 3, "more than 200 steps"},
+        Broken{"interlock", "name: x\ninterlock: sometimes\nsteps:\n  - pressure: {signal: tp1}\n", 2,
+               "always"},
+        Broken{"no_channels", "name: x\nchannels: []\nsteps:\n  - pressure: {signal: tp1}\n", 2,
+               "at least one channel"},
+        Broken{"channel_that_is_a_map", "name: x\nchannels: [{a: 1}]\nsteps:\n  - pressure: {signal: tp1}\n",
+               2, "the name of a channel"},
+        Broken{"channel_without_a_name", "name: x\nchannels: [\"\"]\nsteps:\n  - pressure: {signal: tp1}\n",
+               2, "the name of a channel"},
+        Broken{"no_verify", with_verify(""), 3, "verify"},
+        Broken{"half_a_position",
+               with_verify(", verify: {by: position, window_s: 1, displacement_min_mm: 3}"), 3,
+               "displacement_min_mm and displacement_max_mm"},
+        Broken{"window_upside_down",
+               with_verify(
+                   ", verify: {by: position, window_s: 1, displacement_min_mm: 5, displacement_max_mm: 5}"),
+               3, "must be above displacement_min_mm"},
+        Broken{"no_profile", with_step("pressure: {cycles: 2}"), 3, "points"},
+        Broken{"one_point", with_points(1), 3, "at least two points"},
+        Broken{"too_many_points", with_points(5000), 3, "more than 20000 values"}),
     [](const auto& broken) { return broken.param.what; });
 
 TEST(SequenceFile, ADocumentThatParsingRefusedIsNone) {
@@ -164,6 +206,27 @@ TEST(SequenceFile, ADocumentThatParsingRefusedIsNone) {
     EXPECT_FALSE(read(text, problems)) << text;
     EXPECT_FALSE(problems.empty());
   }
+}
+
+TEST(SequenceFile, ManyPointsAndAsManyStepsAsAllowedAreTaken) {
+  document::Problems problems;
+  EXPECT_TRUE(read(with_points(3900), problems)) << problems.format();
+  EXPECT_TRUE(read(with_steps(200), problems)) << problems.format();
+}
+
+TEST(SequenceFile, ASpeedIsNoDuration) {
+  document::Problems problems;
+  const auto sequence = read(with_step("move: {displacement_mm: 5, speed_mm_per_s: 4}"), problems);
+  ASSERT_TRUE(sequence) << problems.format();
+  EXPECT_EQ(sequence->steps[0].target.speed, 4);
+  EXPECT_EQ(sequence->steps[0].target.duration_s, 0);
+}
+
+TEST(SequenceFile, AFileThatIsNotThereOrBrokenIsNone) {
+  document::Problems problems;
+  EXPECT_FALSE(load_sequence(SOFTGRIP_SOURCE_DIR "/config/sequences/nobody.yaml", problems));
+  EXPECT_NE(problems.format().find("nobody.yaml"), std::string::npos) << problems.format();
+  EXPECT_FALSE(load_sequence(SOFTGRIP_SOURCE_DIR "/tests/config/broken/bracket_open.yaml", problems));
 }
 
 TEST(SequenceFile, TheExampleOfTheManualIsOne) {

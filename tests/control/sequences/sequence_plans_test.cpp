@@ -170,6 +170,77 @@ TEST(SequencePlans, ARigWithAnotherModelOrSlewNeedsOthers) {
   EXPECT_NE(rig_key(one), rig_key(other));
 }
 
+/// The steepest way up and down of a plan, and its extremes.
+struct PlanShape {
+  double up_kpa_per_s = 0, down_kpa_per_s = 0, lowest_kpa = 1e9, highest_kpa = -1e9;
+};
+PlanShape shape_of(const PreparedSequence& sequence, std::size_t channel) {
+  PlanShape shape;
+  for (const PreparedStep& step : sequence.steps) {
+    const PressurePlan& plan = *step.plan_of(channel);
+    for (std::size_t i = 0; i < plan.pressure_kpa.size(); ++i) {
+      shape.lowest_kpa = std::min(shape.lowest_kpa, plan.pressure_kpa[i]);
+      shape.highest_kpa = std::max(shape.highest_kpa, plan.pressure_kpa[i]);
+      if (i == 0) continue;
+      const double speed = (plan.pressure_kpa[i] - plan.pressure_kpa[i - 1]) / plan.step_s;
+      shape.up_kpa_per_s = std::max(shape.up_kpa_per_s, speed);
+      shape.down_kpa_per_s = std::max(shape.down_kpa_per_s, -speed);
+    }
+  }
+  return shape;
+}
+
+// Fingers that are alike are planned for once; any difference gives each a plan within its own limits.
+TEST(SequencePlans, AFingersPlanKeepsItsOwnLimitsHoweverAlikeItsNeighbourIs) {
+  const std::string moves =
+      "name: x\nsteps:\n  - move: {displacement_mm: 12, duration_s: 1}\n"
+      "  - move: {displacement_mm: 1, duration_s: 1}\n";
+  const RigSettings alike = planned_rig("bench_twin");
+  const PreparedSequence shared = sequence_of(moves, alike);
+  for (const PreparedStep& step : shared.steps) {
+    EXPECT_EQ(step.plan_of(0)->pressure_kpa, step.plan_of(1)->pressure_kpa);
+  }
+  const PlanShape free = shape_of(shared, 1);
+  const auto with = [&](const auto& change) {
+    RigSettings other = alike;
+    change(other.channels[1]);
+    const PreparedSequence sequence = sequence_of(moves, other);
+    EXPECT_EQ(sequence.steps[0].plan_of(0)->pressure_kpa, shared.steps[0].plan_of(0)->pressure_kpa);
+    return shape_of(sequence, 1);
+  };
+  const double slow = 0.5 * std::min(free.up_kpa_per_s, free.down_kpa_per_s);
+  EXPECT_LE(with([&](ChannelSettings& c) { c.limits.slew_up_kpa_per_s = slow; }).up_kpa_per_s, slow + 1e-6);
+  EXPECT_LE(with([&](ChannelSettings& c) { c.limits.slew_down_kpa_per_s = slow; }).down_kpa_per_s,
+            slow + 1e-6);
+  const double low = 0.8 * free.highest_kpa;
+  EXPECT_LE(with([&](ChannelSettings& c) { c.limits.pressure_max_kpa = low; }).highest_kpa, low + 1e-6);
+  EXPECT_GE(with([](ChannelSettings& c) { c.limits.pressure_min_kpa = 1; }).lowest_kpa, 1 - 1e-6);
+  RigSettings late = alike;
+  late.channels[1].feedforward.extra_latency_s = 0.01;
+  const PreparedSequence read_earlier = sequence_of(moves, late);
+  EXPECT_NEAR(read_earlier.steps[0].plan_of(1)->start_s - read_earlier.steps[0].plan_of(0)->start_s, 0.01,
+              1e-9);
+}
+
+TEST(SequencePlans, AFingerThatIsLeftOutOfAStepHasNoPlanForIt) {
+  const PreparedSequence parted = sequence_of(
+      "name: x\nsteps:\n  - move: {displacement_mm: 6, duration_s: 1}\n"
+      "  - move: {channels: [left], displacement_mm: 8, duration_s: 1}\n",
+      planned_rig("bench_twin"));
+  EXPECT_NE(parted.steps[1].plan_of(0), nullptr);
+  EXPECT_EQ(parted.steps[1].plan_of(1), nullptr);
+}
+
+TEST(SequencePlans, OnlyPlannedFingersArePlannedFor) {
+  RigSettings mixed = planned_rig("bench_twin");
+  mixed.channels[0].feedforward.kind = FeedforwardKind::full_model;
+  const PreparedSequence move =
+      sequence_of("name: x\nsteps:\n  - move: {displacement_mm: 6, duration_s: 1}\n", mixed);
+  EXPECT_EQ(move.steps[0].plan_of(0), nullptr);
+  EXPECT_NE(move.steps[0].plan_of(1), nullptr);
+  EXPECT_EQ(move.steps[0].plan_of(7), nullptr) << "no such channel";
+}
+
 // A stone in the way, nothing there with a retry (which backs off outside any plan), then the next grip.
 TEST(SequencePlans, EveryGripHasItsAnswer) {
   for (const char* model : {"zhang2025", "bench_twin"}) {

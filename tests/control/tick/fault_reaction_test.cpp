@@ -192,6 +192,38 @@ class SingleFault : public testing::Test {
   RigSettings settings = base();
 };
 
+// As many cycles as the rig file says, neither one more nor one less.
+TEST_F(SingleFault, CyclesAreCountedOneByOne) {
+  const auto ticks_until_fault = [&](const auto& inject) {
+    SimulatedRig rig(settings);
+    EXPECT_TRUE(rig.run_until(State::idle, 1));
+    rig.run(1.5);
+    inject(rig);
+    std::uint32_t ticks = 0;
+    while (rig.tick().state != State::faulted && ticks < 1000) ++ticks;
+    return ticks + 1;
+  };
+  EXPECT_EQ(ticks_until_fault([](SimulatedRig& rig) { rig.bus_fault = FaultCode::bus_exception; }),
+            settings.faults.bus_down_cycles);
+  EXPECT_EQ(ticks_until_fault([](SimulatedRig& rig) { rig.fault[0].readback_offset_kpa = 12; }),
+            settings.faults.readback_cycles);
+  EXPECT_EQ(
+      ticks_until_fault([](SimulatedRig& rig) { rig.fault[0].validity = model::Validity::sensor_error; }),
+      settings.faults.invalid_reading_cycles + 1)
+      << "what is read after a tick is seen in the next";
+}
+
+// What is off now and then starts to be counted anew.
+TEST_F(SingleFault, AReadbackThatIsRightInBetweenIsNoFault) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  for (std::uint32_t i = 0; i < 10 * settings.faults.readback_cycles; ++i) {
+    rig.fault[0].readback_offset_kpa = (i + 1) % settings.faults.readback_cycles == 0 ? 0 : 12;
+    rig.tick();
+  }
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
+}
+
 TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
   SimulatedRig rig(settings);
   const PreparedSequence track = example_sequence("track_sine", settings);

@@ -220,6 +220,73 @@ steps:
   EXPECT_EQ(rig.output().channels[0].evidence, GripEvidence::none) << "nobody saw it";
 }
 
+TEST_F(GripCycle, APartThatLeavesItsPositionWindowIsLost) {
+  const PreparedSequence grip = sequence_of(R"(
+name: x
+steps:
+  - grip: {pressure_kpa: 45, speed_kpa_per_s: 30, settle_s: 0.5, verify: {by: position, window_s: 0.3, displacement_min_mm: 10, displacement_max_mm: 14}, timeout_s: 6, on_fail: vent}
+  - hold: {hold_s: 5, reverify_every_s: 0.2, on_fail: vent}
+)",
+                                            settings);
+  for (const double moved_mm : {-4.0, 4.0}) {
+    SCOPED_TRACE(moved_mm);
+    SimulatedRig rig(settings);
+    rig.stone(12);
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &grip);
+    ASSERT_TRUE(rig.run_until_step(1, 20));
+    ASSERT_EQ(rig.result(0), GripResult::holding);
+    rig.run(1);
+    ASSERT_EQ(rig.result(0), GripResult::holding) << "inside its window";
+    rig.fault[0].offset_mm = moved_mm;
+    rig.run(0.6);
+    EXPECT_EQ(rig.result(0), GripResult::part_lost);
+    EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
+  }
+}
+
+TEST_F(GripCycle, AGripThatWasNeverLookedAtInTimeIsAnError) {
+  const PreparedSequence grip = sequence_of(R"(
+name: x
+steps:
+  - grip: {pressure_kpa: 45, speed_kpa_per_s: 30, settle_s: 0.1, verify: {by: detection, window_s: 0.5}, timeout_s: 2.3, on_fail: vent}
+)",
+                                            settings);
+  settings.faults.invalid_reading_cycles = 10'000;
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &grip);
+  ASSERT_TRUE(rig.run_until(State::running, 5));
+  rig.run(1.55);  // it has arrived
+  rig.fault[0].validity = model::Validity::out_of_range;
+  ASSERT_TRUE(rig.run_until(State::idle, 10));
+  EXPECT_EQ(rig.result(0), GripResult::error) << "who did not look says neither HOLDING nor NO PART";
+}
+
+TEST_F(GripCycle, AFingerThatBacksOffSettlesBeforeItTriesAgain) {
+  const PreparedSequence grip = sequence_of(R"(
+name: x
+steps:
+  - grip: {pressure_kpa: 45, speed_kpa_per_s: 90, settle_s: 0.8, verify: {by: detection, window_s: 0.2}, timeout_s: 4, retries: 1, on_fail: vent}
+)",
+                                            settings);
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &grip);
+  std::vector<double> begun_s;
+  double low_since_s = 0;  // the outputs are back where they began
+  for (std::size_t steps = 0; rig.time_s() < 30 && begun_s.size() < 2; rig.tick()) {
+    if (rig.board_kpa(0) > 0.1) low_since_s = rig.time_s();
+    if (const std::size_t now = rig.count(Event::Kind::step_started); now > steps) {
+      steps = now;
+      begun_s.push_back(rig.time_s());
+    }
+  }
+  ASSERT_EQ(begun_s.size(), 2U);
+  EXPECT_GT(begun_s[1] - low_since_s, 0.7) << "its settle_s at the bottom";
+}
+
 TEST_F(GripCycle, AFingerThatCannotArriveEndsWithErrorAtTheTimeout) {
   const PreparedSequence move = sequence_of(R"(
 name: x

@@ -21,6 +21,37 @@ TEST(GainSearch, FindsTheBottomOfABowlFromTheGrid) {
   EXPECT_LT(evaluations, 160);
 }
 
+TEST(GainSearch, ACoarseGridLooksAtFewerPointsAndFindsTheBowlToo) {
+  int evaluations = 0;
+  const auto cost = [&](const PidSettings& pid) {
+    ++evaluations;
+    return std::pow(std::log(pid.kp_kpa_per_mm / 0.37), 2) + std::pow(std::log(pid.ki_kpa_per_mm_s / 2.2), 2);
+  };
+  GainSearch search;
+  search.iterations = 0;
+  search.coarseness = 1;
+  (void)search_gains(cost, search);
+  EXPECT_EQ(evaluations, 30 + 3) << "the grid and the simplex around its best";
+  evaluations = 0;
+  search.coarseness = 5;
+  (void)search_gains(cost, search);
+  EXPECT_EQ(evaluations, 6 + 3);
+  search.iterations = 200;
+  EXPECT_NEAR(search_gains(cost, search).kp_kpa_per_mm, 0.37, 0.01);
+}
+
+TEST(GainSearch, EndsWhereAllCornersAreAlike) {
+  int evaluations = 0;
+  const GainPoint found = nelder_mead(
+      [&](const GainPoint&) {
+        ++evaluations;
+        return 1.0;
+      },
+      {0, 0, 0}, 1, {.iterations = 1000, .done_share = 1e-3});
+  EXPECT_EQ(evaluations, 3) << "nothing is better anywhere";
+  EXPECT_EQ(found, (GainPoint{0, 0, 0}));
+}
+
 TEST(GainSearch, NoGainIsEverNegative) {
   (void)search_gains([](const PidSettings& pid) {
     EXPECT_GE(pid.kp_kpa_per_mm, 0);

@@ -54,6 +54,19 @@ TEST(TrackingRun, TheExchangesLatencyIsMadeUpForWhenItIsKnown) {
   EXPECT_LT(track(run).rmse_mm, 0.1 * unknown);
 }
 
+TEST(TrackingRun, APlannedRunMakesItsPlanWhereItIsGivenNone) {
+  TrackingRun run = run_with(FeedforwardKind::planned, 1);
+  run.settling_cycles = 0;
+  run.measured_cycles = 1;
+  const PressurePlan plan = plan_for(run);
+  const double own = track(run).rmse_mm;
+  run.plan = &plan;
+  EXPECT_EQ(track(run).rmse_mm, own);
+  run.settings.feedforward.kind = FeedforwardKind::none;
+  run.plan = nullptr;
+  EXPECT_GT(track(run).rmse_mm, own);
+}
+
 TEST(TrackingRun, OneSeedOneResult) {
   TrackingRun run = run_with(FeedforwardKind::full_model, 3);
   run.reading_step_mm = 100.0 / 65536;

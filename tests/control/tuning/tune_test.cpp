@@ -35,6 +35,27 @@ TEST(Tune, KeepsTheMarginAndBeatsCautiousGains) {
   EXPECT_NE(tuned.limited_by.find("dead time"), std::string::npos) << tuned.limited_by;
 }
 
+TEST(Tune, TellsTheMarginsOfTheWorstFinger) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  task.iterations = 4;
+  task.mismatch = 0;  // every finger is the model
+  task.draws = 1;
+  const Tuned tuned = tune(task);
+  const double tick_s = 1 / task.rate_hz;
+  const LoopMargins margins = loop_margins(task.finger, tuned.pid, task.channel.limits.pressure_max_kpa,
+                                           tick_s, tick_s + task.exchange_s);
+  EXPECT_EQ(tuned.sensitivity, margins.sensitivity);
+  EXPECT_EQ(tuned.crossover_hz, margins.crossover_hz);
+}
+
+TEST(Tune, WithoutAnyMarginLeftItFindsTheCalmestGains) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  task.most_sensitivity = 0.5;  // below what any loop has
+  const Tuned tuned = tune(task);
+  task.most_sensitivity = 2;
+  EXPECT_LT(tuned.sensitivity, tune(task).sensitivity);
+}
+
 TEST(Tune, LessSensitivityCostsError) {
   TuneTask task = quick_task(FeedforwardKind::none);
   const Tuned bold = tune(task);

@@ -69,6 +69,39 @@ TEST_F(LoopTest, ALateWakeUpIsMeasuredFromTheGrid) {
   EXPECT_EQ(parts_->loop_statistics.wake_up.summary().max_ns, 250'000);
 }
 
+TEST_F(LoopTest, ComputingIsMeasuredFromTheWakeUpAndAnAgeOnlyOnceThereIsAReading) {
+  tick();
+  EXPECT_EQ(parts_->loop_statistics.reading_age.summary().count, 0U);
+  EXPECT_EQ(parts_->loop_statistics.compute.summary().max_ns, 0) << "no virtual time passes in a tick";
+  exchange();
+  tick();
+  EXPECT_EQ(parts_->loop_statistics.reading_age.summary().count, 1U);
+}
+
+TEST_F(LoopTest, InputsThatNobodyReadsAnyMoreAreLost) {
+  ASSERT_TRUE(until(State::idle));
+  parts_->wires.inputs.longest_silence = 10 * parts_->period();
+  parts_->wires.inputs.looked_at = due_;
+  tick();
+  exchange();
+  EXPECT_EQ(snapshot().state, State::idle);
+  for (int i = 0; i < 12; ++i) {
+    tick();
+    exchange();
+  }
+  EXPECT_EQ(snapshot().state, State::faulted);
+  EXPECT_EQ(snapshot().first_fault, FaultCode::inputs_lost);
+}
+
+TEST_F(LoopTest, InputsThatAreSaidToBeLostAreLostAtOnce) {
+  ASSERT_TRUE(until(State::idle));
+  parts_->wires.inputs.longest_silence = 1'000 * parts_->period();
+  parts_->wires.inputs.looked_at = due_;
+  parts_->wires.inputs.lost = true;
+  tick();
+  EXPECT_EQ(snapshot().state, State::faulted);
+}
+
 TEST_F(LoopTest, RowsThatFindNoRoomAreCountedAndEventsStillFindTheirs) {
   const std::size_t capacity = parts_->wires.records.capacity();
   for (std::size_t i = 0; i < capacity; ++i) {
