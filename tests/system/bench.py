@@ -18,6 +18,8 @@ import tempfile
 import time
 import unittest
 
+import recording_check
+
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", SOURCE / "build" / "release"))
 SOFTGRIP = BUILD / "tools" / "softgrip"
@@ -222,10 +224,16 @@ class BenchTest(unittest.TestCase):
         for process in reversed(self.processes):
             if process.running():
                 process.kill()
+        self.check_recordings()
         result = self._outcome.result
         if any(test is self for test, _ in result.failures + result.errors):
             for process in self.processes:
                 print(f"--- {process.name}\n{process.output()[-2000:]}\n{process.errors()[-6000:]}", file=sys.stderr)
+
+    def check_recordings(self):
+        """Whatever the test was about: what it recorded keeps the promises."""
+        for about in sorted((self.folder / "runs").glob("*/run.json")):
+            self.assertEqual(recording_check.check(about.parent), [])
 
     def write(self, name, text):
         path = self.folder / name

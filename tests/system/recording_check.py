@@ -1,0 +1,158 @@
+"""What a recording shows of the promises of docs/reliability.md: recording_check.py RECORDING...
+
+Read are run.csv, run.json and the rig file that run.json names, if it still is what it was. Exit code 6 if a recording
+contradicts a promise, with the row that does.
+"""
+
+import argparse
+import csv
+import hashlib
+import json
+import math
+import pathlib
+import sys
+
+import yaml
+
+# In which a command may rise: control/tick/tick.h, may_rise().
+MAY_RISE = ("resynchronising", "running")
+# state -> what may follow it: control/tick/supervisor.h
+NEXT = {
+    "starting": ("idle", "faulted"),
+    "idle": ("resynchronising", "running", "stopping", "faulted"),
+    "resynchronising": ("running", "idle", "stopping", "faulted"),
+    "running": ("idle", "stopping", "faulted"),
+    "stopping": ("idle", "faulted"),
+    "faulted": ("starting", "idle"),
+}
+# A cell has six decimals.
+CELL = 2e-6
+
+
+class Recording:
+    def __init__(self, folder):
+        self.folder = folder
+        self.wrong = []
+        self.about = json.loads((folder / "run.json").read_text())
+        with open(folder / "run.csv", newline="") as file:
+            self.rows = [row for row in csv.DictReader(file) if None not in row.values()]
+        self.names = self.channel_names()
+        self.limits = self.rig_limits()
+
+    def channel_names(self):
+        """In the order of their rows."""
+        return list(dict.fromkeys(row["channel"] for row in self.rows))
+
+    def rig_limits(self):
+        """By channel; none where the file has gone or changed since."""
+        for file in self.about["files"]:
+            path = pathlib.Path(file["path"])
+            if file["role"] != "rig" or not path.exists():
+                continue
+            data = path.read_bytes()
+            if hashlib.sha256(data).hexdigest() == file["sha256"]:
+                return {c["name"]: c["limits"] for c in yaml.safe_load(data)["channels"]}
+        return {}
+
+    def says(self, row, sentence):
+        self.wrong.append(f"{self.folder.name}: {float(row['time_s']):.6f} s, {row['channel']}: {sentence}")
+
+    def check(self):
+        self.check_whole()
+        for name in self.names:
+            rows = [row for row in self.rows if row["channel"] == name]
+            self.check_range(name, rows)
+            for before, row in zip(rows, rows[1:]):
+                self.check_step(name, before, row)
+            self.check_results(rows)
+        self.check_events()
+        return self.wrong
+
+    # --- nothing is missing
+
+    def check_whole(self):
+        """Every tick has a row of every channel in the same order; times grow; the rows are as many as run.json says."""
+        for index, row in enumerate(self.rows):
+            if row["channel"] != self.names[index % len(self.names)]:
+                self.says(row, f"row {index + 2} is out of order")
+                return
+        for before, row in zip(self.rows, self.rows[1:]):
+            same = row["channel"] != self.names[0]
+            if (row["time_s"] != before["time_s"]) if same else (float(row["time_s"]) <= float(before["time_s"])):
+                self.says(row, f"its time follows {before['time_s']}")
+                return
+        if self.about["state"] == "complete" and self.about["rows"] != len(self.rows):
+            self.wrong.append(f"{self.folder.name}: {len(self.rows)} rows, run.json says {self.about['rows']}")
+
+    # --- outputs
+
+    def check_range(self, name, rows):
+        limits = self.limits.get(name)
+        if limits is None:
+            return
+        for row in rows:
+            command = float(row["pressure_command_kpa"])
+            if not limits["pressure_min_kpa"] - CELL <= command <= limits["pressure_max_kpa"] + CELL:
+                self.says(row, f"{command} kPa is out of the range of its limits")
+
+    def check_step(self, name, before, row):
+        """From one tick to the next: states as drawn, rises only in a sequence and within the slew."""
+        if row["state"] != before["state"] and row["state"] not in NEXT[before["state"]]:
+            self.says(row, f"{before['state']} is followed by {row['state']}")
+        change = float(row["pressure_command_kpa"]) - float(before["pressure_command_kpa"])
+        if change <= CELL:
+            return
+        if row["state"] not in MAY_RISE:
+            self.says(row, f"the command rises by {change:.6f} kPa while {row['state']}")
+        limits = self.limits.get(name)
+        if limits is not None:
+            # Ticks that the loop lost do not add to what it may do in one.
+            allowed = limits["slew_up_kpa_per_s"] * self.about["decimation"] / self.about["rate_hz"]
+            if change > allowed + CELL:
+                self.says(row, f"the command rises by {change:.6f} kPa in a tick, {allowed:.6f} are its slew")
+
+    # --- answers
+
+    def check_results(self, rows):
+        """HOLDING begins with something that was seen: a valid displacement, or a measured pressure."""
+        for before, row in zip(rows, rows[1:]):
+            if row["result"] != "holding" or before["result"] == "holding":
+                continue
+            seen = row["validity"] == "valid" or math.isfinite(float(row.get("pressure_kpa") or "nan"))
+            if not seen or before["state"] != "running":
+                self.says(row, f"HOLDING from a reading that is {row['validity']}, while {before['state']}")
+
+    def check_events(self):
+        """Events in order, and no sequence between a fault and its acknowledgement."""
+        faulted = None
+        time_s, number = -math.inf, 0
+        for event in self.about["events"]:
+            if event["time_s"] < time_s:
+                self.wrong.append(f"{self.folder.name}: event {event['kind']} at {event['time_s']} s follows {time_s} s")
+            if event.get("id", number + 1) <= number:
+                self.wrong.append(f"{self.folder.name}: event {event['id']} follows event {number}")
+            time_s, number = event["time_s"], event.get("id", number + 1)
+            if event["kind"] == "fault_latched":
+                faulted = event
+            elif event["kind"] == "fault_acknowledged":
+                faulted = None
+            elif event["kind"] == "sequence_started" and faulted:
+                self.wrong.append(f"{self.folder.name}: a sequence starts at {time_s} s under {faulted['code']}")
+
+
+def check(folder):
+    """Sentences of what a recording contradicts."""
+    return Recording(pathlib.Path(folder)).check()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("recordings", nargs="+", type=pathlib.Path)
+    wrong = [sentence for folder in parser.parse_args().recordings for sentence in check(folder)]
+    for sentence in wrong:
+        print(sentence)
+    return 6 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

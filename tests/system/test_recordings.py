@@ -1,0 +1,90 @@
+"""Recordings of a grip that ends in a fault keep the promises; one that was tampered with does not."""
+
+import csv
+import signal
+import time
+
+import bench
+import recording_check
+
+
+class Recordings(bench.BenchTest):
+    def record(self):
+        """A grip, a stop of the process beyond the board's watchdog, an acknowledgement, another grip."""
+        emulator = self.emulator("--object", "stone")
+        daemon = self.daemon(self.rig(emulator.port))
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
+        daemon.send(signal.SIGSTOP)
+        time.sleep(0.8)
+        daemon.send(signal.SIGCONT)
+        daemon.wait_for_state("faulted")
+        time.sleep(1)  # the recording's tail
+        bench.wait_for("an acknowledged fault", lambda: daemon.ask("acknowledge")["ok"])
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        daemon.wait_for_event("grip_result", code="HOLDING", channel="right")
+        self.assertEqual(daemon.end(), 0)
+        recordings = self.recordings()
+        self.assertGreaterEqual(len(recordings), 2)
+        return recordings
+
+    def tampered(self, recording, change):
+        """What is said of the recording with changed rows; the recording is as before afterwards."""
+        path = recording / "run.csv"
+        before = path.read_text()
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+        change(rows)
+        with open(path, "w", newline="") as file:
+            writer = csv.DictWriter(file, rows[0], lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+        said = recording_check.check(recording)
+        path.write_text(before)
+        return "\n".join(said)
+
+    def test_promises_are_kept_and_a_tampered_recording_is_found_out(self):
+        recording = self.record()[0]
+        self.assertEqual(recording_check.check(recording), [])
+
+        def last(rows, state):
+            return next(row for row in reversed(rows) if row["state"] == state)
+
+        def rise(rows):
+            last(rows, "faulted")["pressure_command_kpa"] = "3"
+
+        def leave_range(rows):
+            last(rows, "running")["pressure_command_kpa"] = "75"
+
+        def jump(rows):
+            row = last(rows, "running")
+            row["pressure_command_kpa"] = str(float(row["pressure_command_kpa"]) + 10)
+
+        def lose_a_row(rows):
+            del rows[len(rows) // 2]
+
+        def lose_a_tick(rows):
+            del rows[len(rows) // 2 * 2 - 100:len(rows) // 2 * 2 - 98]
+
+        def swap(rows):
+            rows[10], rows[12] = rows[12], rows[10]
+
+        def hold_blindly(rows):
+            first = next(row for row in rows if row["result"] == "holding")
+            first["validity"], first["pressure_kpa"] = "stale", ""
+
+        def go_on_under_a_fault(rows):
+            rows[-1]["state"] = rows[-2]["state"] = "running"
+
+        for change, sentence in ((rise, "while faulted"), (leave_range, "out of the range"), (jump, "its slew"),
+                                 (lose_a_row, "out of order"), (lose_a_tick, "run.json says"), (swap, "its time follows"),
+                                 (hold_blindly, "HOLDING from a reading that is stale"),
+                                 (go_on_under_a_fault, "faulted is followed by running")):
+            with self.subTest(change.__name__):
+                self.assertIn(sentence, self.tampered(recording, change))
+
+
+if __name__ == "__main__":
+    bench.main()
