@@ -31,6 +31,8 @@ def text_of(result, notes):
     expected, measured = result["expected"], result["measured"]
     if result["wrong"]:
         return f"**WRONG** {result['wrong'].splitlines()[0][:80]}"
+    if result.get("skipped"):
+        return f"not run: {result['skipped']}"
     text = expected["ends"]
     if text == "faulted":
         text = measured["code"]
@@ -50,7 +52,7 @@ def text_of(result, notes):
 def summary(results):
     count = {}
     for result in results:
-        ends = "wrong" if result["wrong"] else result["expected"]["ends"]
+        ends = "wrong" if result["wrong"] else "not run" if result.get("skipped") else result["expected"]["ends"]
         count[ends] = count.get(ends, 0) + 1
     reactions = [r["measured"] for r in results if "cycles" in r["measured"]]
     worst = max(reactions, key=lambda m: m["cycles"] / m["bound"])

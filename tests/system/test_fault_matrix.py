@@ -16,6 +16,8 @@ class FaultMatrix(unittest.TestCase):
             self.assertIn((name, phase), table.cells())
             with self.subTest(cell):
                 result = fault_matrix.run_cell(name, phase, attempts=3)
+                if result["skipped"]:
+                    self.skipTest(result["skipped"])
                 self.assertIsNone(result["wrong"], f"{result['wrong']}\n{result['log']}")
 
     def test_wire_while_connecting_and_idle(self):
@@ -35,6 +37,9 @@ class FaultMatrix(unittest.TestCase):
 
     def test_lines(self):
         self.check("line_burst/closing", "supply_lost/holding")
+
+    def test_pauses(self):
+        self.check("process_above/holding", "loop_above/closing", "serial_loop_above/closing")
 
     def test_every_cell_says_what_it_expects(self):
         table = fault_matrix.Table()

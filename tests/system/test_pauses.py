@@ -4,15 +4,12 @@ The whole process (SIGSTOP), its loop, its bus or its service thread alone (ptra
 board's watchdog, in every phase of a grip, over a real wire.
 """
 
-import pathlib
-import signal
 import subprocess
-import sys
 import time
 
 import bench
+import pauses
 
-HANG_THREAD = pathlib.Path(__file__).parent / "vm/drive/hang_thread.py"
 WATCHDOG_S = 0.5  # of the board map
 # For how long what stands still, and what must come of it.
 PAUSES = (
@@ -28,24 +25,11 @@ NOISE_KPA = 0.05  # the board's resolution
 
 
 class Pauses(bench.BenchTest):
-    def thread(self, daemon, name):
-        for task in pathlib.Path(f"/proc/{daemon.child.pid}/task").iterdir():
-            if (task / "comm").read_text().strip() == name:
-                return task.name
-        raise AssertionError(f"no thread {name}")
-
     def pause(self, daemon, what, for_s):
-        if what == "process":
-            daemon.send(signal.SIGSTOP)
-            time.sleep(for_s)
-            daemon.send(signal.SIGCONT)
-            return
-        with subprocess.Popen([sys.executable, HANG_THREAD, self.thread(daemon, what)], stdout=subprocess.PIPE,
-                              text=True) as hang:
-            if hang.stdout.readline() != "hangs\n":
-                self.skipTest("this user may not trace another process")
-            time.sleep(for_s)
-            hang.kill()  # lets the thread go
+        try:
+            pauses.pause(daemon, what, for_s)
+        except PermissionError as error:
+            self.skipTest(str(error))
 
     def reach(self, daemon, emulator, phase):
         pick = (self.folder / "config/sequences/pick_stone.yaml").read_text()

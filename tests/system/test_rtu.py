@@ -1,22 +1,16 @@
 """A serial line end to end: real processes on a pseudo-terminal that takes the time of its bytes."""
 
-import os
 import re
-import resource
 import shutil
 import subprocess
 import time
 import unittest
 
 import bench
+import serial_rig
 
 
 RATE_HZ = 20
-
-
-def board_priority():
-    """A module has a processor of its own and answers in its time however busy this one is."""
-    return ["chrt", "-f", "40"] if resource.getrlimit(resource.RLIMIT_RTPRIO)[0] >= 40 or os.geteuid() == 0 else []
 
 
 class Line(bench.BenchTest):
@@ -50,7 +44,7 @@ class Line(bench.BenchTest):
         return path
 
     def line_emulator(self, rig, *arguments):
-        process = bench.Process("softgrip-rig", [*board_priority(), bench.SOFTGRIP_RIG, "--model",
+        process = bench.Process("softgrip-rig", [*serial_rig.board_priority(), bench.SOFTGRIP_RIG, "--model",
                                                  self.folder / "config/models/bench_twin.yaml", "--rig", rig,
                                                  "--control", self.folder / "rig.sock", *arguments], self.folder)
         self.processes.append(process)

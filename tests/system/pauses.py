@@ -1,0 +1,31 @@
+"""Something of a daemon stands still for a while: all of it (SIGSTOP), or one of its threads (ptrace)."""
+
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+HANG_THREAD = pathlib.Path(__file__).parent / "vm/drive/hang_thread.py"
+
+
+def thread_of(daemon, name):
+    for task in pathlib.Path(f"/proc/{daemon.child.pid}/task").iterdir():
+        if (task / "comm").read_text().strip() == name:
+            return task.name
+    raise AssertionError(f"no thread {name}")
+
+
+def pause(daemon, what, for_s):
+    """`what`: "process" or the name of a thread. PermissionError where this user may not trace another process."""
+    if what == "process":
+        daemon.send(signal.SIGSTOP)
+        time.sleep(for_s)
+        daemon.send(signal.SIGCONT)
+        return
+    with subprocess.Popen([sys.executable, HANG_THREAD, thread_of(daemon, what)], stdout=subprocess.PIPE,
+                          text=True) as hang:
+        if hang.stdout.readline() != "hangs\n":
+            raise PermissionError("this user may not trace another process")
+        time.sleep(for_s)
+        hang.kill()  # lets the thread go

@@ -1,0 +1,74 @@
+"""The shipped rig on a serial line, for cells of the fault matrix: a pseudo-terminal of the emulator that takes the time of
+its bytes. Its board has no watchdog and no read-back."""
+
+import os
+import re
+import resource
+import threading
+import time
+
+import bench
+
+RATE_HZ = 20
+
+
+def board_priority():
+    """A module has a processor of its own and answers in its time however busy this one is."""
+    return ["chrt", "-f", "40"] if resource.getrlimit(resource.RLIMIT_RTPRIO)[0] >= 40 or os.geteuid() == 0 else []
+
+
+def rig_file(folder, rate_hz):
+    """Half the rate that fits: bytes cross a pseudo-terminal in a kernel thread that waits its turn on a busy machine."""
+    text = (folder / "config" / "rig_rtu.yaml").read_text()
+    for pattern, replacement in (
+            (r"device: .*", f"device: {folder}/line"), (r"rate_hz: \d+", f"rate_hz: {rate_hz}"),
+            (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.3"), (r"bus_down_cycles: \d+", "bus_down_cycles: 30"),
+            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"), (r"readback_cycles: \d+", "readback_cycles: 30"),
+            (r"max_missed_commands: \d+", "max_missed_commands: 30"), (r"max_age_s: [\d.]+", "max_age_s: 0.8"),
+            (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
+            (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
+            (r"directory: /tmp/softgrip-runs", f"directory: {folder}/runs"),
+            (r"path: /tmp/softgrip.sock", f"path: {folder}/softgripd.sock")):
+        text, count = re.subn(pattern, replacement, text)
+        if count == 0:
+            raise AssertionError(f"rig_rtu.yaml has no {pattern}")
+    path = folder / "config" / "matrix.yaml"
+    path.write_text(text)
+    return path
+
+
+class Emulator(bench.Emulator):
+    """softgrip-rig at the device that the rig file names. Its control socket has one client at a time: who watches asks
+    through this one."""
+
+    def __init__(self, folder, rig, *arguments):
+        self.control_path = folder / "softgrip-rig.sock"
+        self.one_at_a_time = threading.Lock()
+        bench.Process.__init__(self, "softgrip-rig", [
+            *board_priority(), bench.SOFTGRIP_RIG, "--model", folder / "config/models/bench_twin.yaml", "--rig", rig, "--control",
+            self.control_path, *arguments], folder)
+        bench.wait_for("the line", lambda: "listening on" in self.output(), pause_s=0.05)
+        self.control = bench.Lines(self.control_path)
+
+    def ask(self, line):
+        with self.one_at_a_time:
+            return super().ask(line)
+
+
+class Watcher:
+    """In the place of the wire's proxy: nothing is spoiled, what stands at the outputs is looked at every few milliseconds."""
+
+    def __init__(self, emulator):
+        self.writes = []
+        self.emulator = emulator
+        self.over = threading.Event()
+        self.thread = threading.Thread(target=self.watch)
+        self.thread.start()
+
+    def watch(self):
+        while not self.over.wait(0.005):
+            self.writes.append((time.monotonic(), self.emulator.commands_kpa()))
+
+    def close(self):
+        self.over.set()
+        self.thread.join()
