@@ -1,11 +1,12 @@
 """Breaks the code on purpose, one place at a time, and asks whether the tests notice.
 
-    scripts/mutate.py [--per-file N] [--seed S] [--jobs J] [--out FILE] [FILE ...]
+    scripts/mutate.py [--per-file N] [--seed S] [--jobs J] [--out FILE] [--again REPORT] [FILE ...]
 
 Without files: the sources of control/, the bus and the loop. A mutant is a comparison, a sign, a logical connective, a constant or a
 condition that was turned over; places are drawn by the seed. It is built with what is below it in a copy under
 build/mutants, and the fitting tests are run until one fails. Written: the score per folder and every survivor with its
-line. A survivor is a test that is missing, or a change that changes nothing: docs/reliability.md says which.
+line. A survivor is a test that is missing, or a change that changes nothing: docs/reliability.md says which. --again
+judges the survivors of an earlier report only: whether tests that were added since notice them.
 """
 
 import argparse
@@ -131,6 +132,12 @@ class Copy:
             return True  # it hangs: noticed
 
 
+def survivors_of(report):
+    """The same places in today's sources; lines may have moved."""
+    listed = re.findall(r"^- (\S+?):\d+: `(.*)` -> `(.*)`$", report.read_text(), re.MULTILINE)
+    return [next(m for m in mutants_of(name) if (m.old.strip(), m.new.strip()) == (old, new)) for name, old, new in listed]
+
+
 def files_by_default():
     listed = subprocess.run(["git", "ls-files", "control/*.cpp", "daemon/loop/bus.cpp", "daemon/loop/loop.cpp",
                              "daemon/loop/heartbeat.cpp"], cwd=SOURCE, capture_output=True, text=True, check=True).stdout.split()
@@ -143,11 +150,12 @@ def main():
     parser.add_argument("--per-file", type=int, default=6)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--again", type=pathlib.Path, help="a report whose survivors are judged once more")
     parser.add_argument("--out", type=pathlib.Path, default=SOURCE / "build/mutants/report.md")
     options = parser.parse_args()
 
-    drawn = []
-    for name in options.files or files_by_default():
+    drawn = survivors_of(options.again) if options.again else []
+    for name in [] if options.again else options.files or files_by_default():
         places = mutants_of(name)
         drawn += random.Random(f"{options.seed} {name}").sample(places, min(options.per_file, len(places)))
     targets = sorted({t for mutant in drawn for f in FITTING if mutant.name.startswith(f[0]) for t in f[1]} |
@@ -178,7 +186,8 @@ def report(done, options):
     score = collections.defaultdict(collections.Counter)
     for mutant, verdict in done:
         score[str(pathlib.Path(mutant.name).parent)][verdict] += 1
-    lines = [f"seed {options.seed}, at most {options.per_file} mutants a file", "",
+    drawn_how = f"survivors of {options.again.name}" if options.again else f"seed {options.seed}, at most {options.per_file} mutants a file"
+    lines = [drawn_how, "",
              "| folder | mutants | killed | score |", "|---|---|---|---|"]
     for folder, counts in sorted(score.items()):
         judged = counts["killed"] + counts["survived"]
