@@ -165,15 +165,15 @@ ExitCode run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Arguments arguments;
-  CLI::App program("softgripd: drives a soft gripper from a rig file", "softgripd");
-  declare(program, arguments);
   try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
-  }
-  try {
+    Arguments arguments;
+    CLI::App program("softgripd: drives a soft gripper from a rig file", "softgripd");
+    declare(program, arguments);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    }
     return static_cast<int>(arguments.safe_outputs ? safe_outputs(arguments)
                             : arguments.check      ? check(arguments)
                                                    : run(arguments));

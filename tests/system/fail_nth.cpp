@@ -24,6 +24,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 namespace {
 
@@ -41,6 +42,17 @@ const Order& order() noexcept {
 }
 
 std::atomic<long> calls{0};
+std::atomic<bool> in_main{false};
+
+using Main = int (*)(int, char**, char**);
+Main program_main = nullptr;
+
+int noted_main(int count, char** arguments, char** environment) {
+  in_main = true;
+  const int code = program_main(count, arguments, environment);
+  in_main = false;
+  return code;
+}
 
 template <class Function>
 Function real(const char* name) noexcept {
@@ -68,9 +80,39 @@ bool fails(const char* call, int error) noexcept {
 
 }  // namespace
 
+// Allocations of C++ code, of all threads, from main() on: before, nobody could say anything, nor has
+// anything been commanded. Those that a program aligns itself are not counted.
+void* operator new(std::size_t size) {
+  void* const memory = in_main && fails("allocation", ENOMEM) ? nullptr : std::malloc(size > 0 ? size : 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void* operator new[](std::size_t size) {
+  return operator new(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
 extern "C" {
 
 // NOLINTBEGIN(readability-identifier-naming): the C library's names
+int __libc_start_main(Main program, int count, char** arguments, void (*begin)(), void (*end)(),
+                      void (*unload)(), void* stack) {
+  program_main = program;
+  using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
+  return real<Start>("__libc_start_main")(noted_main, count, arguments, begin, end, unload, stack);
+}
+
 int open(const char* path, int flags, ...) {
   va_list more;
   va_start(more, flags);
