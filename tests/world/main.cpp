@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -31,19 +32,29 @@ struct Options {
 struct Sum {
   std::uint64_t worlds = 0, failed = 0, ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0,
                 trips = 0, rows = 0, incidents = 0;
+  /// The most of all worlds, not their sum.
+  std::uint64_t growth_bytes = 0, descriptors = 0;
 };
 
+void add(Sum& sum, const Sum& other) {
+  sum.worlds += other.worlds;
+  sum.failed += other.failed;
+  sum.ticks += other.ticks;
+  sum.writes += other.writes;
+  sum.sequences += other.sequences;
+  sum.holdings += other.holdings;
+  sum.faults += other.faults;
+  sum.trips += other.trips;
+  sum.rows += other.rows;
+  sum.incidents += other.incidents;
+  sum.growth_bytes = std::max(sum.growth_bytes, other.growth_bytes);
+  sum.descriptors = std::max(sum.descriptors, other.descriptors);
+}
+
 void add(Sum& sum, const WorldResult& result) {
-  ++sum.worlds;
-  sum.failed += result.violation ? 1U : 0U;
-  sum.ticks += result.ticks;
-  sum.writes += result.writes;
-  sum.sequences += result.sequences;
-  sum.holdings += result.holdings;
-  sum.faults += result.faults;
-  sum.trips += result.trips;
-  sum.rows += result.rows;
-  sum.incidents += result.incidents.size();
+  add(sum, Sum{1, result.violation ? 1U : 0U, result.ticks, result.writes, result.sequences, result.holdings,
+               result.faults, result.trips, result.rows, result.incidents.size(), result.growth_bytes,
+               result.descriptors});
 }
 
 /// What a person needs to understand it: the fewest incidents, and what followed.
@@ -119,9 +130,7 @@ Sum run_jobs(const Library& library, const Options& options) {
     }
     close(ends[job]);
     waitpid(children[job], nullptr, 0);
-    const auto* from = reinterpret_cast<const std::uint64_t*>(&one);
-    auto* to = reinterpret_cast<std::uint64_t*>(&all);
-    for (std::size_t i = 0; i < sizeof(Sum) / sizeof(std::uint64_t); ++i) to[i] += from[i];
+    add(all, one);
   }
   return all;
 }
@@ -143,9 +152,10 @@ int run(int argc, char** argv) {
   fmt::print(
       "{} worlds of {} s from seed {}: {} violated\n"
       "{} ticks, {} writes, {} incidents, {} sequences, {} times HOLDING, {} faults, {} trips of a watchdog, "
-      "{} recorded rows\n",
+      "{} recorded rows\n"
+      "at most {} KiB more heap than after 5 s, at most {} descriptors\n",
       sum.worlds, options.length_s, options.first, sum.failed, sum.ticks, sum.writes, sum.incidents,
-      sum.sequences, sum.holdings, sum.faults, sum.trips, sum.rows);
+      sum.sequences, sum.holdings, sum.faults, sum.trips, sum.rows, sum.growth_bytes >> 10, sum.descriptors);
   return sum.failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

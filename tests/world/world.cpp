@@ -1,6 +1,7 @@
 #include "tests/world/world.h"
 
 #include <dirent.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -32,6 +33,13 @@ constexpr Nanoseconds longest_answer = 2 * ns_per_s;
 /// Of a loop that ticks as it should.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds foreign_period = ns_per_s * 7 / 1000;
+constexpr Nanoseconds memory_looked_at_every = ns_per_s;
+/// When a daemon has what it needs.
+constexpr Nanoseconds settling = 5 * ns_per_s;
+/// The newest ten thousand events are kept: the one thing that may grow.
+constexpr std::size_t allowed_growth_bytes = std::size_t{4} << 20;
+/// A recording and the file of a sequence.
+constexpr std::size_t allowed_descriptors = 8;
 
 std::size_t open_descriptors() {
   std::size_t count = 0;
@@ -39,6 +47,11 @@ std::size_t open_descriptors() {
   while (readdir(folder) != nullptr) ++count;
   closedir(folder);
   return count;
+}
+
+std::size_t allocated_bytes() {
+  const struct mallinfo2 heap = mallinfo2();
+  return heap.uordblks + heap.hblkhd;
 }
 
 /// While it is true, no file of this process grows: as on a full disk.
@@ -85,7 +98,7 @@ class World {
   }
 
   WorldResult run() {
-    const std::size_t descriptors = open_descriptors();
+    const std::size_t descriptors = descriptors_ = open_descriptors();
     boot();
     scheduler_.add("incidents", [this] { incidents_body(); });
     scheduler_.add("outside", [this] { outside_body(); });
@@ -133,6 +146,8 @@ class World {
     trace("softgripd starts");
     monitor_.boots();
     good_since_ = false;
+    booted_at_ = memory_looked_at_ = scheduler_.now();
+    settled_bytes_ = 0;
     std::string folder = options_.record ? fmt::format("{}/{}", folder_.path(), ++lives_) : std::string();
     rig::RigFile rig = shape_.rig;
     rig.recorder.mode =
@@ -192,6 +207,7 @@ class World {
         bury();
         boots_at_ = now + restart_pause;
       } else {
+        look_at_memory(now);
         for (const auto& [id, asked] : daemon_->unanswered()) {
           // Who is asked while it ends hangs up instead.
           if (!is_paused() && !daemon_->wires.leave.load() &&
@@ -200,6 +216,23 @@ class World {
         }
       }
     }
+  }
+
+  /// Once a second, while a daemon lives: what it has allocated and opened since it settled.
+  void look_at_memory(Nanoseconds now) {
+    const bool due = now - memory_looked_at_ >= memory_looked_at_every && now - booted_at_ >= settling;
+    if (!due || options_.trace) return;
+    memory_looked_at_ = now;
+    // What the world keeps of every tick is not the daemon's; neither is a trace.
+    const std::size_t bytes = allocated_bytes() - recorded_.capacity() * sizeof(Nanoseconds);
+    if (settled_bytes_ == 0) settled_bytes_ = bytes;
+    const std::size_t growth = bytes > settled_bytes_ ? bytes - settled_bytes_ : 0;
+    result_.growth_bytes = std::max<std::uint64_t>(result_.growth_bytes, growth);
+    if (growth > allowed_growth_bytes)
+      monitor_.leaks(fmt::format("{} KiB more than {} s after its start", growth >> 10, settling / ns_per_s));
+    const std::size_t opened = open_descriptors() - descriptors_;
+    result_.descriptors = std::max<std::uint64_t>(result_.descriptors, opened);
+    if (opened > allowed_descriptors) monitor_.leaks(fmt::format("{} descriptors", opened));
   }
 
   bool is_paused() {
@@ -293,6 +326,10 @@ class World {
   bool killed_ = false;
   bool disk_full_ = false;
   bool disk_was_full_ = false;
+  std::size_t descriptors_ = 0;  // before the first daemon
+  std::size_t settled_bytes_ = 0;
+  Nanoseconds booted_at_ = 0;
+  Nanoseconds memory_looked_at_ = 0;
   std::uint64_t ticked_ = 0;
   std::uint64_t failures_ = 0;  // of the bus, when it wrote last
   Nanoseconds boots_at_ = 0;

@@ -39,6 +39,8 @@ struct WorldResult {
   std::vector<std::string> trace;
   std::uint64_t fingerprint = 0;  ///< of all writes with their times
   std::uint64_t ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0, trips = 0, rows = 0;
+  std::uint64_t growth_bytes = 0;  ///< the most that a daemon's heap grew after it had settled
+  std::uint64_t descriptors = 0;   ///< the most that one had open
 };
 
 [[nodiscard]] WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options);
