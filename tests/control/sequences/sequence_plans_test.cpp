@@ -215,6 +215,11 @@ TEST(SequencePlans, AFingersPlanKeepsItsOwnLimitsHoweverAlikeItsNeighbourIs) {
   const double low = 0.8 * free.highest_kpa;
   EXPECT_LE(with([&](ChannelSettings& c) { c.limits.pressure_max_kpa = low; }).highest_kpa, low + 1e-6);
   EXPECT_GE(with([](ChannelSettings& c) { c.limits.pressure_min_kpa = 1; }).lowest_kpa, 1 - 1e-6);
+  RigSettings other_finger = alike;
+  other_finger.channels[1].model = sim::model_named("zhang2025");
+  const PreparedSequence own = sequence_of(moves, other_finger);
+  EXPECT_EQ(own.steps[0].plan_of(0)->pressure_kpa, shared.steps[0].plan_of(0)->pressure_kpa);
+  EXPECT_NE(own.steps[0].plan_of(1)->pressure_kpa, shared.steps[0].plan_of(1)->pressure_kpa);
   RigSettings late = alike;
   late.channels[1].feedforward.extra_latency_s = 0.01;
   const PreparedSequence read_earlier = sequence_of(moves, late);
