@@ -36,8 +36,9 @@ constexpr Nanoseconds foreign_period = ns_per_s * 7 / 1000;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
 /// When a daemon has what it needs.
 constexpr Nanoseconds settling = 5 * ns_per_s;
-/// The newest ten thousand events are kept: the one thing that may grow.
-constexpr std::size_t allowed_growth_bytes = std::size_t{4} << 20;
+/// The event log and a recording each keep ten thousand events of half a KiB, and run.json is made of them:
+/// the one thing that may grow.
+constexpr std::size_t allowed_growth_bytes = std::size_t{12} << 20;
 /// A recording and the file of a sequence.
 constexpr std::size_t allowed_descriptors = 8;
 

@@ -1,0 +1,40 @@
+#include "control/feedforward/pressure_plan.h"
+
+#include <gtest/gtest.h>
+
+#include "model/chain.h"
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+TEST(PressurePlan, BeforeAndBehindItsEndsTheMissIsThatOfItsEnds) {
+  PressurePlan plan;
+  EXPECT_EQ(plan.miss_mm(1), 0) << "nothing is planned";
+  plan.step_s = 1;
+  plan.start_s = 0;
+  plan.displacement_mm = {1, 2, 4};
+  plan.reference.start(0, 0);
+  EXPECT_EQ(plan.miss_mm(-3), 1);
+  EXPECT_EQ(plan.miss_mm(0), 1);
+  EXPECT_EQ(plan.miss_mm(1.4), 2);
+  EXPECT_EQ(plan.miss_mm(2), 4);
+  EXPECT_EQ(plan.miss_mm(9), 4);
+}
+
+TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
+  const model::Model twin = sim::model_named("bench_twin");
+  LimitSettings limits{10, 60, 400, 400, 0, 25, 1};
+  model::Chain<double> chain(without_dead_time(twin));
+  chain.reset(10);
+  const double at_lowest_mm = chain.after(model::Station::load);
+  chain.reset(60);
+  const double at_highest_mm = chain.after(model::Station::load);
+  const SettledLine line = settled_line(twin, limits);
+  EXPECT_NEAR(line.gain_mm_per_kpa, (at_highest_mm - at_lowest_mm) / 50, 1e-12);
+  EXPECT_NEAR(line.pressure_kpa(at_lowest_mm), 10, 1e-9);
+  EXPECT_NEAR(line.pressure_kpa(at_highest_mm), 60, 1e-9);
+}
+
+}  // namespace
+}  // namespace softgrip::control
