@@ -4,9 +4,11 @@
 
 namespace softgrip::control {
 
-Pid::Pid(const PidSettings& settings, double tick_s) noexcept : settings_(settings), tick_s_(tick_s) {
-  change(settings);
-}
+Pid::Pid(const PidSettings& settings, double tick_s) noexcept
+    : settings_(settings),
+      tick_s_(tick_s),
+      filter_keep_(settings.derivative_filter_s > 0 ? std::exp(-tick_s / settings.derivative_filter_s) : 0),
+      tracking_share_(settings.tracking_time_s > 0 ? -std::expm1(-tick_s / settings.tracking_time_s) : 1) {}
 
 void Pid::align(double command_kpa) noexcept {
   memory_ = Memory::aligning;
@@ -36,7 +38,6 @@ double Pid::step(double error_reference_mm, double measurement_mm, double feedfo
   }
   memory_ = Memory::measured;
   last_error_mm_ = error_mm;
-  last_reference_mm_ = error_reference_mm;
   last_measurement_mm_ = measurement_mm;
   feedback_kpa_ = immediate + integral_kpa_;
   request_kpa_ = feedforward_kpa + feedback_kpa_;
@@ -71,14 +72,6 @@ void Pid::sent(double command_kpa) noexcept {
       break;
   }
   increment_kpa_ = 0;
-}
-
-void Pid::change(const PidSettings& settings) noexcept {
-  const double before = immediate_kpa(last_reference_mm_, last_measurement_mm_);
-  settings_ = settings;
-  filter_keep_ = settings.derivative_filter_s > 0 ? std::exp(-tick_s_ / settings.derivative_filter_s) : 0;
-  tracking_share_ = settings.tracking_time_s > 0 ? -std::expm1(-tick_s_ / settings.tracking_time_s) : 1;
-  integral_kpa_ += before - immediate_kpa(last_reference_mm_, last_measurement_mm_);
 }
 
 }  // namespace softgrip::control

@@ -51,9 +51,6 @@ class Pid {
   /// from the pressure range, from the slew limits or from a feedforward beyond them.
   void sent(double command_kpa) noexcept;
 
-  /// New settings; the next step() gives, for the same error, the feedback it would have given before.
-  void change(const PidSettings& settings) noexcept;
-
   [[nodiscard]] double integral_kpa() const noexcept { return integral_kpa_; }
 
  private:
@@ -64,12 +61,11 @@ class Pid {
 
   PidSettings settings_;
   double tick_s_;
-  double filter_keep_ = 0;     ///< of the derivative, per tick
-  double tracking_share_ = 0;  ///< of the cut that back-calculation takes out per tick
+  double filter_keep_;     ///< of the derivative, per tick
+  double tracking_share_;  ///< of the cut that back-calculation takes out per tick
   double integral_kpa_ = 0;
   double rate_mm_per_s_ = 0;  ///< filtered derivative of the measurement
   double last_error_mm_ = 0;
-  double last_reference_mm_ = 0;
   double last_measurement_mm_ = 0;
   double feedback_kpa_ = 0;
   double request_kpa_ = 0;

@@ -51,8 +51,6 @@ ReferencePoint Reference::evaluate(const Segment& segment, double time_s) noexce
       const double cosine = std::cos(phase);
       return {c[0] - c[1] * cosine, c[1] * c[2] * std::sin(phase), c[1] * c[2] * c[2] * cosine};
     }
-    case Shape::curve:
-      return segment.curve.at(segment.curve.object, t);
   }
   return {};
 }
@@ -127,14 +125,6 @@ bool Reference::sine(double mean, double amplitude, double frequency_hz, double 
   Segment* segment = append(Shape::sine, cycles / frequency_hz);
   if (segment == nullptr) return false;
   segment->c = {mean, amplitude, 2 * std::numbers::pi * frequency_hz, 0, 0, 0};
-  return true;
-}
-
-bool Reference::follow(const Curve& curve, double duration_s) noexcept {
-  if (curve.at == nullptr) return false;
-  Segment* segment = append(Shape::curve, duration_s);
-  if (segment == nullptr) return false;
-  segment->curve = curve;
   return true;
 }
 

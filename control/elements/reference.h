@@ -15,13 +15,6 @@ struct ReferencePoint {
   double acceleration = 0;  ///< per s^2
 };
 
-/// A reference given by somebody else: its value and derivatives at a time since its own start. Must not
-/// allocate; `object` outlives the reference.
-struct Curve {
-  const void* object = nullptr;
-  ReferencePoint (*at)(const void* object, double time_s) noexcept = nullptr;
-};
-
 /// Segments one after another; before the first and after the last it holds. Value, rate and acceleration
 /// are continuous over ramps and holds (quintic, minimum jerk); a sine starts with its acceleration at once.
 /// Plain value, no allocation. Times are seconds on the caller's clock.
@@ -46,9 +39,6 @@ class Reference {
   bool hold_for(double duration_s) noexcept;
   /// mean - amplitude cos(2 pi f t) for `cycles`; ramp to mean - amplitude before it.
   bool sine(double mean, double amplitude, double frequency_hz, double cycles) noexcept;
-  /// A curve for `duration_s`, after which its last value holds. A curve with corners or jumps is the
-  /// caller's wish: the feedforward slows down to what the limits pass and says `out_of_reach` meanwhile.
-  bool follow(const Curve& curve, double duration_s) noexcept;
 
   /// Forgets what was to come after `time_s` and ends there (holding until then if it ended before). What is
   /// appended next goes on from there with value, rate and acceleration unbroken. A feedforward that looks
@@ -65,14 +55,13 @@ class Reference {
   [[nodiscard]] double final_value() const noexcept;
 
  private:
-  enum class Shape : std::uint8_t { quintic, sine, curve };
+  enum class Shape : std::uint8_t { quintic, sine };
   struct Segment {
     Shape shape = Shape::quintic;
     double start_s = 0;
     double duration_s = 0;
     /// quintic: coefficients of the powers of (t - start_s); sine: mean, amplitude, angular frequency
     std::array<double, 6> c{};
-    Curve curve;
   };
   [[nodiscard]] static ReferencePoint evaluate(const Segment& segment, double time_s) noexcept;
   [[nodiscard]] ReferencePoint last_point() const noexcept;

@@ -48,9 +48,6 @@ class ChannelController {
   /// What resynchronising added to the model [mm].
   [[nodiscard]] double offset_mm() const noexcept { return offset_mm_; }
 
-  /// New gains without a step of the command.
-  void change_gains(const PidSettings& settings) noexcept { pid_.change(settings); }
-
  private:
   /// Who makes the command.
   enum class Loop : std::uint8_t {

@@ -22,9 +22,8 @@ class SerialEnd {
   SerialEnd& operator=(const SerialEnd&) = delete;
   ~SerialEnd();
 
-  /// True for a pseudo-terminal, existing or new: the time of bytes must be simulated.
-  [[nodiscard]] bool is_pseudo() const noexcept { return pseudo_; }
-  /// The line's times, as far as they must be simulated.
+  /// The line's times, as far as they must be simulated: those of bytes on a pseudo-terminal, existing or
+  /// new.
   [[nodiscard]] WireTime wire_time() const noexcept;
   /// What is read and written; once.
   [[nodiscard]] Descriptor take() noexcept { return std::move(end_); }

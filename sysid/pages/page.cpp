@@ -112,14 +112,6 @@ void Page::figure_row(const std::vector<Chart>& charts, std::string_view caption
   body_ += "</div>" + element("figcaption", caption) + "</figure>\n";
 }
 
-// Folded parts stay open for printers and readers without styles: <details open> costs nothing to close.
-void Page::begin_details(std::string_view summary) {
-  body_ += "<details open>" + element("summary", summary);
-}
-void Page::end_details() {
-  body_ += "</details>\n";
-}
-
 std::string Page::to_html() const {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"

@@ -44,9 +44,6 @@ class Page {
   void figure_row(const std::vector<Chart>& charts, std::string_view caption);
   /// A text in its own lines, in a fixed-width font (a model file).
   void code(std::string_view text);
-  /// What follows, up to end_details(), is folded away under a title (printed in full).
-  void begin_details(std::string_view summary);
-  void end_details();
 
   /// Bytes of the page's body so far.
   [[nodiscard]] std::size_t size() const noexcept { return body_.size(); }

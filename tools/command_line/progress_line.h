@@ -17,7 +17,6 @@ class ProgressLine {
   ProgressLine(ProgressLine&&) = delete;
   ProgressLine& operator=(ProgressLine&&) = delete;
 
-  [[nodiscard]] bool is_shown() const noexcept { return shown_; }
   /// What shows a text in the line; empty where there is no terminal.
   [[nodiscard]] std::function<void(const std::string&)> show() const;
 

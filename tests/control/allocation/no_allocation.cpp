@@ -65,7 +65,6 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
         (void)reference.ramp_to(15, 20);
       }
       if (k % 3000 == 0) controller.start(0, output);
-      if (k % 1000 == 0) controller.change_gains(settings.pid);
       if (k % 700 == 0) input.now += 7 * sim::tick_ns;
       input.demand.time_s = k * sim::tick_s;
       controller.tick(input, output);

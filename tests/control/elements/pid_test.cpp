@@ -117,32 +117,6 @@ TEST(Pid, AlignWaitsForAMeasurementWhileTheFeedforwardGoesOn) {
   EXPECT_NEAR(11 + pid.step(4, 9, 11), 26, 1e-12);
 }
 
-TEST(Pid, AGainChangeDoesNotStepTheCommand) {
-  Pid pid(typical, tick_s);
-  double y = 3;
-  double before = 0;
-  for (int i = 0; i < 200; ++i) {
-    y += 0.01;
-    before = pid.step(10, y, 5);
-  }
-  PidSettings other = typical;
-  other.kp_kpa_per_mm = 9;
-  other.kd_kpa_s_per_mm = 1;
-  other.setpoint_weight = 0.3;
-  pid.change(other);
-  // What is left is one tick of the new controller's own action: 5 mm of error integrated, and the filtered
-  // speed of 2 mm/s that starts to fade.
-  const double own = other.ki_kpa_per_mm_s * tick_s * 5.1 + 1 * 2 * (1 - std::exp(-tick_s / 0.02));
-  EXPECT_NEAR(pid.step(10, y, 5), before, own);
-  PidSettings steady = other;
-  steady.ki_kpa_per_mm_s = 0;
-  Pid still(steady, tick_s);
-  const double held = still.step(10, 4, 5);
-  steady.kp_kpa_per_mm = 1;
-  still.change(steady);
-  EXPECT_NEAR(still.step(10, 4, 5), held, 1e-12);
-}
-
 TEST(Pid, AGapInTheReadingsHoldsTheFeedback) {
   Pid pid(typical, tick_s);
   double feedback = 0;

@@ -118,19 +118,6 @@ TEST(Reference, ForgettingMakesRoomAndKeepsTheFuture) {
   EXPECT_NEAR(reference.at(9).value, 0, 1e-12);
 }
 
-TEST(Reference, FollowsACurveOfSomebodyElse) {
-  const double slope = 3;
-  const Curve curve{&slope, [](const void* object, double t) noexcept {
-                      const double k = *static_cast<const double*>(object);
-                      return ReferencePoint{k * t, k, 0};
-                    }};
-  Reference reference;
-  reference.start(2, 0);
-  ASSERT_TRUE(reference.follow(curve, 4));
-  EXPECT_NEAR(reference.at(3).value, 3, 1e-12);
-  EXPECT_NEAR(reference.at(50).value, 12, 1e-12);
-}
-
 TEST(Reference, RefusesWhatHasNoMeaning) {
   Reference reference;
   EXPECT_FALSE(reference.ramp_to(1, 0));
@@ -138,7 +125,6 @@ TEST(Reference, RefusesWhatHasNoMeaning) {
   EXPECT_FALSE(reference.ramp_for(1, std::nan("")));
   EXPECT_FALSE(reference.hold_for(-1));
   EXPECT_FALSE(reference.sine(1, 1, 0, 1));
-  EXPECT_FALSE(reference.follow({}, 1));
   EXPECT_EQ(reference.at(3).value, 0);
 }
 

@@ -168,8 +168,7 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
     reference.start(0, 0);
     (void)reference.ramp_for(6, 1);
     (void)reference.hold_for(0.5);
-    static const auto jump = [](const void*, double) noexcept { return ReferencePoint{12, 0, 0}; };
-    (void)reference.follow({nullptr, jump}, 5);
+    (void)reference.sine(12, 0, 0.2, 1);  // jumps to 12 mm and stays there for 5 s
     FeedforwardQuery query{&reference, 0, 0};
     feedforward.enter(running, query, 0);
     model::Chain<double> finger(twin, {}, tick_s);

@@ -147,20 +147,6 @@ TEST(ChannelController, EveryChangeOfModeIsBumpless) {
   expect_smooth("after hold");
 }
 
-TEST(ChannelController, AChangeOfGainsIsBumpless) {
-  Rig rig(twin_settings(), 0.02);
-  const Reference reference = ramp_and_sine(rig.time_s());
-  rig.track(reference);
-  rig.run(8);
-  const double before = rig.last.command_kpa;
-  PidSettings other = twin_settings().pid;
-  other.kp_kpa_per_mm = 2;
-  other.kd_kpa_s_per_mm = 0.05;
-  rig.controller.change_gains(other);
-  rig.tick();
-  EXPECT_NEAR(rig.last.command_kpa, before, 0.5);
-}
-
 TEST(ChannelController, FeedbackThatWasHeldGoesOnWithoutAStep) {
   Rig rig(twin_settings());
   const Reference reference = ramp_and_sine(rig.time_s());
