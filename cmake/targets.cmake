@@ -142,12 +142,15 @@ function(softgrip_test name)
   string(JOIN ":" long ${arg_LONG})
   softgrip_discover(${name} "${long}" long ${arg_PROPERTIES})
 endfunction()
+# Each parameter has a name of its own, so CTest's names do without its value, which may be bytes with addresses in them
+# that differ from build to build.
 function(softgrip_discover name filter label)
   if(filter AND NOT filter STREQUAL "*:-*")
     if(label)
       list(APPEND ARGN LABELS ${label})
     endif()
-    gtest_discover_tests(${name} TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60 TEST_LIST ${name}_tests_${label}
+    gtest_discover_tests(${name} NO_PRETTY_VALUES TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60
+      TEST_LIST ${name}_tests_${label}
       PROPERTIES TIMEOUT 120 ${ARGN})
   endif()
 endfunction()
