@@ -8,12 +8,13 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <utility>
 
 #include "base/clock.h"
 #include "base/descriptor_wait.h"
 #include "base/errno_text.h"
+#include "base/grid.h"
+#include "base/time.h"
 #include "drivers/modbus/rtu_frame.h"
 
 namespace softgrip::drivers {
@@ -21,20 +22,6 @@ namespace {
 
 Nanoseconds now() noexcept {
   return MonotonicClock().now();
-}
-
-Nanoseconds nanoseconds(double seconds) noexcept {
-  return std::llround(seconds * 1e9);
-}
-
-double seconds(Nanoseconds duration) noexcept {
-  return static_cast<double>(duration) * 1e-9;
-}
-
-void sleep_until(Nanoseconds moment) noexcept {
-  const timespec until{.tv_sec = moment / 1'000'000'000, .tv_nsec = moment % 1'000'000'000};
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-  }
 }
 
 }  // namespace

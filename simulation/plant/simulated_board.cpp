@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/time.h"
+
 namespace softgrip::simulation {
 namespace {
 
@@ -21,10 +23,6 @@ double quantised(double value, double lower, double upper, int bits) noexcept {
 bool ends_session(drivers::BusStatus status) noexcept {
   return status == drivers::BusStatus::disconnected || status == drivers::BusStatus::timed_out ||
          status == drivers::BusStatus::bad_reply;
-}
-
-Nanoseconds nanoseconds(double seconds) noexcept {
-  return static_cast<Nanoseconds>(std::llround(seconds * 1e9));
 }
 
 }  // namespace
