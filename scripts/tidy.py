@@ -31,7 +31,7 @@ def sources(places):
 
 
 def commands():
-    """Compiler arguments by source, without precompiled headers: those of GCC mean nothing to clang."""
+    """Compiler arguments by source, without what means nothing to clang: precompiled headers and warnings of GCC's."""
     if not (BUILD / "compile_commands.json").exists():
         subprocess.run(["cmake", "--preset", "release", "-B", BUILD], cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     found = {}
@@ -42,7 +42,7 @@ def commands():
         kept = [word for i, word in enumerate(words)
                 if word != "-Winvalid-pch" and not word.endswith("cmake_pch.hxx")
                 and not (word == "-include" and words[i + 1].endswith("cmake_pch.hxx"))]
-        found[os.path.relpath(entry["file"], ROOT)] = {**entry, "command": shlex.join(kept)}
+        found[os.path.relpath(entry["file"], ROOT)] = {**entry, "command": shlex.join([*kept, "-Wno-unknown-warning-option"])}
     # What only another build has, such as a fuzz target, is compiled like its neighbour.
     for name in sources(["."]):
         if name not in found:

@@ -15,7 +15,7 @@
 #include "drivers/modbus/modbus_reply.h"
 #include "drivers/modbus/modbus_request.h"
 
-struct _modbus;  // libmodbus' modbus_t
+struct _modbus;  // NOLINT(bugprone-reserved-identifier): so is libmodbus' modbus_t called
 
 namespace softgrip::drivers {
 

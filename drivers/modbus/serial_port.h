@@ -10,7 +10,7 @@
 #include "base/descriptor.h"
 #include "drivers/modbus/modbus_address.h"
 
-struct _modbus;  // libmodbus' modbus_t
+struct _modbus;  // NOLINT(bugprone-reserved-identifier): so is libmodbus' modbus_t called
 
 namespace softgrip::drivers {
 
