@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Counts how large the house is and how its rooms hang together, on any checkout of this project:
+
+  scripts/count_house.py [--names] [CHECKOUT]
+
+Prints a table in Markdown; --names adds the places behind the counts. A folder counts as a room, and an include as one
+between rooms where the header lies in another folder. Product lines are those of .h and .cpp outside tests/ and bench/.
+docs/explanation/house-counts.md shows two versions side by side.
+"""
+
+import argparse
+import collections
+import pathlib
+import re
+import subprocess
+
+SMALL, LARGE = 40, 400
+DIAGNOSE = "tools/commands/diagnose.cpp"
+# Where a block may be named: its own file and, since there are such files, those of the causes.
+AT_HOME = ("model/", "sysid/diagnosis/causes/")
+
+
+def product(root):
+    """{path: text} of the product's sources."""
+    listed = subprocess.run(["git", "-C", root, "ls-files", "--", "*.h", "*.cpp"], check=True, capture_output=True,
+                            text=True).stdout.splitlines()
+    return {name: (root / name).read_text() for name in listed
+            if not name.startswith(("tests/", "bench/")) and (root / name).is_file()}
+
+
+def folder(name):
+    return str(pathlib.PurePosixPath(name).parent)
+
+
+def included(sources):
+    """{path: headers of the project that it includes}"""
+    return {name: [header for header in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE) if header in sources]
+            for name, text in sources.items()}
+
+
+def mutual(arrows):
+    """Pairs of folders that include each other, by whatever way round."""
+    reached = {}
+    for start in {one for arrow in arrows for one in arrow}:
+        seen, waiting = set(), [start]
+        while waiting:
+            here = waiting.pop()
+            for source, target in arrows:
+                if source == here and target not in seen:
+                    seen.add(target)
+                    waiting.append(target)
+        reached[start] = seen
+    return sorted((one, other) for one in reached for other in reached[one] if one < other and one in reached[other])
+
+
+def block_ids(sources):
+    found = set()
+    for name, text in sources.items():
+        if name.startswith("model/blocks/"):
+            found |= set(re.findall(r'\.id = "(\w+)"|block_info\(\s*"(\w+)"', text))
+    return {one or other for one, other in found}
+
+
+def block_names(sources):
+    """(file, id) where a block's id stands as a string literal away from home."""
+    ids = block_ids(sources)
+    return sorted((name, one) for name, text in sources.items() if not name.startswith(AT_HOME)
+                  for one in re.findall(r'"(\w+)"', re.sub(r"//.*", "", text)) if one in ids)
+
+
+def reached_from(start, sources, includes):
+    """The sources that a program's part stands on: headers by include, and what is written beside each."""
+    seen, waiting = set(), [start]
+    while waiting:
+        name = waiting.pop()
+        if name in seen or name not in sources:
+            continue
+        seen.add(name)
+        stem = name.rsplit(".", 1)[0]
+        waiting += includes[name] + [stem + ".cpp", stem + ".h"]
+    return seen
+
+
+def count(root):
+    """[(what, count, places)]"""
+    sources = product(root)
+    lines = {name: text.count("\n") for name, text in sources.items()}
+    rooms = collections.Counter(map(folder, sources))
+    includes = included(sources)
+    crossing = [(folder(name), folder(header)) for name in sources for header in includes[name]
+                if folder(name) != folder(header)]
+    arrows = set(crossing)
+    floors = {(one.split("/")[0], other.split("/")[0]) for one, other in arrows}
+    circles = mutual(arrows)
+    names = block_names(sources)
+    diagnose = reached_from(DIAGNOSE, sources, includes)
+    small = sorted(name for name in lines if lines[name] < SMALL)
+    large = sorted(name for name in lines if lines[name] > LARGE)
+    biggest, files = rooms.most_common(1)[0]
+    return [
+        ("product lines", sum(lines.values()), []),
+        ("of these lines of comment only", sum(len(re.findall(r"^\s*//", text, re.MULTILINE)) for text in sources.values()), []),
+        ("files", len(sources), []),
+        ("folders with sources", len(rooms), []),
+        ("largest folder, files", f"{files} (`{biggest}`)", [f"{one}: {n}" for one, n in rooms.most_common(8)]),
+        (f"files below {SMALL} lines", len(small), small),
+        (f"files above {LARGE} lines", len(large), [f"{one}: {lines[one]}" for one in large]),
+        ("includes between folders", len(crossing), []),
+        ("arrows between folders", len(arrows), []),
+        ("pairs of folders in a circle of includes", len(circles), [f"{one} <-> {other}" for one, other in circles]),
+        ("pairs of top folders in a circle of includes", len(mutual({one for one in floors if one[0] != one[1]})), []),
+        ("files that name a block away from home", len({name for name, _ in names}), [f"{name}: {one}" for name, one in names]),
+        ("names of blocks there", len(names), []),
+        ("files that `softgrip diagnose` stands on", len(diagnose), []),
+        ("folders that it stands on", len(set(map(folder, diagnose))), sorted(set(map(folder, diagnose)))),
+    ]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkout", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[1])
+    parser.add_argument("--names", action="store_true")
+    args = parser.parse_args()
+    counted = count(args.checkout)
+    print("| what | count |\n|---|---|")
+    for what, number, _ in counted:
+        print(f"| {what} | {number} |")
+    for what, _, places in counted:
+        if args.names and places:
+            print(f"\n{what}:", *places, sep="\n  ")
+
+
+if __name__ == "__main__":
+    main()
