@@ -139,8 +139,6 @@ TEST(Reference, WhatFindsNoRoomChangesNothing) {
   EXPECT_FALSE(reference.ramp_for(0, 1));
   EXPECT_FALSE(reference.hold_for(1));
   EXPECT_FALSE(reference.sine(1, 1, 1, 1));
-  EXPECT_FALSE(
-      reference.follow({&reference, [](const void*, double) noexcept { return ReferencePoint{}; }}, 1));
   EXPECT_EQ(reference.end_s(), end_s);
   EXPECT_EQ(reference.final_value(), static_cast<double>(Reference::capacity));
 }
