@@ -19,6 +19,7 @@ struct ParameterSpec {
   double upper = 0;          ///< largest allowed, itself allowed
   double scale = 1;          ///< a typical change, for the scaling of a fit
   bool whole = false;        ///< only whole numbers (an exponent)
+  bool placed = false;       ///< stands where it was put, and fits move what hangs on it (a threshold)
   /// The value at which the block does nothing, when all its parameters that have one stand there;
   /// NaN where the value does not matter then.
   double neutral = std::numeric_limits<double>::quiet_NaN();
@@ -44,6 +45,7 @@ struct IfLeftOut {
   double value;
 };
 struct Whole {};
+struct Placed {};
 
 namespace declaration {
 constexpr void add(ParameterSpec& spec, Neutral neutral) {
@@ -54,6 +56,9 @@ constexpr void add(ParameterSpec& spec, IfLeftOut if_left_out) {
 }
 constexpr void add(ParameterSpec& spec, Whole) {
   spec.whole = true;
+}
+constexpr void add(ParameterSpec& spec, Placed) {
+  spec.placed = true;
 }
 }  // namespace declaration
 

@@ -19,7 +19,7 @@ class Characteristic {
       parameter("curvature", "", "a: above 0 the finger gives way more the further it is out", Typical{0.5},
                 Within{-4.0, 4.0}, Scale{0.2}, Neutral{0.0}),
       parameter("span_mm", "mm", "where the bend ends; the data's span", Typical{20.0}, Within{1e-6, 1e6},
-                Scale{1.0})};
+                Scale{1.0}, Placed{})};
 
   Characteristic(std::span<const T> values, const Preparation&) : map_{values[0], values[1]} {}
 

@@ -23,7 +23,7 @@ class PrandtlIshlinskii {
   static constexpr std::array<ParameterSpec, 0> parameters{};
   static constexpr std::array repeated{
       parameter("r#_kpa", "kPa", "threshold of operator #, above that of the one before; 0: elastic",
-                Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}),
+                Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}, Placed{}),
       parameter("w#_mm_per_kpa", "mm/kPa", "weight of operator #", Typical{0.1}, Within{0.0, 1e4}, Scale{0.1},
                 Neutral{0.0})};
   static constexpr std::size_t max_parts = 24;

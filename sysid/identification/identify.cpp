@@ -58,8 +58,9 @@ tl::expected<FreeIndices, std::string> free_indices(const model::Model& model,
   FreeIndices free;
   for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
     const std::string path = model::parameter_path(model, i);
-    if (model::parameter_spec(model, i).whole || listed(options.fixed, path)) continue;
-    if (!options.free.empty() && !listed(options.free, path)) continue;
+    const model::ParameterSpec& spec = model::parameter_spec(model, i);
+    if (spec.whole || listed(options.fixed, path)) continue;
+    if (options.free.empty() ? spec.placed : !listed(options.free, path)) continue;
     if (path == "kelvin_voigt.k0_kpa_per_mm" && alpha_free) {
       free.k0_kept = true;
       continue;

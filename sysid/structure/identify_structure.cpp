@@ -9,6 +9,7 @@
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
+#include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_model.h"
 #include "sysid/structure/valve_stage.h"
 
@@ -49,7 +50,7 @@ StructureEvidence evidence_of(const StructureChoice& choice) {
 
 /// Intervals of the numbers that the fit moved, those that stand at zero or at a bound without one.
 void add_estimates(const StructureTrial& trial, Identification& result) {
-  const auto residuals = residuals_for(result.records, fitted_space(trial.point, result.records));
+  const auto residuals = residuals_for(result.records, FitSpace(trial.point.model, result.records, free_numbers(trial.point.model)));
   const std::vector<double> z = residuals->space().z(trial.point);
   const Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
   const FittedPoint fit{*residuals, z, uncertainty};
@@ -143,8 +144,12 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
     return Failure("only " + std::to_string(readings) + " readings to fit: too few to choose a structure (" +
                    std::to_string(fewest_readings) + " are needed)");
 
-  StructureChoiceOptions choice_options{question,     record.drive,    options.starts,
-                                        options.seed, options.threads, {}};
+  StructureChoiceOptions choice_options;
+  choice_options.question = question;
+  choice_options.drive = record.drive;
+  choice_options.starts = options.starts;
+  choice_options.seed = options.seed;
+  choice_options.threads = options.threads;
   if (options.progress) {
     choice_options.progress = [&](const std::string& stage) { options.progress({0, 0, 0, stage}); };
   }

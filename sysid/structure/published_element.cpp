@@ -22,8 +22,8 @@ std::vector<std::size_t> free_numbers(const model::Model& model) {
   const auto creep = model::position_of<model::KelvinVoigt>(model);
   for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
     const model::ParameterPlace place = model::place_of(model, i);
-    if (model::parameter_spec(model, i).whole || (creep && place.block == *creep && place.value == 0))
-      continue;
+    const model::ParameterSpec& spec = model::parameter_spec(model, i);
+    if (spec.whole || spec.placed || (creep && place.block == *creep && place.value == 0)) continue;
     flat.push_back(i);
   }
   return flat;

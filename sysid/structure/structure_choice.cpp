@@ -22,7 +22,9 @@ constexpr int fold_iterations = 5;
 class Judge {
  public:
   Judge(const std::vector<Record>& records, const StructureChoiceOptions& options)
-      : records_(records), options_(options), grid_(grid_for(records)), blocks_(records) {}
+      : records_(records), options_(options), grid_(grid_for(records)), blocks_(records) {
+    if (options.slow_from_s > 0) grid_.slow_from_s = options.slow_from_s;
+  }
 
   [[nodiscard]] std::size_t blocks() const { return blocks_.count(); }
 

@@ -19,6 +19,8 @@ struct StructureChoiceOptions {
   StructureQuestion question = StructureQuestion::automatic;
   Drive drive = Drive::command;  ///< with the measured pressure no dead time is looked for
   std::size_t starts = 20;       ///< of the published element's search
+  /// Creep of at least this time constant is slow creep [s]; 0: from a tenth of the longest record on.
+  double slow_from_s = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::function<void(const std::string&)> progress;

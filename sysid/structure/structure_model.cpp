@@ -93,24 +93,7 @@ class Builder {
   model::Model model_;
 };
 
-/// What stands where it was put before the fit: thresholds, hinges and their time constants, the bend's end.
-bool stays(const model::Model& model, std::size_t flat) {
-  const model::ParameterPlace place = model::place_of(model, flat);
-  const model::BlockSpec& block = model.blocks[place.block];
-  if (model::is<model::PrandtlIshlinskii>(block)) return place.value % 2 == 0;
-  if (model::is<model::PressureDependentCreep>(block)) return place.value % 3 != 1;
-  return model::is<model::Characteristic>(block) && place.value == 1;
-}
-
 }  // namespace
-
-FitSpace fitted_space(const FitPoint& point, const std::vector<Record>& records) {
-  std::vector<std::size_t> free;
-  for (const std::size_t flat : free_numbers(point.model)) {
-    if (!stays(point.model, flat)) free.push_back(flat);
-  }
-  return FitSpace(point.model, records, free);
-}
 
 FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive) {
   const ColumnLayout layout(fit.structure, fit.grid, records);

@@ -11,8 +11,4 @@ namespace softgrip::sysid {
 /// @param drive  Drive::measured: the lag stands behind the measuring point, in the finger.
 [[nodiscard]] FitPoint point_of(const FittedStructure& fit, const std::vector<Record>& records, Drive drive);
 
-/// What the fit of a structure moved, as a space for intervals: not the thresholds, hinges and the bend's
-/// end.
-[[nodiscard]] FitSpace fitted_space(const FitPoint& point, const std::vector<Record>& records);
-
 }  // namespace softgrip::sysid

@@ -119,7 +119,7 @@ class Designer {
     Contest contest;
     contest.ids.push_back(first_id);
     contest.hypotheses.emplace_back(d_.records, first, noise_);
-    for (Candidate& candidate : fit_candidates(data_, rest, rivals)) {
+    for (Candidate& candidate : fit_candidates(data_, rest, {.only = rivals})) {
       if (!candidate.fit) continue;
       contest.ids.emplace_back(candidate.cause.id);
       contest.hypotheses.emplace_back(d_.records, std::move(*candidate.fit), noise_);

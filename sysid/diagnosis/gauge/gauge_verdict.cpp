@@ -87,7 +87,7 @@ class Weighing {
         std::any_of(all.begin(), all.end(), [](const Cause& c) { return c.is_static_sensor(); });
     const bool fitted = position_of(selection_.extended.point.model, chosen.cause).has_value();
     if (matters && fitted && question_.may_replace) {
-      for (Candidate& candidate : fit_candidates(data_, without(place), others)) {
+      for (Candidate& candidate : fit_candidates(data_, without(place), {.only = others})) {
         if (!candidate.fit) continue;
         const auto at = std::find(others.begin(), others.end(), candidate.cause);
         const bool implied = static_cast<std::size_t>(at - others.begin()) >= rivals;

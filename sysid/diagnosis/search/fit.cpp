@@ -6,6 +6,7 @@
 
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/fitting/minimise.h"
@@ -16,13 +17,29 @@ namespace softgrip::sysid {
 namespace {
 
 bool moves(const model::Model& model, const std::vector<Cause>& causes, std::size_t flat_index) {
-  if (model::parameter_spec(model, flat_index).whole) return false;
+  const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
+  if (spec.whole || spec.placed) return false;
   const model::ParameterPlace place = model::place_of(model, flat_index);
   const model::BlockSpec& block = model.blocks[place.block];
   if (const CauseForm* form = form_among(causes, block)) return form->is_fitted(place.value);
-  // alpha and 1/k0 enter only as their sum.
+  // The hysteresis' instantaneous gain and 1/k0 enter only as their sum.
   const bool is_k0 = model::is<model::KelvinVoigt>(block) && place.value == 0;
-  return !(is_k0 && model::position_of<model::BoucWen>(model));
+  return !is_k0 ||
+         !(model::position_of<model::BoucWen>(model) || model::position_of<model::PrandtlIshlinskii>(model));
+}
+
+void bound_by_forms(FitSpace& space, const std::vector<Record>& records, const model::Model& model,
+                    const std::vector<Cause>& causes) {
+  const Scales scales = scales_of(records);
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    const FreeParameter& free = space.free()[i];
+    if (free.kind != FreeParameter::Kind::model) continue;
+    const model::ParameterPlace place = model::place_of(model, free.flat_index);
+    if (const CauseForm* form = form_among(causes, model.blocks[place.block])) {
+      const Range range = form->range(place.value, scales, model);
+      space.bound(i, range.lower, range.upper);
+    }
+  }
 }
 
 }  // namespace
@@ -38,16 +55,17 @@ std::vector<std::size_t> fitted_indices(const model::Model& model, const std::ve
 FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
                          const std::vector<Cause>& causes) {
   FitSpace space(model, records, fitted_indices(model, causes));
-  const Scales scales = scales_of(records);
-  for (std::size_t i = 0; i < space.size(); ++i) {
-    const FreeParameter& free = space.free()[i];
-    if (free.kind != FreeParameter::Kind::model) continue;
-    const model::ParameterPlace place = model::place_of(model, free.flat_index);
-    if (const CauseForm* form = form_among(causes, model.blocks[place.block])) {
-      const Range range = form->range(place.value, scales, model);
-      space.bound(i, range.lower, range.upper);
-    }
-  }
+  bound_by_forms(space, records, model, causes);
+  return space;
+}
+
+FitSpace cause_space(const std::vector<Record>& records, const FitPoint& point, const Cause& cause) {
+  std::vector<std::size_t> indices = fitted_indices(point.model, {cause});
+  const std::size_t own = *position_of(point.model, cause);
+  std::erase_if(indices, [&](std::size_t i) { return model::place_of(point.model, i).block != own; });
+  FitSpace space(point.model, records, indices);
+  space.hold_starts(point.starts);
+  bound_by_forms(space, records, point.model, {cause});
   return space;
 }
 

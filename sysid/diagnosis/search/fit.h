@@ -26,14 +26,18 @@ struct FitEffort {
   bool hold_starts = false;  ///< the records begin as they do at the point from which the fit starts
 };
 
-/// The flat indices that a fit of this structure moves: all of the base but exponents and k0 where alpha is
-/// there, and what the causes' forms say.
+/// The flat indices that a fit of this structure moves: all of the base but exponents, what stands where it
+/// was put, and k0 where the hysteresis has an instantaneous gain; and what the causes' forms say.
 [[nodiscard]] std::vector<std::size_t> fitted_indices(const model::Model& model,
                                                       const std::vector<Cause>& causes);
 
 /// What a fit of this structure moves, within the ranges of the causes' forms.
 [[nodiscard]] FitSpace structure_space(const std::vector<Record>& records, const model::Model& model,
                                        const std::vector<Cause>& causes);
+
+/// The numbers of one cause alone, within the ranges of its form; the rest of the point stays.
+[[nodiscard]] FitSpace cause_space(const std::vector<Record>& records, const FitPoint& point,
+                                   const Cause& cause);
 
 /// Least squares from `from`, over all readings of `records`.
 [[nodiscard]] StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause> causes,

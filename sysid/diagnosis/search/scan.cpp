@@ -47,8 +47,12 @@ Scan::Scan(const std::vector<Record>& records, const std::vector<Cause>& causes,
   left_ = left_of(residual_);
 }
 
-Eigen::VectorXd Scan::left_of(const Eigen::VectorXd& v) const {
-  return v - jacobian_ * normal_.solve(jacobian_.transpose() * v);
+Eigen::MatrixXd Scan::left_of(const Eigen::MatrixXd& columns) const {
+  return columns - jacobian_ * normal_.solve(jacobian_.transpose() * columns);
+}
+
+Eigen::VectorXd Scan::answer_to(const Eigen::VectorXd& residual) const {
+  return -normal_.solve(jacobian_.transpose() * residual);
 }
 
 Eigen::VectorXd Scan::residual_at(const model::Model& model) const {

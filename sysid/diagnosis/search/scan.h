@@ -29,11 +29,14 @@ class Scan {
   [[nodiscard]] bool usable() const noexcept { return usable_; }
   /// What mean square the structure with this block would reach [mm^2]; infinity when it cannot be told.
   [[nodiscard]] double mean_square_with(const model::BlockSpec& block) const;
+  /// Columns over all readings without what the structure's own parameters could take away.
+  [[nodiscard]] Eigen::MatrixXd left_of(const Eigen::MatrixXd& columns) const;
+  /// By how much the structure's own numbers, as structure_space() counts them, would move to take away what
+  /// they can of a residual.
+  [[nodiscard]] Eigen::VectorXd answer_to(const Eigen::VectorXd& residual) const;
 
  private:
   [[nodiscard]] Eigen::VectorXd residual_at(const model::Model& model) const;
-  /// `v` without what the structure's own parameters could take away.
-  [[nodiscard]] Eigen::VectorXd left_of(const Eigen::VectorXd& v) const;
 
   const std::vector<Record>& records_;
   FitPoint place_;

@@ -28,6 +28,8 @@ constexpr std::size_t always_followed = 5;
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
+/// How much more than another explanation a first look may leave to be followed.
+constexpr double near_the_other = 2;
 
 void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   std::erase_if(fits, [](const StructureFit& fit) { return !std::isfinite(fit.mean_square_mm2); });
@@ -102,10 +104,9 @@ SearchData make_search_data(std::vector<Record> records, const model::Model& giv
 }
 
 std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
-                                      const std::vector<Cause>& only,
-                                      const std::function<void(const Cause&)>& done) {
+                                      const CandidateSearch& search) {
   std::vector<Cause> wanted;
-  for (const Cause& cause : only.empty() ? all_causes() : std::span(only)) {
+  for (const Cause& cause : search.only.empty() ? all_causes() : std::span(search.only)) {
     if (cause.found_by_fitting && !position_of(current.point.model, cause)) wanted.push_back(cause);
   }
   std::vector<Candidate> candidates(wanted.size());
@@ -116,7 +117,7 @@ std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit
     if (!candidates[i].why_not.empty()) return;
     looks[i] = look_at(data, current, scans, wanted[i]);
     if (looks[i].empty()) candidates[i].why_not = "no start led to a fit";
-    if (done) done(wanted[i]);
+    if (search.done) search.done(wanted[i]);
   });
 
   std::vector<std::optional<StructureFit>> thin(wanted.size());
@@ -126,6 +127,12 @@ std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit
   std::vector<std::size_t> order = ranking(thin);
   if (order.empty()) return candidates;
   const double best_look = thin[order.front()]->mean_square_mm2;
+  if (best_look > near_the_other * search.to_beat_mm2) {
+    for (Candidate& candidate : candidates) {
+      if (candidate.why_not.empty()) candidate.why_not = "far behind another explanation";
+    }
+    return candidates;
+  }
   parallel_for(order.size(), data.threads, [&](std::size_t rank) {
     const std::size_t i = order[rank];
     if (rank < always_followed || thin[i]->mean_square_mm2 < near_enough * best_look) {

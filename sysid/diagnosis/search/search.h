@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "sysid/diagnosis/causes/cause.h"
@@ -30,10 +31,15 @@ struct Candidate {
   std::string why_not;
 };
 
+struct CandidateSearch {
+  std::vector<Cause> only = {};  ///< empty: all
+  /// Where no look comes near this mean square none is followed to the end.
+  double to_beat_mm2 = std::numeric_limits<double>::infinity();
+  std::function<void(const Cause&)> done = {};
+};
+
 /// Fits `current` plus each cause that it does not have yet. In the order of all_causes().
-/// @param only  fits these alone; empty: all.
 [[nodiscard]] std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
-                                                    const std::vector<Cause>& only,
-                                                    const std::function<void(const Cause&)>& done = {});
+                                                    const CandidateSearch& search = {});
 
 }  // namespace softgrip::sysid

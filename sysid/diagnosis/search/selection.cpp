@@ -7,8 +7,7 @@
 #include <optional>
 
 #include "base/parallel.h"
-#include "model/catalogue.h"
-#include "sysid/diagnosis/causes/twins.h"
+#include "sysid/diagnosis/search/scored.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -23,10 +22,6 @@ constexpr double one_more_share = 0.05;
 /// what makes up for a form does not meet it whole.
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
-/// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
-/// is no rival whatever the blocks say.
-constexpr double rival_share = 0.05;
-
 double square(double x) {
   return x * x;
 }
@@ -46,6 +41,8 @@ class Selector {
 
   Selection run() {
     while (result_.left.present && result_.extended.causes.size() < options_.most_causes) {
+      if (result_.extended.causes.size() == 1 && options_.to_beat_mm2)
+        to_beat_mm2_ = options_.to_beat_mm2(result_);
       if (!add_one()) break;
       if (result_.extended.causes.size() > 1) swap_others();
     }
@@ -56,24 +53,17 @@ class Selector {
   }
 
  private:
-  struct Scored {
-    Candidate candidate;
-    BlockLosses losses;  ///< empty: not refitted
-  };
-
-  /// A form that can follow anything slow is named only where no law explains nearly as much, and is no rival
-  /// of one that does.
-  static bool is_free_form(const Scored& s) {
-    const model::Model& model = s.candidate.fit->point.model;
-    return form_of(s.candidate.cause, model.blocks[*position_of(model, s.candidate.cause)]).free_form;
-  }
+  using Scored = ScoredCandidate;
 
   /// All candidates for one more cause on top of `current`, fitted, the best ones scored held out; best
   /// first.
   std::vector<Scored> score(const StructureFit& current) {
-    std::vector<Candidate> candidates = fit_candidates(data_, current, {}, [&](const Cause& cause) {
+    CandidateSearch search;
+    search.to_beat_mm2 = to_beat_mm2_;
+    search.done = [&](const Cause& cause) {
       if (options_.progress) options_.progress("tried " + std::string(cause.id));
-    });
+    };
+    std::vector<Candidate> candidates = fit_candidates(data_, current, search);
     std::vector<Scored> scored;
     scored.reserve(candidates.size());
     for (Candidate& candidate : candidates) scored.push_back({std::move(candidate), {}});
@@ -121,7 +111,7 @@ class Selector {
     if (scored.empty() || scored.front().losses.empty() ||
         !is_gain(result_.extended_losses, scored.front().losses, result_.extended,
                  *scored.front().candidate.fit)) {
-      result_.last_candidates = describe(scored, result_.extended_losses);
+      result_.last_candidates = describe(scored, result_.extended_losses, options_.seed);
       return false;
     }
     take(scored.front());
@@ -185,8 +175,6 @@ class Selector {
   }
 
   void explain(std::size_t index) {
-    ChosenCause chosen;
-    chosen.cause = result_.extended.causes[index];
     std::vector<Scored> scored;
     const auto fresh = fresh_.find(index);
     if (fresh != fresh_.end()) {
@@ -195,47 +183,9 @@ class Selector {
       scored = score(without(index));
     }
     const BlockLosses& rest_losses = losses_without(index);
-    chosen.gain_percent = gain_percent(rest_losses, result_.extended_losses, options_.seed);
-    const double gained = square(rmse_mm(rest_losses)) - square(rmse_mm(result_.extended_losses));
-    chosen.gain_mm2 = mean_difference(rest_losses, result_.extended_losses, options_.seed);
-    chosen.inclusion = winning_share(result_.extended_losses, rest_losses, options_.seed);
-    const auto twin = twin_of(chosen.cause, result_.extended.point.model);
-    if (twin) chosen.rivals.push_back(*twin);
-    for (const Scored& s : scored) {
-      if (s.losses.empty() || s.candidate.cause == chosen.cause) continue;
-      if (twin && s.candidate.cause == *twin) continue;
-      if (is_free_form(s)) continue;
-      chosen.inclusion =
-          std::min(chosen.inclusion, winning_share(result_.extended_losses, s.losses, options_.seed));
-      const Spread behind = mean_difference(s.losses, result_.extended_losses, options_.seed);
-      // How far an object gives way tells it from a sensor that clips, and of a hard one a few readings say
-      // little.
-      const bool stops = s.candidate.cause.is_stop && chosen.cause.is_stop;
-      const double negligible = (stops ? 0.02 : 0.002) * noise_ * noise_;
-      if (behind.value <= std::max(behind.standard_error, negligible) &&
-          behind.value <= std::max(rival_share * gained, negligible)) {
-        chosen.rivals.push_back(s.candidate.cause);
-      }
-    }
-    if (twin) chosen.inclusion /= 2;
-    chosen.candidates = describe(scored, rest_losses);
-    result_.chosen.push_back(std::move(chosen));
-  }
-
-  [[nodiscard]] std::vector<CandidateScore> describe(const std::vector<Scored>& scored,
-                                                     const BlockLosses& before) const {
-    std::vector<CandidateScore> list;
-    for (const Scored& s : scored) {
-      CandidateScore one{
-          s.candidate.cause, s.candidate.why_not, 0, std::numeric_limits<double>::quiet_NaN(), {}};
-      if (s.candidate.fit) one.rmse_mm = std::sqrt(s.candidate.fit->mean_square_mm2);
-      if (!s.losses.empty()) {
-        one.heldout_rmse_mm = rmse_mm(s.losses);
-        one.gain_percent = gain_percent(before, s.losses, options_.seed);
-      }
-      list.push_back(std::move(one));
-    }
-    return list;
+    result_.chosen.push_back(
+        weigh(result_.extended.causes[index],
+              {result_.extended, result_.extended_losses, rest_losses, noise_, options_.seed}, scored));
   }
 
   const SearchData& data_;
@@ -243,6 +193,7 @@ class Selector {
   const Division& division_;
   const SelectionOptions& options_;
   Selection result_;
+  double to_beat_mm2_ = std::numeric_limits<double>::infinity();
   /// The structure without one cause: its fit, and what it loses held out, as far as they were asked for.
   struct Without {
     std::optional<StructureFit> fit;

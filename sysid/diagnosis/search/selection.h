@@ -51,6 +51,9 @@ struct SelectionOptions {
   std::size_t most_causes = 2;
   std::uint64_t seed = 1;
   std::function<void(const std::string&)> progress;
+  /// Asked where one cause stands and leaves structure: what another explanation leaves as a mean square. A
+  /// second cause is followed to the end only where it comes near. Infinity: there is no other.
+  std::function<double(const Selection&)> to_beat_mm2;
 };
 
 /// @param base  the base structure fitted to data.records.

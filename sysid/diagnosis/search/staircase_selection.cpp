@@ -26,7 +26,7 @@ Cause dragged_along(Cause dead_band) {
 std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& selected,
                                              const Cause& dead_band) {
   if (position_of(selected.point.model, dead_band)) return without_cause(selected, dead_band);
-  std::vector<Candidate> fits = fit_candidates(data, selected, {dragged_along(dead_band)});
+  std::vector<Candidate> fits = fit_candidates(data, selected, {.only = {dragged_along(dead_band)}});
   if (fits.empty() || !fits.front().fit) return std::nullopt;
   return without_cause(*fits.front().fit, dead_band);
 }

@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 
-#include "base/parallel.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/characteristic.h"
@@ -23,23 +22,29 @@
 #include "sysid/diagnosis/causes/stiffening.h"
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
-#include "sysid/fitting/residuals.h"
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/search/linear_selection.h"
+#include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
-#include "sysid/identification/uncertainty.h"
 #include "sysid/structure/held_out_blocks.h"
+#include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_choice.h"
-#include "sysid/structure/structure_model.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// A richer base must leave less than this share of the error that was reached without it, in what comes
-/// after what was fitted.
+/// A richer base must leave less than this share of the error that was reached without it, held out.
 constexpr double worth_having = 0.9;
 /// Named alone at this inclusion and above.
 constexpr double full_inclusion = 0.95;
 /// What an ingredient must bring of the mean square that the recalibrated base left beyond the noise.
 constexpr double least_share = 0.01;
+/// What causes upon a richer base must take together of what that base leaves: no base is a finger's own, and
+/// what makes up for that takes a part.
+constexpr double least_share_upon = 0.3;
+/// With a twin, that it shares its inclusion with, a cause has half of it.
+constexpr double least_inclusion_upon = 0.475;
 
 /// What a finding is called, and with which blocks it stands in the model.
 struct FindingName {
@@ -65,32 +70,16 @@ constexpr std::array names{
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
                 [](Drive) { return model::block_type<model::Characteristic>(); }}};
 
-BlockLosses recalibrated_losses(const std::vector<Record>& records, const StructureFit& fit,
-                                unsigned threads) {
-  const HeldOutBlocks blocks(records);
-  BlockLosses losses(blocks.count(), 0);
-  parallel_for(HeldOutBlocks::folds, threads, [&](std::size_t fold) {
-    blocks.judge(fit_structure(blocks.without(fold), {}, fit.point).point, fold, losses);
-  });
-  return losses;
-}
-
-/// Whether the richer base foretells the second halves of the logs from the first clearly better than what
-/// was reached.
-bool foretells_better(const SearchData& data, const StructureTrial& chosen, const StructureFit& reached,
+/// Whether the richer base foretells the second halves of the logs from the first clearly better than the
+/// given one; a given one that moves the wrong way first is none of a finger, however well it follows one.
+bool foretells_better(const SearchData& data, const StructureTrial& chosen, const StructureFit& given,
                       Drive drive) {
+  if (beta_over_gain(given.point.model) > 1) return true;
   const HeldOutContinuation halves(data.records);
   const double before_mm =
-      rmse_mm(halves.judge(fit_structure(halves.first_half(), reached.causes, reached.point).point));
+      rmse_mm(halves.judge(fit_structure(halves.first_half(), given.causes, given.point).point));
   const double with_mm = rmse_mm(halves.judge(fit_again(chosen, halves.first_half(), drive)));
   return with_mm < worth_having * before_mm;
-}
-
-/// A model that moves the wrong way first is none of a finger, however well it follows one: any richer base
-/// that fits as well stands before it.
-bool stands_before(const StructureTrial& chosen, const StructureFit& reached) {
-  return !chosen.structure.published && beta_over_gain(reached.point.model) > 1 &&
-         chosen.rmse_mm * chosen.rmse_mm < reached.mean_square_mm2;
 }
 
 class Namer {
@@ -98,9 +87,8 @@ class Namer {
   Namer(const SearchData& data, const StructureTrial& chosen, const BaseQuestion& question)
       : chosen_(chosen),
         question_(question),
-        residuals_(residuals_for(data.records, fitted_space(chosen.point, data.records))),
-        z_(residuals_->space().z(chosen.point)),
-        uncertainty_(uncertainty_at(*residuals_, z_, std::numeric_limits<double>::infinity())) {}
+        space_(chosen.point.model, data.records, free_numbers(chosen.point.model)),
+        at_(uncertain_point(data.records, chosen.point, space_)) {}
 
   [[nodiscard]] NamedCause name(const FindingName& finding, const StructureTrial& without) const {
     NamedCause named;
@@ -114,67 +102,46 @@ class Namer {
         gain_percent(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
     named.gain_mm2 = mean_difference(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
     named.inclusion = winning_share(chosen_.block_losses_mm2, without.block_losses_mm2, question_.seed);
-    named.parameters = parameters(named.block_type);
+    named.parameters = block_numbers(at_, named.block_type);
     return named;
   }
 
  private:
-  [[nodiscard]] std::vector<CauseParameter> parameters(std::size_t type) const {
-    std::vector<CauseParameter> list;
-    const model::Model& model = chosen_.point.model;
-    const auto position = model::position_of(model, type);
-    if (!position) return list;
-    const model::BlockSpec& block = model.blocks[*position];
-    for (std::size_t i = 0; i < block.values.size(); ++i) {
-      const FitSpace& space = residuals_->space();
-      CauseParameter p;
-      p.name = model::parameter_name(block, i);
-      p.unit = std::string(model::catalogue()[type].spec(i).unit);
-      p.value = block.values[i];
-      for (std::size_t j = 0; j < space.size(); ++j) {
-        const FreeParameter& free = space.free()[j];
-        if (free.kind != FreeParameter::Kind::model) continue;
-        const model::ParameterPlace place = model::place_of(model, free.flat_index);
-        if (place.block != *position || place.value != i || uncertainty_.at_bound[j]) continue;
-        const auto at = static_cast<Eigen::Index>(j);
-        const double half = uncertainty_.quantile * std::sqrt(std::max(0.0, uncertainty_.covariance(at, at)));
-        if (half == 0) continue;
-        p.ci95 = {std::max(free.to_value(z_[j] - half), free.lower),
-                  std::min(free.to_value(z_[j] + half), free.upper)};
-        p.has_interval = true;
-      }
-      list.push_back(std::move(p));
-    }
-    return list;
-  }
-
   const StructureTrial& chosen_;
   const BaseQuestion& question_;
-  std::unique_ptr<Residuals> residuals_;
-  std::vector<double> z_;
-  Uncertainty uncertainty_;
+  FitSpace space_;
+  UncertainPoint at_;
 };
+
+/// From where on creep is slow for a base that has branches of its own.
+double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
+  double longest_s = 0, slowest_s = 0;
+  for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
+  for (const double tau_s : branch_time_constants_s(recalibrated)) slowest_s = std::max(slowest_s, tau_s);
+  return std::max(longest_s / 10, std::min(1.5 * slowest_s, longest_s));
+}
 
 }  // namespace
 
-std::optional<BaseFindings> find_base(const SearchData& data, const StructureFit& recalibrated,
-                                      const StructureFit& reached, const BaseQuestion& question) {
+std::optional<BaseFindings> find_base(const SearchData& data, const Selection& plain,
+                                      const BaseQuestion& question) {
   StructureChoiceOptions options;
   options.drive = question.drive;
+  options.slow_from_s = slow_from_s(data, plain.base.point.model);
   options.seed = question.seed;
   options.threads = question.threads;
   options.progress = question.progress;
   const StructureChoice choice = choose_structure(data.records, options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
-  BaseFindings found;
-  found.losses = chosen.block_losses_mm2;
-  if (!stands_before(chosen, reached) && !foretells_better(data, chosen, reached, question.drive))
+  // The published element with delay and lag is the given one with two causes: they are searched as causes.
+  if (chosen.structure.published || !foretells_better(data, chosen, plain.base, question.drive))
     return std::nullopt;
+  BaseFindings found;
   found.fit = evaluate_structure(data.records, {}, chosen.point);
+  found.losses = held_out_losses(data.records, question.division, found.fit);
   found.description = description_of(chosen.structure);
-  found.recalibrated_losses = recalibrated_losses(data.records, recalibrated, question.threads);
-  const double excess_mm2 = std::max(
-      std::pow(rmse_mm(found.recalibrated_losses), 2) - question.noise_mm * question.noise_mm, 1e-300);
+  const double excess_mm2 =
+      std::max(std::pow(rmse_mm(plain.base_losses), 2) - question.noise_mm * question.noise_mm, 1e-300);
   const Namer namer(data, chosen, question);
   for (const FindingName& finding : names) {
     const auto without = std::find_if(choice.ablation.begin(), choice.ablation.end(),
@@ -187,6 +154,34 @@ std::optional<BaseFindings> find_base(const SearchData& data, const StructureFit
     (named.inclusion >= full_inclusion ? found.named : found.possible).push_back(std::move(named));
   }
   return found;
+}
+
+bool outdoes(const BaseFindings& found, const Selection& plain) {
+  if (rmse_mm(found.losses) < worth_having * rmse_mm(plain.extended_losses)) return true;
+  return beta_over_gain(plain.extended.point.model) > 1 &&
+         found.fit.mean_square_mm2 < plain.extended.mean_square_mm2;
+}
+
+void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question) {
+  SearchData upon = data;
+  upon.given = found.fit.point;
+  upon.given_is_base = false;
+  upon.scales.residual_lines = spectrum_peaks(upon.records, found.fit.residual_mm, 3);
+  SelectionOptions options;
+  options.seed = question.seed;
+  options.progress = question.progress;
+  Selection selection = select_causes_upon(upon, found.fit, question.noise_mm, question.division, options);
+  if (selection.chosen.empty()) return;
+  const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
+  std::vector<NamedCause> causes = name_chosen(upon.records, selection.extended, selection.chosen);
+  const bool clear = after * after < (1 - least_share_upon) * before * before;
+  for (NamedCause& cause : causes) {
+    (clear && cause.inclusion >= least_inclusion_upon ? found.named : found.possible)
+        .push_back(std::move(cause));
+  }
+  if (!clear) return;
+  found.fit = std::move(selection.extended);
+  found.losses = std::move(selection.extended_losses);
 }
 
 }  // namespace softgrip::sysid

@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "sysid/diagnosis/search/search.h"
+#include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 
 namespace softgrip::sysid {
 
 struct BaseFindings {
-  StructureFit fit;  ///< the richer base, without causes
+  StructureFit fit;  ///< the richer base, with the causes that were found on it
   std::string description;
-  BlockLosses losses;                ///< on interleaved blocks, each while it was held out
-  BlockLosses recalibrated_losses;   ///< of the given base on the same blocks
+  BlockLosses losses;                ///< held out, on the division that was asked for
   std::vector<NamedCause> named;     ///< at full inclusion
   std::vector<NamedCause> possible;  ///< below it
 };
@@ -27,13 +27,21 @@ struct BaseQuestion {
   double noise_mm = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
+  Division division;     ///< of held-out blocks
   std::function<void(const std::string&)> progress;
 };
 
-/// Nothing where no richer base leaves clearly less, on the same blocks, than what was reached with causes on
-/// the given one.
-[[nodiscard]] std::optional<BaseFindings> find_base(const SearchData& data, const StructureFit& recalibrated,
-                                                    const StructureFit& reached,
+/// Nothing where no richer base foretells clearly better than the given one what comes after the readings
+/// that both were fitted to.
+/// @param plain  what was selected on the given base.
+[[nodiscard]] std::optional<BaseFindings> find_base(const SearchData& data, const Selection& plain,
                                                     const BaseQuestion& question);
+
+/// Goes on with the search for causes upon a richer base, and adds what it finds.
+void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question);
+
+/// Whether a richer base, with what stands upon it, leaves clearly less held out than what was selected on
+/// the given one; or as little, where that is unphysical.
+[[nodiscard]] bool outdoes(const BaseFindings& found, const Selection& plain);
 
 }  // namespace softgrip::sysid

@@ -5,8 +5,6 @@
 #include <limits>
 
 #include "base/numbers.h"
-#include "model/catalogue.h"
-#include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
@@ -14,10 +12,9 @@
 #include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
 #include "sysid/diagnosis/verdict/base_findings.h"
-#include "sysid/fitting/residuals.h"
+#include "sysid/diagnosis/verdict/data_warnings.h"
+#include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/fitting/trajectory.h"
-#include "sysid/identification/combinations.h"
-#include "sysid/identification/uncertainty.h"
 #include "sysid/structure/valve_stage.h"
 
 namespace softgrip::sysid {
@@ -34,64 +31,6 @@ constexpr double left_by_staircase = 0.25;
 
 double square(double x) {
   return x * x;
-}
-
-/// What recalibration cannot be trusted with.
-void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings) {
-  if (const double ratio = beta_over_gain(model); ratio > 1)
-    warnings.push_back("recalibrated, the model is unphysical: " + wrong_way_sentence(ratio));
-}
-
-/// Which causes cannot be judged without a column.
-void warn_of_columns(const Scales& scales, std::vector<std::string>& warnings) {
-  for (const Column column : {Column::temperature_c, Column::supply_kpa}) {
-    std::string ids;
-    for (const Cause& cause : all_causes()) {
-      if (cause.needs == column) ids += (ids.empty() ? "" : " and ") + std::string(cause.id);
-    }
-    if (!scales.has(column) && !ids.empty()) {
-      warnings.push_back("no " + std::string(name_of(column)) + " column that varies: " + ids +
-                         " cannot be judged");
-    }
-  }
-}
-
-/// Limits of the data that bear on what can be told.
-void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings) {
-  warn_of_columns(scales, warnings);
-  const bool measured =
-      std::any_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
-  if (!measured) {
-    warnings.emplace_back(
-        "commanded pressure only: what the valve does and what the actuator does are told apart by "
-        "their nonlinearity alone");
-  }
-  std::vector<double> peaks;
-  bool unloads = false, rests = false;
-  for (const Log& log : logs) {
-    const std::vector<double>& u = log.pressure_command_kpa;
-    double top = u.front();
-    for (std::size_t i = 1; i < u.size(); ++i) {
-      top = std::max(top, u[i]);
-      unloads |= u[i] < top - 0.2 * scales.largest_kpa;
-      if (i + 1 < u.size() && u[i] > u[i - 1] && u[i] >= u[i + 1]) peaks.push_back(u[i]);
-    }
-    double still_s = 0;
-    for (std::size_t i = 1; i < u.size(); ++i) {
-      const bool still = std::abs(u[i]) < 0.02 * scales.largest_kpa && std::abs(u[i] - u[i - 1]) < 1e-6;
-      still_s = still ? still_s + log.time_s[i] - log.time_s[i - 1] : 0;
-      rests |= still_s > 3;
-    }
-  }
-  if (!unloads) warnings.emplace_back("unloading never seen: hysteresis cannot be judged");
-  if (!rests)
-    warnings.emplace_back("no rest at zero pressure: creep, softening and drift are hard to tell apart");
-  if (!peaks.empty()) {
-    const auto [low, high] = std::minmax_element(peaks.begin(), peaks.end());
-    if (*high - *low < 0.05 * scales.largest_kpa) {
-      warnings.emplace_back("one amplitude only: what depends on amplitude cannot be judged");
-    }
-  }
 }
 
 /// The base fitted from the given model and, since recalibration can start far off, from the data's scale.
@@ -114,47 +53,6 @@ tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, cons
   return best;
 }
 
-std::vector<CauseParameter> parameters_of(const StructureFit& fit, const Cause& cause, const FitSpace& space,
-                                          const std::vector<double>& z, const Uncertainty& uncertainty) {
-  std::vector<CauseParameter> list;
-  const auto position = position_of(fit.point.model, cause);
-  const model::BlockSpec& block = fit.point.model.blocks[*position];
-  for (std::size_t i = 0; i < block.values.size(); ++i) {
-    CauseParameter p;
-    p.name = model::parameter_name(block, i);
-    p.unit = std::string(model::catalogue()[block.type].spec(i).unit);
-    p.value = block.values[i];
-    for (std::size_t j = 0; j < space.size(); ++j) {
-      const FreeParameter& free = space.free()[j];
-      if (free.kind != FreeParameter::Kind::model) continue;
-      const model::ParameterPlace place = model::place_of(fit.point.model, free.flat_index);
-      if (place.block != *position || place.value != i) continue;
-      const auto at = static_cast<Eigen::Index>(j);
-      const double deviation = std::sqrt(std::max(0.0, uncertainty.covariance(at, at)));
-      if (deviation == 0 || uncertainty.at_bound[j]) continue;
-      const double half = uncertainty.quantile * deviation;
-      p.ci95 = {free.to_value(z[j] - half), free.to_value(z[j] + half)};
-      p.has_interval = true;
-    }
-    list.push_back(std::move(p));
-  }
-  return list;
-}
-
-NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm) {
-  NamedCause named;
-  named.cause = *find_cause(causes::Outliers::id);
-  named.block_type = named.cause.forms.front().type;
-  named.parameters = {
-      {"probability", "", evidence.share, {evidence.share_low, evidence.share_high}, true},
-      {"size_mm", "mm", evidence.size_mm, {evidence.size_low_mm, evidence.size_high_mm}, true}};
-  const double with = std::sqrt(square(noise_mm) + square(evidence.excess_mm));
-  const double gain = 100 * (1 - noise_mm / with);
-  const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, evidence.count)));
-  named.heldout_gain_percent = {gain, gain * relative / 2, gain * (1 - relative), gain * (1 + relative)};
-  return named;
-}
-
 class Diagnostician {
  public:
   Diagnostician(const std::vector<Log>& logs, const model::Model& given, const DiagnosisOptions& options)
@@ -171,13 +69,21 @@ class Diagnostician {
     data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm, 3);
     clock.ended("recalibration");
     const Division division = divide(data_.records, block_s);
-    SelectionOptions selection_options;
-    selection_options.seed = options_.seed;
-    selection_options.progress = options_.progress;
-    if (left_by_outliers(structure_of(base->residual_mm, d_.noise_mm))) selection_options.most_causes = 0;
-    Selection selection = select_causes(data_, std::move(*base), d_.noise_mm, division, selection_options);
+    Selection selection = search(std::move(*base), division);
     clock.ended("search");
-    if (leaves_too_much(selection) && look_for_staircase(selection, division)) clock.ended("staircase");
+    if (leaves_too_much(selection)) {
+      if (may_ask_at_once()) look_for_base(selection, division);
+      clock.ended("base");
+      if (!base_is_far_better(selection) && look_for_staircase(selection, division)) {
+        base_.reset();
+        clock.ended("staircase");
+      }
+    }
+    if (base_) {
+      adopt_base(selection);
+      clock.ended("held-out logs and intervals");
+      return std::move(d_);
+    }
     if (options_.gauge) {
       const GaugeQuestion question{*options_.gauge, d_.noise_mm, options_.seed, !d_.staircase};
       d_.gauge = weigh_gauge(question, data_, division, selection, d_.warnings);
@@ -189,12 +95,10 @@ class Diagnostician {
     name(selection);
     conclude(selection);
     clock.ended("held-out logs and intervals");
-    if (d_.verdict == Verdict::unexplained) {
-      if (auto strangers = strangers_among(data_.records, d_.recalibrated)) {
-        d_.warnings.push_back(*strangers);
-      } else if (!d_.null_calibration && look_for_base(selection)) {
-        clock.ended("base");
-      }
+    if (options_.gauge && d_.verdict == Verdict::unexplained) {
+      look_for_base(selection, division);
+      if (base_) adopt_base(selection);
+      clock.ended("base");
     }
     return std::move(d_);
   }
@@ -268,19 +172,66 @@ class Diagnostician {
     return true;
   }
 
+  [[nodiscard]] BaseQuestion base_question(const Division& division) const {
+    return {options_.record.drive, d_.noise_mm, options_.seed, options_.threads, division, options_.progress};
+  }
+
+  /// Before a gauge or null campaigns have said what a selection is worth, another base is no question.
+  [[nodiscard]] bool may_ask_at_once() const { return !options_.gauge && options_.null_campaigns == 0; }
+
   /// Where no cause on the given base explains the data, the base itself may be the finding.
-  bool look_for_base(const Selection& selection) {
-    const BaseQuestion question{options_.record.drive, d_.noise_mm, options_.seed, options_.threads,
-                                options_.progress};
-    auto found = find_base(data_, selection.base, selection.extended, question);
-    if (!found) return false;
-    d_.base = found->description;
-    d_.extended = std::move(found->fit);
-    d_.recalibrated_rmse_mm = rmse_mm(found->recalibrated_losses);
-    d_.extended_rmse_mm = rmse_mm(found->losses);
+  void ask_for_base(const Selection& selection, const Division& division) {
+    if (asked_for_base_ || options_.null_campaigns > 0) return;
+    asked_for_base_ = true;
+    if (auto strangers = strangers_among(data_.records, d_.recalibrated)) {
+      d_.warnings.push_back(*strangers);
+      return;
+    }
+    if (options_.progress) options_.progress("looks for another base");
+    base_ = find_base(data_, selection, base_question(division));
+  }
+
+  Selection search(StructureFit recalibrated, const Division& division) {
+    SelectionOptions options;
+    options.seed = options_.seed;
+    options.progress = options_.progress;
+    if (left_by_outliers(structure_of(recalibrated.residual_mm, d_.noise_mm))) options.most_causes = 0;
+    if (may_ask_at_once()) {
+      options.to_beat_mm2 = [&](const Selection& one_cause) {
+        if (leaves_too_much(one_cause)) ask_for_base(one_cause, division);
+        return base_ ? base_->fit.mean_square_mm2 : std::numeric_limits<double>::infinity();
+      };
+    }
+    return select_causes(data_, std::move(recalibrated), d_.noise_mm, division, options);
+  }
+
+  [[nodiscard]] bool base_leaves_too_much(const Selection& selection) const {
+    const Structure left = structure_of(base_->fit.residual_mm, d_.noise_mm);
+    return sysid::leaves_too_much(left, selection.base_structure, d_.noise_mm);
+  }
+
+  /// Leaves base_ where it explains more than the selection does, with what stands upon it.
+  void look_for_base(const Selection& selection, const Division& division) {
+    ask_for_base(selection, division);
+    if (!base_) return;
+    if (base_leaves_too_much(selection)) find_causes_upon(*base_, data_, base_question(division));
+    if (!outdoes(*base_, selection)) base_.reset();
+  }
+
+  [[nodiscard]] bool base_is_far_better(const Selection& selection) const {
+    if (!base_) return false;
+    const double left_mm = structure_of(base_->fit.residual_mm, d_.noise_mm).excess_mm;
+    return square(left_mm) < left_by_staircase * square(selection.left.excess_mm);
+  }
+
+  void adopt_base(const Selection& selection) {
+    measure_recalibrated(selection);
+    d_.base = base_->description;
+    d_.extended = std::move(base_->fit);
+    d_.extended_rmse_mm = rmse_mm(base_->losses);
     d_.extended_other_logs_rmse_mm.reset();
     d_.recalibrated_other_logs_rmse_mm.reset();
-    d_.gain = gain_percent(found->recalibrated_losses, found->losses, options_.seed);
+    d_.gain = gain_percent(selection.base_losses, base_->losses, options_.seed);
     d_.structure_left = structure_of(d_.extended.residual_mm, d_.noise_mm);
     d_.unexplained_percent =
         std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
@@ -289,25 +240,29 @@ class Diagnostician {
     if (options_.record.drive == Drive::measured)
       model = with_valve(std::move(model), fit_valve_stage(logs_, 1, options_.record.held));
     d_.extended_model = named_model(std::move(model), "extended");
-    d_.causes = std::move(found->named);
-    d_.partial = std::move(found->possible);
-    const bool rivals = std::any_of(d_.causes.begin(), d_.causes.end(),
-                                    [](const NamedCause& c) { return !c.rivals.empty(); });
+    d_.causes = std::move(base_->named);
+    d_.partial = std::move(base_->possible);
     const bool whole = !sysid::leaves_too_much(d_.structure_left, selection.base_structure, d_.noise_mm);
-    if (!d_.causes.empty()) {
-      d_.verdict = !whole ? Verdict::partly_explained : rivals ? Verdict::ambiguous : Verdict::cause_found;
-    }
-    return true;
+    d_.verdict = d_.causes.empty()       ? Verdict::unexplained
+                 : !whole                ? Verdict::partly_explained
+                 : any_rivals(d_.causes) ? Verdict::ambiguous
+                                         : Verdict::cause_found;
+  }
+
+  void measure_recalibrated(const Selection& selection) {
+    d_.structure_recalibrated = selection.base_structure;
+    d_.recalibrated_rmse_mm = rmse_mm(selection.base_losses);
+    d_.rejected = selection.last_candidates;
+    d_.recalibrated_model = named_model(selection.base.point.model, "recalibrated");
+    warn_unphysical(d_.recalibrated_model, d_.warnings);
   }
 
   void measure(const Selection& selection, const Division& division) {
+    measure_recalibrated(selection);
     d_.extended = selection.extended;
-    d_.structure_recalibrated = selection.base_structure;
     d_.structure_left = selection.left;
-    d_.recalibrated_rmse_mm = rmse_mm(selection.base_losses);
     d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
     d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-    d_.rejected = selection.last_candidates;
     recalibration_gain_ =
         mean_difference(losses_of(d_.as_given, division), selection.base_losses, options_.seed);
     d_.unexplained_percent =
@@ -322,9 +277,7 @@ class Diagnostician {
         d_.extended_other_logs_rmse_mm = rmse_mm(held_out_losses(data_.records, logs, selection.extended));
       }
     }
-    d_.recalibrated_model = named_model(selection.base.point.model, "recalibrated");
     d_.extended_model = named_model(selection.extended.point.model, "extended");
-    warn_unphysical(d_.recalibrated_model, d_.warnings);
   }
 
   void calibrate(const Division& division) {
@@ -350,27 +303,11 @@ class Diagnostician {
 
   void name(const Selection& selection) {
     if (d_.outliers.present) causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm));
-    if (selection.chosen.empty()) return;
-    const FitSpace space =
-        structure_space(data_.records, selection.extended.point.model, selection.extended.causes);
-    const auto residuals = residuals_for(data_.records, space);
-    const std::vector<double> z = space.z(selection.extended.point);
-    const Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
-    for (const ChosenCause& chosen : selection.chosen) {
-      NamedCause named;
-      named.cause = chosen.cause;
-      const model::Model& extended = selection.extended.point.model;
-      named.block_type = extended.blocks[*position_of(extended, chosen.cause)].type;
-      named.parameters = parameters_of(selection.extended, chosen.cause, space, z, uncertainty);
-      if (d_.staircase && chosen.cause.id == causes::ValveDeadband::id) {
+    for (NamedCause& named : name_chosen(data_.records, selection.extended, selection.chosen)) {
+      if (d_.staircase && named.cause.id == causes::ValveDeadband::id) {
         // Of the staircase itself; the extended model's may be that of its mean.
         named.parameters.front() = {"band_kpa", "kPa", d_.staircase->band_kpa, d_.staircase->band_ci95, true};
       }
-      named.heldout_gain_percent = chosen.gain_percent;
-      named.gain_mm2 = chosen.gain_mm2;
-      named.inclusion = chosen.inclusion;
-      named.rivals = chosen.rivals;
-      named.candidates = chosen.candidates;
       causes_.push_back(std::move(named));
     }
   }
@@ -407,9 +344,7 @@ class Diagnostician {
           selection.left.present ? 100 * left / (left + square(d_.outliers.excess_mm)) : 0;
     }
     if (!d_.causes.empty()) {
-      const bool rivals = std::any_of(d_.causes.begin(), d_.causes.end(),
-                                      [](const NamedCause& c) { return !c.rivals.empty(); });
-      d_.verdict = rivals ? Verdict::ambiguous : Verdict::cause_found;
+      d_.verdict = any_rivals(d_.causes) ? Verdict::ambiguous : Verdict::cause_found;
       return;
     }
     const bool better =
@@ -423,6 +358,8 @@ class Diagnostician {
   SearchData data_;
   Spread recalibration_gain_;
   std::vector<NamedCause> causes_;
+  std::optional<BaseFindings> base_;  ///< another base, where one explains more
+  bool asked_for_base_ = false;
   Diagnosis d_;
 };
 

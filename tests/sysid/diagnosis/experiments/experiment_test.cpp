@@ -73,7 +73,7 @@ Diagnosis ambiguous(const std::vector<std::string>& rivals) {
   const SearchData data = make_search_data(d.records, base);
   NamedCause named;
   named.cause = *find_cause("stress_softening");
-  d.extended = fit_candidates(data, d.recalibrated, {named.cause}).front().fit.value();
+  d.extended = fit_candidates(data, d.recalibrated, {.only = {named.cause}}).front().fit.value();
   for (const std::string& rival : rivals) named.rivals.push_back(*find_cause(rival));
   d.causes = {named};
   return d;
@@ -181,7 +181,7 @@ TEST(Experiment, TellsSofteningFromCreepAsFarAsItPromises) {
   const SearchData data = make_search_data(all, loaded("bench_twin"));
   const StructureFit base = fit_structure(all, {}, data.given);
   const auto misfit = [&](const char* id) {
-    const double mean = fit_candidates(data, base, {*find_cause(id)}).front().fit->mean_square_mm2;
+    const double mean = fit_candidates(data, base, {.only = {*find_cause(id)}}).front().fit->mean_square_mm2;
     return mean * static_cast<double>(all[0].size() + all[1].size()) / (noise_mm * noise_mm);
   };
   const double seen_sigma = std::sqrt(std::max(0.0, misfit("slow_creep") - misfit("stress_softening")));

@@ -1,0 +1,93 @@
+#include "sysid/diagnosis/search/linear_holdout.h"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "sysid/fitting/residuals.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Of the diagonal of the normal matrix.
+constexpr double damping = 1e-3;
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Row ranges of a block's readings, and of those too near to it to be fitted.
+struct BlockRows {
+  Eigen::Index first, last, hidden_first, hidden_last;
+};
+
+std::vector<BlockRows> rows_of(const std::vector<Record>& records, const Division& division) {
+  std::vector<std::vector<Eigen::Index>> before(records.size());  // readings before sample i
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    before[k].reserve(records[k].size() + 1);
+    for (const double y : records[k].reading_mm) {
+      before[k].push_back(row);
+      if (std::isfinite(y)) ++row;
+    }
+    before[k].push_back(row);
+  }
+  std::vector<BlockRows> rows;
+  for (const Block& block : division.blocks) {
+    const std::vector<double>& t = records[block.record].time_s;
+    std::size_t from = block.first, to = block.last;
+    while (from > 0 && t[from - 1] >= t[block.first] - division.gap_s) --from;
+    while (to < t.size() && t[to] <= t[block.last - 1] + division.gap_s) ++to;
+    const std::vector<Eigen::Index>& at = before[block.record];
+    rows.push_back({at[block.first], at[block.last], at[from], at[to]});
+  }
+  return rows;
+}
+
+}  // namespace
+
+BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Division& division,
+                                   const StructureFit& fit) {
+  FitSpace space = structure_space(records, fit.point.model, fit.causes);
+  space.hold_starts(fit.point.starts);
+  const auto residuals = residuals_for(records, space);
+  const auto count = static_cast<Eigen::Index>(residuals->count());
+  const auto numbers = static_cast<Eigen::Index>(space.size());
+  Eigen::VectorXd r(count);
+  RowMajor jacobian(count, numbers);
+  BlockLosses losses(division.blocks.size(), std::numeric_limits<double>::infinity());
+  if (!residuals->evaluate(space.z(fit.point), {r.data(), residuals->count()},
+                           {jacobian.data(), residuals->count() * space.size()})) {
+    return losses;
+  }
+  const std::vector<BlockRows> rows = rows_of(records, division);
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(numbers, numbers);
+  whole.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+  const Eigen::VectorXd gradient = jacobian.transpose() * r;
+  for (std::size_t fold = 0; fold < division.folds; ++fold) {
+    Eigen::MatrixXd normal = whole;
+    Eigen::VectorXd right = gradient;
+    Eigen::Index done = 0;  // the neighbourhoods of two blocks may overlap
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      if (division.blocks[b].fold != fold) continue;
+      const Eigen::Index from = std::max(rows[b].hidden_first, done), length = rows[b].hidden_last - from;
+      done = rows[b].hidden_last;
+      if (length <= 0) continue;
+      const auto part = jacobian.middleRows(from, length);
+      normal.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose(), -1);
+      right -= part.transpose() * r.segment(from, length);
+    }
+    normal.diagonal() += damping * normal.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
+    const Eigen::VectorXd step = -normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      if (division.blocks[b].fold != fold) continue;
+      const Eigen::Index length = rows[b].last - rows[b].first;
+      const Eigen::VectorXd held =
+          r.segment(rows[b].first, length) + jacobian.middleRows(rows[b].first, length) * step;
+      losses[b] = length > 0 ? held.squaredNorm() / static_cast<double>(length) : 0;
+    }
+  }
+  return losses;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,73 @@
+#include "sysid/diagnosis/search/scored.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sysid/diagnosis/causes/twins.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
+/// is no rival whatever the blocks say.
+constexpr double rival_share = 0.05;
+
+double square(double x) {
+  return x * x;
+}
+
+}  // namespace
+
+bool is_free_form(const ScoredCandidate& scored) {
+  const model::Model& model = scored.candidate.fit->point.model;
+  return form_of(scored.candidate.cause, model.blocks[*position_of(model, scored.candidate.cause)]).free_form;
+}
+
+ChosenCause weigh(const Cause& cause, const ChosenBetween& between,
+                  const std::vector<ScoredCandidate>& scored) {
+  ChosenCause chosen;
+  chosen.cause = cause;
+  chosen.gain_percent = gain_percent(between.without_losses, between.with_losses, between.seed);
+  const double gained = square(rmse_mm(between.without_losses)) - square(rmse_mm(between.with_losses));
+  chosen.gain_mm2 = mean_difference(between.without_losses, between.with_losses, between.seed);
+  chosen.inclusion = winning_share(between.with_losses, between.without_losses, between.seed);
+  const auto twin = twin_of(cause, between.with.point.model);
+  if (twin) chosen.rivals.push_back(*twin);
+  for (const ScoredCandidate& s : scored) {
+    if (s.losses.empty() || s.candidate.cause == cause) continue;
+    if (twin && s.candidate.cause == *twin) continue;
+    if (is_free_form(s)) continue;
+    chosen.inclusion = std::min(chosen.inclusion, winning_share(between.with_losses, s.losses, between.seed));
+    const Spread behind = mean_difference(s.losses, between.with_losses, between.seed);
+    // How far an object gives way tells it from a sensor that clips, and of a hard one a few readings say
+    // little.
+    const bool stops = s.candidate.cause.is_stop && cause.is_stop;
+    const double negligible = (stops ? 0.02 : 0.002) * between.noise_mm * between.noise_mm;
+    if (behind.value <= std::max(behind.standard_error, negligible) &&
+        behind.value <= std::max(rival_share * gained, negligible)) {
+      chosen.rivals.push_back(s.candidate.cause);
+    }
+  }
+  if (twin) chosen.inclusion /= 2;
+  chosen.candidates = describe(scored, between.without_losses, between.seed);
+  return chosen;
+}
+
+std::vector<CandidateScore> describe(const std::vector<ScoredCandidate>& scored, const BlockLosses& before,
+                                     std::uint64_t seed) {
+  std::vector<CandidateScore> list;
+  for (const ScoredCandidate& s : scored) {
+    CandidateScore one{
+        s.candidate.cause, s.candidate.why_not, 0, std::numeric_limits<double>::quiet_NaN(), {}};
+    if (s.candidate.fit) one.rmse_mm = std::sqrt(s.candidate.fit->mean_square_mm2);
+    if (!s.losses.empty()) {
+      one.heldout_rmse_mm = rmse_mm(s.losses);
+      one.gain_percent = gain_percent(before, s.losses, seed);
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,90 @@
+#include "sysid/diagnosis/verdict/naming.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/catalogue.h"
+#include "model/named.h"
+#include "sysid/diagnosis/causes/outliers.h"
+#include "sysid/fitting/residuals.h"
+
+namespace softgrip::sysid {
+
+UncertainPoint uncertain_point(const std::vector<Record>& records, const FitPoint& point,
+                               const FitSpace& space) {
+  const auto residuals = residuals_for(records, space);
+  std::vector<double> z = space.z(point);
+  Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
+  return {point, space, std::move(z), std::move(uncertainty)};
+}
+
+std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t block_type) {
+  std::vector<CauseParameter> list;
+  const model::Model& model = at.point.model;
+  const auto position = model::position_of(model, block_type);
+  if (!position) return list;
+  const model::BlockSpec& block = model.blocks[*position];
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    CauseParameter p;
+    p.name = model::parameter_name(block, i);
+    p.unit = std::string(model::catalogue()[block.type].spec(i).unit);
+    p.value = block.values[i];
+    for (std::size_t j = 0; j < at.space.size(); ++j) {
+      const FreeParameter& free = at.space.free()[j];
+      if (free.kind != FreeParameter::Kind::model || at.uncertainty.at_bound[j]) continue;
+      const model::ParameterPlace place = model::place_of(model, free.flat_index);
+      if (place.block != *position || place.value != i) continue;
+      const auto row = static_cast<Eigen::Index>(j);
+      const double deviation = std::sqrt(std::max(0.0, at.uncertainty.covariance(row, row)));
+      if (deviation == 0) continue;
+      const double half = at.uncertainty.quantile * deviation;
+      p.ci95 = {free.to_value(at.z[j] - half), free.to_value(at.z[j] + half)};
+      p.has_interval = true;
+    }
+    list.push_back(std::move(p));
+  }
+  return list;
+}
+
+std::vector<NamedCause> name_chosen(const std::vector<Record>& records, const StructureFit& extended,
+                                    const std::vector<ChosenCause>& chosen) {
+  std::vector<NamedCause> list;
+  if (chosen.empty()) return list;
+  const model::Model& model = extended.point.model;
+  const FitSpace space = structure_space(records, model, extended.causes);
+  const UncertainPoint at = uncertain_point(records, extended.point, space);
+  for (const ChosenCause& each : chosen) {
+    NamedCause named;
+    named.cause = each.cause;
+    named.block_type = model.blocks[*position_of(model, each.cause)].type;
+    named.parameters = block_numbers(at, named.block_type);
+    named.heldout_gain_percent = each.gain_percent;
+    named.gain_mm2 = each.gain_mm2;
+    named.inclusion = each.inclusion;
+    named.rivals = each.rivals;
+    named.candidates = each.candidates;
+    list.push_back(std::move(named));
+  }
+  return list;
+}
+
+NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm) {
+  NamedCause named;
+  named.cause = *find_cause(causes::Outliers::id);
+  named.block_type = named.cause.forms.front().type;
+  named.parameters = {
+      {"probability", "", evidence.share, {evidence.share_low, evidence.share_high}, true},
+      {"size_mm", "mm", evidence.size_mm, {evidence.size_low_mm, evidence.size_high_mm}, true}};
+  const double with = std::sqrt(noise_mm * noise_mm + evidence.excess_mm * evidence.excess_mm);
+  const double gain = 100 * (1 - noise_mm / with);
+  const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, evidence.count)));
+  named.heldout_gain_percent = {gain, gain * relative / 2, gain * (1 - relative), gain * (1 + relative)};
+  return named;
+}
+
+bool any_rivals(const std::vector<NamedCause>& causes) {
+  return std::any_of(causes.begin(), causes.end(), [](const NamedCause& c) { return !c.rivals.empty(); });
+}
+
+}  // namespace softgrip::sysid

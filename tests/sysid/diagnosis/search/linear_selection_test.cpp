@@ -1,0 +1,99 @@
+#include "sysid/diagnosis/search/linear_selection.h"
+
+#include <gtest/gtest.h>
+
+#include "model/blocks/backlash.h"
+#include "model/blocks/pressure_saturation.h"
+#include "model/blocks/sensor_lag.h"
+#include "model/blocks/stress_softening.h"
+#include "model/catalogue.h"
+#include "model/named.h"
+#include "sysid/diagnosis/search/linear_holdout.h"
+#include "sysid/diagnosis/search/scored.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using model::SignalName;
+
+model::Model finger() {
+  return model::only(loaded("bench_twin"),
+                     [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
+}
+
+struct Campaign {
+  SearchData data;
+  StructureFit base;
+  Division division;
+};
+
+Campaign campaign_of(const model::Model& truth) {
+  std::vector<Log> logs;
+  for (const SignalName signal : {SignalName::tp1, SignalName::sp2})
+    logs.push_back(simulated(truth, signal, 25, 0.03, 3));
+  Campaign c;
+  c.data = make_search_data(make_records(logs, {}), finger());
+  c.base = fit_structure(c.data.records, {}, c.data.given);
+  c.division = divide(c.data.records, 8);
+  return c;
+}
+
+model::Model softening() {
+  return model::with_block(finger(), model::block_of<model::StressSoftening>({{"softening_per_kpa", 0.001}}));
+}
+
+/// Refitting block by block is the referee.
+TEST(LinearHoldout, SaysWhatRefittingSays) {
+  const Campaign c = campaign_of(softening());
+  const BlockLosses refitted = held_out_losses(c.data.records, c.division, c.base);
+  const BlockLosses linear = linear_held_out_losses(c.data.records, c.division, c.base);
+  ASSERT_EQ(linear.size(), refitted.size());
+  for (std::size_t b = 0; b < linear.size(); ++b)
+    EXPECT_NEAR(linear[b], refitted[b], 0.1 * refitted[b]) << "block " << b;
+}
+
+/// The search that moves every number of the base is the referee.
+TEST(LinearSelection, FindsWhatTheFullSearchFinds) {
+  const std::vector<model::BlockSpec> effects{
+      model::block_of<model::Backlash>({{"gap_mm", 0.4}}),
+      model::block_of<model::SensorLag>({{"time_constant_s", 0.15}}),
+      model::block_of<model::PressureSaturation>({{"limit_kpa", 38}})};
+  for (const model::BlockSpec& effect : effects) {
+    const Campaign c = campaign_of(model::with_block(finger(), effect));
+    const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
+    const Selection full = select_causes(c.data, c.base, 0.03, c.division, {});
+    const std::string name(model::catalogue()[effect.type].info.id);
+    ASSERT_EQ(found.chosen.size(), 1U) << name;
+    ASSERT_EQ(full.chosen.size(), 1U) << name;
+    EXPECT_EQ(found.chosen.front().cause, full.chosen.front().cause) << name;
+    EXPECT_EQ(found.chosen.front().cause.id, name);
+    EXPECT_NEAR(rmse_mm(found.extended_losses), rmse_mm(full.extended_losses), 0.02 * 0.03) << name;
+    EXPECT_FALSE(found.left.present) << name;
+    const model::Model& model = found.extended.point.model;
+    const double fitted = model.blocks[*position_of(model, found.chosen.front().cause)].values[0];
+    EXPECT_NEAR(fitted, effect.values[0], 0.1 * effect.values[0]) << name;
+  }
+}
+
+TEST(LinearSelection, FindsNothingWhereTheBaseHolds) {
+  const Campaign c = campaign_of(finger());
+  const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
+  EXPECT_TRUE(found.chosen.empty());
+  EXPECT_EQ(found.extended.mean_square_mm2, c.base.mean_square_mm2);
+}
+
+TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
+  const Campaign c = campaign_of(finger());
+  const Cause cause = *find_cause("stress_softening");
+  const BlockLosses with{1, 1, 1, 1}, without{2, 2, 2, 2};
+  StructureFit fit = c.base;
+  fit.point.model = softening();
+  const ChosenCause alone = weigh(cause, {fit, with, without, 0.03, 1}, {});
+  EXPECT_TRUE(alone.rivals.empty());
+  EXPECT_EQ(alone.inclusion, 1);
+  EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

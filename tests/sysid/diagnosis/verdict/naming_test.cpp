@@ -1,0 +1,55 @@
+#include "sysid/diagnosis/verdict/naming.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "model/blocks/kelvin_voigt.h"
+#include "model/named.h"
+#include "sysid/diagnosis/verdict/data_warnings.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using model::SignalName;
+
+TEST(BlockNumbers, HaveIntervalsWhereTheFitMovedThemThatHoldTheTruth) {
+  const model::Model truth = model::only(loaded("bench_twin"), [](const model::BlockInfo& info) {
+    return info.station != model::Station::valve;
+  });
+  const std::vector<Record> records = make_records({simulated(truth, SignalName::tp1, 25, 0.03, 5)}, {});
+  const StructureFit fit = fit_structure(records, {}, {truth, rest_starts(truth, records)});
+  const FitSpace space = structure_space(records, fit.point.model, {});
+  const UncertainPoint at = uncertain_point(records, fit.point, space);
+  const std::size_t creep = model::block_type<model::KelvinVoigt>();
+  const std::vector<CauseParameter> numbers = block_numbers(at, creep);
+  const model::BlockSpec& real = truth.blocks[*model::position_of(truth, creep)];
+  ASSERT_EQ(numbers.size(), real.values.size());
+  EXPECT_EQ(numbers[0].name, "k0_kpa_per_mm");
+  EXPECT_FALSE(numbers[0].has_interval) << "alpha and k0 enter only as their sum";
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    ASSERT_TRUE(numbers[i].has_interval) << numbers[i].name;
+    EXPECT_LT(numbers[i].ci95.lower, numbers[i].value);
+    EXPECT_GT(numbers[i].ci95.upper, numbers[i].value);
+    EXPECT_NEAR(numbers[i].value, real.values[i], 0.1 * real.values[i]) << numbers[i].name;
+  }
+}
+
+TEST(DataWarnings, SayWhatALogWithoutUnloadingCannotShow) {
+  Log ramp;
+  ramp.name = "ramp";
+  for (int i = 0; i < 500; ++i) {
+    ramp.time_s.push_back(0.02 * i);
+    ramp.pressure_command_kpa.push_back(0.1 * i);
+    ramp.displacement_mm.push_back(0.05 * i);
+  }
+  std::vector<std::string> warnings;
+  warn_of_data({ramp}, scales_of(make_records({ramp}, {})), warnings);
+  EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
+    return w == "unloading never seen: hysteresis cannot be judged";
+  }));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid
