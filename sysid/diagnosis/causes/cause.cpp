@@ -113,6 +113,7 @@ constexpr Cause cause() {
   if constexpr (requires { C::advice; }) cause.advice = C::advice;
   if constexpr (requires { C::twin; }) cause.twin = C::twin;
   if constexpr (requires { C::counterparts; }) cause.counterparts = C::counterparts;
+  if constexpr (requires { C::confounded_with; }) cause.confounded_with = C::confounded_with;
   if constexpr (requires { C::is_stop; }) cause.is_stop = C::is_stop;
   if constexpr (requires { C::parts_twins; }) cause.parts_twins = C::parts_twins;
   if constexpr (requires { C::sensor_shape; }) cause.sensor_shape = C::sensor_shape;
@@ -173,10 +174,11 @@ static_assert(std::all_of(table.begin(), table.end(),
               "the twin of a cause has it for its own");
 static_assert(std::all_of(table.begin(), table.end(),
                           [](const Cause& c) {
-                            return std::all_of(c.counterparts.begin(), c.counterparts.end(),
-                                               [](std::string_view id) { return find(id) != nullptr; });
+                            const auto known = [](std::string_view id) { return find(id) != nullptr; };
+                            return std::all_of(c.counterparts.begin(), c.counterparts.end(), known) &&
+                                   std::all_of(c.confounded_with.begin(), c.confounded_with.end(), known);
                           }),
-              "the counterpart of a cause is a cause");
+              "what a cause names beside itself is a cause");
 
 }  // namespace
 

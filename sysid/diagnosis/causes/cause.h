@@ -45,6 +45,7 @@ struct Cause {
   std::span<const Advice> advice;
   std::string_view twin;  ///< id; empty: none
   std::span<const std::string_view> counterparts;
+  std::span<const std::string_view> confounded_with;
   bool is_stop = false;
   bool parts_twins = false;
   std::string_view sensor_shape;  ///< empty: no sensor without memory

@@ -23,6 +23,8 @@
 //   static constexpr std::array<std::string_view, N> counterparts{...};  what the sensor may be instead of
 //   the
 //                                                          actuator or the load, or the reverse, as asked
+//   static constexpr std::array<std::string_view, N> confounded_with{...};  where one of these may be there
+//                                                          too, the number is less certain than its fit says
 //   static constexpr bool is_stop = true;                  holds the readings back at a place
 //   static constexpr bool parts_twins = true;              remembers, between actuator and sensor: twins
 //                                                          before it and behind it differ

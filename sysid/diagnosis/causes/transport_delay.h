@@ -7,6 +7,7 @@
 namespace softgrip::sysid::causes {
 
 struct TransportDelay : FormOf<model::TransportDelay> {
+  static constexpr std::array<std::string_view, 1> confounded_with{"valve_lag"};
   static Starts starts(const Scales&) { return every({{"delay_s", {0.02, 0.1, 0.25, 0.5}}}); }
 };
 

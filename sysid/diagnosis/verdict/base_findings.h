@@ -27,7 +27,7 @@ struct BaseQuestion {
   double noise_mm = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  Division division;     ///< of held-out blocks
+  Division division;  ///< of held-out blocks
   std::function<void(const std::string&)> progress;
 };
 

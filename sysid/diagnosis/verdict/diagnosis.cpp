@@ -13,6 +13,7 @@
 #include "sysid/diagnosis/search/staircase_selection.h"
 #include "sysid/diagnosis/verdict/base_findings.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
+#include "sysid/diagnosis/verdict/mixed_intervals.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/structure/valve_stage.h"
@@ -78,6 +79,8 @@ class Diagnostician {
         base_.reset();
         clock.ended("staircase");
       }
+    } else {
+      base_.reset();  // a second cause explained it after all
     }
     if (base_) {
       adopt_base(selection);
@@ -92,7 +95,7 @@ class Diagnostician {
     measure(selection, division);
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     if (d_.null_calibration) clock.ended("nulls");
-    name(selection);
+    name(selection, division);
     conclude(selection);
     clock.ended("held-out logs and intervals");
     if (options_.gauge && d_.verdict == Verdict::unexplained) {
@@ -301,9 +304,14 @@ class Diagnostician {
     return model;
   }
 
-  void name(const Selection& selection) {
+  void name(const Selection& selection, const Division& division) {
     if (d_.outliers.present) causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm));
-    for (NamedCause& named : name_chosen(data_.records, selection.extended, selection.chosen)) {
+    std::vector<NamedCause> chosen = name_chosen(data_.records, selection.extended, selection.chosen);
+    if (!d_.staircase) {
+      for (std::string& sentence : mix_intervals(chosen, data_, selection, division, options_.seed))
+        d_.warnings.push_back(std::move(sentence));
+    }
+    for (NamedCause& named : chosen) {
       if (d_.staircase && named.cause.id == causes::ValveDeadband::id) {
         // Of the staircase itself; the extended model's may be that of its mean.
         named.parameters.front() = {"band_kpa", "kPa", d_.staircase->band_kpa, d_.staircase->band_ci95, true};

@@ -1,0 +1,57 @@
+#include "sysid/diagnosis/verdict/mixed_intervals.h"
+
+#include <gtest/gtest.h>
+
+#include "model/named.h"
+#include "sysid/diagnosis/verdict/naming.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using model::SignalName;
+
+constexpr double noise_mm = 0.04;
+constexpr double true_delay_s = 0.130;
+
+struct Named {
+  std::vector<NamedCause> causes;
+  Interval alone;  ///< of the delay, as its own fit says
+  std::vector<std::string> sentences;
+};
+
+/// The twin has a delay and a lag; of this log the search finds the delay alone.
+Named delay_of(SignalName signal, const model::Model& twin) {
+  const model::Model base =
+      model::only(twin, [](const model::BlockInfo& info) { return info.station != model::Station::valve; });
+  const SearchData data =
+      make_search_data(make_records({simulated(twin, signal, 50, noise_mm, 2)}, {}), base);
+  const Division division = divide(data.records, 8);
+  SelectionOptions one;
+  one.most_causes = 1;
+  const Selection selection =
+      select_causes(data, fit_structure(data.records, {}, data.given), noise_mm, division, one);
+  Named named{name_chosen(data.records, selection.extended, selection.chosen), {}, {}};
+  if (named.causes.empty()) return named;
+  named.alone = named.causes.front().parameters.front().ci95;
+  named.sentences = mix_intervals(named.causes, data, selection, division, 1);
+  return named;
+}
+
+TEST(MixedIntervals, HoldTheDelayWhereALagIsInQuestion) {
+  const Named named = delay_of(SignalName::tp2, loaded("bench_twin"));
+  ASSERT_EQ(named.causes.size(), 1U);
+  ASSERT_EQ(named.causes.front().cause.id, "transport_delay");
+  EXPECT_GT(named.alone.lower, true_delay_s) << "alone the delay takes the lag with it";
+  const Interval mixed = named.causes.front().parameters.front().ci95;
+  EXPECT_LT(mixed.lower, true_delay_s);
+  EXPECT_GT(mixed.upper, true_delay_s);
+  ASSERT_EQ(named.sentences.size(), 1U);
+  EXPECT_EQ(
+      named.sentences.front(),
+      "these logs do not say whether valve_lag is there beside transport_delay: the intervals hold both "
+      "answers");
+}
+
+}  // namespace
+}  // namespace softgrip::sysid
