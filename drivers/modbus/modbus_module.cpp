@@ -19,7 +19,7 @@ Nanoseconds now() noexcept {
   return MonotonicClock().now();
 }
 
-/// One exchange in so many begins with the reading.
+/// One exchange in so many begins with the reading, unless the one before it is no witness.
 constexpr std::uint32_t reads_first_every = 8;
 
 ModbusRequest request_of(const FixedWrite& write) noexcept {
@@ -154,7 +154,8 @@ BusStatus ModbusModule::first_write(Nanoseconds deadline) noexcept {
 BusStatus ModbusModule::set_up(Nanoseconds deadline) noexcept {
   clear_due_ = drives_outputs() && !settings_.map.watchdog.clear.empty();
   setup_due_ = false;
-  exchanges_ = 0;
+  unlooked_ = 0;
+  confirmed_ = false;
   reads_first_ = false;
   accepted_.forget();
   if (settings_.map.setup.empty()) return BusStatus::ok;
@@ -195,7 +196,9 @@ BusStatus ModbusModule::encode(std::span<const double> commands_kpa) noexcept {
 
 void ModbusModule::begin_exchange() noexcept {
   const bool can_tell = settings_.map.read_back.has_value() && drives_outputs() && !clear_due_;
-  reads_first_ = can_tell && ++exchanges_ % reads_first_every == 0;
+  reads_first_ = can_tell && ++unlooked_ >= reads_first_every && confirmed_;
+  if (reads_first_) unlooked_ = 0;
+  confirmed_ = false;
 }
 
 BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
@@ -249,8 +252,9 @@ BusStatus ModbusModule::check() noexcept {
     }
     return fail(BusStatus::write_refused, "channel '%s': the output reads back as raw %g", i, raw);
   }
-  // The write comes now, and is seen in the next exchange.
+  // Where the reading was first the write comes now, and is seen in the next exchange.
   if (reads_first_) accepted_.note(requested_raws_);
+  confirmed_ = !reads_first_;
   return BusStatus::ok;
 }
 

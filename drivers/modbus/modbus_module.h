@@ -47,6 +47,7 @@ class ModbusModule {
   [[nodiscard]] BusStatus write(Nanoseconds deadline) noexcept;
   /// Now and then an exchange begins with the reading, so that what somebody else has written since the last
   /// one is seen before it is overwritten: begin_exchange() decides that for the exchange that it begins.
+  /// Only after one whose read-back was as written: an output that did not follow differs by itself.
   void begin_exchange() noexcept;
   [[nodiscard]] bool reads_first() const noexcept { return reads_first_; }
 
@@ -89,7 +90,8 @@ class ModbusModule {
   ReadBackHistory accepted_;
   std::vector<std::vector<std::uint16_t>> replies_;  ///< one per read of the plan; bits as 0 or 1
   Nanoseconds sampled_at_ = 0;
-  std::uint32_t exchanges_ = 0;  ///< of the session
+  std::uint32_t unlooked_ = 0;  ///< exchanges since one began with the reading
+  bool confirmed_ = false;      ///< the last exchange read back what it had written
   bool reads_first_ = false;
   bool clear_due_ = false;  ///< a session is new: a tripped watchdog may be cleared
   bool setup_due_ = false;  ///< it was tripped when the session was opened

@@ -252,7 +252,7 @@ class Cell:
         safety = shipped_rig()["safety"]
         # Where the board has no watchdog a hold outlasts the bus: the phase decides alone.
         watched = self.fault.get("rig") != "serial"
-        if watched and (code.startswith("F1") or code == "F303") or self.phase == "connect":
+        if watched and code.startswith("F1") or code in ("F303", "F304") or self.phase == "connect":
             return "vent"  # the ADAM's watchdog vents
         return safety["safe_action"][PHASE_OF[self.phase]]
 

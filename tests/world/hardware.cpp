@@ -155,6 +155,7 @@ BusStatus WorldBoard::exchange(std::span<const double> commands_kpa, std::span<m
     left_.clear();
     return BusStatus::overwritten;
   }
+  left_.clear();  // known again when this one is confirmed
   if (!taken) return BusStatus::watchdog_tripped;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     if (request_->read[i].command_readback_kpa != commands_kpa[i]) return BusStatus::write_refused;

@@ -10,63 +10,19 @@
 #include <string>
 
 #include "base/clock.h"
-#include "rig/board_map_file.h"
-#include "tests/drivers/modbus/on_tcp.h"
-#include "tests/drivers/modbus/register_server.h"
-#include "tests/drivers/modbus/two_fingers.h"
+#include "tests/drivers/modbus/modbus_board_fixture.h"
 
 namespace softgrip::drivers {
 namespace {
 
 using namespace std::chrono_literals;
 using model::Validity;
+using test::adam_raw;
+using test::generous;
+using test::ModbusBoardTest;
 using test::RegisterServer;
-using Requests = std::vector<RegisterServer::Request>;
-
-constexpr auto generous = 5s;
-
-BoardMap shipped(const std::string& name) {
-  document::Problems problems;
-  auto map = rig::load_board_map(SOFTGRIP_SOURCE_DIR "/config/boards/" + name, problems);
-  if (!map.has_value()) throw std::runtime_error(problems.format());
-  return *map;
-}
-
-/// ADAM-6024 input register for a voltage.
-std::uint16_t adam_raw(double volt) {
-  return static_cast<std::uint16_t>(std::lround((volt + 10) / 20 * 65535));
-}
-
-class ModbusBoardTest : public testing::Test {
- protected:
-  ModbusBoardTest() {
-    for (std::uint16_t input = 0; input < 6; ++input) server_.set_input(input, adam_raw(5));
-    // The outputs read back as input registers 10 and 11 on an ADAM-6024.
-    server_.on_request([](RegisterServer& server, const RegisterServer::Request&) {
-      server.input_[10] = server.holding_[10];
-      server.input_[11] = server.holding_[11];
-    });
-  }
-
-  ModbusSettings settings(const BoardMap& map) const { return test::on_tcp(server_.port(), map, wiring_, 0); }
-
-  /// Makes and connects the board; the requests of connecting are forgotten.
-  void connect(const BoardMap& map) {
-    board_ = std::make_unique<ModbusBoard>(settings(map));
-    ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
-    (void)server_.take_requests();
-  }
-
-  BusStatus exchange(double left_kpa, double right_kpa, std::chrono::nanoseconds deadline = generous) {
-    const std::vector<double> commands{left_kpa, right_kpa};
-    return board_->exchange(commands, readings_, deadline);
-  }
-
-  RegisterServer server_;
-  std::vector<ChannelWiring> wiring_ = test::two_fingers();
-  std::unique_ptr<ModbusBoard> board_;
-  std::vector<Reading> readings_{2};
-};
+using test::Requests;
+using test::shipped;
 
 TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
   connect(shipped("adam-6024.yaml"));
@@ -225,93 +181,6 @@ TEST_F(ModbusBoardTest, ACommandThatIsNoNumberWritesNothing) {
     EXPECT_EQ(exchange(50, bad), BusStatus::write_refused);
   }
   EXPECT_TRUE(server_.take_requests().empty());
-}
-
-TEST_F(ModbusBoardTest, AnOutputThatDoesNotFollowIsRefused) {
-  BoardMap map = shipped("adam-6024.yaml");
-  map.read_back->lag_exchanges = 0;
-  connect(map);
-  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
-  server_.ignore_writes(true);
-  EXPECT_EQ(exchange(10.01, 10), BusStatus::ok) << "within the read-back tolerance";
-  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused);
-  EXPECT_NE(std::string(board_->detail()).find("left"), std::string::npos) << board_->detail();
-  server_.ignore_writes(false);
-  EXPECT_EQ(exchange(50, 10), BusStatus::ok);
-}
-
-TEST_F(ModbusBoardTest, WhatSomebodyElseWritesIsNoticedWithinEightExchanges) {
-  connect(shipped("adam-6024.yaml"));
-  for (int i = 0; i < 40; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
-  int until_noticed = 0;
-  BusStatus status = BusStatus::ok;
-  while (status == BusStatus::ok && until_noticed < 20) {
-    server_.set_holding(11, 0);
-    status = exchange(40, 60);
-    ++until_noticed;
-  }
-  EXPECT_EQ(status, BusStatus::overwritten);
-  EXPECT_LE(until_noticed, 8);
-  EXPECT_NE(std::string(board_->detail()).find("channel 'right': somebody else"), std::string::npos)
-      << board_->detail();
-  EXPECT_EQ(server_.holding_[11], 0) << "it is not written over before somebody has decided what to do";
-  EXPECT_EQ(exchange(0, 0), BusStatus::ok);
-}
-
-TEST_F(ModbusBoardTest, AnExchangeThatReadsFirstAsksNoMoreThanTheOthers) {
-  connect(shipped("adam-6024.yaml"));
-  ASSERT_EQ(exchange(1, 1), BusStatus::ok);
-  (void)server_.take_requests();
-  int first = 0;
-  for (int i = 0; i < 16; ++i) {
-    ASSERT_EQ(exchange(1, 1), BusStatus::ok);
-    const Requests requests = server_.take_requests();
-    ASSERT_EQ(requests.size(), 4U);
-    const bool writes_last = requests.back().function == 16;
-    EXPECT_NE(writes_last, requests.front().function == 16);
-    first += writes_last ? 1 : 0;
-  }
-  EXPECT_EQ(first, 2);
-}
-
-TEST_F(ModbusBoardTest, AnotherMasterIsNoticedThoughOneFunctionReadsAndWrites) {
-  wiring_ = test::two_fingers(false);
-  connect(shipped("softgrip-sim.yaml"));
-  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
-    for (std::size_t i = 0; i < request.written.size(); ++i) {
-      server.holding_[static_cast<std::uint16_t>(24 + i)] = request.written[i];
-    }
-  });
-  for (int i = 0; i < 40; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
-  BusStatus status = BusStatus::ok;
-  for (int i = 0; i < 8 && status == BusStatus::ok; ++i) {
-    server_.set_holding(24, 0);
-    status = exchange(40, 60);
-  }
-  EXPECT_EQ(status, BusStatus::overwritten) << board_->detail();
-}
-
-// Some boards show in the read-back what they were told one exchange ago, all the more with function 23.
-TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
-  BoardMap map = shipped("adam-6024.yaml");
-  map.read_back->lag_exchanges = 1;
-  server_.on_request([](RegisterServer& server, const RegisterServer::Request& request) {
-    if (request.function != 16) return;  // called before the write is carried out: shows the one before
-    server.input_[10] = server.holding_[10];
-    server.input_[11] = server.holding_[11];
-  });
-  connect(map);
-  for (int i = 0; i < 50; ++i) ASSERT_EQ(exchange(i, 100 - i), BusStatus::ok) << board_->detail();
-  map.read_back->lag_exchanges = 0;
-  connect(map);
-  EXPECT_EQ(exchange(70, 70), BusStatus::write_refused);
-  map.read_back->lag_exchanges = 1;
-  connect(map);
-  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
-  ASSERT_EQ(exchange(10, 10), BusStatus::ok);
-  server_.ignore_writes(true);
-  ASSERT_EQ(exchange(50, 10), BusStatus::ok) << "it may still show the exchange before";
-  EXPECT_EQ(exchange(50, 10), BusStatus::write_refused) << "but not for ever";
 }
 
 TEST_F(ModbusBoardTest, ExceptionsAreToldAndTheSessionStands) {
@@ -501,72 +370,6 @@ TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
   for (const auto& request : server_.take_requests()) set_up += request.function == 6 ? 1 : 0;
   EXPECT_EQ(set_up, 1);
   EXPECT_EQ(server_.coil(32), 0);
-}
-
-/// Outputs and inputs are two devices at two addresses.
-class TwoModules : public ModbusBoardTest {
- protected:
-  TwoModules() {
-    for (std::uint16_t input = 0; input < 8; ++input) inputs_->set_input(input, 5000);
-    wiring_ = test::two_fingers();
-    for (ChannelWiring& channel : wiring_) {
-      channel.displacement.module = 1;
-      channel.pressure->module = 1;
-    }
-    settings_ = {.links = {TcpAddress{"127.0.0.1", server_.port()}, TcpAddress{"127.0.0.1", inputs_->port()}},
-                 .modules = {{.name = "out", .map = shipped("waveshare-ao8-b.yaml"), .unit = 1, .link = 0},
-                             {.name = "in", .map = shipped("waveshare-ai8-b.yaml"), .unit = 1, .link = 1}},
-                 .wiring = wiring_,
-                 .probes = 2};
-    board_ = std::make_unique<ModbusBoard>(settings_);
-  }
-  std::unique_ptr<RegisterServer> inputs_ = std::make_unique<RegisterServer>();
-  ModbusSettings settings_;
-};
-
-TEST_F(TwoModules, AreOneBoard) {
-  EXPECT_TRUE(problems_of(settings_).empty());
-  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
-  (void)server_.take_requests();
-  (void)inputs_->take_requests();
-  inputs_->set_input(1, 8000);
-  ASSERT_EQ(exchange(40, 60), BusStatus::ok) << board_->detail();
-  EXPECT_EQ(server_.take_requests(), (Requests{{16, 0, 0, 0, {4000, 6000}}, {3, 0, 2, 0, {}}}));
-  EXPECT_EQ(inputs_->take_requests(), (Requests{{4, 0, 6, 0, {}}}));
-  EXPECT_DOUBLE_EQ(readings_[0].displacement_mm, 20);
-  EXPECT_DOUBLE_EQ(readings_[1].displacement_mm, 35);
-  EXPECT_DOUBLE_EQ(readings_[0].pressure_kpa, 50);
-  EXPECT_DOUBLE_EQ(readings_[1].command_readback_kpa, 60);
-  EXPECT_FALSE(board_->has_watchdog());
-  EXPECT_NE(board_->describe().find("; Waveshare AI 8CH (B) at"), std::string::npos) << board_->describe();
-  EXPECT_NE(board_->budget().explanation.find("; then Modbus TCP, 1 round trip (in: FC4 reads 6 from 0)"),
-            std::string::npos)
-      << board_->budget().explanation;
-}
-
-TEST_F(TwoModules, OutputsAreReachedThoughTheInputsAreGone) {
-  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << board_->detail();
-  ASSERT_EQ(exchange(40, 60), BusStatus::ok) << board_->detail();
-  inputs_.reset();
-  EXPECT_EQ(exchange(40, 60), BusStatus::disconnected);
-  EXPECT_NE(std::string(board_->detail()).find("'in'"), std::string::npos) << board_->detail();
-  ASSERT_EQ(board_->connect(generous), BusStatus::ok) << "as far as outputs go";
-  EXPECT_EQ(exchange(0, 0), BusStatus::disconnected);
-  EXPECT_EQ(server_.holding(0), 0) << "this board has no watchdog: the valves are told all the same";
-  EXPECT_EQ(server_.holding(1), 0);
-}
-
-TEST_F(TwoModules, WithoutTheOutputsThereIsNoSession) {
-  settings_.links[0] = TcpAddress{"127.0.0.1", 1};
-  ModbusBoard board(settings_);
-  EXPECT_EQ(board.connect(500ms), BusStatus::disconnected);
-}
-
-TEST_F(TwoModules, AModuleWithoutAWireIsAProblem) {
-  for (ChannelWiring& channel : settings_.wiring) channel.displacement.module = 0;
-  const std::vector<std::string> problems = problems_of(settings_);
-  ASSERT_EQ(problems.size(), 2U);
-  EXPECT_NE(problems[0].find("out has no input 0"), std::string::npos) << problems[0];
 }
 
 }  // namespace
