@@ -11,7 +11,8 @@ from source_copy import SOURCE, copy_sources
 COPY = SOURCE / "build/worlds"
 MOST_SEEDS = 2000
 
-# What is broken, where, and how: text that must be there once, and what stands there instead.
+# What is broken, where, and how: text that must be there once, what stands there instead, and how long a world lives for it
+# [s] where a minute is too short to show.
 FAULTS = (
     ("the gap of a paused bus is not compared with the board's watchdog (defect 1)", "daemon/loop/bus.cpp",
      "if (watchdog_ == 0 ||", "if (watchdog_ >= 0 ||"),
@@ -33,6 +34,11 @@ FAULTS = (
      "if (facts.cause_present) {", "if (false) {"),
     ("a fault holds where it should vent", "control/tick/supervisor.cpp",
      "if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;", ""),
+    ("every report of the bus is kept", "daemon/loop/bus.cpp",
+     "wires_.bus.publish(report_);",
+     "wires_.bus.publish(report_);\n  static auto& kept = *new std::vector<BusReport>;\n  kept.push_back(report_);", 600),
+    ("the file of every recording stays open", "daemon/recording/run_folder.cpp",
+     "if (descriptor_ >= 0) ::close(descriptor_);", ""),
 )
 
 
@@ -54,12 +60,12 @@ def build():
         sys.exit(done.stdout[-3000:])
 
 
-def seeds_until_found():
+def seeds_until_found(seconds):
     """The first seed that finds it and what it violates, or None."""
     first, count = 1, 20
     while first <= MOST_SEEDS:
         done = run(["build/release/tests/world/softgrip-world", "--first", first, "--count", count, "--jobs", os.cpu_count(),
-                    "--seconds", 60, "--stop"])
+                    "--seconds", seconds, "--stop"])
         found = [(int(m.group(1)), m.group(2)) for m in re.finditer(r"^seed (\d+): (.*)$", done.stdout, re.MULTILINE)]
         if found:
             return min(found)
@@ -68,21 +74,24 @@ def seeds_until_found():
 
 
 def main():
+    """Of those faults whose words hold the argument; without: of all."""
+    chosen = [fault for fault in FAULTS if all(word in fault[0] for word in sys.argv[1:])]
     prepare()
     missed = 0
     print("| what was put into the code | found by seed | the invariant it violates |\n|---|---|---|", flush=True)
-    for what, name, old, new in FAULTS:
+    for what, name, old, new, *lives in chosen:
+        seconds = lives[0] if lives else 60
         path = COPY / name
         text = path.read_text()
         if text.count(old) != 1:
             sys.exit(f"{name} does not hold this once: {old}")
         path.write_text(text.replace(old, new))
         build()
-        found = seeds_until_found()
+        found = seeds_until_found(seconds)
         path.write_text(text)
         missed += found is None
         seed, invariant = found or (f"none of {MOST_SEEDS}", "")
-        print(f"| {what} | {seed} | {invariant} |", flush=True)
+        print(f"| {what} | {seed}{f' ({seconds} s)' if seconds != 60 else ''} | {invariant} |", flush=True)
     return 1 if missed else 0
 
 

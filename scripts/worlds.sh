@@ -2,14 +2,15 @@
 # The whole daemon in seeded worlds: loop, bus, board with its watchdog, clients, recorder, pauses, second masters, in one
 # thread on one simulated clock (tests/world). Says what a seed violates, the fewest incidents that do, and the trace.
 #   scripts/worlds.sh [SEEDS [SECONDS [FIRST]]]      default: 10000 seeds of 60 s from seed 1
-#   scripts/worlds.sh faults                         faults put into the code on purpose: within how many seeds they are found
+#   scripts/worlds.sh faults [WORD ...]              faults put into the code on purpose: within how many seeds they are found
 # The second works in a copy under build/worlds.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . scripts/build.sh
 
 if [ "${1:-}" = faults ]; then
-  exec python3 scripts/world_faults.py
+  shift
+  exec python3 scripts/world_faults.py "$@"
 fi
 cmake --preset release -DSOFTGRIP_TESTS=ON >/dev/null
 build release softgrip-world
