@@ -197,6 +197,77 @@ TEST(FullModelFeedforward, AJumpOfTheReferenceDoesNotRing) {
   }
 }
 
+/// A channel whose feedforward follows `reference` from rest, tick by tick, in front of a finger that is the
+/// model.
+struct Follower {
+  Follower(const model::Model& model, const Reference& followed)
+      : reference(followed),
+        feedforward(model, {FeedforwardKind::full_model, 0}, limits, tick_s),
+        finger(model, {}, tick_s) {
+    feedforward.enter(RunningModel(model, tick_s, 0, 0.1), query(), 0);
+  }
+
+  [[nodiscard]] FeedforwardQuery query() const { return {&reference, time_s(), offset_mm}; }
+  [[nodiscard]] double time_s() const { return ticks * tick_s; }
+
+  /// The command of one tick.
+  double tick() {
+    const double command = feedforward.step(query()).pressure_kpa;
+    finger.step(0, command);
+    finger.step(tick_s, command);
+    ++ticks;
+    return command;
+  }
+
+  const Reference& reference;
+  Feedforward feedforward;
+  model::Chain<double> finger;
+  double offset_mm = 0;
+  int ticks = 0;
+};
+
+// Where something follows the pressure at once and something creeps, the easier of the two carries a jump;
+// where nothing creeps, what follows at once does.
+TEST(FullModelFeedforward, AJumpTakesAsLongAsTheEasierWayThere) {
+  const model::Model twin = model_named("bench_twin");
+  struct Case {
+    const char* name;
+    model::Model model;
+    double within_s;
+  };
+  for (const Case& test :
+       {Case{"creeping", twin, 0.8},
+        Case{"elastic", model::without_block(twin, *model::find_block("kelvin_voigt")), 0.9}}) {
+    SCOPED_TRACE(test.name);
+    Reference reference;
+    reference.start(0, 0);
+    (void)reference.hold_for(0.5);
+    (void)reference.sine(8, 0, 0.2, 1);  // from 0 to 8 mm at once
+    Follower follower(test.model, reference);
+    while (follower.time_s() < 0.5 + test.within_s) (void)follower.tick();
+    EXPECT_NEAR(follower.finger.reading_mm(), 8, 0.02);
+  }
+}
+
+// The finger goes on as it went and turns to the new reference from there.
+TEST(FullModelFeedforward, AJumpInMotionDoesNotKick) {
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.hold_for(0.2);
+  (void)reference.ramp_for(16, 2);
+  Follower follower(model_named("bench_twin"), reference);
+  double before = 0, last = 0, worst = 0;
+  while (follower.time_s() < 1.8) {
+    // In the middle of the ramp the finger turns out to stand elsewhere than the model says.
+    if (follower.time_s() > 1.1) follower.offset_mm = 2;
+    const double command = follower.tick();
+    if (follower.time_s() > 0.7) worst = std::max(worst, std::abs(command - 2 * last + before));
+    before = last;
+    last = command;
+  }
+  EXPECT_LT(worst, 0.5) << "kPa by which the command's step changes from one tick to the next";
+}
+
 TEST(BoucWenFeedforward, InvertsTheElementAlone) {
   const model::Model twin = model_named("bench_twin");
   Feedforward feedforward(twin, {FeedforwardKind::bouc_wen, 0}, limits, tick_s);

@@ -5,9 +5,13 @@
 #include <cmath>
 #include <ctime>
 #include <tuple>
+#include <vector>
 
+#include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
+#include "model/blocks/actuator_threshold.h"
 #include "model/chain.h"
+#include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
 namespace softgrip::control {
@@ -122,6 +126,55 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
   const double before = plan.displacement_mm[static_cast<std::size_t>(std::lround(6.0 / plan.step_s))];
   EXPECT_GT(before, 5.2) << "the plan begins to move before a step that it cannot follow";
   EXPECT_LT(plan.miss_mm(9.5), 0.05) << "half a per cent of the step is left after 3.4 s";
+}
+
+// Down to 0 mm and faster than creep lets go: nothing follows that, and the lowest pressure bounds the
+// search.
+TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
+  const model::Model twin = model_named("bench_twin");
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.hold_for(plan_lead_s);
+  (void)reference.ramp_for(15, 2);
+  (void)reference.hold_for(1);
+  (void)reference.sine(8, 8, 0.5, 4);
+  const PressurePlan plan = Planner(twin, limits, tick_s).plan(reference, 0, reference.end_s());
+
+  const SettledLine line = settled_line(twin, limits);
+  model::Chain<double> finger(without_dead_time(twin), {}, plan.step_s);
+  double command = 0, squares = 0;
+  for (std::size_t i = 1; i < plan.pressure_kpa.size(); ++i) {
+    const double wanted_mm = reference.at(static_cast<double>(i) * plan.step_s).value;
+    command = limit(limits, line.pressure_kpa(wanted_mm), command, plan.step_s).command_kpa;
+    finger.step(plan.step_s, command);
+    squares += std::pow(finger.after(model::Station::load) - wanted_mm, 2);
+  }
+  EXPECT_LT(plan.rmse_mm, 0.85 * std::sqrt(squares / static_cast<double>(plan.pressure_kpa.size() - 1)));
+}
+
+/// How much a command turns, from rest at its first value.
+double bend_of(const std::vector<double>& pressure_kpa) {
+  double sum = 0;
+  for (std::size_t i = 1; i < pressure_kpa.size(); ++i) {
+    const double before = pressure_kpa[i > 1 ? i - 2 : 0];
+    sum += std::pow(pressure_kpa[i] - 2 * pressure_kpa[i - 1] + before, 2);
+  }
+  return sum;
+}
+
+// Below its threshold the finger rests whatever the pressure is, and no command misses less than another.
+TEST(Planner, WhereNothingMovesTheFingerItTakesTheCalmerCommand) {
+  const model::Model dead = model::with_block(
+      model_named("bench_twin"), model::block_of<model::ActuatorThreshold>({{"threshold_kpa", 20}}));
+  Reference reference;
+  reference.start(0, 1);
+  Planner planner(dead, limits, tick_s);
+  planner.drive([](double) { return 10.0; }, 1);
+  const PressurePlan plan = planner.plan(reference, 0, 4);
+  ASSERT_NEAR(plan.rmse_mm, 1, 1e-9) << "it rests";
+  std::vector<double> at_once(plan.pressure_kpa.size(), settled_line(dead, limits).pressure_kpa(1));
+  at_once.front() = plan.pressure_kpa.front();
+  EXPECT_LT(bend_of(plan.pressure_kpa), 0.9 * bend_of(at_once));
 }
 
 TEST(Planner, GoesOnFromThePlanBefore) {

@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/random.h"
+#include "model/blocks/asymmetric_bouc_wen.h"
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/characteristic.h"
+#include "model/chain.h"
+#include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
 namespace softgrip::control {
@@ -125,6 +131,54 @@ TEST(LoopMargins, AgreeWithAnIntegratorByHand) {
   EXPECT_FALSE(std::isfinite(
       loop_margins(model, {1.02 * limit, 0, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s)
           .sensitivity));
+}
+
+/// The smallest slope either way while a finger is loaded, unloaded and loaded once more.
+double smallest_gain(const model::Model& model, double pressure_max_kpa) {
+  constexpr int steps = 1000;
+  constexpr double aside_kpa = 1e-4;
+  model::Chain<double> chain(model);
+  double smallest = 1e9;
+  for (int i = 0; i <= 3 * steps; ++i) {
+    const int in_turn = i % (2 * steps);
+    const double pressure = pressure_max_kpa * std::min(in_turn, 2 * steps - in_turn) / steps;
+    chain.step(0, pressure);
+    const double here = chain.peek(0.0, pressure);
+    for (const double aside : {aside_kpa, -aside_kpa}) {
+      smallest = std::min(smallest, (chain.peek(0.0, pressure + aside) - here) / aside);
+    }
+  }
+  return smallest;
+}
+
+// Under an integrator alone |L| = ki gain / (2 pi f): the crossover says what the smallest gain was taken to
+// be. Of these fingers one is stiffest inside the second loading, where its hysteresis crosses zero, the
+// other at the very end of it.
+TEST(LoopMargins, AreThoseOfTheStiffestPlaceOfTheWholeRange) {
+  struct Finger {
+    const char* where;
+    double alpha, beta, gamma, eta, beta_share, curvature;
+  };
+  for (const Finger& finger : {Finger{"inside", 0.25, 0.15, 0.06, 0.01, 0.4, -1},
+                               Finger{"at the end", 0.25, 0.1, 1e-4, 1e-4, -0.5, -4}}) {
+    SCOPED_TRACE(finger.where);
+    model::Model model =
+        model::with_block({}, model::block_of<model::BoucWen>({{"alpha_mm_per_kpa", finger.alpha},
+                                                               {"beta_mm_per_kpa", finger.beta},
+                                                               {"gamma_per_kpa", finger.gamma},
+                                                               {"eta_per_kpa", finger.eta},
+                                                               {"exponent", 1}}));
+    model = model::with_block(model,
+                              model::block_of<model::AsymmetricBoucWen>({{"beta_share", finger.beta_share}}));
+    model = model::with_block(
+        model, model::block_of<model::Characteristic>({{"curvature", finger.curvature}, {"span_mm", 20}}));
+    const double gain = smallest_gain(model, 60);
+    ASSERT_GT(gain, 0);
+    const double ki = 1 / gain;
+    const LoopMargins margins =
+        loop_margins(model, {0, ki, 0, 0.02, 1, AntiWindup::none, 1}, 60, tick_s, tick_s);
+    EXPECT_NEAR(2 * M_PI * margins.crossover_hz / (ki * gain), 1, 0.01);
+  }
 }
 
 TEST(LoopMargins, OfTheRigsGainsAreThoseThatWereAskedFor) {

@@ -1,0 +1,82 @@
+// What one channel demands in the tick in which a step begins, before it has played any of it.
+
+#include "control/tick/channel_player.h"
+
+#include <gtest/gtest.h>
+
+#include "control/tick/sequence.h"
+
+namespace softgrip::control {
+namespace {
+
+constexpr ChannelTraits traits{.margin_mm = 1, .lowest_kpa = 0, .preview_s = 0.1, .sighted = true};
+
+Step step_of(StepKind kind) {
+  Step step;
+  step.kind = kind;
+  step.target = {Target::Quantity::displacement_mm, 5, false, 10, 0};
+  step.sine = {5, 1, 0.1, 1};
+  step.profile.points = {{0, 12}, {0.5, 30}, {2, 20}};
+  step.hold_s = 1;
+  step.reverify_every_s = 0.2;
+  return step;
+}
+
+/// A finger so much short of its free motion.
+ChannelOutput short_by(double deficit_mm) {
+  ChannelOutput seen;
+  seen.validity = model::Validity::valid;
+  seen.displacement_mm = 8;
+  seen.residual_mm = -deficit_mm;
+  return seen;
+}
+
+/// Touches something, and has answered nothing.
+ChannelPlayer touching(const Step& closing) {
+  ChannelPlayer player(traits);
+  player.reset();
+  player.begin(closing, nullptr, 0, short_by(2));
+  (void)player.tick(0.01, short_by(2));
+  EXPECT_TRUE(player.touching());
+  return player;
+}
+
+TEST(ChannelPlayer, AProfileBeginsWithItsFirstPressure) {
+  ChannelPlayer player(traits);
+  player.reset();
+  const Step step = step_of(StepKind::pressure);
+  player.begin(step, nullptr, 7, short_by(0));
+  EXPECT_EQ(player.demand(7).mode, ChannelDemand::Mode::pressure);
+  EXPECT_EQ(player.demand(7).pressure_kpa, 12);
+  (void)player.tick(7, short_by(0));
+  EXPECT_EQ(player.demand(7).pressure_kpa, 12);
+  (void)player.tick(7.25, short_by(0));
+  EXPECT_EQ(player.demand(7.25).pressure_kpa, 21);
+}
+
+// Feedback that went on against a part would wind up a squeeze; without a part to hold it must not stand
+// still.
+TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
+  const Step grip = step_of(StepKind::grip);
+  for (const StepKind kind : {StepKind::move, StepKind::grip, StepKind::hold, StepKind::release,
+                              StepKind::track, StepKind::pressure}) {
+    SCOPED_TRACE(name_of(kind));
+    const bool closing = kind == StepKind::grip || kind == StepKind::hold;
+    const Step next = step_of(kind);
+
+    ChannelPlayer player = touching(grip);
+    player.begin(next, nullptr, 1, short_by(2));
+    EXPECT_EQ(player.demand(1).feedback_held, closing) << "touching";
+
+    player = touching(grip);
+    player.answer_holding(0.02);
+    player.begin(next, nullptr, 1, short_by(2));
+    EXPECT_TRUE(player.demand(1).feedback_held) << "holding";
+
+    (void)player.tick(1.01, short_by(0));
+    EXPECT_FALSE(player.demand(1.01).feedback_held) << "nothing touches any more";
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::control
