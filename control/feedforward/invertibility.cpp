@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "base/numbers.h"
 #include "control/feedforward/pressure_plan.h"
@@ -109,22 +110,13 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, double pressur
                                 std::string(wrong_way_first ? usual_cause : creep_alone)});
 }
 
-/// Blocks that full_model cannot undo, by name. The sensor does not move the finger and is left alone.
-std::string without_inverse(const model::Model& model) {
-  std::string names;
-  for (const model::BlockSpec& spec : model.blocks) {
-    const BlockInfo& info = model::catalogue()[spec.type].info;
-    if (info.station == Station::sensor || info.inverse == Inverse::ignored) continue;
-    const bool in_valve = info.station == Station::valve;
-    const bool undone = info.inverse == Inverse::implicit
-                            ? !in_valve
-                            : in_valve && (info.inverse == Inverse::preview ||
-                                           model::is<model::ValveLag, model::AsymmetricValveLag,
-                                                     model::ChamberLag, model::PressureSaturation>(info));
-    if (undone) continue;
-    names += (names.empty() ? "`" : ", `") + std::string(info.id) + "`";
-  }
-  return names;
+/// The sensor does not move the finger and is left alone.
+bool is_undone(const BlockInfo& info) {
+  if (info.station == Station::sensor || info.inverse == Inverse::ignored) return true;
+  if (info.station != Station::valve) return info.inverse == Inverse::implicit;
+  return info.inverse == Inverse::preview ||
+         model::is<model::ValveLag, model::AsymmetricValveLag, model::ChamberLag, model::PressureSaturation>(
+             info);
 }
 
 tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const LimitSettings& limits,
@@ -154,7 +146,9 @@ tl::expected<void, Refusal> check_planned(const model::Model& model, const Limit
 
 tl::expected<void, Refusal> check_full_model(const model::Model& model, const LimitSettings& limits,
                                              double tick_s) {
-  const std::string names = without_inverse(model);
+  std::vector<BlockInfo> blocks;
+  for (const model::BlockSpec& spec : model.blocks) blocks.push_back(model::catalogue()[spec.type].info);
+  const std::string names = not_undone(blocks);
   if (!names.empty()) {
     return tl::unexpected(
         Refusal{"the model contains " + names + ", which has no inverse; feedforward `none` is left for it"});
@@ -171,6 +165,14 @@ tl::expected<void, Refusal> check_full_model(const model::Model& model, const Li
 }
 
 }  // namespace
+
+std::string not_undone(std::span<const BlockInfo> blocks) {
+  std::string names;
+  for (const BlockInfo& block : blocks) {
+    if (!is_undone(block)) names += (names.empty() ? "`" : ", `") + std::string(block.id) + "`";
+  }
+  return names;
+}
 
 tl::expected<void, Refusal> check_feedforward(const model::Model& model, const FeedforwardSettings& settings,
                                               const LimitSettings& limits, double tick_s) {

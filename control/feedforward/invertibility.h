@@ -1,11 +1,13 @@
 #pragma once
 // Whether a feedforward exists for a model, asked once when a rig is loaded, never when it diverges.
 
+#include <span>
 #include <string>
 #include <tl/expected.hpp>
 
 #include "control/elements/feedforward.h"
 #include "control/elements/limits.h"
+#include "model/block.h"
 #include "model/model.h"
 
 namespace softgrip::control {
@@ -20,5 +22,8 @@ struct Refusal {
 [[nodiscard]] tl::expected<void, Refusal> check_feedforward(const model::Model& model,
                                                             const FeedforwardSettings& settings,
                                                             const LimitSettings& limits, double tick_s);
+
+/// Those among the blocks that full_model cannot undo: "`a`, `b`". Today it can undo all there are.
+[[nodiscard]] std::string not_undone(std::span<const model::BlockInfo> blocks);
 
 }  // namespace softgrip::control

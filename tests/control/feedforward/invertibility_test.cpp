@@ -2,11 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_saturation.h"
+#include "model/catalogue.h"
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
@@ -94,6 +101,23 @@ TEST(Invertibility, AGainThatTurnsNegativeInsideTheRangeIsFound) {
   EXPECT_TRUE(check_feedforward(hidden, {FeedforwardKind::full_model, 0}, small, sim::tick_s));
 }
 
+// A loop that turns more steeply at one end may have no inverse at that end alone.
+TEST(Invertibility, AGainThatIsNegativeOneWayOnlyIsFoundAndTheWayIsNamed) {
+  const auto skewed = [](double epsilon_per_kpa) {
+    model::Model even = with_value(model_named("bench_twin"), "bouc_wen.eta_per_kpa", 0.02);
+    even = with_value(even, "bouc_wen.gamma_per_kpa", 0.02);
+    return model::with_block(
+        even, model::block_of<model::AsymmetricBoucWen>({{"epsilon_per_kpa", epsilon_per_kpa}}));
+  };
+  EXPECT_TRUE(check(skewed(0), FeedforwardKind::full_model));
+  for (const auto& [epsilon_per_kpa, way] : {std::pair(0.02, "rises"), std::pair(-0.02, "falls")}) {
+    const auto refused = check(skewed(epsilon_per_kpa), FeedforwardKind::full_model);
+    ASSERT_FALSE(refused) << way;
+    EXPECT_NE(refused.error().text.find(std::string("while the pressure ") + way), std::string::npos)
+        << refused.error().text;
+  }
+}
+
 TEST(Invertibility, BetaEqualToTheGainIsRefusedToo) {
   const model::Model twin = model_named("bench_twin");
   const auto refused =
@@ -133,6 +157,31 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
       EXPECT_NE(answer.error().text.find(info.id), std::string::npos) << answer.error().text;
     }
   }
+}
+
+// Of blocks that nobody has written yet.
+TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
+  using enum model::Inverse;
+  const auto block = [](std::string_view id, model::Station station, model::Inverse inverse) {
+    return model::BlockInfo{id, station, model::Kind::pressure, inverse, "", "", "", false};
+  };
+  const auto named = [&](model::Station station, model::Inverse inverse) {
+    const std::array blocks{block("new", station, inverse)};
+    return not_undone(blocks) == "`new`";
+  };
+  for (const model::Inverse inverse : {implicit, lead, preview, bound, ignored}) {
+    EXPECT_FALSE(named(model::Station::sensor, inverse)) << "does not move the finger";
+    for (const model::Station station : {model::Station::actuator, model::Station::load}) {
+      EXPECT_EQ(named(station, inverse), inverse != implicit && inverse != ignored);
+    }
+    // A lag or a bound of the valve is undone where it is known.
+    EXPECT_EQ(named(model::Station::valve, inverse), inverse != preview && inverse != ignored);
+  }
+  const std::array three{block("first", model::Station::valve, lead),
+                         block("fine", model::Station::load, implicit),
+                         block("second", model::Station::actuator, bound)};
+  EXPECT_EQ(not_undone(three), "`first`, `second`");
+  for (const model::Descriptor& known : model::catalogue()) EXPECT_EQ(not_undone({&known.info, 1}), "");
 }
 
 TEST(Invertibility, PlanningNeedsAFingerThatMovesWithThePressure) {

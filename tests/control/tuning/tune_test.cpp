@@ -65,6 +65,46 @@ TEST(Tune, LessSensitivityCostsError) {
   EXPECT_GT(careful.rmse_mm, bold.rmse_mm);
 }
 
+// What bounds the gains, and what most of the error is, follow from the numbers that stand beside the words.
+TEST(Tune, SaysWhatLimitsItAndWhatTheErrorIs) {
+  struct Case {
+    const char* name;
+    FeedforwardKind kind;
+    double noise_mm, mismatch, most_sensitivity;
+    const char* limit;
+    const char* error;
+  };
+  for (const Case& test :
+       {Case{"slow", FeedforwardKind::none, 0.01, 0.01, 1.5, "the margin",
+             "moves faster than this feedforward"},
+        Case{"noisy", FeedforwardKind::full_model, 1, 0.001, 50, "no margin", "the sensor's noise"},
+        Case{"off", FeedforwardKind::full_model, 0.001, 0.15, 50, "no margin", "the model's mismatch"}}) {
+    SCOPED_TRACE(test.name);
+    TuneTask task = quick_task(test.kind);
+    task.noise_mm = test.noise_mm;
+    task.mismatch = test.mismatch;
+    task.most_sensitivity = test.most_sensitivity;
+    task.iterations = 4;
+    const Tuned tuned = tune(task);
+    EXPECT_EQ(tuned.limited_by.find(test.limit), 0U) << tuned.limited_by << "; Ms " << tuned.sensitivity;
+    EXPECT_NE(tuned.limited_by.find(test.error), std::string::npos)
+        << tuned.limited_by << "; exact " << tuned.exact_mm << ", noisy " << tuned.noisy_mm << ", off "
+        << tuned.mismatch_mm << " mm";
+  }
+}
+
+TEST(Tune, AValveWithoutALagIsNotSaidToHaveOne) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  task.iterations = 12;
+  task.most_sensitivity = 1.5;
+  const Tuned with = tune(task);
+  EXPECT_NE(with.limited_by.find("s of lag"), std::string::npos) << with.limited_by;
+  task.finger = task.channel.model = model::without_block(task.finger, *model::find_block("valve_lag"));
+  const Tuned without = tune(task);
+  EXPECT_NE(without.limited_by.find("s of dead time"), std::string::npos) << without.limited_by;
+  EXPECT_EQ(without.limited_by.find("s of lag"), std::string::npos) << without.limited_by;
+}
+
 TEST(Tune, OneSeedOneResult) {
   TuneTask task = quick_task(FeedforwardKind::full_model);
   task.iterations = 4;

@@ -1,0 +1,163 @@
+// The feedforward that reads a plan: what it does on it, beside it, without it, and whenever that changes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/feedforward/feedforward_kinds.h"
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::model_named;
+using sim::tick_s;
+
+constexpr LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
+constexpr FeedforwardSettings planned{FeedforwardKind::planned, 0};
+constexpr double fade_s = 3;
+
+/// A plan that is no good plan and easy to tell: the pressure rises by `kpa_per_s` from `from_kpa`, the
+/// reference stands at `reference_mm`, and the model is said to be there.
+PressurePlan plan_of(double from_kpa, double kpa_per_s, double reference_mm) {
+  PressurePlan plan;
+  plan.step_s = 0.1;
+  for (int i = 0; i <= 100; ++i) {
+    plan.pressure_kpa.push_back(from_kpa + kpa_per_s * plan.step_s * i);
+    plan.displacement_mm.push_back(reference_mm);
+  }
+  plan.reference.start(0, reference_mm);
+  return plan;
+}
+
+class PlannedFeedforwardTest : public testing::Test {
+ protected:
+  void enter(double command_kpa) {
+    feedforward_.enter(RunningModel(model_, tick_s, 0, 0.1), query_, command_kpa);
+  }
+  /// The step of this tick, and on to the next.
+  FeedforwardStep step() {
+    const FeedforwardStep result = feedforward_.step(query_);
+    query_.time_s += tick_s;
+    return result;
+  }
+  /// After `duration_s` more.
+  FeedforwardStep step_for(double duration_s) {
+    for (int i = 0; i + 1 < std::lround(duration_s / tick_s); ++i) (void)step();
+    return step();
+  }
+  /// What the plan says now, all dead time and half a tick ahead.
+  [[nodiscard]] double on_plan(const PressurePlan& plan) const {
+    return plan.at(query_.time_s - query_.plan_origin_s + plan_ahead_s(model_, planned, tick_s));
+  }
+  [[nodiscard]] double on_line(double displacement_mm) const {
+    return settled_line(model_, limits).pressure_kpa(displacement_mm);
+  }
+  [[nodiscard]] double gain() const { return settled_line(model_, limits).gain_mm_per_kpa; }
+
+  model::Model model_ = model_named("zhang2025");
+  Reference reference_;
+  PlannedFeedforward feedforward_{model_, planned, limits, tick_s};
+  FeedforwardQuery query_{&reference_, 0, 0};
+};
+
+TEST_F(PlannedFeedforwardTest, GoesFromThePressureThatIsThereOverToItsPlan) {
+  reference_.start(0, 5);
+  const PressurePlan plan = plan_of(20, 2, 5);
+  query_.plan = &plan;
+  enter(11);
+  EXPECT_NEAR(step().pressure_kpa, 11, 1e-9) << "no step";
+  double difference = 11 - 20;
+  for (int i = 0; i < 700; ++i) {
+    const double expected = on_plan(plan);
+    const FeedforwardStep now = step();
+    const double left = now.pressure_kpa - expected;
+    EXPECT_LE(std::abs(left), std::abs(difference) + 1e-9) << "it only ever comes nearer";
+    EXPECT_FALSE(now.out_of_reach);
+    difference = left;
+  }
+  EXPECT_NEAR(difference, 0, 1e-9) << "after " << fade_s << " s it is there";
+}
+
+TEST_F(PlannedFeedforwardTest, WhatTheFingerShowsMoreThanItsModelIsTakenOffAtTheSettledGain) {
+  reference_.start(0, 5);
+  const PressurePlan plan = plan_of(20, 0, 5);
+  query_.plan = &plan;
+  query_.offset_mm = 0.6;
+  enter(20);
+  EXPECT_NEAR(step_for(fade_s + 1).pressure_kpa, 20 - 0.6 / gain(), 1e-9);
+}
+
+TEST_F(PlannedFeedforwardTest, APlanForAnotherWayIsLeftAlone) {
+  reference_.start(0, 5);
+  for (const double aside_mm : {0.9, 1.1}) {
+    const PressurePlan plan = plan_of(20, 0, 5 + aside_mm);
+    query_.plan = &plan;
+    enter(20);
+    const double expected = aside_mm < 1 ? 20 - aside_mm / gain() : on_line(5);
+    EXPECT_NEAR(step_for(fade_s + 1).pressure_kpa, expected, 1e-9) << aside_mm << " mm beside it";
+  }
+}
+
+// A plan that ends, begins, or is exchanged for another, whose clock may have begun elsewhere.
+TEST_F(PlannedFeedforwardTest, NoChangeOfItsSourceIsAStep) {
+  reference_.start(0, 5);
+  const PressurePlan low = plan_of(8, 0, 5), high = plan_of(30, 1, 5);
+  enter(0);
+  double last = step_for(fade_s + 1).pressure_kpa;
+  EXPECT_NEAR(last, on_line(5), 1e-9);
+  for (const auto& [plan, origin_s] :
+       {std::pair(&high, 1.0), std::pair(&low, 1.0), std::pair(&high, 1.0), std::pair(&high, 3.5),
+        std::pair<const PressurePlan*, double>(nullptr, 0)}) {
+    query_.plan = plan;
+    query_.plan_origin_s = origin_s;
+    const double at_change = step().pressure_kpa;
+    EXPECT_NEAR(at_change, last, 1e-9);
+    (void)step_for(fade_s + 1);
+    const double expected = plan != nullptr ? on_plan(*plan) : on_line(5);
+    last = step().pressure_kpa;
+    EXPECT_NEAR(last, expected, 1e-9);
+  }
+}
+
+// Where the reference jumps, one clock may already be behind the jump by a rounding and the other not.
+TEST_F(PlannedFeedforwardTest, ClocksThatDifferByARoundingFollowTheSamePlan) {
+  for (const double rounding_s : {-1e-9, 0.0, 1e-9}) {
+    SCOPED_TRACE(rounding_s);
+    query_ = {&reference_, 0, 0};
+    // The sine jumps from 0 to its lowest point, 5 mm, when it is read for the first time.
+    const double jump_s = plan_ahead_s(model_, planned, tick_s);
+    reference_.start(0, 0);
+    (void)reference_.hold_for(jump_s);
+    (void)reference_.sine(5, 0, 0.1, 1);
+    PressurePlan plan = plan_of(20, 0, 5);
+    plan.reference = reference_;
+    query_.plan = &plan;
+    query_.plan_origin_s = rounding_s;
+    enter(20);
+    EXPECT_NEAR(step().pressure_kpa, 20, 1e-6);
+    EXPECT_NEAR(step_for(fade_s).pressure_kpa, 20, 1e-6) << "it is on its plan";
+  }
+}
+
+TEST_F(PlannedFeedforwardTest, SaysWhatIsOutOfReach) {
+  reference_.start(0, 5);
+  PressurePlan plan = plan_of(20, 0, 5);
+  query_.plan = &plan;
+  enter(20);
+  EXPECT_FALSE(step().out_of_reach);
+  std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.19);
+  EXPECT_FALSE(step().out_of_reach);
+  std::fill(plan.displacement_mm.begin(), plan.displacement_mm.end(), 5.21);
+  EXPECT_TRUE(step().out_of_reach) << "the plan knows that its model misses";
+  query_.plan = nullptr;
+  reference_.start(0, 25);
+  query_.offset_mm = -10;
+  const FeedforwardStep beyond = step_for(fade_s + 1);
+  EXPECT_TRUE(beyond.out_of_reach);
+  EXPECT_EQ(beyond.pressure_kpa, limits.pressure_max_kpa);
+}
+
+}  // namespace
+}  // namespace softgrip::control
