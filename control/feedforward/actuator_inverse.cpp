@@ -12,7 +12,10 @@ constexpr double tolerance_mm = 1e-11;
 /// A Newton step this short is taken without looking again: with curvatures below 0.05 mm/kPa^2 the equation
 /// is then solved to 1e-11 mm.
 constexpr double last_step_kpa = 2e-5;
-constexpr int most_iterations = 60;
+/// A body without sharp kinks takes a handful of Newton's steps. What has not come to an end after so many
+/// runs to and fro between two of them; halving the bracket then ends it.
+constexpr int newton_iterations = 20;
+constexpr int most_iterations = 80;
 
 }  // namespace
 
@@ -26,19 +29,22 @@ ActuatorInverse::Solution ActuatorInverse::solve(double displacement_mm, double 
   double x = std::clamp(guess, lower_kpa, upper_kpa);
   double lower = lower_kpa;
   double upper = upper_kpa;
+  bool lower_tried = false, upper_tried = false;
   for (int i = 0; i < most_iterations; ++i) {
     const Number y = body_.peek(tick_s_, Number(x, 1));
     const double miss = y.a - displacement_mm;
     if (std::abs(miss) <= tolerance_mm) return {x, true};
     (miss > 0 ? upper : lower) = x;
+    lower_tried = lower_tried || x == lower_kpa;
+    upper_tried = upper_tried || x == upper_kpa;
     // Outside even at the bound, or a bracket without room: this is as near as it gets.
     if (x == upper_kpa && miss < 0) return {x, false};
     if (x == lower_kpa && miss > 0) return {x, false};
     const double next = x - miss / y.v;
-    if (!(next > lower && next < upper)) {
+    if (i >= newton_iterations || !(next > lower && next < upper)) {
       // A bound that was not tried yet is tried first: it may be the answer.
       const double bound = miss < 0 ? upper : lower;
-      const bool untried = bound == (miss < 0 ? upper_kpa : lower_kpa);
+      const bool untried = miss < 0 ? bound == upper_kpa && !upper_tried : bound == lower_kpa && !lower_tried;
       const double middle = 0.5 * (lower + upper);
       if (!untried && !(middle > lower && middle < upper)) return {x, true};
       x = untried ? bound : middle;
@@ -50,7 +56,7 @@ ActuatorInverse::Solution ActuatorInverse::solve(double displacement_mm, double 
     if (next == x) return {x, true};
     x = next;
   }
-  return {x, true};
+  return {x, false};
 }
 
 void ActuatorInverse::advance(double pressure_kpa) noexcept {

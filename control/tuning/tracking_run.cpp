@@ -81,7 +81,8 @@ class Bench {
   double out_kpa_ = 0;
 };
 
-/// Smallest and largest slope at once that the model shows over its working range.
+/// Smallest and largest slope at once that the model shows over its working range, in two whole cycles:
+/// hysteresis may be further off after the first.
 struct GainRange {
   double smallest = std::numeric_limits<double>::max();
   double largest = 0;
@@ -91,7 +92,7 @@ GainRange gain_range(const model::Model& body, double pressure_max_kpa) {
   GainRange range;
   model::Chain<double> chain(body);
   constexpr int steps = 100;
-  for (const bool rising : {true, false, true}) {
+  for (const bool rising : {true, false, true, false}) {
     for (int i = 0; i <= steps; ++i) {
       const double pressure = pressure_max_kpa * (rising ? i : steps - i) / steps;
       chain.step(0, pressure);

@@ -9,6 +9,7 @@
 
 #include "control/feedforward/running_model.h"
 #include "model/blocks/characteristic.h"
+#include "model/blocks/contact.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
@@ -107,6 +108,31 @@ TEST(ActuatorInverse, SolvesFromRandomStates) {
       ASSERT_NEAR(inverse.displacement_at(solution.pressure_kpa), wanted, 1e-10) << "step " << k;
       ASSERT_NEAR(solution.pressure_kpa, inside, 1e-7) << "step " << k;
       inverse.advance(solution.pressure_kpa);
+    }
+  }
+}
+
+// Stops and bends, where a step along the slope leads far out: a wall in the way, a bend either way, a soft
+// stretch between.
+TEST(ActuatorInverse, SolvesAcrossKinksFromRandomStates) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> pressure(0, 60), curvature(-4, 4), place(0, 12);
+  for (int finger = 0; finger < 60; ++finger) {
+    SCOPED_TRACE(finger);
+    model::Model body = body_of(model_named("bench_twin"));
+    body = model::with_block(
+        body, model::block_of<model::Characteristic>({{"curvature", curvature(random)}, {"span_mm", 12}}));
+    for (const double stiffening : {3.0, 100.0}) {
+      body = model::with_block(body, model::block_of<model::Contact>(
+                                         {{"position_mm", place(random)}, {"stiffening", stiffening}}));
+    }
+    ActuatorInverse inverse(body, tick_s);
+    for (int k = 0; k < 200; ++k) {
+      const double wanted = inverse.displacement_at(pressure(random));
+      const auto solution = inverse.solve(wanted, 0, 60);
+      ASSERT_TRUE(solution.reached) << k;
+      ASSERT_NEAR(inverse.displacement_at(solution.pressure_kpa), wanted, 1e-9) << k;
+      inverse.advance(k % 3 == 0 ? solution.pressure_kpa : pressure(random));
     }
   }
 }

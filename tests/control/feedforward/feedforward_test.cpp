@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/blocks/asymmetric_valve_lag.h"
+#include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
 namespace softgrip::control {
@@ -94,6 +96,36 @@ TEST(FullModelFeedforward, WithoutALagTheHoldsHalfSampleIsCompensated) {
   // What is left is the staircase of the held command itself: half a step of the steepest stretch.
   const Outcome run = run_alone(fast, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 0.02);
+}
+
+// Filling and venting each with a lag of its own, before and behind the sensor of the pressure.
+TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
+  model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
+  model =
+      model::with_block(model, model::block_of<model::AsymmetricValveLag>(
+                                   {{"filling_time_constant_s", 0.03}, {"venting_time_constant_s", 0.06}}));
+  const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
+  EXPECT_LT(run.worst_mm, 2e-3);
+  EXPECT_EQ(run.out_of_reach, 0);
+}
+
+TEST(FullModelFeedforward, AReferenceBeyondTheRangeIsFollowedToItsEnd) {
+  const model::Model twin = model_named("bench_twin");
+  Reference reference;
+  reference.start(0, 0);
+  (void)reference.hold_for(0.2);
+  (void)reference.ramp_for(limits.displacement_max_mm + 3, 4);
+  Feedforward feedforward(twin, {FeedforwardKind::full_model, 0}, {0, 80, 400, 400, 0, 25, 1}, tick_s);
+  model::Chain<double> finger(twin, {}, tick_s);
+  FeedforwardQuery query{&reference, 0, 0};
+  feedforward.enter(RunningModel(twin, tick_s, 0, 0.1), query, 0);
+  for (; query.time_s < 8; query.time_s += tick_s) {
+    const double command = feedforward.step(query).pressure_kpa;
+    finger.step(0, command);
+    finger.step(tick_s, command);
+    ASSERT_LT(finger.reading_mm(), limits.displacement_max_mm + 0.1);
+  }
+  EXPECT_NEAR(finger.reading_mm(), limits.displacement_max_mm, 2e-3);
 }
 
 TEST(FullModelFeedforward, AStopThatIsInTheModelIsPushedAgainst) {

@@ -184,6 +184,15 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
   for (const model::Descriptor& known : model::catalogue()) EXPECT_EQ(not_undone({&known.info, 1}), "");
 }
 
+TEST(Invertibility, WithoutCreepTheHysteresisAloneDecides) {
+  const model::Model elastic = model::without_block<model::KelvinVoigt>(model_named("bench_twin"));
+  EXPECT_TRUE(check(elastic, FeedforwardKind::full_model));
+  const auto refused =
+      check(with_value(elastic, "bouc_wen.alpha_mm_per_kpa", 0.1), FeedforwardKind::full_model);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().text.find("beta > alpha (0.1713 > 0.1 mm/kPa)"), 0U) << refused.error().text;
+}
+
 TEST(Invertibility, PlanningNeedsAFingerThatMovesWithThePressure) {
   const model::Model twin = model_named("bench_twin");
   EXPECT_TRUE(check(twin, FeedforwardKind::planned));

@@ -58,7 +58,7 @@ class PlannedFeedforwardTest : public testing::Test {
 
   model::Model model_ = model_named("zhang2025");
   Reference reference_;
-  PlannedFeedforward feedforward_{model_, planned, limits, tick_s};
+  Feedforward feedforward_{model_, planned, limits, tick_s};
   FeedforwardQuery query_{&reference_, 0, 0};
 };
 

@@ -36,5 +36,18 @@ TEST(SettledLine, IsTheSlopeBetweenTheLimitsWhereverTheyBegin) {
   EXPECT_NEAR(line.pressure_kpa(at_highest_mm), 60, 1e-9);
 }
 
+// What a plan is made for is where the finger is, not what a late or noisy sensor shows of it.
+TEST(SettledLine, KnowsNeitherDeadTimeNorSensorNorNoise) {
+  const model::Model twin = sim::model_named("bench_twin");
+  model::Model shown = twin;
+  for (const char* name : {"sensor_lag", "sensor_nonlinearity", "sensor_noise", "valve_deadband"}) {
+    shown = model::with_block(shown, model::default_block(*model::find_block(name)));
+  }
+  EXPECT_FALSE(model::position_of(without_dead_time(twin), *model::find_block("transport_delay")));
+  EXPECT_EQ(without_dead_time(shown).blocks.size(), without_dead_time(twin).blocks.size());
+  const LimitSettings limits{0, 60, 400, 400, 0, 25, 1};
+  EXPECT_EQ(settled_line(shown, limits).gain_mm_per_kpa, settled_line(twin, limits).gain_mm_per_kpa);
+}
+
 }  // namespace
 }  // namespace softgrip::control
