@@ -1,0 +1,80 @@
+"""bench/measured/log_table.py: what the table says, and what is said of its mistakes."""
+from measured_case import BENCH, MeasuredCase
+
+import log_table
+
+
+class Tables(MeasuredCase):
+    def problems(self, text):
+        return "\n".join(self.table(text).logs[0].problems).replace(f"{self.folder}/", "")
+
+    def assert_unusable(self, text, *words):
+        with self.assertRaises(log_table.Unusable) as caught:
+            self.table(text)
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+
+    def test_what_all_logs_share_is_said_once(self):
+        logs = self.table("""\
+            same: {time: t_s, command: u_kpa, displacement: y_mm, split: 0.6, begin: rest}
+            logs:
+            - file: a.csv
+            - {file: b.csv, name: second, split: 0.4}
+            """).logs
+        self.assertEqual([(log.name, log.split, log.begin) for log in logs],
+                         [("a", 0.6, "rest"), ("second", 0.4, "rest")])
+        self.assertEqual([log.problems for log in logs], [[], []])
+
+    def test_a_pattern_stands_for_every_file(self):
+        for name in ("x2.csv", "x1.csv", "y.csv"):
+            self.put_plain(name)
+        logs = self.table("logs: [{file: 'x*.csv', time: t_s, command: u_kpa, displacement: y_mm}]").logs
+        self.assertEqual([log.name for log in logs], ["x1", "x2"])
+
+    def test_the_table_of_the_soft_arm(self):
+        table = log_table.read_table(BENCH / "measured/asu_softarm.yaml", self.data)
+        self.assertEqual(len(table.logs), 10)
+        self.assertEqual([log.problems for log in table.logs], [[]] * 10)
+        self.assertEqual(len([log for log in table.logs if log.set]), 5)
+
+    def test_mistakes_have_their_line_and_say_what_was_meant(self):
+        said = self.problems("""\
+            logs:
+            - file: a.csv
+              tiem: t_s
+              command: {column: u, unit: ft}
+              displacement: {colunm: y, unit: mm}
+              split: 1.5
+              begin: anywhere
+              separator: ", "
+              from_s: soon
+            """)
+        for line in ("table.yaml:3: 'tiem' is no key here: is it 'time'?",
+                     "table.yaml:4: unit: 'ft' is no unit of a pressure",
+                     "table.yaml:5: 'colunm' is no key here: is it 'column'?",
+                     "table.yaml:5: displacement: no column",
+                     "table.yaml:6: split: 1.5 is not between", "table.yaml:7: begin: 'anywhere' is not one of auto,",
+                     "table.yaml:8: separator", "table.yaml:9: from_s: 'soon'", "table.yaml:2: 'time' is missing"):
+            self.assertIn(line, said)
+
+    def test_a_log_that_nothing_drives(self):
+        said = self.problems("logs: [{file: a.csv, time: t_s, displacement: y_mm}]")
+        self.assertIn("neither 'command' nor 'pressure'", said)
+
+    def test_two_logs_of_one_name_are_told_apart(self):
+        logs = self.table("""\
+            same: {file: a.csv, time: t_s, command: u_kpa, displacement: y_mm}
+            logs: [{split: 0.4}, {split: 0.6}]
+            """).logs
+        self.assertEqual(logs[0].problems, [])
+        self.assertIn("a second log is named 'a'", logs[1].problems[0])
+        self.assertNotEqual(logs[0].name, logs[1].name)
+
+    def test_a_table_that_says_nothing(self):
+        self.assert_unusable("logs: [", "table.yaml:1:")
+        self.assert_unusable("", "no list `logs`")
+        self.assert_unusable("log: []", "no list `logs`")
+        self.assert_unusable("logs: [a.csv]", "log 1 is 'a.csv'")
+        self.assert_unusable("logs: [{file: a.csv}]\ntitel: x", "table.yaml:2: 'titel'", "is it 'title'?")
+        with self.assertRaises(log_table.Unusable):
+            log_table.read_table(self.folder / "none.yaml", self.data)
