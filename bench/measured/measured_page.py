@@ -2,6 +2,7 @@
 import html
 import math
 import pathlib
+import re
 
 # What is run, as it is called on the page, its colour.
 STRUCTURES = [("identify", "published element", "#8a93a3"), ("auto", "auto", "#2e7d4f"),
@@ -46,7 +47,9 @@ def table(head, rows):
 
 
 def groups(rows):
-    """(what, rows) over which means are taken: each set and all, and of each those whose fitted part unloads."""
+    """(what, rows) over which means are taken: each set and all, and of each those whose fitted part unloads; alike for
+    every structure, so without a log on which one failed."""
+    rows = [row for row in rows if all(math.isfinite(continuation(row, step)) for step, _, _ in STRUCTURES)]
     named = [(name, [r for r in rows if r["set"] == name]) for name in dict.fromkeys(r["set"] for r in rows) if name]
     found = []
     for name, among in [*named, ("all", rows)]:
@@ -185,13 +188,19 @@ def log_lines(rows):
     return lines
 
 
+def in_short(text):
+    """Without the lines that only show the place again, or count."""
+    said = [line for line in text.splitlines() if not re.match(r"\s(?!\s*hint:)|\d+ errors?$", line)]
+    return "<br>".join(re.sub(r"^\s*hint: ", "", line) for line in said)
+
+
 def failures(rows):
     lines = []
     for row in rows:
         errors = [("the log", row["error"])] if "error" in row else [
             (step, outcome["error"]) for step, outcome in row["outcomes"].items() if "error" in outcome]
-        for what, text in errors:
-            lines.append([row["name"], what, text.replace("\n", "<br>")])
+        for text in dict.fromkeys(text for _, text in errors):
+            lines.append([row["name"], ", ".join(step for step, other in errors if other == text), in_short(text)])
     return ["## What could not be run", "", *table(["log", "what", "why"], lines), ""] if lines else []
 
 
@@ -207,7 +216,9 @@ def write(path, described, rows, planned, table_name):
         lines += ["## Foretold from the first part (continuation)", "",
                   *picture(path, "held-out", "Held-out error of every structure on every log",
                            dots(shown, STRUCTURES, "held-out RMSE (continuation), % of span")),
-                  *held_out_table(good), "", "## What the data chose", "", *chosen_table(good), ""]
+                  *held_out_table(good), ""]
+    if any(result_of(row, "auto") for row in good):
+        lines += ["## What the data chose", "", *chosen_table(good), ""]
     if any(True for _ in diagnoses(good)):
         shown = [(f"{row['name']}, {drive}", misfit(row, result)) for row, drive, result, _ in diagnoses(good)]
         lines += ["## Diagnosed", "", "The model given is what `softgrip identify` finds on the whole log. *share* is "

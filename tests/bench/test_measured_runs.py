@@ -17,7 +17,7 @@ log = words[words.index("--data") + 1]
 with open("{calls}", "a") as calls:
     calls.write(words[0] + "\\n")
 if "refuse me" in pathlib.Path("{word}").read_text():
-    sys.exit(log + ":40:3: too few samples")
+    sys.exit(log + ":40:3: too few samples\\n    1,2\\n     ^\\n    hint: at least 50\\n1 error")
 out = pathlib.Path(words[words.index("--out") + 1])
 out.mkdir(parents=True, exist_ok=True)
 (out / "model.yaml").write_text("model")
@@ -119,7 +119,7 @@ class Campaign(MeasuredCase):
         self.put("remark\n" + (self.data / "a.csv").read_text(), "a.csv")
         code, _, page = self.run_it(TABLE, "--only", "a", "--no-diagnosis")
         self.assertEqual(code, 1)
-        self.assertIn("| a | auto | a.csv:41: too few samples |", page)
+        self.assertIn("identify, auto, bouc_wen, prandtl_ishlinskii | a.csv:41: too few samples<br>at least 50 |", page)
         self.assertIn("1 of the table's 2 logs", page)
 
     def test_an_answer_of_another_shape_spoils_its_own_cell(self):
