@@ -47,6 +47,8 @@ def short(outcome, span_mm):
     result = outcome["result"]
     if "verdict" in result:
         return " ".join([result["verdict"], *(cause["id"] for cause in result["causes"])])
+    if "inverse" in result:
+        return "yes" if result["inverse"] else "no"
     if "continuation_mm" in result:
         return f"{100 * result['continuation_mm'] / span_mm:.2f} % of span held out (continuation)"
     return f"{100 * result['fitted_mm'] / span_mm:.2f} % of span, fitted"

@@ -79,7 +79,7 @@ def held_out_table(rows):
 def chosen_table(rows):
     head = ["log", "`--structure auto` takes", "fitted [%]", "interleaved blocks of the fitted part [%]",
             "continuation [%]", "valve: command to pressure, fitted [% of range]",
-            "both in a row from the command, whole log [%]"]
+            "both in a row from the command, whole log [%]", "inverse"]
     lines = []
     for row in rows:
         result = result_of(row, "auto")
@@ -87,8 +87,13 @@ def chosen_table(rows):
             lines.append([row["name"], result["description"], *(number(percent(result.get(key), row)) for key in
                                                                 ("fitted_mm", "blocks_mm", "continuation_mm")),
                           number(result.get("valve_percent", math.nan)),
-                          number(percent(result.get("from_command_mm"), row))])
+                          number(percent(result.get("from_command_mm"), row)), inverse(row, "auto")])
     return table(head, lines)
+
+
+def inverse(row, step):
+    result = result_of(row, f"inverse_{step}")
+    return "-" if result is None else "yes" if result["inverse"] else "no"
 
 
 def names_of(causes):
@@ -108,10 +113,10 @@ def diagnoses(rows):
 
 def diagnosis_table(rows):
     nulls = any(result["p_value"] is not None for _, _, result, _ in diagnoses(rows))
-    head = ["log", "driven by", "verdict", "named", "part of it", "base that it found", "time [s]",
+    head = ["log", "driven by", "verdict", "named", "part of it", "base that it found", "inverse", "time [s]",
             *(["p"] if nulls else [])]
     lines = [[row["name"], drive, f"`{result['verdict']}`", names_of(result["causes"]), names_of(result["partial"]),
-              result["base"] or "-", f"{seconds:.1f}",
+              result["base"] or "-", inverse(row, f"diagnosis_{drive}"), f"{seconds:.1f}",
               *(["-" if result["p_value"] is None else f"{result['p_value']:.2f}"] if nulls else [])]
              for row, drive, result, seconds in diagnoses(rows)]
     return table(head, lines)
@@ -224,7 +229,8 @@ def write(path, described, rows, planned, table_name):
         lines += ["## Diagnosed", "", "The model given is what `softgrip identify` finds on the whole log. *share* is "
                   "what a cause explains of what the recalibrated model leaves beyond the noise, on interleaved "
                   "blocks; shares need not add up, for causes stand in for each other. *as identified*: with that "
-                  "model's numbers and no zero fitted to the log.", "",
+                  "model's numbers and no zero fitted to the log. *inverse*: whether a controller can compute its "
+                  "pressure from the extended model.", "",
                   *diagnosis_table(good), "", "## Where the misfit goes (interleaved blocks)", "",
                   *picture(path, "budget", "What each model leaves, and the noise",
                            dots(shown, MISFIT, "RMSE (interleaved blocks), % of span")), *budget_table(good), ""]

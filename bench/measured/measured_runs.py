@@ -13,11 +13,15 @@ HERE = pathlib.Path(__file__).resolve().parent
 SCIPY = HERE / "scipy_bouc_wen.py"
 SIMULATOR = HERE.parent / "sysid_peer_simulator.c"
 STRUCTURES = ("auto", "bouc_wen", "prandtl_ishlinskii")
-NOT_CONVERGED = 6
+REFUSED, NOT_CONVERGED = 3, 6
 
 
 class Failed(Exception):
     """A program said no; the message is what it said."""
+
+    def __init__(self, said, code=None):
+        super().__init__(said)
+        self.code = code
 
 
 def checksum(*parts):
@@ -38,7 +42,7 @@ def output_of(command, at_most_s):
     if run.returncode in (0, NOT_CONVERGED):
         return run.stdout
     said = run.stderr.strip() or f"{command[0]}: exit code {run.returncode}"
-    raise Failed(said.splitlines()[-1] if said.startswith("Traceback") else said)
+    raise Failed(said.splitlines()[-1] if said.startswith("Traceback") else said, run.returncode)
 
 
 class Runs:
@@ -66,6 +70,10 @@ class Runs:
                 steps.append((f"given_{drive}", lambda out, d=drive: self.identify(out, d), (program,)))
                 steps.append((f"diagnosis_{drive}", lambda out, d=drive: self.diagnose(out, d),
                               (program, self.options.nulls)))
+        for name, _, depends in steps[:]:
+            if name == "auto" or name.startswith("diagnosis"):
+                steps.append((f"inverse_{name}", lambda out, n=name: self.inverse(out, self.folder / n / "model.yaml"),
+                              ("inverse", *depends)))
         return steps
 
     def finger_drive(self):
@@ -84,6 +92,19 @@ class Runs:
                           "--begin", self.entry.begin, "--out", out, "--nulls", self.options.nulls,
                           "--no-closed-loop", "--json"], self.options.at_most_s)
         return diagnosed(json.loads(text))
+
+    def inverse(self, out, model):
+        """Whether a controller can compute its pressure from this model."""
+        if not model.exists():
+            raise Failed("there is no model")
+        try:
+            output_of([self.options.softgrip, "tune", "--model", model, "--rate-hz", "200", "--feedforward",
+                       "full_model", "--out", out / "pid.yaml"], self.options.at_most_s)
+        except Failed as failed:
+            if failed.code != REFUSED:
+                raise
+            return {"inverse": False, "why": self.in_the_users_words(failed)}
+        return {"inverse": True}
 
     def scipy(self, _):
         library = self.options.out / "simulator.so"
@@ -110,6 +131,7 @@ class Runs:
         if known and known.get("of") == of and "result" in known:
             return known, True
         kept.parent.mkdir(parents=True, exist_ok=True)
+        (kept.parent / "model.yaml").unlink(missing_ok=True)  # of an earlier run
         began = time.monotonic()
         outcome = {"of": of}
         try:

@@ -3,25 +3,27 @@ import contextlib
 import io
 import json
 import stat
-import sys
 
 from measured_case import MeasuredCase
 
 import measured
 import measured_runs
 
-PROGRAM = """#!{python} -IS
-import json, pathlib, sys
-words = sys.argv[1:]
-log = words[words.index("--data") + 1]
-with open("{calls}", "a") as calls:
-    calls.write(words[0] + "\\n")
-if "refuse me" in pathlib.Path("{word}").read_text():
-    sys.exit(log + ":40:3: too few samples\\n    1,2\\n     ^\\n    hint: at least 50\\n1 error")
-out = pathlib.Path(words[words.index("--out") + 1])
-out.mkdir(parents=True, exist_ok=True)
-(out / "model.yaml").write_text("model")
-print(json.dumps(json.loads(pathlib.Path("{answers}").read_text())[words[0]]))
+# Says what it was called for, answers from a file, or refuses.
+PROGRAM = """#!/bin/sh
+command=$1 model=$3
+echo "$command" >> "{folder}/calls"
+while [ $# -gt 0 ]; do
+  case $1 in --data) log=$2 ;; --out) out=$2 ;; esac
+  shift
+done
+if [ -e "{folder}/refuse" ]; then
+  printf '%s:40:3: too few samples\\n    1,2\\n     ^\\n    hint: at least 50\\n1 error\\n' "$log" >&2
+  exit 3
+fi
+case $command$model in tune*diagnosis*) exit 3 ;; tune*) exit 0 ;; esac
+echo model > "$out/model.yaml"
+cat "{folder}/$command.json"
 """
 ANSWERS = {
     "identify": {"rmse_mm": {"log": 0.1}, "converged": True, "held_out": {"rmse_mm": {"log": 0.5}},
@@ -46,12 +48,12 @@ logs:
 class Campaign(MeasuredCase):
     def setUp(self):
         super().setUp()
-        self.calls, self.word, self.answers = (self.folder / name for name in ("calls", "word", "answers.json"))
-        self.program, scipy = self.folder / "softgrip", self.folder / "scipy.py"
-        self.word.write_text("")
-        self.answers.write_text(json.dumps(ANSWERS))
-        self.program.write_text(
-            PROGRAM.format(python=sys.executable, calls=self.calls, word=self.word, answers=self.answers))
+        self.calls, self.program, scipy = (self.folder / name for name in ("calls", "softgrip", "scipy.py"))
+        for command, answer in ANSWERS.items():
+            (self.folder / f"{command}.json").write_text(json.dumps(answer))
+        (self.folder / "out").mkdir()
+        (self.folder / "out/simulator.so").write_text("not compiled here")
+        self.program.write_text(PROGRAM.format(folder=self.folder))
         self.program.chmod(self.program.stat().st_mode | stat.S_IXUSR)
         scipy.write_text(SCIPY)
         measured_runs.SCIPY, before = scipy, measured_runs.SCIPY
@@ -75,11 +77,13 @@ class Campaign(MeasuredCase):
     def test_the_page_has_what_the_runs_said(self):
         code, printed, page = self.run_it()
         self.assertEqual(code, 0, printed)
-        self.assertEqual(sorted(self.called()), ["diagnose"] * 2 + ["identify"] * 10)
+        self.assertEqual(sorted(self.called()), ["diagnose"] * 2 + ["identify"] * 10 + ["tune"] * 4)
         span = 10.02
         for text in ("# Fingers of another house", f"| {50 / span:.2f} |", f"{100 / span:.2f}",
                      "Bouc-Wen, creep ladder",
-                     "`partly_explained`", "valve_lag or sensor_lag (inclusion 0.97, share 61 %)", "0.48 (0.4 .. 0.6)",
+                     "Bouc-Wen, creep ladder | 1.00 | 2.99 | 4.99 | - | - | yes |",
+                     "`partly_explained`", "- | - | no |", "valve_lag or sensor_lag (inclusion 0.97, share 61 %)",
+                     "0.48 (0.4 .. 0.6)",
                      "geometric mean of 2: all", "(page-held-out.svg)", "(page-budget.svg)"):
             self.assertIn(text, page)
         self.assertIn("[2/2] b: diagnosis_command: partly_explained valve_lag", printed)
@@ -93,20 +97,20 @@ class Campaign(MeasuredCase):
         self.assertEqual(again[2], first[2])
         self.put_plain("b.csv", line50="4.8,1,2")
         self.run_it()
-        self.assertEqual(len(self.called()), 6)
+        self.assertEqual(len(self.called()), 8)
         (self.folder / "out/a/auto/outcome.json").write_text("{ interrupted")
         self.run_it()
         self.assertEqual(self.called(), ["identify"])
         self.program.write_text(self.program.read_text() + "# another version\n")
         self.run_it()
-        self.assertEqual(len(self.called()), 12)
+        self.assertEqual(len(self.called()), 16)
 
     def test_a_bad_log_spoils_its_own_row(self):
         self.put_plain("a.csv", line50="4.8,open,3")
         code, printed, page = self.run_it()
         self.assertEqual(code, 1, printed)
         self.assertIn("| a | the log | a.csv:50: column 'u_kpa': 'open' is no number |", page)
-        self.assertEqual(len(self.called()), 6)
+        self.assertEqual(len(self.called()), 8)
         self.assertIn("| b | 100 |", page)
 
     def test_a_mistake_in_the_table_spoils_its_own_row(self):
@@ -115,7 +119,7 @@ class Campaign(MeasuredCase):
         self.assertIn("| b | the log | table.yaml:5: 'splt' is no key here: is it 'split'? |", page)
 
     def test_what_the_program_refuses_names_the_file_that_was_given(self):
-        self.word.write_text("refuse me")
+        (self.folder / "refuse").touch()
         self.put("remark\n" + (self.data / "a.csv").read_text(), "a.csv")
         code, _, page = self.run_it(TABLE, "--only", "a", "--no-diagnosis")
         self.assertEqual(code, 1)
@@ -123,7 +127,7 @@ class Campaign(MeasuredCase):
         self.assertIn("1 of the table's 2 logs", page)
 
     def test_an_answer_of_another_shape_spoils_its_own_cell(self):
-        self.answers.write_text(json.dumps({**ANSWERS, "diagnose": {"verdict": "adequate"}}))
+        (self.folder / "diagnose.json").write_text('{"verdict": "adequate"}')
         code, _, page = self.run_it()
         self.assertEqual(code, 1)
         self.assertIn("| a | diagnosis_command | its answer was not understood: KeyError('causes') |", page)
