@@ -37,6 +37,14 @@ class Tables(MeasuredCase):
         self.assertEqual([log.problems for log in table.logs], [[]] * 10)
         self.assertEqual(len([log for log in table.logs if log.set]), 5)
 
+    def test_the_table_of_the_how_to(self):
+        page = (BENCH.parent / "docs/how-to/measure.md").read_text()
+        logs = self.table(page.split("```yaml\n")[1].split("```")[0]).logs
+        self.assertEqual([log.name for log in logs], ["day1/*.csv", "second day"])
+        self.assertEqual([log.problems for log in logs], [[], []])
+        for key in (*log_table.KEYS, *log_table.COLUMN_KEYS):
+            self.assertIn(f"`{key}`", page)
+
     def test_mistakes_have_their_line_and_say_what_was_meant(self):
         said = self.problems("""\
             logs:
