@@ -36,6 +36,13 @@ def number(value, digits=2):
     return "-" if not math.isfinite(value) else f"{value:.{digits}f}" if value < 1000 else f"{value:.2g}"
 
 
+def time_of(rows):
+    """(what, key): of processors, where every run has it; outcomes of an earlier version have the clock's only."""
+    outcomes = [outcome for row in rows for outcome in row["outcomes"].values()]
+    known = all("processor_s" in outcome for outcome in outcomes)
+    return ("processor time", "processor_s") if known else ("time by the clock", "wall_s")
+
+
 def geometric_mean(values):
     known = [value for value in values if math.isfinite(value) and value > 0]
     return math.exp(sum(map(math.log, known)) / len(known)) if known else math.nan
@@ -61,14 +68,15 @@ def groups(rows):
 
 
 def held_out_table(rows):
-    head = ["log", "fitted part unloads [%]", *(f"{label} [%]" for _, label, _ in STRUCTURES), "time of all five [s]"]
+    head = ["log", "fitted part unloads [%]", *(f"{label} [%]" for _, label, _ in STRUCTURES),
+            f"{time_of(rows)[0]} of all five [s]"]
     lines = []
     for row in rows:
         values = [continuation(row, step) for step, _, _ in STRUCTURES]
         best = min((value for value in values if math.isfinite(value)), default=math.nan)
-        seconds = sum(row["outcomes"].get(step, {}).get("wall_s", 0) for step, _, _ in STRUCTURES)
+        seconds = sum(row["outcomes"].get(step, {}).get(time_of(rows)[1], 0) for step, _, _ in STRUCTURES)
         lines.append([row["name"], f"{100 * row['unloading']:.0f}",
-                      *(f"**{number(v)}**" if v == best else number(v) for v in values), f"{seconds:.1f}"])
+                      *(f"**{number(v)}**" if v == best else number(v) for v in values), number(seconds, 1)])
     for what, among in groups(rows):
         lines.append([f"geometric mean of {len(among)}: {what}", "",
                       *(number(geometric_mean([continuation(row, step) for row in among]))
@@ -108,15 +116,18 @@ def diagnoses(rows):
         for drive in ("command", "measured"):
             result = result_of(row, f"diagnosis_{drive}")
             if result:
-                yield row, drive, result, row["outcomes"][f"diagnosis_{drive}"]["wall_s"]
+                seconds = row["outcomes"][f"diagnosis_{drive}"][time_of(rows)[1]]
+                yield row, drive, result, seconds
 
 
 def diagnosis_table(rows):
     nulls = any(result["p_value"] is not None for _, _, result, _ in diagnoses(rows))
-    head = ["log", "driven by", "verdict", "named", "part of it", "base that it found", "inverse", "time [s]",
+    head = ["log", "driven by", "verdict", "named", "part of it", "base that it found", "inverse",
+            f"{time_of(rows)[0]} [s]",
             *(["p"] if nulls else [])]
     lines = [[row["name"], drive, f"`{result['verdict']}`", names_of(result["causes"]), names_of(result["partial"]),
-              result["base"] or "-", inverse(row, f"diagnosis_{drive}"), f"{seconds:.1f}",
+              result["base"] or "-", inverse(row, f"diagnosis_{drive}"),
+              number(seconds, 1),
               *(["-" if result["p_value"] is None else f"{result['p_value']:.2f}"] if nulls else [])]
              for row, drive, result, seconds in diagnoses(rows)]
     return table(head, lines)

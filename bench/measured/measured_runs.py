@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import subprocess
 import sys
 import time
@@ -123,7 +124,7 @@ class Runs:
         return text.replace(f"{self.folder}/", "")
 
     def outcome(self, step):
-        """(outcome, whether it was there before) of one of steps(): {"wall_s": ..., "result": ... or "error": ...}."""
+        """(outcome, whether it was there before) of one of steps(): {"wall_s", "processor_s", "result" or "error"}."""
         name, function, depends = step
         kept = self.folder / name / "outcome.json"
         of = checksum(self.file, self.entry.begin, *depends)
@@ -132,15 +133,21 @@ class Runs:
             return known, True
         kept.parent.mkdir(parents=True, exist_ok=True)
         (kept.parent / "model.yaml").unlink(missing_ok=True)  # of an earlier run
-        began = time.monotonic()
+        began, processor = time.monotonic(), processor_s()
         outcome = {"of": of}
         try:
             outcome["result"] = function(kept.parent)
         except (Failed, ValueError, KeyError) as error:
             outcome["error"] = self.in_the_users_words(error)
-        outcome["wall_s"] = time.monotonic() - began
+        outcome.update(wall_s=time.monotonic() - began, processor_s=processor_s() - processor)
         write_whole(kept, json.dumps(outcome, indent=1) + "\n")
         return outcome, False
+
+
+def processor_s():
+    """Of all programs that have been run and have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def read_json(path):
