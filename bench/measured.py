@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "bench/measured"))
 import measured_page  # noqa: E402
 from log_reading import Spoiled, read_log  # noqa: E402
 from log_table import Unusable, read_table  # noqa: E402
-from measured_runs import Runs, checksum, write_whole  # noqa: E402
+from measured_runs import Runs, checksum, output_of, write_whole  # noqa: E402
 
 
 def parsed(words):
@@ -120,6 +120,7 @@ def main(words=None):
     entries = chosen(table, options.only)
     options.out = options.out.resolve()
     options.program_checksum = checksum(options.softgrip)
+    options.program_version = output_of([options.softgrip, "--version"], 60).strip()
     rows = []
     try:
         for number, entry in enumerate(entries, 1):
@@ -128,7 +129,7 @@ def main(words=None):
     except KeyboardInterrupt:
         print("stopped; run the same command again to go on", file=sys.stderr)
     page = options.page or options.out / "page.md"
-    measured_page.write(page, table, rows, len(table.logs), options.table.name)
+    measured_page.write(page, table, rows, f"`{options.table.name}` with {options.program_version}")
     print(f"page: {page}")
     failed = any("error" in row or any("error" in o for o in row["outcomes"].values()) for row in rows)
     return 1 if failed or len(rows) < len(entries) else 0

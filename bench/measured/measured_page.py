@@ -220,13 +220,15 @@ def failures(rows):
     return ["## What could not be run", "", *table(["log", "what", "why"], lines), ""] if lines else []
 
 
-def write(path, described, rows, planned, table_name):
+def write(path, described, rows, origin):
+    """`origin`: by which table and which version of softgrip."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     good = [row for row in rows if "error" not in row]
+    planned = len(described.logs)
     of_planned = f" {len(rows)} of the table's {planned} logs." if len(rows) < planned else ""
     lines = [f"# {described.title}", "",
-             f"Written by `bench/measured.py` from `{table_name}`.{of_planned} {described.about}", "", MEANING, ""]
+             f"Written by `bench/measured.py` from {origin}.{of_planned} {described.about}", "", MEANING, ""]
     if good:
         shown = [(row["name"], {step: continuation(row, step) for step, _, _ in STRUCTURES}) for row in good]
         lines += ["## Foretold from the first part (continuation)", "",
