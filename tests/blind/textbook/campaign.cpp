@@ -1,0 +1,176 @@
+// The commands of a campaign and what surrounds them; how strong an effect is there.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "world.h"
+
+namespace textbook {
+namespace {
+
+constexpr double pi = 3.14159265358979;
+constexpr double rate_hz = 100;
+
+using Points = std::vector<std::pair<double, double>>;  // time, pressure
+
+std::vector<double> joined(const Points& points) {
+  std::vector<double> out;
+  std::size_t i = 0;
+  const auto count = static_cast<std::size_t>(points.back().first * rate_hz);
+  for (std::size_t k = 0; k <= count; ++k) {
+    const double t = static_cast<double>(k) / rate_hz;
+    while (i + 2 < points.size() && t > points[i + 1].first) ++i;
+    const auto& [t0, p0] = points[i];
+    const auto& [t1, p1] = points[i + 1];
+    out.push_back(p0 + (p1 - p0) * std::clamp((t - t0) / (t1 - t0), 0.0, 1.0));
+  }
+  return out;
+}
+
+// Triangles of many amplitudes and rates, with minor loops on the larger ones.
+std::vector<double> triangles(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> peak(20, 60), half(1.2, 5);
+  Points points{{0, 0}, {1, 0}};
+  const auto to = [&points](double after, double p) { points.emplace_back(points.back().first + after, p); };
+  for (int i = 0; i < 8; ++i) {
+    const double top = i == 2 ? 60 : peak(random), s = half(random);
+    to(s, top);
+    if (i % 3 == 2) {
+      to(s / 2, top * 0.5);
+      to(s / 2, top * 0.85);
+    }
+    to(s, i % 4 == 1 ? 8 : 0);
+  }
+  to(points.back().second > 0 ? 1 : 0.5, 0);
+  to(3, 0);
+  return joined(points);
+}
+
+std::vector<double> stairs(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> hold(3, 8);
+  Points points{{0, 0}, {1, 0}};
+  for (const double p : {15.0, 32.0, 60.0, 40.0, 18.0, 50.0, 0.0}) {
+    points.emplace_back(points.back().first + 0.05, p);
+    points.emplace_back(points.back().first + hold(random), p);
+  }
+  return joined(points);
+}
+
+// Sines on sines: rates from 0.05 to 0.6 Hz, never below zero.
+std::vector<double> sines(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> slow(0.05, 0.12), fast(0.25, 0.6);
+  const double f = slow(random), g = fast(random);
+  std::vector<double> out;
+  for (std::size_t k = 0; k < 5000; ++k) {
+    const double t = static_cast<double>(k) / rate_hz,
+                 edge = std::clamp(std::min(t - 0.5, 48 - t) / 4, 0.0, 1.0);
+    out.push_back(edge * (22 * (1 - std::cos(2 * pi * f * t)) + 7.5 * (1 - std::cos(2 * pi * g * t))));
+  }
+  return out;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+void take_away(std::vector<double>& v, const std::vector<std::vector<double>>& unit) {
+  for (const auto& u : unit) {
+    const double share = dot(v, u);
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= share * u[k];
+  }
+}
+
+std::vector<double> all_of(const World& world, const Effects& effects, const std::vector<Log>& logs,
+                           std::uint64_t seed) {
+  std::vector<double> all;
+  for (const Answer& a : simulate(world, effects, logs, seed))
+    all.insert(all.end(), a.displacement_mm.begin(), a.displacement_mm.end());
+  return all;
+}
+
+}  // namespace
+
+std::vector<Log> draw_campaign(std::uint64_t seed, bool poor) {
+  std::mt19937_64 random(seed * 1299709 + 41);
+  std::vector<std::vector<double>> commands{triangles(random)};
+  if (!poor) {
+    commands.push_back(stairs(random));
+    commands.push_back(sines(random));
+  }
+  std::vector<Log> logs;
+  double start_s = 0;
+  const double phase = std::uniform_real_distribution<double>(0, 2 * pi)(random);
+  for (auto& command : commands) {
+    Log log;
+    log.rate_hz = rate_hz;
+    for (std::size_t k = 0; k < command.size(); ++k) {
+      const double t = start_s + static_cast<double>(k) / rate_hz;
+      log.temperature_c.push_back(22 + 3 * std::sin(2 * pi * t / 140 + phase));
+      log.supply_kpa.push_back(200 - 25 * std::abs(std::sin(pi * t / 23 + phase)));  // a compressor's cycle
+    }
+    start_s += static_cast<double>(command.size()) / rate_hz;
+    log.command_kpa = std::move(command);
+    logs.push_back(std::move(log));
+  }
+  return logs;
+}
+
+Excess::Excess(const World& world, const std::vector<Log>& logs, std::uint64_t seed)
+    : world_(world), logs_(logs), seed_(seed), plain_(all_of(world, {}, logs, seed)) {
+  std::vector<std::vector<double>> raw{std::vector<double>(plain_.size(), 1.0), plain_};
+  const std::vector<double FingerNumbers::*> own{&FingerNumbers::width, &FingerNumbers::curvature,
+                                                 &FingerNumbers::creep, &FingerNumbers::creep_tilt};
+  for (const auto member : own) {
+    World moved = world;
+    moved.finger.*member += 0.01;
+    raw.push_back(all_of(moved, {}, logs, seed));
+    for (std::size_t k = 0; k < plain_.size(); ++k) raw.back()[k] -= plain_[k];
+  }
+  for (auto& v : raw) {
+    const double before = std::sqrt(dot(v, v));
+    take_away(v, directions_);
+    take_away(v, directions_);
+    const double length = std::sqrt(dot(v, v));
+    if (length <= 1e-6 * before) continue;
+    for (double& value : v) value /= length;
+    directions_.push_back(std::move(v));
+  }
+}
+
+double Excess::of(const Effects& effects) const {
+  std::vector<double> added = all_of(world_, effects, logs_, seed_);
+  for (std::size_t k = 0; k < added.size(); ++k) added[k] -= plain_[k];
+  take_away(added, directions_);
+  return std::sqrt(dot(added, added) / static_cast<double>(added.size()));
+}
+
+Scaled Excess::scaled(const std::string& id, double target_mm) const {
+  double campaign_s = 0;
+  for (const Log& log : logs_) campaign_s += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
+  const auto numbers = [&](double s) { return draw_effect(id, s, world_, seed_, campaign_s); };
+  // Upwards to the first that is enough: at the largest, a smaller gain can take most of the effect away.
+  constexpr double stride = 0.576;  // four to a decade
+  double high = -12 * stride;
+  Scaled best{numbers(std::exp(high)), 0, false};
+  Scaled largest = best;
+  for (; high <= 1e-9 && !best.reachable; high += stride) {
+    best.numbers = numbers(std::min(1.0, std::exp(high)));
+    best.excess_mm = of({{id, best.numbers}});
+    best.reachable = best.excess_mm >= target_mm;
+    if (best.excess_mm > largest.excess_mm) largest = best;
+  }
+  if (!best.reachable) return largest;
+  high -= stride;
+  double low = high - stride;
+  for (int i = 0; i < 24 && std::abs(best.excess_mm / target_mm - 1) > 0.03; ++i) {
+    const double middle = (low + high) / 2;
+    best.numbers = numbers(std::exp(middle));
+    best.excess_mm = of({{id, best.numbers}});
+    (best.excess_mm < target_mm ? low : high) = middle;
+  }
+  return best;
+}
+
+}  // namespace textbook

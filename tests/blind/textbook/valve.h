@@ -1,0 +1,47 @@
+#pragma once
+// An electro-pneumatic regulator by the textbooks: ISO 6358 ports on a spool, a tube, the finger's volume.
+// Pressures are absolute, in kPa; volumes in dm3; conductances in dm3/(s kPa) at the reference state.
+
+namespace textbook {
+
+inline constexpr double atmosphere_kpa = 101.325;
+inline constexpr double reference_kpa = 100;  // ISO 8778
+
+/// ISO 6358-1: flow [dm3/s at the reference state] from `from_kpa` to `to_kpa`, negative the other way.
+/// Choked at and below the critical ratio `b`; linear above a ratio of 0.995, where the standard's slope is
+/// infinite.
+double flow_dm3_s(double conductance, double b, double from_kpa, double to_kpa) noexcept;
+
+struct ValveNumbers {
+  double port_conductance = 0.006;
+  double tube_conductance = 0.012;
+  double leak_conductance = 0;
+  double critical_ratio = 0.3;
+  double valve_volume_dm3 = 0.02, finger_volume_dm3 = 0.08;
+  double proportional_per_kpa = 0.08, integral_per_kpa_s = 0.25;
+  double spool_lag_s = 0.012;
+  double overlap = 0.04;               // of the spool's travel, to either side
+  double pilot_hysteresis_kpa = 0.15;  // half the width
+};
+
+/// Isothermal chambers: V dp/dt = reference pressure x flow.
+class Valve {
+ public:
+  explicit Valve(const ValveNumbers& numbers) noexcept : numbers_(numbers) {}
+  /// One step of `step_s` (at most 0.25 ms with the default numbers).
+  void step(double command_kpa, double supply_kpa, double step_s) noexcept;
+  double gauge_kpa() const noexcept { return finger_kpa_ - atmosphere_kpa; }
+  double air_kpa_dm3() const noexcept {
+    return valve_kpa_ * numbers_.valve_volume_dm3 + finger_kpa_ * numbers_.finger_volume_dm3;
+  }
+  /// Pressures for tests; the spool is then held shut when `shut`.
+  void set(double valve_kpa, double finger_kpa, bool shut) noexcept;
+
+ private:
+  ValveNumbers numbers_;
+  double valve_kpa_ = atmosphere_kpa, finger_kpa_ = atmosphere_kpa;
+  double pilot_kpa_ = 0, integral_ = 0, spool_ = 0;
+  bool shut_ = false;
+};
+
+}  // namespace textbook
