@@ -1,4 +1,4 @@
-// The commands of a campaign and what surrounds them; how strong an effect is there.
+// The commands of a campaign and what surrounds them.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -69,27 +69,6 @@ std::vector<double> sines(std::mt19937_64& random) {
   return out;
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
-
-void take_away(std::vector<double>& v, const std::vector<std::vector<double>>& unit) {
-  for (const auto& u : unit) {
-    const double share = dot(v, u);
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= share * u[k];
-  }
-}
-
-std::vector<double> all_of(const World& world, const Effects& effects, const std::vector<Log>& logs,
-                           std::uint64_t seed) {
-  std::vector<double> all;
-  for (const Answer& a : simulate(world, effects, logs, seed))
-    all.insert(all.end(), a.displacement_mm.begin(), a.displacement_mm.end());
-  return all;
-}
-
 }  // namespace
 
 std::vector<Log> draw_campaign(std::uint64_t seed, bool poor) {
@@ -117,60 +96,10 @@ std::vector<Log> draw_campaign(std::uint64_t seed, bool poor) {
   return logs;
 }
 
-Excess::Excess(const World& world, const std::vector<Log>& logs, std::uint64_t seed)
-    : world_(world), logs_(logs), seed_(seed), plain_(all_of(world, {}, logs, seed)) {
-  std::vector<std::vector<double>> raw{std::vector<double>(plain_.size(), 1.0), plain_};
-  const std::vector<double FingerNumbers::*> own{&FingerNumbers::width, &FingerNumbers::curvature,
-                                                 &FingerNumbers::creep, &FingerNumbers::creep_tilt};
-  for (const auto member : own) {
-    World moved = world;
-    moved.finger.*member += 0.01;
-    raw.push_back(all_of(moved, {}, logs, seed));
-    for (std::size_t k = 0; k < plain_.size(); ++k) raw.back()[k] -= plain_[k];
-  }
-  for (auto& v : raw) {
-    const double before = std::sqrt(dot(v, v));
-    take_away(v, directions_);
-    take_away(v, directions_);
-    const double length = std::sqrt(dot(v, v));
-    if (length <= 1e-6 * before) continue;
-    for (double& value : v) value /= length;
-    directions_.push_back(std::move(v));
-  }
-}
-
-double Excess::of(const Effects& effects) const {
-  std::vector<double> added = all_of(world_, effects, logs_, seed_);
-  for (std::size_t k = 0; k < added.size(); ++k) added[k] -= plain_[k];
-  take_away(added, directions_);
-  return std::sqrt(dot(added, added) / static_cast<double>(added.size()));
-}
-
-Scaled Excess::scaled(const std::string& id, double target_mm) const {
-  double campaign_s = 0;
-  for (const Log& log : logs_) campaign_s += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
-  const auto numbers = [&](double s) { return draw_effect(id, s, world_, seed_, campaign_s); };
-  // Upwards to the first that is enough: at the largest, a smaller gain can take most of the effect away.
-  constexpr double stride = 0.576;  // four to a decade
-  double high = -12 * stride;
-  Scaled best{numbers(std::exp(high)), 0, false};
-  Scaled largest = best;
-  for (; high <= 1e-9 && !best.reachable; high += stride) {
-    best.numbers = numbers(std::min(1.0, std::exp(high)));
-    best.excess_mm = of({{id, best.numbers}});
-    best.reachable = best.excess_mm >= target_mm;
-    if (best.excess_mm > largest.excess_mm) largest = best;
-  }
-  if (!best.reachable) return largest;
-  high -= stride;
-  double low = high - stride;
-  for (int i = 0; i < 24 && std::abs(best.excess_mm / target_mm - 1) > 0.03; ++i) {
-    const double middle = (low + high) / 2;
-    best.numbers = numbers(std::exp(middle));
-    best.excess_mm = of({{id, best.numbers}});
-    (best.excess_mm < target_mm ? low : high) = middle;
-  }
-  return best;
+double duration_s(const std::vector<Log>& logs) {
+  double sum = 0;
+  for (const Log& log : logs) sum += static_cast<double>(log.command_kpa.size()) / log.rate_hz;
+  return sum;
 }
 
 }  // namespace textbook

@@ -9,7 +9,7 @@ namespace textbook {
 namespace {
 
 constexpr std::array<double, 3> prony_tau_s{0.3, 6, 120};
-constexpr std::size_t plays = 10, slips = 8, columns = 240;
+constexpr std::size_t plays = 10, slips = 8;
 
 // Mooney-Rivlin, uniaxial, incompressible, nominal stress over its initial slope of 3 (C1 + C2) ... C2 =
 // C1/4.
@@ -25,6 +25,14 @@ const std::vector<std::string>& makes() {
   return all;
 }
 
+std::vector<OwnNumber> own_numbers(const std::string& make) {
+  const bool fractional = make == "fractional";
+  return {{&FingerNumbers::width, 0.05, 0.15},
+          {&FingerNumbers::curvature, -0.12, 0.12},
+          {&FingerNumbers::creep, 0.08, 0.2},
+          {&FingerNumbers::creep_tilt, fractional ? 0.1 : -0.1, fractional ? 0.25 : 0.1}};
+}
+
 FingerNumbers draw_finger(const std::string& make, std::uint64_t seed) {
   std::mt19937_64 random(seed * 7919 + 17);
   const auto between = [&random](double low, double high) {
@@ -33,10 +41,7 @@ FingerNumbers draw_finger(const std::string& make, std::uint64_t seed) {
   FingerNumbers n;
   n.make = make;
   n.span_mm = between(10, 25);
-  n.width = between(0.05, 0.15);
-  n.curvature = between(-0.12, 0.12);
-  n.creep = between(0.08, 0.2);
-  n.creep_tilt = make == "fractional" ? between(0.1, 0.25) : between(-0.1, 0.1);
+  for (const OwnNumber& own : own_numbers(make)) n.*own.member = between(own.low, own.high);
   n.envelope = between(0.05, 0.2);
   return n;
 }
@@ -50,14 +55,18 @@ Finger::Finger(const FingerNumbers& numbers) : numbers_(numbers) {
     weight_[i] = std::pow(tau_s_[i], numbers.creep_tilt);
     sum += weight_[i];
   }
-  for (double& w : weight_) w *= numbers.creep / sum;
-  memory_.assign(numbers.make == "preisach" ? columns : numbers.make == "maxwell_slip" ? slips : plays, 0);
-  if (numbers.make == "preisach")
-    for (std::size_t i = 0; i < columns; ++i) memory_[i] = static_cast<double>(i) * 1.1 / columns;
+  for (std::size_t i = 0; i < branches; ++i)
+    weight_[i] *= tau_s_[i] > numbers.longest_creep_s ? 0 : numbers.creep / sum;
+  if (numbers.make != "preisach") memory_.assign(numbers.make == "maxwell_slip" ? slips : plays, 0);
   for (std::size_t i = 0; i < slices; ++i) {
     stretch_[i] = 1;
     thickness_[i] = 1 + 0.15 * std::sin(2.1 * static_cast<double>(i) + 10 * numbers.envelope);
   }
+  constexpr double long_s = 1e6;
+  constexpr int stairs = 50;
+  Finger held = *this;
+  for (int i = 1; i <= 2 * stairs; ++i)
+    full_ = held.raw(working_kpa * std::min(1.0, i * 1.0 / stairs), long_s);
 }
 
 // Generalised play (Krasnosel'skii and Pokrovskii): both envelopes are the same bent function, shifted.
@@ -95,14 +104,31 @@ double Finger::maxwell_slip(double q) noexcept {
   return balance_;
 }
 
-// Relays that switch on at a and off at b <= a. Columns of one b hold the highest a that is on.
+// Relays that switch on at a and off at b <= a, weight 2 (1 + envelope b), over 0 <= b <= a. Those that are
+// on lie below a staircase whose corners are the input's remembered turning points: highest, lowest, next
+// highest, ...
 double Finger::preisach(double q) noexcept {
-  double sum = 0;
-  for (std::size_t i = 0; i < columns; ++i) {
-    const double off = static_cast<double>(i) * 1.1 / columns;
-    memory_[i] = q <= off ? off : std::max(memory_[i], q);
-    sum += (memory_[i] - off) * (1 + numbers_.envelope * off) * 2 * 1.1 / columns;
+  const auto triangle = [this](double high, double low) {
+    const double d = high - low;
+    return d * d * (1 + numbers_.envelope * high - numbers_.envelope * d * 2 / 3);
+  };
+  q = std::max(0.0, q);
+  const bool rising = q > input_;
+  // memory_ ends with a peak while the input falls and with a trough (or with nothing) while it rises.
+  if (rising == (memory_.size() % 2 == 1)) memory_.push_back(input_);
+  input_ = q;
+  while (memory_.size() >= 2) {
+    const double before = memory_[memory_.size() - 2];  // the turning point that wipes out the last two
+    if (rising ? q < before : q > before) break;
+    memory_.resize(memory_.size() - 2);
   }
+  double sum = 0, low = 0;
+  for (std::size_t i = 0; i < memory_.size(); i += 2) {
+    const double after = i + 1 < memory_.size() ? memory_[i + 1] : q;
+    sum += triangle(memory_[i], low) - triangle(memory_[i], after);
+    low = after;
+  }
+  if (memory_.size() % 2 == 0) sum += triangle(q, low);
   return (1 - 2 * numbers_.width) * q + 2 * numbers_.width * sum;
 }
 
@@ -112,9 +138,12 @@ double Finger::tube(double q, double step_s) noexcept {
   double bend = 0;
   for (std::size_t i = 0; i < slices; ++i) {
     double held = 0;
-    const double part = numbers_.creep / 2;
-    for (const double h : relaxed_[i]) held += part * h;
-    const double total = 1 + 3 * part;
+    double total = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double part = prony_tau_s[k] > numbers_.longest_creep_s ? 0 : numbers_.creep / 2;
+      held += part * relaxed_[i][k];
+      total += part;
+    }
     for (int iteration = 0; iteration < 20; ++iteration) {
       const auto balance = [&](double stretch) {
         return thickness_[i] * (total * rubber_stress(stretch) - held) -
@@ -140,18 +169,17 @@ double Finger::creep(double q, double step_s) noexcept {
   return sum;
 }
 
-double Finger::step(double pressure_kpa, double step_s) {
+double Finger::raw(double pressure_kpa, double step_s) {
   const double q = pressure_kpa / working_kpa;
-  double z = 0;
-  if (numbers_.make == "maxwell_slip")
-    z = maxwell_slip(q);
-  else if (numbers_.make == "preisach")
-    z = preisach(q);
-  else if (numbers_.make == "hyperelastic_tube")
-    z = 0.9 * tube(q, step_s) + 0.1 * play(q);
-  else
-    z = play(q);
-  if (numbers_.make != "hyperelastic_tube") z += creep(q, step_s);
+  if (numbers_.make == "hyperelastic_tube") return 0.9 * tube(q, step_s) + 0.1 * play(q);
+  const double elastic = numbers_.make == "maxwell_slip" ? maxwell_slip(q)
+                         : numbers_.make == "preisach"   ? preisach(q)
+                                                         : play(q);
+  return elastic + creep(q, step_s);
+}
+
+double Finger::step(double pressure_kpa, double step_s) {
+  const double z = raw(pressure_kpa, step_s) / full_;
   return numbers_.span_mm * z * (1 + numbers_.curvature * (z - 1));
 }
 

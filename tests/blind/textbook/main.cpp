@@ -1,10 +1,11 @@
 // textbook-world: writes the logs of one world of textbook physics, and its truth elsewhere.
 //
 //   textbook-world --seed N --out DIR --truth FILE [--make NAME] [--cause ID[,ID...]] [--strength X] [--poor]
-//                  [--pressure] [--no-temperature] [--no-supply]
-//   textbook-world --list | --probe flow|rest|loops|creep
+//                  [--campaign N] [--pressure] [--no-temperature] [--no-supply]
+//   textbook-world --list | --makes | --probe flow|rest|hold|loops|span|creep
 //
-// Without --make the seed chooses. A strength is the excess error over the noise of 0.04 mm, per cause.
+// Without --make the seed chooses. A strength is the excess error (strength.h) over the noise of 0.04 mm, per
+// cause. With --campaign the same finger and valve are driven by other waveforms, with other noise.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +17,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "own_physics.h"
+#include "probes.h"
+#include "strength.h"
 #include "world.h"
 
 namespace {
@@ -24,10 +28,10 @@ constexpr double noise_mm = 0.04, step_mm = 0.01, pressure_noise_kpa = 0.05, sup
                  temperature_noise_c = 0.05;
 
 struct Arguments {
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1, campaign = 0;
   std::string out, truth, make, cause, probe;
   double strength = 8;
-  bool poor = false, pressure = false, temperature = true, supply = true, list = false;
+  bool poor = false, pressure = false, temperature = true, supply = true, list = false, makes = false;
 };
 
 Arguments arguments(int argc, char** argv) {
@@ -45,6 +49,8 @@ Arguments arguments(int argc, char** argv) {
       a.supply = false;
     else if (key == "--list")
       a.list = true;
+    else if (key == "--makes")
+      a.makes = true;
     else
       flag = false;
     if (flag) continue;
@@ -52,6 +58,8 @@ Arguments arguments(int argc, char** argv) {
     const std::string value = argv[++i];
     if (key == "--seed")
       a.seed = std::stoull(value);
+    else if (key == "--campaign")
+      a.campaign = std::stoull(value);
     else if (key == "--out")
       a.out = value;
     else if (key == "--truth")
@@ -68,67 +76,6 @@ Arguments arguments(int argc, char** argv) {
       throw std::invalid_argument("unknown option " + key);
   }
   return a;
-}
-
-void probe_flow() {
-  std::puts("ratio,flow");
-  for (int i = 0; i <= 100; ++i)
-    std::printf("%.2f,%.12g\n", i / 100.0, textbook::flow_dm3_s(0.01, 0.3, 300, 3.0 * i));
-}
-
-void probe_rest() {
-  std::puts("time_s,air_kpa_dm3");
-  textbook::Valve valve({});
-  valve.set(180, 120, true);
-  for (int i = 0; i <= 4000; ++i) {
-    if (i % 400 == 0) std::printf("%.4f,%.12g\n", i * 0.00025, valve.air_kpa_dm3());
-    valve.step(40, 200, 0.00025);
-  }
-}
-
-// Up to 55, a minor loop 20 -> 40 -> 20 on the way down, then on: the loop must leave no trace.
-void probe_loops() {
-  std::puts("make,place,displacement_mm");
-  for (const char* make : {"play", "maxwell_slip", "preisach"}) {
-    for (const bool minor : {false, true}) {
-      textbook::FingerNumbers numbers = textbook::draw_finger(make, 1);
-      numbers.creep = 0;
-      textbook::Finger finger(numbers);
-      double p = 0, y = 0;
-      const auto walk = [&](double to) {
-        const double from = p;
-        for (int i = 1; i <= 400; ++i) y = finger.step(p = from + (to - from) * i / 400, 0.002);
-      };
-      walk(55);
-      walk(20);
-      if (minor) {
-        std::printf("%s,turn,%.12g\n", make, y);
-        walk(40);
-        std::printf("%s,inside,%.12g\n", make, y);
-        walk(20);
-        std::printf("%s,back,%.12g\n", make, y);
-      }
-      walk(5);
-      std::printf("%s,%s,%.12g\n", make, minor ? "end" : "end_reference", y);
-      walk(0);
-      walk(40);
-      std::printf("%s,%s,%.12g\n", make, minor ? "rising" : "rising_reference", y);
-    }
-  }
-}
-
-void probe_creep() {
-  std::puts("make,time_s,displacement_mm");
-  for (const std::string& make : textbook::makes()) {
-    textbook::Finger finger(textbook::draw_finger(make, 1));
-    double next = 0.02;
-    for (int i = 1; i <= 500000; ++i) {
-      const double y = finger.step(40, 0.002);
-      if (i * 0.002 < next) continue;
-      std::printf("%s,%.3f,%.12g\n", make.c_str(), i * 0.002, y);
-      next *= 2;
-    }
-  }
 }
 
 void write_log(const std::string& path, const textbook::Log& log, const textbook::Answer& answer,
@@ -159,18 +106,18 @@ void write_log(const std::string& path, const textbook::Log& log, const textbook
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
-void write_truth(const Arguments& a, const textbook::World& world,
+void write_truth(const Arguments& a, const textbook::World& world, const std::map<std::string, double>& own,
                  const std::map<std::string, textbook::Scaled>& hidden) {
   std::ofstream file(a.truth);
   file << "{\"seed\": " << a.seed << ", \"strength\": " << a.strength << ", \"noise_mm\": " << noise_mm
        << ", \"make\": \"" << world.finger.make << "\", \"span_mm\": " << world.finger.span_mm
-       << ", \"own_physics\": [";
+       << ", \"own_physics_mm\": {";
   const char* comma = "";
-  for (const std::string& id : textbook::own_physics(world)) {
-    file << comma << "\"" << id << "\"";
+  for (const auto& [id, size_mm] : own) {
+    file << comma << "\"" << id << "\": " << size_mm;
     comma = ", ";
   }
-  file << "], \"effects\": {";
+  file << "}, \"effects\": {";
   comma = "";
   for (const auto& [id, scaled] : hidden) {
     file << comma << "\"" << id << "\": {\"excess_mm\": " << scaled.excess_mm
@@ -188,43 +135,40 @@ void write_truth(const Arguments& a, const textbook::World& world,
 }
 
 int run(const Arguments& a) {
+  if (a.makes) {
+    for (const auto& make : textbook::makes()) std::cout << make << "\n";
+    return 0;
+  }
   if (a.list) {
     for (const auto& id : textbook::library_ids()) std::cout << id << "\n";
     return 0;
   }
   if (!a.probe.empty()) {
-    if (a.probe == "flow")
-      probe_flow();
-    else if (a.probe == "rest")
-      probe_rest();
-    else if (a.probe == "loops")
-      probe_loops();
-    else if (a.probe == "creep")
-      probe_creep();
-    else
-      throw std::invalid_argument("unknown probe " + a.probe);
+    textbook::probe(a.probe);
     return 0;
   }
   if (a.out.empty() || a.truth.empty()) throw std::invalid_argument("--out and --truth are needed");
   const auto& makes = textbook::makes();
   const textbook::World world =
       textbook::draw_world(a.make.empty() ? makes[a.seed % makes.size()] : a.make, a.seed);
+  const std::uint64_t drive_seed = a.seed + 1000003 * a.campaign;
+  const auto whole = textbook::draw_campaign(drive_seed, false);
   std::map<std::string, textbook::Scaled> hidden;
   textbook::Effects effects;
   if (!a.cause.empty()) {
-    const textbook::Excess excess(world, textbook::draw_campaign(a.seed, false), a.seed);
+    const textbook::Excess excess(world, whole, a.seed);
     std::stringstream ids(a.cause);
     for (std::string id; std::getline(ids, id, ',');) {
       hidden[id] = excess.scaled(id, a.strength * noise_mm);
       effects[id] = hidden[id].numbers;
     }
   }
-  const auto logs = textbook::draw_campaign(a.seed, a.poor);
+  const auto logs = textbook::draw_campaign(drive_seed, a.poor);
   const auto answers = textbook::simulate(world, effects, logs, a.seed);
   std::filesystem::create_directories(a.out);
   for (std::size_t i = 0; i < logs.size(); ++i)
-    write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], answers[i], a, a.seed * 37 + i);
-  write_truth(a, world, hidden);
+    write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], answers[i], a, drive_seed * 37 + i);
+  write_truth(a, world, textbook::own_physics(world, whole, a.seed, noise_mm / 2), hidden);
   return 0;
 }
 

@@ -2,6 +2,7 @@
 """The physics of textbook-world, judged by its output alone: test_textbook_world.py PROGRAM [unittest option ...]"""
 import collections
 import csv
+import functools
 import io
 import json
 import math
@@ -13,20 +14,36 @@ import unittest
 
 PROGRAM = sys.argv.pop(1)
 SEED = 11
+STRENGTH_SEEDS = [6]
+
+
+def output(*options):
+    return subprocess.run([PROGRAM, *options], check=True, capture_output=True, text=True).stdout
 
 
 def probe(name):
-    text = subprocess.run([PROGRAM, "--probe", name], check=True, capture_output=True, text=True).stdout
-    return list(csv.DictReader(io.StringIO(text)))
+    return list(csv.DictReader(io.StringIO(output("--probe", name))))
 
 
-def world(*options):
+def world(*options, seed=SEED):
     """The bytes of the logs, in order, and the truth."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        subprocess.run([PROGRAM, "--seed", str(SEED), "--out", work / "logs", "--truth", work / "truth.json", *options],
-                       check=True)
+        output("--seed", str(seed), "--out", work / "logs", "--truth", work / "truth.json", *options)
         return [p.read_bytes() for p in sorted((work / "logs").iterdir())], json.loads((work / "truth.json").read_text())
+
+
+def displacements(logs):
+    return [float(line.split(b",")[2]) for log in logs for line in log.splitlines()[1:]]
+
+
+def beyond_zero_and_gain(change, plain):
+    """RMS of what a straight line in `plain` leaves of `change`."""
+    count = len(change)
+    change_mean, plain_mean = sum(change) / count, sum(plain) / count
+    change, plain = [c - change_mean for c in change], [p - plain_mean for p in plain]
+    gain = sum(c * p for c, p in zip(change, plain)) / sum(p * p for p in plain)
+    return math.sqrt(sum((c - gain * p) ** 2 for c, p in zip(change, plain)) / count)
 
 
 class Valve(unittest.TestCase):
@@ -45,6 +62,14 @@ class Valve(unittest.TestCase):
         for value in air:
             self.assertAlmostEqual(value, 180 * 0.02 + 120 * 0.08, places=9)
 
+    def test_the_regulator_comes_to_rest_within_its_hysteresis(self):
+        rows = probe("hold")
+        self.assertEqual(len(rows), 50)
+        for row in rows:
+            with self.subTest(**row):
+                self.assertLess(float(row["wander_kpa"]), 0.01)
+                self.assertLess(abs(float(row["pressure_kpa"]) - float(row["command_kpa"])), 0.31)
+
 
 class Finger(unittest.TestCase):
     def test_minor_loops_close_and_are_wiped_out(self):
@@ -56,6 +81,13 @@ class Finger(unittest.TestCase):
                 for place in ("end", "rising"):
                     self.assertAlmostEqual(at[make, place], at[make, place + "_reference"], places=9)
 
+    def test_the_span_is_reached_at_working_pressure(self):
+        rows = probe("span")
+        self.assertEqual(len(rows), 20)
+        for row in rows:
+            with self.subTest(**row):
+                self.assertAlmostEqual(float(row["displacement_mm"]) / float(row["span_mm"]), 1, places=6)
+
     def test_creep_is_monotone_over_five_decades(self):
         curves = collections.defaultdict(list)
         for row in probe("creep"):
@@ -65,25 +97,80 @@ class Finger(unittest.TestCase):
             with self.subTest(make=make):
                 self.assertTrue(all(a < b for a, b in zip(values, values[1:])), values)
 
+    def test_fractional_creep_follows_a_power_of_time(self):
+        curve = {float(row["time_s"]): float(row["displacement_mm"]) for row in probe("creep")
+                 if row["make"] == "fractional" and 0.1 < float(row["time_s"]) < 400}
+        values = list(curve.values())
+        steps = [b - a for a, b in zip(values, values[1:])]
+        # From one doubling of time to the next the step grows by 2^exponent; the exponent is drawn from 0.1 .. 0.25.
+        exponents = [math.log2(b / a) for a, b in zip(steps, steps[1:])]
+        self.assertGreater(len(exponents), 8)
+        for exponent in exponents:
+            self.assertAlmostEqual(exponent, sum(exponents) / len(exponents), delta=0.1)
+            self.assertTrue(0.05 < exponent < 0.3, exponents)
+
 
 class Campaign(unittest.TestCase):
     def test_the_same_seed_writes_the_same_bytes(self):
         self.assertEqual(world("--pressure", "--cause", "backlash"), world("--pressure", "--cause", "backlash"))
+
+    def test_another_campaign_is_of_the_same_finger(self):
+        (logs, truth), (others, other) = world(), world("--campaign", "1")
+        self.assertNotEqual(logs, others)
+        self.assertEqual((truth["make"], truth["span_mm"]), (other["make"], other["span_mm"]))
 
     def test_columns_can_be_left_out(self):
         logs, _ = world("--no-temperature", "--no-supply")
         self.assertEqual(logs[0].splitlines()[0], b"time_s,pressure_command_kpa,displacement_mm")
 
     def test_every_make_has_every_value(self):
-        for make in ("play", "maxwell_slip", "preisach", "hyperelastic_tube", "fractional"):
+        for make in output("--makes").split():
             logs, truth = world("--make", make, "--pressure")
             self.assertEqual(truth["make"], make)
-            self.assertIn("slow_creep", truth["own_physics"])
             for log in logs:
                 for row in log.splitlines()[1:]:
                     self.assertTrue(all(math.isfinite(float(cell)) for cell in row.split(b",")), (make, row))
 
+    def test_own_physics_is_what_can_be_seen(self):
+        for make in output("--makes").split():
+            _, truth = world("--make", make)
+            with self.subTest(make=make):
+                self.assertLessEqual({"hysteresis_shape", "valve_lag"}, set(truth["own_physics_mm"]))
+                for size_mm in truth["own_physics_mm"].values():
+                    self.assertGreater(size_mm, truth["noise_mm"] / 2)
+
+
+class Strength(unittest.TestCase):
+    @staticmethod
+    @functools.cache
+    def effects(strength, seed):
+        causes = ",".join(output("--list").split())
+        return world("--cause", causes, "--strength", str(strength), seed=seed)[1]["effects"]
+
+    def test_every_cause_is_as_strong_as_asked(self):
+        for seed in STRENGTH_SEEDS:
+            for strength in (2, 8):
+                effects = self.effects(strength, seed)
+                self.assertEqual(len(effects), 23)
+                for cause, effect in effects.items():
+                    with self.subTest(cause=cause, strength=strength, seed=seed):
+                        self.assertTrue(effect["reachable"], effect)
+                        self.assertAlmostEqual(effect["excess_mm"] / 0.04 / strength, 1, delta=0.15)
+
+    def test_the_logs_differ_by_at_least_the_strength(self):
+        for cause in ("stress_softening", "backlash", "sensor_nonlinearity", "contact", "leak"):
+            plain, (with_effect, truth) = world()[0], world("--cause", cause)
+            plain, with_effect = displacements(plain), displacements(with_effect)
+            change = [a - b for a, b in zip(with_effect, plain)]
+            excess_mm = truth["effects"][cause]["excess_mm"]
+            with self.subTest(cause=cause):
+                if cause == "leak":
+                    whole_mm = math.sqrt(sum(c * c for c in change) / len(change))
+                    self.assertAlmostEqual(whole_mm, excess_mm, delta=0.01)
+                else:
+                    self.assertGreater(beyond_zero_and_gain(change, plain), excess_mm - 0.01)
+
 
 if __name__ == "__main__":
-    print(f"seed {SEED}")
+    print(f"seed {SEED}, strengths at the seeds {STRENGTH_SEEDS}")
     unittest.main()

@@ -52,10 +52,11 @@ std::vector<double> asked(const Hidden& hidden, const Log& log) {
 }
 
 std::vector<double> pressure(const World& world, const Hidden& hidden, const Log& log) {
+  const auto command = asked(hidden, log);
+  if (world.perfect_valve) return command;
   ValveNumbers numbers = world.valve;
   numbers.leak_conductance = hidden.at("leak", "conductance");
   Valve valve(numbers);
-  const auto command = asked(hidden, log);
   const int steps = static_cast<int>(std::lround(1 / (log.rate_hz * valve_step_s)));
   std::vector<double> out(command.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -106,7 +107,8 @@ class Body {
       const double below = 1 - std::exp(-(age_.largest_kpa - p) / h_.at("stress_softening", "range_kpa"));
       y *= 1 + h_.at("stress_softening", "share") * below * age_.largest_kpa / working_kpa;
     }
-    return y / (1 + h_.at("stiffening", "per_mm") * std::max(0.0, y));
+    const double per_mm = h_.at("stiffening", "per_mm");  // the span is kept
+    return y * (1 + per_mm * span_) / (1 + per_mm * std::max(0.0, y));
   }
   double loaded(double y, double dt) {
     if (h_.has("contact")) {
@@ -197,6 +199,14 @@ std::vector<Answer> simulate(const World& world, const Effects& effects, const s
     answers.push_back(std::move(answer));
   }
   return answers;
+}
+
+std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
+                                  std::uint64_t seed) {
+  std::vector<double> all;
+  for (const Answer& a : simulate(world, effects, logs, seed))
+    all.insert(all.end(), a.displacement_mm.begin(), a.displacement_mm.end());
+  return all;
 }
 
 }  // namespace textbook
