@@ -17,7 +17,7 @@ def group_of(result):
     if not causes:
         return "clean"
     if len(causes) > 1:
-        return "two causes"
+        return {2: "two causes", 3: "three causes"}[len(causes)]
     return causes[0]
 
 
@@ -69,7 +69,7 @@ def by_group(results):
     groups = collections.defaultdict(list)
     for r in results:
         groups[(group_of(r), r["strength"])].append(r)
-    return sorted(groups.items(), key=lambda item: (is_outside(item[0][0]), item[0][0] in ("clean", "two causes"),
+    return sorted(groups.items(), key=lambda item: (is_outside(item[0][0]), item[0][0] in ("clean", "two causes", "three causes"),
                                                     item[0][0], -item[0][1]))
 
 

@@ -89,6 +89,13 @@ def covered(hidden, truth, diagnosis):
     return found
 
 
+def diagnose(build, model, logs, out, *options):
+    """(diagnosis, None), or (None, the message) where the program fails."""
+    done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", model, "--data", *logs, "--out", out,
+                           *options, "--json"], capture_output=True, text=True)
+    return (json.loads(done.stdout), None) if done.returncode == 0 else (None, done.stderr[-300:])
+
+
 def run_world(build, folder, world):
     """Makes the world, diagnoses its logs; returns the world with what came of it."""
     build = pathlib.Path(build).resolve()
@@ -100,11 +107,9 @@ def run_world(build, folder, world):
             make += ["--cause", ",".join(world["causes"])]
         subprocess.run(make, check=True)
         logs = sorted((work / "logs").glob("*.csv"))
-        done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", GIVEN, "--data", *logs, "--out",
-                               work / "out", "--json"], capture_output=True, text=True)
-        if done.returncode != 0:
-            return {**world, "outcome": "failed", "message": done.stderr[-300:]}
-        diagnosis = json.loads(done.stdout)
+        diagnosis, message = diagnose(build, GIVEN, logs, work / "out")
+        if diagnosis is None:
+            return {**world, "outcome": "failed", "message": message}
         truth = json.loads((work / "truth.json").read_text())
         return {**world, "outcome": judge(world["causes"], diagnosis), "verdict": diagnosis["verdict"],
                 "named": [c["id"] for c in diagnosis["causes"]], "rivals": diagnosis["alternatives"],

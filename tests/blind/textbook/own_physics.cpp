@@ -41,16 +41,20 @@ SettledLoop settled_loop(FingerNumbers numbers) {
 
 // RMS [kPa] of the valve's pressure against the command behind a dead time and a first-order lag.
 double lag_miss_kpa(const std::vector<Log>& logs, const std::vector<Answer>& answers, double tau_s,
-                    int delay) {
+                    double delay_s) {
   double sum = 0, count = 0;
   for (std::size_t l = 0; l < logs.size(); ++l) {
+    const std::vector<double>& command = logs[l].command_kpa;
     const double share = -std::expm1(-1 / (logs[l].rate_hz * tau_s));
     double lagged = 0;
-    for (std::size_t k = 0; k < answers[l].pressure_kpa.size(); ++k, ++count) {
+    for (std::size_t k = 0; k < command.size(); ++k, ++count) {
       const double miss = answers[l].pressure_kpa[k] - lagged;
       sum += miss * miss;
-      const std::size_t then = k - std::min(k, static_cast<std::size_t>(delay));
-      lagged += (logs[l].command_kpa[then] - lagged) * share;
+      // What the lag answers to until the next sample: the command in the middle between the two.
+      const double place = std::max(0.0, static_cast<double>(k) + 0.5 - delay_s * logs[l].rate_hz);
+      const auto low = std::min(static_cast<std::size_t>(place), command.size() - 2);
+      const double part = place - static_cast<double>(low);
+      lagged += ((1 - part) * command[low] + part * command[low + 1] - lagged) * share;
     }
   }
   return std::sqrt(sum / count);
@@ -58,11 +62,11 @@ double lag_miss_kpa(const std::vector<Log>& logs, const std::vector<Answer>& ans
 
 double dead_time_kpa(const std::vector<Log>& logs, const std::vector<Answer>& answers) {
   double lag = 1e9, both = 1e9;
-  for (int delay = 0; delay <= 8; ++delay) {
-    for (double tau_s = 0.003; tau_s < 0.5; tau_s *= 1.15) {
-      const double miss = lag_miss_kpa(logs, answers, tau_s, delay);
+  for (double delay_s = 0; delay_s < 0.05; delay_s += 0.003) {
+    for (double tau_s = 0.002; tau_s < 0.3; tau_s *= 1.2) {
+      const double miss = lag_miss_kpa(logs, answers, tau_s, delay_s);
       both = std::min(both, miss);
-      if (delay == 0) lag = std::min(lag, miss);
+      if (delay_s == 0) lag = std::min(lag, miss);
     }
   }
   return std::sqrt(std::max(0.0, lag * lag - both * both));

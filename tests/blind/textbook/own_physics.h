@@ -24,7 +24,7 @@ namespace textbook {
 std::map<std::string, double> own_physics(const World& world, const std::vector<Log>& logs,
                                           std::uint64_t seed, double visible_mm);
 
-/// The slowest branch of the twin that the diagnosis is given.
+/// Slower than any branch of a twin of two branches that was identified from such logs (given.yaml: 10 s).
 inline constexpr double slowest_twin_s = 15;
 
 }  // namespace textbook

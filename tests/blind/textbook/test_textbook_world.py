@@ -137,7 +137,7 @@ class Campaign(unittest.TestCase):
             with self.subTest(make=make):
                 self.assertLessEqual({"hysteresis_shape", "valve_lag"}, set(truth["own_physics_mm"]))
                 for size_mm in truth["own_physics_mm"].values():
-                    self.assertGreater(size_mm, truth["noise_mm"] / 2)
+                    self.assertGreater(size_mm, truth["noise_mm"] / 4)
 
 
 class Strength(unittest.TestCase):

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""Worlds of textbook physics (tests/blind/textbook) through `softgrip diagnose`, with and without an effect.
+
+    scripts/textbook_campaign.py --work DIR [--build build/release] [--clean 100] [--seeds 4] [--pairs 40] [--triples 20]
+                                 [--strengths 8 4 2] [--columns pressure command] [--given plain] [--first-seed 1000]
+                                 [--workers 2] [--page docs/reference/textbook-campaign.md]
+
+--seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples per kind of columns. Resumable: every
+world's outcome is one line of DIR/textbook.jsonl, and worlds that stand there are not run again. Whenever it is stopped,
+what has been done is a fair sample of what was planned. --page writes the tables, and the pictures beside them.
+"""
+import argparse
+import concurrent.futures
+import itertools
+import pathlib
+import random
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+for folder in ("tests/blind", "tests/blind/textbook", "scripts"):
+    sys.path.insert(0, str(ROOT / folder))
+
+import textbook_page  # noqa: E402
+import trial  # noqa: E402
+from blind_campaign import TWINS  # noqa: E402
+from ledger import Ledger  # noqa: E402
+
+KEYS = ("causes", "strength", "seed", "make", "columns", "given")
+
+
+def groups_of(ids, size, count, rng):
+    """Sets of causes of which no two give nearly the same readings."""
+    possible = [group for group in itertools.combinations(ids, size)
+                if not any(len(twins & {*group}) > 1 for twins in TWINS)]
+    return rng.sample(possible, min(count, len(possible)))
+
+
+def worlds(args, ids, makes):
+    """All that is planned, in an order in which every part is like the whole. A world is the same whatever else is."""
+    planned = []
+    for columns in args.columns:
+        # Without the measured pressure a leak is a smaller gain.
+        visible = [cause for cause in ids if cause != "leak" or columns == "pressure"]
+        kinds = [([], 0, args.clean)]
+        kinds += [([cause], strength, args.seeds)
+                  for cause, strength in itertools.product(args.causes or visible, args.strengths)]
+        if not args.causes:
+            for size, count in ((2, args.pairs), (3, args.triples)):
+                groups = groups_of(visible, size, count, random.Random(f"{args.first_seed} {size} {columns}"))
+                kinds += [(list(group), args.strengths[k % len(args.strengths)], 1) for k, group in enumerate(groups)]
+        for causes, strength, count in kinds:
+            rng = random.Random(f"{args.first_seed} {causes} {strength} {columns}")
+            turn = rng.randrange(len(makes))
+            for number in range(count):
+                world = {"causes": causes, "strength": strength, "seed": rng.randrange(10**6),
+                         "make": makes[(turn + number) % len(makes)], "columns": columns}
+                planned += [{**world, "given": given} for given in args.given]
+    random.Random(args.first_seed).shuffle(planned)
+    return planned
+
+
+def told(world, result):
+    return (f"{'+'.join(world['causes']) or 'clean'} {world['strength']:g} {world['make']} {world['columns']} "
+            f"{world['given']} seed {world['seed']}: {result['outcome']}, named {', '.join(result.get('named', [])) or 'nothing'}"
+            f"{', wrong ' + ', '.join(result['wrong']) if result.get('wrong') else ''}")
+
+
+def run(args, ledger, planned):
+    """As many worlds side by side as there are workers, until all are done or the time is up."""
+    until = time.monotonic() + 60 * args.most_minutes if args.most_minutes else None
+    left = iter([world for world in planned if world not in ledger])
+    with concurrent.futures.ThreadPoolExecutor(args.workers) as pool:
+        running = {}
+
+        def fill():
+            while len(running) < args.workers and (until is None or time.monotonic() < until):
+                world = next(left, None)
+                if world is None:
+                    break
+                running[pool.submit(trial.run_world, args.build, args.work, world)] = world
+
+        fill()
+        while running:
+            done, _ = concurrent.futures.wait(running, return_when=concurrent.futures.FIRST_COMPLETED)
+            for future in done:
+                world, result = running.pop(future), future.result()
+                ledger.add(result)
+                print(f"{len(ledger.rows)}/{len(planned)} {told(world, result)}", flush=True)
+            fill()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--clean", type=int, default=100)
+    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--pairs", type=int, default=40)
+    parser.add_argument("--triples", type=int, default=20)
+    parser.add_argument("--strengths", type=float, nargs="+", default=[8, 4, 2])
+    parser.add_argument("--causes", nargs="+")
+    parser.add_argument("--columns", nargs="+", choices=["pressure", "command"], default=["pressure", "command"])
+    parser.add_argument("--given", nargs="+", choices=["plain", "commissioned"], default=["plain"])
+    parser.add_argument("--first-seed", type=int, default=1000)
+    parser.add_argument("--most-minutes", type=float, help="begin no world after so long; run again to go on")
+    parser.add_argument("--workers", type=int, default=1, help="diagnoses side by side, each on one core")
+    parser.add_argument("--page", type=pathlib.Path)
+    args = parser.parse_args()
+    args.build = args.build.resolve()
+    ledger = Ledger(args.work / "textbook.jsonl", KEYS)
+    planned = worlds(args, trial.listed(args.build, "--list"), trial.listed(args.build, "--makes"))
+    run(args, ledger, planned)
+    if args.page:
+        command = "scripts/textbook_campaign.py --work DIR"
+        for option in ("clean", "seeds", "pairs", "triples", "strengths", "columns", "given", "first_seed"):
+            value = getattr(args, option)
+            if value != parser.get_default(option):
+                words = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in value) if isinstance(value, list) else value
+                command += f" --{option.replace('_', '-')} {words}"
+        keys = {ledger.key(world) for world in planned} | ledger.known
+        textbook_page.write(args.page, ledger.rows, len(keys), f"{command} --page {args.page}")
+
+
+if __name__ == "__main__":
+    main()

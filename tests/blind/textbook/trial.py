@@ -1,0 +1,120 @@
+"""One world of textbook physics, from its making to a judgement: what its fixed worlds and its campaign share.
+
+A world: causes, strength, seed, make, columns (`pressure` or `command`: whether the measured pressure is recorded) and
+given (`plain` or `commissioned`: which model the diagnosis starts from).
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+import judging  # noqa: E402
+
+GIVEN = HERE / "given.yaml"
+
+
+def program(build):
+    return pathlib.Path(build).resolve() / "tests/blind/textbook/textbook-world"
+
+
+def listed(build, option):
+    return subprocess.run([program(build), option], check=True, capture_output=True, text=True).stdout.split()
+
+
+def judge(hidden, own, diagnosis):
+    """What a diagnosis is worth when `hidden` (ids) is the truth and `own` what the world has without it.
+
+    found    hidden causes that are named, or stand among the alternatives of a name; each name finds one at most
+    alone    those of them that are named without alternatives
+    wrong    names that, with all their alternatives, are neither hidden nor own
+    outcome  wrong, right (all alone), ambiguous_right (all), partly, missed; of a world without an effect: wrong,
+             unexplained (structure is left and nothing of its own is named) or right
+    """
+    sets = [[cause["id"], *rivals] for cause, rivals in zip(diagnosis["causes"], diagnosis["alternatives"])]
+    wrong = [one[0] for one in sets if not {*hidden, *own} & {*one}]
+    found, alone = [], []
+    for one in sorted(sets, key=len):
+        held = [cause for cause in hidden if cause in one and cause not in found]
+        if held:
+            found.append(held[0])
+            alone += held[:1] if len(one) == 1 else []
+    if wrong:
+        outcome = "wrong"
+    elif not hidden:
+        outcome = "unexplained" if diagnosis["verdict"] == "unexplained" else "right"
+    elif len(found) < len(hidden):
+        outcome = "partly" if found else "missed"
+    else:
+        outcome = "right" if len(alone) == len(hidden) else "ambiguous_right"
+    return {"found": found, "alone": alone, "wrong": wrong, "outcome": outcome}
+
+
+def make_logs(build, work, world, *options):
+    """(paths of the logs, truth)"""
+    command = [program(build), "--seed", str(world["seed"]), "--make", world["make"], "--out", work / "logs", "--truth",
+               work / "truth.json", *options]
+    if world["columns"] == "pressure":
+        command.append("--pressure")
+    subprocess.run(command, check=True)
+    return sorted((work / "logs").glob("*.csv")), json.loads((work / "truth.json").read_text())
+
+
+def identified(build, logs, out, threads):
+    """identify.json with the structure that the logs choose, or None."""
+    done = subprocess.run([build / "tools/softgrip", "identify", "--structure", "auto", "--data", *logs, "--out", out,
+                           "--threads", str(threads)], capture_output=True, text=True)
+    return json.loads((out / "identify.json").read_text()) if done.returncode == 0 else None
+
+
+def given_model(build, work, world, threads):
+    """`plain`: the Bouc-Wen twin of another finger. `commissioned`: what `softgrip identify --structure auto` makes of
+    another campaign of this finger, on which nothing is hidden."""
+    if world["given"] == "plain":
+        return GIVEN
+    logs, _ = make_logs(build, work / "healthy", world, "--campaign", "1")
+    return work / "healthy/model/model.yaml" if identified(build, logs, work / "healthy/model", threads) else None
+
+
+def held_out(build, logs, work, noise_mm, threads):
+    """Of the structure that the logs choose: held-out error over the noise, and its description."""
+    report = identified(build, logs, work / "identified", threads)
+    if report is None:
+        return {}
+    chosen = next(c for c in report["structure"]["candidates"] if c["chosen"])
+    return {"heldout_over_noise": chosen["heldout_rmse_mm"] / noise_mm, "structure": chosen["description"],
+            "identify_s": report["wall_s"]}
+
+
+def named_in(diagnosis, judged):
+    """What the ledger keeps of a diagnosis and of what it is worth."""
+    closed_loop = diagnosis["closed_loop"] or {}
+    return {"verdict": diagnosis["verdict"], "named": [c["id"] for c in diagnosis["causes"]],
+            "rivals": diagnosis["alternatives"], "partial": [c["id"] for c in diagnosis["partial_causes"]],
+            "base": diagnosis["base"], "feedforward": closed_loop.get("gains", {}).get("extended", {}).get("feedforward"),
+            "heldout_rmse_mm": diagnosis["heldout_rmse_mm"], "wall_s": diagnosis["wall_s"], **judged}
+
+
+def run_world(build, folder, world, threads=1):
+    """Makes the world, diagnoses its logs; returns the world with what came of it."""
+    build = pathlib.Path(build).resolve()
+    work = pathlib.Path(tempfile.mkdtemp(dir=folder))
+    try:
+        hiding = ["--cause", ",".join(world["causes"]), "--strength", str(world["strength"])] if world["causes"] else []
+        logs, truth = make_logs(build, work, world, *hiding)
+        model = given_model(build, work, world, threads)
+        if model is None:
+            return {**world, "outcome": "failed", "message": "no model could be identified from the healthy logs"}
+        diagnosis, message = judging.diagnose(build, model, logs, work / "out", "--threads", str(threads))
+        if diagnosis is None:
+            return {**world, "outcome": "failed", "message": message}
+        own = truth["own_physics_mm"]
+        result = {**world, **named_in(diagnosis, judge(world["causes"], own, diagnosis)), "own": sorted(own),
+                  "reachable": all(e["reachable"] for e in truth["effects"].values())}
+        return result if world["causes"] else {**result, **held_out(build, logs, work, truth["noise_mm"], threads)}
+    finally:
+        shutil.rmtree(work)
