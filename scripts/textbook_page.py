@@ -6,6 +6,7 @@ import statistics
 
 import blind_page
 from blind_page import interval
+from trial import HELD_OUT_AT_MOST
 
 
 def share(hits, count):
@@ -47,7 +48,7 @@ def summary(rows):
         if among:
             lines.append((what, wanted, measured, len(among)))
 
-    for columns, most in (("pressure", 1.6), ("command", 5)):
+    for columns, most in HELD_OUT_AT_MOST.items():
         among = [r for r in clean if r["columns"] == columns]
         line(f"without an effect, {columns_text(columns)}: held-out error at most {most:g} times the noise", "100 %",
              within(among, most), among)
