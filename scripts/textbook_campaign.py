@@ -5,9 +5,10 @@
                                  [--strengths 8 4 2] [--columns pressure command] [--given plain] [--first-seed 1000]
                                  [--workers 2] [--page docs/reference/textbook-campaign.md]
 
---seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples per kind of columns. Resumable: every
-world's outcome is one line of DIR/textbook.jsonl, and worlds that stand there are not run again. Whenever it is stopped,
-what has been done is a fair sample of what was planned. --page writes the tables, and the pictures beside them.
+--seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples per kind of columns. Resumable:
+every world's outcome is one line of DIR/textbook.jsonl, and worlds that stand there are not run again. Whenever it is
+stopped, what has been done is a fair sample of what was planned. --page writes the tables, and the pictures beside them;
+--most-minutes 0 writes it from what has been done.
 """
 import argparse
 import concurrent.futures
@@ -68,7 +69,7 @@ def told(world, result):
 
 def run(args, ledger, planned):
     """As many worlds side by side as there are workers, until all are done or the time is up."""
-    until = time.monotonic() + 60 * args.most_minutes if args.most_minutes else None
+    until = time.monotonic() + 60 * args.most_minutes if args.most_minutes is not None else None
     left = iter([world for world in planned if world not in ledger])
     with concurrent.futures.ThreadPoolExecutor(args.workers) as pool:
         running = {}

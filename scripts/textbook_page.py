@@ -6,7 +6,7 @@ import statistics
 
 import blind_page
 from blind_page import interval
-from trial import HELD_OUT_AT_MOST
+from trial import HELD_OUT_AT_MOST, NOISE_MM
 
 
 def share(hits, count):
@@ -82,13 +82,16 @@ def clean_table(rows):
     for make in sorted({r["make"] for r in rows}):
         for columns in sorted({r["columns"] for r in rows}, reverse=True):
             among = [r for r in rows if r["make"] == make and r["columns"] == columns and not r["causes"]]
-            errors = [r["heldout_over_noise"] for r in among if "heldout_over_noise" in r]
+            if not among:
+                continue
+            chosen = [r["heldout_over_noise"] for r in among if "heldout_over_noise" in r]
+            extended = [r["heldout_rmse_mm"]["extended"] / NOISE_MM for r in among]
             own = collections.Counter(name for r in among for name in r["named"] if name not in r["wrong"])
-            if among:
-                lines.append((make, columns_text(columns), len(among), median(errors), f"{max(errors, default=math.nan):.2f}",
-                              ", ".join(f"{name} ({n})" for name, n in own.most_common()), instead(among)))
-    return table(("make", "columns", "worlds", "held-out error / noise, median", "worst", "own physics named", "wrongly named"),
-                 lines)
+            lines.append((make, columns_text(columns), len(among), median(chosen), f"{max(chosen, default=math.nan):.2f}",
+                          median(extended), ", ".join(f"{name} ({n})" for name, n in own.most_common()),
+                          instead(among)))
+    return table(("make", "columns", "worlds", "held-out error / noise, median", "worst",
+                  "of the diagnosis' model, median", "own physics named", "wrongly named"), lines)
 
 
 def split_table(rows, key, text=str):
@@ -119,6 +122,14 @@ def cause_table(rows):
                   "wrongly named"), lines)
 
 
+def wrong_table(rows):
+    """Every world in which something wrong is named."""
+    lines = [("+".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], columns_text(r["columns"]), r["seed"],
+              ", ".join(r["wrong"]), ", ".join(name for name in r["named"] if name not in r["wrong"]), r["verdict"])
+             for r in rows if r["wrong"]]
+    return table(("hidden", "strength", "make", "columns", "seed", "wrong", "named besides", "verdict"), sorted(lines))
+
+
 def made(results, planned, command):
     failed = [r for r in results if r["outcome"] == "failed"]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
@@ -131,22 +142,23 @@ def made(results, planned, command):
 
 INTRODUCTION = """\
 Worlds that share nothing with the models of softgrip: an ISO 6358 valve behind a PI spool with overlap and pilot
-hysteresis, and fingers of five makes (generalised play operators, Maxwell-slip elements, Preisach relays, a tube of slices
-of rubber with a Prony series, play with fractional creep), creep over five decades, a slight curvature. Three logs each,
-readings with 0.04 mm, pressures with 0.05 kPa, supplies with 0.3 kPa of noise.
+hysteresis, and fingers of five makes (generalised play operators, Maxwell-slip elements, Preisach relays, a tube of
+slices of rubber with a Prony series, play with fractional creep), creep over five decades, a slight curvature. Three
+logs each, readings with 0.04 mm, pressures with 0.05 kPa, supplies with 0.3 kPa of noise.
 
-Strength is what the effect adds to the displacement, RMS over the campaign, beyond what a recalibrated twin takes up (any
-zero and gain; width, curvature and creep within what fingers of that make have), over the noise. A leak counts whole.
-Own physics is what a world has without an effect, found by taking the mechanism out of it and counted if that changes more
-than a quarter of the noise: to name it is a finding and never wrong. Where the hidden cause is also own physics (a slower valve
-behind a valve that has a lag) the name counts as found.
+Strength is what the effect adds to the displacement, RMS over the campaign, beyond what a recalibrated twin takes up
+(any zero and gain; width, curvature and creep within what fingers of that make have), over the noise. A leak counts
+whole. Own physics is what a world has without an effect, found by taking the mechanism out of it and counted if that
+changes more than a quarter of the noise: to name it is a finding and never wrong. Where the hidden cause is also own
+physics (a slower valve behind a valve that has a lag) the name counts as found.
 
-The diagnosis starts from a plain Bouc-Wen twin of another finger (`tests/blind/textbook/given.yaml`), as somebody has it
-who has identified one finger of a kind and bought the next; `--given commissioned` starts from what `softgrip identify
---structure auto` makes of another campaign of the same finger before anything was hidden. Found: named, or among the
-alternatives of a name, whatever the verdict; a name finds one cause at most. Wrong: named although neither it nor any of
-its alternatives is there. The held-out error is that of `softgrip identify --structure auto` on interleaved blocks:
-from the measured pressure where it is recorded, else from the command."""
+The diagnosis starts from a plain Bouc-Wen twin of another finger (`tests/blind/textbook/given.yaml`), as somebody has
+it who has identified one finger of a kind and bought the next; `--given commissioned` starts from what `softgrip
+identify --structure auto` makes of another campaign of the same finger before anything was hidden. Found: named, or
+among the alternatives of a name, whatever the verdict; a name finds one cause at most. Wrong: named although neither
+it nor any of its alternatives is there. The held-out error is that of `softgrip identify --structure auto` on
+interleaved blocks: from the measured pressure where it is recorded, else from the command; beside it stands what the
+diagnosis' own model leaves on its held-out blocks, always from the command."""
 
 
 def write(path, results, planned, command):
@@ -168,7 +180,7 @@ def write(path, results, planned, command):
              "## Without an effect", "", *clean_table(rows), "## By cause, hidden alone", "", *cause_table(rows),
              f"![Outcomes by hidden cause]({bars_path.name})", "",
              f"![What was named where something was hidden, own physics left out]({confusion_path.name})", "",
-             "## By make", "", *split_table(rows, "make"), "## By columns", "", *split_table(rows, "columns", columns_text)]
+             "## Wrong names, one by one", "", *wrong_table(rows), "## By make", "", *split_table(rows, "make"), "## By columns", "", *split_table(rows, "columns", columns_text)]
     if len({r["given"] for r in rows}) > 1:
         lines += ["## By the model that was given", "", *split_table(rows, "given")]
     path.write_text("\n".join(lines).rstrip() + "\n")

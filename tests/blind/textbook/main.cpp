@@ -2,7 +2,7 @@
 //
 //   textbook-world --seed N --out DIR --truth FILE [--make NAME] [--cause ID[,ID...]] [--strength X] [--poor]
 //                  [--campaign N] [--pressure] [--no-temperature] [--no-supply]
-//   textbook-world --list | --makes | --probe flow|rest|hold|loops|span|creep
+//   textbook-world --list | --makes | --probe flow|rest|hold|loops|relays|span|creep
 //
 // Without --make the seed chooses. A strength is the excess error (strength.h) over the noise of 0.04 mm, per
 // cause. With --campaign the same finger and valve are driven by other waveforms, with other noise.

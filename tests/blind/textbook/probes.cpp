@@ -88,6 +88,22 @@ void probe_loops() {
   }
 }
 
+// A wandering pressure and what the relays make of it, so that they can be counted one by one elsewhere.
+void probe_relays() {
+  FingerNumbers numbers = draw_finger("preisach", 1);
+  numbers.creep = numbers.curvature = 0;
+  Finger finger(numbers);
+  std::puts("pressure_kpa,displacement_mm,span_mm,width,envelope");
+  double p = 0;
+  for (const double to : {50.0, 10.0, 40.0, 22.0, 33.0, 18.0, 45.0, 60.0, 5.0, 30.0, 0.0, 25.0}) {
+    for (const double from = p; p != to;) {
+      p = to > from ? std::min(to, p + 0.5) : std::max(to, p - 0.5);
+      std::printf("%.9g,%.9g,%.9g,%.9g,%.9g\n", p, finger.step(p, 0.01), numbers.span_mm, numbers.width,
+                  numbers.envelope);
+    }
+  }
+}
+
 void probe_creep() {
   std::puts("make,time_s,displacement_mm");
   for (const std::string& make : makes()) {
@@ -109,6 +125,7 @@ void probe(const std::string& name) {
   if (name == "rest") return probe_rest();
   if (name == "hold") return probe_hold();
   if (name == "loops") return probe_loops();
+  if (name == "relays") return probe_relays();
   if (name == "span") return probe_span();
   if (name == "creep") return probe_creep();
   throw std::invalid_argument("unknown probe " + name);

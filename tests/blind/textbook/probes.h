@@ -5,7 +5,7 @@
 
 namespace textbook {
 
-/// flow, rest, hold, loops, span or creep; throws std::invalid_argument for anything else.
+/// flow, rest, hold, loops, relays, span or creep; throws std::invalid_argument for anything else.
 void probe(const std::string& name);
 
 }  // namespace textbook

@@ -81,6 +81,25 @@ class Finger(unittest.TestCase):
                 for place in ("end", "rising"):
                     self.assertAlmostEqual(at[make, place], at[make, place + "_reference"], places=9)
 
+    def test_relays_counted_one_by_one_give_the_same(self):
+        rows = [{name: float(value) for name, value in row.items()} for row in probe("relays")]
+        width, envelope, span_mm = (rows[0][name] for name in ("width", "envelope", "span_mm"))
+        count = 120
+        # Switching up at `on`, down at `off`; density 2 (1 + envelope off).
+        relays = [[(i + 0.5) / count, (j + 0.5) / count, False] for i in range(count) for j in range(i + 1)]
+        half = [0.5 if on == off else 1 for on, off, _ in relays]
+
+        def answer(q):
+            for relay in relays:
+                relay[2] = q >= relay[0] or (relay[2] and q > relay[1])
+            up = sum(part * (1 + envelope * off) for part, (_, off, is_on) in zip(half, relays) if is_on)
+            return (1 - 2 * width) * q + 2 * width * 2 * up / count**2
+
+        answers = [answer(row["pressure_kpa"] / 60) for row in rows]
+        full = 1 - 2 * width + 2 * width * (1 + envelope / 3)
+        for row, z in zip(rows, answers):
+            self.assertAlmostEqual(row["displacement_mm"] / span_mm, z / full, delta=0.002)
+
     def test_the_span_is_reached_at_working_pressure(self):
         rows = probe("span")
         self.assertEqual(len(rows), 20)

@@ -16,6 +16,7 @@ sys.path.insert(0, str(HERE.parent))
 import judging  # noqa: E402
 
 GIVEN = HERE / "given.yaml"
+NOISE_MM = 0.04  # of the readings that textbook-world writes
 # What the structure that the logs choose may leave of a world without an effect, held out, over the noise.
 HELD_OUT_AT_MOST = {"pressure": 1.6, "command": 5}
 
@@ -82,13 +83,13 @@ def given_model(build, work, world, threads):
     return work / "healthy/model/model.yaml" if identified(build, logs, work / "healthy/model", threads) else None
 
 
-def held_out(build, logs, work, noise_mm, threads):
+def held_out(build, logs, work, threads):
     """Of the structure that the logs choose: held-out error over the noise, and its description."""
     report = identified(build, logs, work / "identified", threads)
     if report is None:
         return {}
     chosen = next(c for c in report["structure"]["candidates"] if c["chosen"])
-    return {"heldout_over_noise": chosen["heldout_rmse_mm"] / noise_mm, "structure": chosen["description"],
+    return {"heldout_over_noise": chosen["heldout_rmse_mm"] / NOISE_MM, "structure": chosen["description"],
             "identify_s": report["wall_s"]}
 
 
@@ -117,6 +118,6 @@ def run_world(build, folder, world, threads=1):
         own = truth["own_physics_mm"]
         result = {**world, **named_in(diagnosis, judge(world["causes"], own, diagnosis)), "own": sorted(own),
                   "reachable": all(e["reachable"] for e in truth["effects"].values())}
-        return result if world["causes"] else {**result, **held_out(build, logs, work, truth["noise_mm"], threads)}
+        return result if world["causes"] else {**result, **held_out(build, logs, work, threads)}
     finally:
         shutil.rmtree(work)
