@@ -94,7 +94,7 @@ struct RefusalInfo {
   std::string_view id;
   std::string_view name;
 };
-constexpr std::array<RefusalInfo, 11> refusals{{
+constexpr std::array<RefusalInfo, 12> refusals{{
     {"R00", "none"},
     {"R01", "faulted"},
     {"R02", "not_idle"},
@@ -106,6 +106,7 @@ constexpr std::array<RefusalInfo, 11> refusals{{
     {"R08", "nothing_to_acknowledge"},
     {"R09", "cause_persists"},
     {"R10", "overtaken"},
+    {"R11", "nothing_to_release"},
 }};
 
 const RefusalInfo& info_of(RefusalCode code) noexcept {

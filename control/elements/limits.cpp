@@ -9,15 +9,16 @@ double in_range(const LimitSettings& limits, double pressure_kpa) noexcept {
   return std::clamp(pressure_kpa, limits.pressure_min_kpa, limits.pressure_max_kpa);
 }
 
-LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
-                     double elapsed_s) noexcept {
+LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa, double elapsed_s,
+                     double ceiling_kpa) noexcept {
   // Without a usable last command only the lowest pressure is known to do no harm.
   const double last = std::isfinite(last_kpa) ? in_range(limits, last_kpa) : limits.pressure_min_kpa;
-  if (std::isnan(wanted_kpa)) return {last, false, false, true};
-  const double inside = in_range(limits, wanted_kpa);
+  if (std::isnan(wanted_kpa) || std::isnan(ceiling_kpa)) return {last, false, false, true, false};
+  const bool capped = wanted_kpa > ceiling_kpa;
+  const double inside = in_range(limits, capped ? ceiling_kpa : wanted_kpa);
   const double reached = std::clamp(inside, last - limits.slew_down_kpa_per_s * elapsed_s,
                                     last + limits.slew_up_kpa_per_s * elapsed_s);
-  return {reached, inside != wanted_kpa, reached != inside, false};
+  return {reached, in_range(limits, wanted_kpa) != wanted_kpa, reached != inside, false, capped};
 }
 
 LimitedReference limit_reference(const LimitSettings& limits, double reference_mm) noexcept {

@@ -4,6 +4,8 @@
 // would let through. One thing is not slowed down: the safe output (ChannelOutput::safe_kpa), which is
 // written when the loop leaves or falls silent, is the lowest pressure at once, or the last command.
 
+#include <limits>
+
 namespace softgrip::control {
 
 /// Limits of one channel. There is no default that would do for a rig: every field comes from the rig file.
@@ -22,16 +24,21 @@ struct LimitedCommand {
   double command_kpa = 0;
   bool saturated = false;  ///< what was wanted lies outside the pressure range
   bool slewing = false;    ///< what was wanted is further from the last command than the slew limits allow
-  bool invalid = false;    ///< what was wanted is not a number: the last command is held
+  bool invalid = false;    ///< what was wanted, or the ceiling, is not a number: the last command is held
+  bool capped = false;     ///< what was wanted is above the ceiling
 };
 
 /// A pressure within the range.
 [[nodiscard]] double in_range(const LimitSettings& limits, double pressure_kpa) noexcept;
 
+/// No ceiling but the pressure range's.
+inline constexpr double no_ceiling = std::numeric_limits<double>::infinity();
+
 /// The command for `wanted_kpa` when `last_kpa` went out `elapsed_s` (>= 0) ago. It is always inside the
-/// pressure range, even when the last one was not; inside the range the slew limits hold as well.
+/// pressure range, even when the last one was not; inside the range the slew limits hold as well. A ceiling
+/// below what stands is gone to as fast as they allow, and never below the range.
 [[nodiscard]] LimitedCommand limit(const LimitSettings& limits, double wanted_kpa, double last_kpa,
-                                   double elapsed_s) noexcept;
+                                   double elapsed_s, double ceiling_kpa = no_ceiling) noexcept;
 
 /// A reference inside the displacement range.
 struct LimitedReference {

@@ -1,6 +1,9 @@
 #pragma once
 // Judges readings that are electrically sound: fresh, not frozen, not faster than the finger can be.
 
+#include <cstdint>
+#include <limits>
+
 #include "model/reading.h"
 
 namespace softgrip::control {
@@ -13,6 +16,8 @@ struct PlausibilitySettings {
   double frozen_after_s = 1.0;
   double frozen_band_mm = 0;       ///< >= 0; changes up to this are standing still (a quantisation step)
   double frozen_command_kpa = 10;  ///< > 0; the command must have travelled this far in that time
+  /// > 0; or the free finger this far, where the sensor is known to be lively (Plausibility::stands_still()).
+  double frozen_expected_mm = 2;
 };
 
 /// The judge of one channel.
@@ -25,13 +30,28 @@ class Plausibility {
 
   /// The validity of `reading` at `now`, when `command_kpa` is the last command sent. What the driver found
   /// wrong stands. A jump is measured from the last valid reading, and what the finger could have travelled
-  /// since then grows with time: a sensor that comes back after a gap is believed again.
-  [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now,
-                                      double command_kpa) noexcept;
+  /// since then grows with time: a sensor that comes back after a gap is believed again. `expected_mm` is
+  /// what the model says of the free finger at the time of the reading.
+  [[nodiscard]] model::Validity judge(const model::Reading& reading, Nanoseconds now, double command_kpa,
+                                      double expected_mm = 0) noexcept;
+
+  /// The reading repeats itself for much longer than this sensor ever did before, whose last digits have
+  /// changed all the time: it may be the sensor that stands still, and not the finger. A sensor that repeats
+  /// itself anyway (coarse, slow, without noise) says nothing of the kind.
+  [[nodiscard]] bool stands_still() const noexcept { return stands_still_; }
 
  private:
   [[nodiscard]] bool jumped(const model::Reading& reading) const noexcept;
-  [[nodiscard]] bool frozen(const model::Reading& reading, double command_kpa) noexcept;
+  [[nodiscard]] bool frozen(const model::Reading& reading, double command_kpa, double expected_mm) noexcept;
+  void learn(Nanoseconds run) noexcept;
+
+  /// What has been seen since the reading last changed.
+  struct Travel {
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = -std::numeric_limits<double>::infinity();
+    void see(double value) noexcept;
+    [[nodiscard]] double length() const noexcept { return highest - lowest; }
+  };
 
   PlausibilitySettings settings_;
   Nanoseconds max_age_;
@@ -42,8 +62,11 @@ class Plausibility {
   bool watching_ = false;  ///< there is a displacement from which standing still is counted
   double still_mm_ = 0;
   Nanoseconds still_since_ = 0;
-  double lowest_command_kpa_ = 0;
-  double highest_command_kpa_ = 0;
+  Travel command_kpa_;
+  Travel expected_mm_;
+  std::uint32_t changes_ = 0;    ///< that were seen, as far as they are counted
+  Nanoseconds longest_run_ = 0;  ///< between two of them
+  bool stands_still_ = false;
 };
 
 }  // namespace softgrip::control

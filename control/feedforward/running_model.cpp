@@ -42,7 +42,8 @@ RunningModel::RunningModel(const model::Model& model, double tick_s, double extr
       has_valve_(!valve_of(model).blocks.empty()),
       valve_(valve_of(model), {}, tick_s),
       body_(body_of(model), {}, tick_s),
-      past_mm_(static_cast<std::size_t>(std::ceil((ahead_s_ + longest_age_s) / tick_s)) + 2) {
+      past_mm_(static_cast<std::size_t>(std::ceil((ahead_s_ + longest_age_s) / tick_s)) + 2),
+      past_kpa_(past_mm_.size()) {
   reset(0);
 }
 
@@ -51,6 +52,7 @@ void RunningModel::reset(double command_kpa) noexcept {
   pressure_kpa_ = has_valve_ ? valve_.pressure_kpa() : command_kpa;
   body_.reset(pressure_kpa_);
   std::fill(past_mm_.begin(), past_mm_.end(), body_.reading_mm());
+  std::fill(past_kpa_.begin(), past_kpa_.end(), pressure_kpa_);
 }
 
 void RunningModel::advance(double command_kpa) noexcept {
@@ -66,23 +68,24 @@ void RunningModel::advance(double command_kpa) noexcept {
   if (at_once != pressure_kpa_) body_.step(0, at_once);
   body_.step(tick_s_, at_end);
   pressure_kpa_ = at_end;
-  remember(body_.reading_mm());
+  remember();
 }
 
-void RunningModel::remember(double reading_mm) noexcept {
+void RunningModel::remember() noexcept {
   newest_ = newest_ + 1 == past_mm_.size() ? 0 : newest_ + 1;
-  past_mm_[newest_] = reading_mm;
+  past_mm_[newest_] = body_.reading_mm();
+  past_kpa_[newest_] = pressure_kpa_;
 }
 
-double RunningModel::reading_mm(double age_s) const noexcept {
-  const double oldest = static_cast<double>(past_mm_.size() - 1);
+double RunningModel::past(const std::vector<double>& ring, double age_s) const noexcept {
+  const double oldest = static_cast<double>(ring.size() - 1);
   const double back = std::clamp((ahead_s_ + age_s) / tick_s_, 0.0, oldest);
-  const auto whole = std::min(static_cast<std::size_t>(back), past_mm_.size() - 2);
+  const auto whole = std::min(static_cast<std::size_t>(back), ring.size() - 2);
   const double fraction = back - static_cast<double>(whole);
-  const std::size_t size = past_mm_.size();
+  const std::size_t size = ring.size();
   const std::size_t later = newest_ >= whole ? newest_ - whole : newest_ + size - whole;
   const std::size_t earlier = later == 0 ? size - 1 : later - 1;
-  return past_mm_[later] + fraction * (past_mm_[earlier] - past_mm_[later]);
+  return ring[later] + fraction * (ring[earlier] - ring[later]);
 }
 
 }  // namespace softgrip::control

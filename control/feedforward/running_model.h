@@ -25,7 +25,9 @@ class RunningModel {
   void advance(double command_kpa) noexcept;
 
   /// The reading that the model expects `age_s` ago [mm]. Straight between ticks.
-  [[nodiscard]] double reading_mm(double age_s) const noexcept;
+  [[nodiscard]] double reading_mm(double age_s) const noexcept { return past(past_mm_, age_s); }
+  /// The pressure at the actuator under which it expected that [kPa].
+  [[nodiscard]] double pressure_kpa(double age_s) const noexcept { return past(past_kpa_, age_s); }
 
   /// How far the chain runs ahead of the finger: dead times and extra latency [s].
   [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
@@ -35,7 +37,8 @@ class RunningModel {
   [[nodiscard]] const model::Chain<double>& body() const noexcept { return body_; }
 
  private:
-  void remember(double reading_mm) noexcept;
+  void remember() noexcept;
+  [[nodiscard]] double past(const std::vector<double>& ring, double age_s) const noexcept;
 
   double tick_s_;
   double ahead_s_;
@@ -43,7 +46,8 @@ class RunningModel {
   model::Chain<double> valve_;
   model::Chain<double> body_;
   double pressure_kpa_ = 0;
-  std::vector<double> past_mm_;  ///< a ring, one entry per tick, newest at newest_
+  std::vector<double> past_mm_;   ///< a ring, one entry per tick, newest at newest_
+  std::vector<double> past_kpa_;  ///< another, beside it
   std::size_t newest_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "control/feedforward/free_curve.h"
 #include "control/sequences/sequence_plans.h"
 #include "document/node.h"
 
@@ -15,6 +16,9 @@ namespace softgrip::control {
 namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// More than the bare margin, so that noise does not take a part away again.
+constexpr double seen_from = 1.2;
 
 using document::Problems;
 
@@ -37,7 +41,7 @@ class Fitting {
     result.rig = rig_key(settings_);
     const std::uint32_t all = mask_of(sequence_.channels, {}, (1U << settings_.channels.size()) - 1);
     for (const Step& step : sequence_.steps) {
-      PreparedStep prepared{step, mask_of(step.channels, step.at, all), 0, {}};
+      PreparedStep prepared{step, mask_of(step.channels, step.at, all), 0, 0, {}};
       if ((prepared.channels & ~all) != 0) {
         report(step, "names a channel that the sequence does not use");
       }
@@ -48,7 +52,7 @@ class Fitting {
       }
       result.steps.push_back(std::move(prepared));
     }
-    point_to_releases(result.steps);
+    point_ahead(result.steps);
     return result;
   }
 
@@ -100,6 +104,9 @@ class Fitting {
       if ((channels >> i & 1U) != 0) check_channel(step, settings_.channels[i], i);
     }
     check_times(step);
+    if (step.on_contact == OnContact::grip && !is_before_a_grip(step)) {
+      report(step, "on_contact: grip, but no grip step comes behind it", "on_contact: hold");
+    }
     if (step.kind == StepKind::grip) {
       gripped_ |= channels;
     } else if (step.kind == StepKind::hold && (gripped_ & channels) == 0) {
@@ -127,6 +134,49 @@ class Fitting {
         break;
     }
     if (step.kind == StepKind::grip) check_verify(step, channel);
+    check_bounds(step, channel, index);
+  }
+
+  [[nodiscard]] bool is_before_a_grip(const Step& step) const {
+    const auto behind = sequence_.steps.begin() + (&step - sequence_.steps.data());
+    return std::any_of(behind, sequence_.steps.end(),
+                       [](const Step& other) { return other.kind == StepKind::grip; });
+  }
+
+  void check_bounds(const Step& step, const ChannelSettings& channel, std::size_t index) {
+    const double most_kpa = step.bounds.pressure_max_kpa;
+    if (std::isfinite(most_kpa)) {
+      check_pressure(step, channel, most_kpa, most_kpa);
+      const bool by_pressure = step.target.quantity == Target::Quantity::pressure_kpa &&
+                               (step.kind == StepKind::move || step.kind == StepKind::grip);
+      if (by_pressure && step.target.value > most_kpa) {
+        report(step, "goes to " + significant(step.target.value, 6) + " kPa, above its pressure_max_kpa");
+      }
+    }
+    if (!std::isfinite(step.bounds.squeeze_max_kpa)) return;
+    if (!channel.displacement_used) {
+      report(step, "channel '" + channel.name + "' does not use its displacement: its squeeze is not known",
+             "bound it by pressure_max_kpa");
+    } else if (step.kind == StepKind::grip && step.verify.by == VerifyBy::detection) {
+      check_squeeze(step, channel, index);
+    }
+  }
+
+  /// A grip that may not press hard enough to see what it presses would never hold anything.
+  void check_squeeze(const Step& step, const ChannelSettings& channel, std::size_t index) {
+    std::optional<double>& least_kpa = least_squeeze_kpa_[index];
+    if (!least_kpa) {
+      least_kpa = FreeCurve(channel.model, channel.limits).squeeze_for_kpa(settings_.detection.margin_mm);
+    }
+    const bool squeezes = step.squeeze.by_kpa > 0;
+    const double by_kpa = squeezes ? step.squeeze.by_kpa : step.bounds.squeeze_max_kpa;
+    const double needed_kpa = std::ceil(10 * seen_from * *least_kpa) / 10;
+    if (by_kpa >= needed_kpa) return;
+    report(step,
+           "presses by " + significant(by_kpa, 6) + " kPa, but channel '" + channel.name +
+               "' sees a part only from " + significant(needed_kpa, 6) + " kPa on",
+           "a larger " + std::string(squeezes ? "squeeze_kpa" : "squeeze_max_kpa") +
+               ", or a smaller detection: margin_mm in the rig file");
   }
 
   void check_target(const Step& step, const ChannelSettings& channel) {
@@ -222,11 +272,15 @@ class Fitting {
     }
   }
 
-  static void point_to_releases(std::vector<PreparedStep>& steps) {
-    auto next = static_cast<std::uint16_t>(steps.size());
+  static void point_ahead(std::vector<PreparedStep>& steps) {
+    const auto nowhere = static_cast<std::uint16_t>(steps.size());
+    std::uint16_t release = nowhere;
+    std::uint16_t grip = nowhere;
     for (std::size_t i = steps.size(); i-- > 0;) {
-      steps[i].release_step = next;
-      if (steps[i].step.kind == StepKind::release) next = static_cast<std::uint16_t>(i);
+      steps[i].release_step = release;
+      steps[i].grip_step = grip;
+      if (steps[i].step.kind == StepKind::release) release = static_cast<std::uint16_t>(i);
+      if (steps[i].step.kind == StepKind::grip) grip = static_cast<std::uint16_t>(i);
     }
   }
 
@@ -235,6 +289,9 @@ class Fitting {
   Problems& problems_;
   document::Document source_;
   std::uint32_t gripped_ = 0;
+  /// By channel: the squeeze from which on a part is seen, once it was asked for.
+  std::vector<std::optional<double>> least_squeeze_kpa_ =
+      std::vector<std::optional<double>>(settings_.channels.size());
   /// The displacement that each channel follows before a step; NaN while it follows none.
   std::vector<double> follows_mm_ = std::vector<double>(settings_.channels.size(), unknown);
 };

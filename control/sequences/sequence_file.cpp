@@ -1,6 +1,8 @@
 #include "control/sequences/sequence_file.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -19,6 +21,7 @@ using document::Range;
 // Bounds that no rig of soft fingers exceeds; the rig's own, narrower limits are checked by prepare().
 constexpr Range displacement_mm{-100, 200};
 constexpr Range pressure_kpa{-100, 1000};
+constexpr Range squeeze_kpa{0.1, 1000};
 constexpr Range speed{0.01, 1000};
 constexpr Range short_time_s{0, 600};
 constexpr Range long_time_s{0, 86400};
@@ -117,9 +120,13 @@ class FileReader {
         target(map, step.target);
         step.settle_s = map.optional_number("settle_s", short_time_s).value_or(0);
         tolerance(map, step);
+        bounds(map, step.bounds);
+        on_contact(map, step, step.tolerance_mm ? OnContact::fail : OnContact::hold);
         break;
       case StepKind::grip:
         target(map, step.target);
+        bounds(map, step.bounds);
+        squeeze(map, step);
         step.settle_s = map.number("settle_s", short_time_s);
         step.verify = verify(map);
         step.timeout_s = map.number("timeout_s", short_time_s);
@@ -127,7 +134,8 @@ class FileReader {
         step.on_fail = on_fail(map);
         break;
       case StepKind::hold:
-        step.hold_s = map.number("hold_s", long_time_s);
+        how_long(map, step);
+        bounds(map, step.bounds);
         step.reverify_every_s = map.number("reverify_every_s", window_s);
         step.on_fail = on_fail(map);
         break;
@@ -139,9 +147,13 @@ class FileReader {
         step.sine.amplitude_mm = map.number("amplitude_mm", {0.001, 100});
         step.sine.frequency_hz = map.number("frequency_hz", {0.001, 50});
         step.sine.cycles = static_cast<std::uint32_t>(map.integer("cycles", 1, 10'000));
+        bounds(map, step.bounds);
+        on_contact(map, step, OnContact::ignore);
         break;
       case StepKind::pressure:
         profile(map, step.profile);
+        bounds(map, step.bounds);
+        on_contact(map, step, OnContact::ignore);
         break;
     }
   }
@@ -187,6 +199,48 @@ class FileReader {
     step.timeout_s = map.number("timeout_s", short_time_s);
     step.retries = retries(map);
     step.on_fail = on_fail(map);
+  }
+
+  static void bounds(MapReader& map, Bounds& bounds) {
+    bounds.pressure_max_kpa =
+        map.optional_number("pressure_max_kpa", pressure_kpa).value_or(bounds.pressure_max_kpa);
+    bounds.squeeze_max_kpa =
+        map.optional_number("squeeze_max_kpa", squeeze_kpa).value_or(bounds.squeeze_max_kpa);
+  }
+
+  /// Who lets a touch be a failure says what comes then; a move with a tolerance has said so.
+  void on_contact(MapReader& map, Step& step, OnContact otherwise) {
+    const auto choice = map.optional_choice(
+        "on_contact", names({OnContact::hold, OnContact::grip, OnContact::fail, OnContact::ignore}));
+    step.on_contact = choice ? static_cast<OnContact>(*choice) : otherwise;
+    const bool says_how = step.tolerance_mm.has_value();
+    if (step.on_contact != OnContact::fail || says_how) return;
+    step.retries = retries(map);
+    step.on_fail = on_fail(map);
+  }
+
+  /// Without a bound of its own the finger never presses by more than it will in the end.
+  static void squeeze(MapReader& map, Step& step) {
+    const auto by = map.optional_number("squeeze_kpa", squeeze_kpa);
+    if (!by) {
+      if (map.optional_number("squeeze_speed_kpa_per_s", speed))
+        map.report("squeeze_speed_kpa_per_s", "squeeze_speed_kpa_per_s belongs to squeeze_kpa");
+      return;
+    }
+    step.squeeze = {*by, map.number("squeeze_speed_kpa_per_s", speed)};
+    if (!std::isfinite(step.bounds.squeeze_max_kpa)) {
+      step.bounds.squeeze_max_kpa = *by;
+    } else if (step.bounds.squeeze_max_kpa < *by) {
+      map.report("squeeze_max_kpa", "squeeze_max_kpa is below squeeze_kpa");
+    }
+  }
+
+  static void how_long(MapReader& map, Step& step) {
+    const bool until = map.optional_choice("until", {"release"}).has_value();
+    if (until && map.optional_number("hold_s", long_time_s)) {
+      map.report("hold_s", "a hold lasts for hold_s or until: release, not both");
+    }
+    step.hold_s = until ? std::numeric_limits<double>::infinity() : map.number("hold_s", long_time_s);
   }
 
   Verify verify(MapReader& map) {

@@ -1,6 +1,7 @@
 #include "control/sequences/sequence_plans.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -37,7 +38,9 @@ class Walk {
 
   /// Begins a step; returns when it has its answer.
   double begin(PreparedStep& step, double time_s) {
-    if (step.step.kind == StepKind::hold) return time_s + step.step.hold_s;
+    if (step.step.kind == StepKind::hold) {
+      return time_s + (std::isfinite(step.step.hold_s) ? step.step.hold_s : longest_hold_s);
+    }
     step_ = &step;
     since_s_ = time_s;
     ChannelOutput seen;

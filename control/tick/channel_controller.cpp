@@ -18,6 +18,10 @@ constexpr double follow_time_s = 0.1;
 constexpr double settled_after_s = 0.2;
 /// The residual of a settled finger, in standard deviations of the sensor's noise.
 constexpr double settled_sigma = 4;
+/// How much of the reading's noise is kept from the command that the free finger needs.
+constexpr double need_filter_s = 0.03;
+/// What a limit cuts off and is not worth telling [kPa].
+constexpr double unnoticed_kpa = 0.5;
 /// Ticks that the model catches up at most after a gap; beyond it the channel starts from rest.
 constexpr std::int64_t most_ticks = 1000;
 /// Ticks that a plan is carried over at most; beyond it the feedforward begins anew.
@@ -37,8 +41,10 @@ ChannelController::ChannelController(const ChannelSettings& settings, double tic
     : tick_s_(tick_s),
       limits_(settings.limits),
       noise_mm_(settings.health.noise_mm),
+      need_share_(-std::expm1(-tick_s / need_filter_s)),
       displacement_used_(settings.displacement_used),
       running_(settings.model, tick_s, settings.feedforward.extra_latency_s, settings.plausibility.max_age_s),
+      curve_(settings.model, settings.limits),
       feedforward_(settings.model, accepted(settings, tick_s), settings.limits, tick_s),
       pid_(settings.pid, tick_s),
       plausibility_(settings.plausibility),
@@ -47,7 +53,7 @@ ChannelController::ChannelController(const ChannelSettings& settings, double tic
 void ChannelController::start(double command_kpa, ChannelOutput& channel) noexcept {
   channel = {};
   channel.command_kpa = limit(limits_, command_kpa, command_kpa, 0).command_kpa;
-  channel.safe_kpa = channel.command_kpa;
+  channel.safe_kpa = channel.free_kpa = channel.command_kpa;
   running_.reset(channel.command_kpa);
   plausibility_.reset();
   health_.reset();
@@ -66,13 +72,40 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
   follow_finger(input.resynchronise, predicted_mm, channel);
   watch_model(input, predicted_mm, is_new, channel);
   channel.deficit_mm = sighted ? -channel.residual_mm : not_known;
-  const LimitedCommand limited =
-      limit(limits_, request(input.demand, ticks, channel), channel.command_kpa, tick_s_);
+  weigh(predicted_mm, channel);
+  send(input.demand, request(input.demand, ticks, channel), channel);
+}
+
+/// What of the pressure moves the finger, and what squeezes. Of two answers to what the free finger would
+/// need here the lower one: on its first way up; or as it is now, where creep and hysteresis let it rest
+/// under less. A finger on its way is under more than it needs to rest, and stopped there it would squeeze
+/// with that.
+void ChannelController::weigh(double predicted_mm, ChannelOutput& channel) noexcept {
+  channel.squeeze_kpa = not_known;
+  if (!displacement_used_ || channel.validity != model::Validity::valid) return;
+  const double first_way_kpa = curve_.command_kpa(channel.displacement_mm - offset_mm_);
+  const double less_kpa =
+      std::min(0.0, running_.pressure_kpa(channel.age_s) - curve_.pressure_kpa(predicted_mm));
+  channel.free_kpa += need_share_ * (first_way_kpa + less_kpa - channel.free_kpa);
+  channel.squeeze_kpa = curve_.command_kpa(predicted_mm) - first_way_kpa;
+}
+
+void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
+                             ChannelOutput& channel) noexcept {
+  const bool bounded = std::isfinite(demand.squeeze_max_kpa);
+  const double squeezed_kpa = bounded ? channel.free_kpa + demand.squeeze_max_kpa : no_ceiling;
+  const double ceiling_kpa = std::min(squeezed_kpa, demand.pressure_max_kpa);
+  const LimitedCommand limited = limit(limits_, wanted_kpa, channel.command_kpa, tick_s_, ceiling_kpa);
   if (tracking()) pid_.sent(limited.command_kpa);
   channel.command_kpa = limited.command_kpa;
   channel.saturated = limited.saturated;
   channel.slewing = limited.slewing;
   channel.request_invalid = limited.invalid;
+  channel.capped_by = UpperLimit::none;
+  if (wanted_kpa <= std::min(ceiling_kpa, limits_.pressure_max_kpa) + unnoticed_kpa) return;
+  channel.capped_by = limits_.pressure_max_kpa <= ceiling_kpa   ? UpperLimit::rig_pressure
+                      : demand.pressure_max_kpa <= squeezed_kpa ? UpperLimit::step_pressure
+                                                                : UpperLimit::step_squeeze;
 }
 
 /// Returns how many ticks it is since the last one.
@@ -96,15 +129,17 @@ std::int64_t ChannelController::advance(Nanoseconds now, double command_kpa) noe
 /// Returns what the model without offset expects of it [mm].
 double ChannelController::take_reading(const ChannelInput& input, ChannelOutput& channel) noexcept {
   const model::Reading& reading = input.reading;
-  channel.validity = plausibility_.judge(reading, input.now, channel.command_kpa);
   const bool none_yet = reading.validity == model::Validity::none_yet;
   channel.age_s = none_yet ? 0 : std::max(0.0, static_cast<double>(input.now - reading.sampled_at) * 1e-9);
+  const double predicted_mm = running_.reading_mm(channel.age_s);
+  channel.validity = plausibility_.judge(reading, input.now, channel.command_kpa, predicted_mm);
+  channel.stands_still = plausibility_.stands_still();
   const bool valid = channel.validity == model::Validity::valid;
   if (valid) channel.displacement_mm = reading.displacement_mm;
   channel.pressure_kpa = reading.pressure_kpa;
   channel.displacement_beyond =
       displacement_used_ && valid && displacement_beyond(limits_, channel.displacement_mm);
-  return running_.reading_mm(channel.age_s);
+  return predicted_mm;
 }
 
 void ChannelController::follow_finger(bool wanted, double predicted_mm, ChannelOutput& channel) noexcept {

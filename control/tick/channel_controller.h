@@ -9,6 +9,7 @@
 #include "control/elements/pid.h"
 #include "control/elements/plausibility.h"
 #include "control/feedforward/feedforward_kinds.h"
+#include "control/feedforward/free_curve.h"
 #include "control/feedforward/running_model.h"
 #include "control/tick/channel_demand.h"
 #include "control/tick/channel_settings.h"
@@ -63,14 +64,18 @@ class ChannelController {
   void follow_finger(bool wanted, double predicted_mm, ChannelOutput& channel) noexcept;
   void watch_model(const ChannelInput& input, double predicted_mm, bool is_new,
                    ChannelOutput& channel) noexcept;
+  void weigh(double predicted_mm, ChannelOutput& channel) noexcept;
+  void send(const ChannelDemand& demand, double wanted_kpa, ChannelOutput& channel) noexcept;
   double request(const ChannelDemand& demand, std::int64_t ticks, ChannelOutput& channel) noexcept;
   double track(const ChannelDemand& demand, std::int64_t ticks, ChannelOutput& channel) noexcept;
 
   double tick_s_;
   LimitSettings limits_;
   double noise_mm_;
+  double need_share_;  ///< of the way to a new ChannelOutput::free_kpa that it goes in a tick
   bool displacement_used_;
   RunningModel running_;
+  FreeCurve curve_;
   Feedforward feedforward_;
   Pid pid_;
   Plausibility plausibility_;

@@ -2,6 +2,7 @@
 // What the sequence player or the supervisor asks of one channel in one tick.
 
 #include <cstdint>
+#include <limits>
 
 #include "control/elements/reference.h"
 #include "control/feedforward/pressure_plan.h"
@@ -27,6 +28,11 @@ struct ChannelDemand {
   /// Of displacement: the finger meets an object. The feedback stays as it is, so that it does not press
   /// ever harder against what does not yield; the feedforward goes on.
   bool feedback_held = false;
+  /// Bounds of the step, in every mode: the command stays at or below both, whatever asks for more.
+  double pressure_max_kpa = std::numeric_limits<double>::infinity();
+  /// Above the command that the free finger needs to rest at the present displacement
+  /// (ChannelOutput::free_kpa).
+  double squeeze_max_kpa = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace softgrip::control

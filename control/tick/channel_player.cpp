@@ -1,5 +1,6 @@
 #include "control/tick/channel_player.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -25,7 +26,10 @@ void ChannelPlayer::reset() noexcept {
   step_ = nullptr;
   stage_ = Stage::done;
   freeze();
+  bounds_ = {};
   contact_.reset();
+  touching_since_s_.reset();
+  stopped_by_contact_ = false;
   answer(GripResult::none, GripEvidence::none);
 }
 
@@ -51,14 +55,28 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
   if (step.kind != StepKind::hold) {
     plan_ = plan;
     plan_origin_s_ = plan != nullptr ? time_s - plan->begin_s : 0;
+    profile_ = squeezing_ = stopped_by_contact_ = false;
+    bounds_ = {};
   }
+  met_ = verified_ = false;
+  contact_met_.reset();
+  bounds_.pressure_max_kpa = std::min(bounds_.pressure_max_kpa, step.bounds.pressure_max_kpa);
+  bounds_.squeeze_max_kpa = std::min(bounds_.squeeze_max_kpa, step.bounds.squeeze_max_kpa);
   failure_ = GripResult::error;
   deadline_s_ = step.timeout_s ? time_s + *step.timeout_s : infinite;
   switch (step.kind) {
     case StepKind::move:
     case StepKind::grip:
+      go_to(step.target, step.target.value, time_s, seen);
+      closing_ = step.target.value > start_value_;
+      stage_ = Stage::ramp;
+      break;
     case StepKind::release:
-      go_to(step.target, step.target.lowest ? traits_.lowest_kpa : step.target.value, time_s, seen);
+      // A release that is asked for early may find less than it would go down to.
+      go_to(step.target,
+            step.target.lowest ? traits_.lowest_kpa : std::min(step.target.value, seen.command_kpa), time_s,
+            seen);
+      closing_ = false;
       stage_ = Stage::ramp;
       break;
     case StepKind::hold:
@@ -71,10 +89,12 @@ void ChannelPlayer::begin(const Step& step, const PressurePlan* plan, double tim
       displacement_.cut(time_s + traits_.preview_s);
       displacement_.sine(step.sine.mean_mm, step.sine.amplitude_mm, step.sine.frequency_hz, step.sine.cycles);
       stage_end_s_ = displacement_.end_s();
+      closing_ = true;
       stage_ = Stage::profile;
       break;
     case StepKind::pressure:
       mode_ = Mode::pressure;
+      profile_ = closing_ = true;
       profile_start_s_ = time_s;
       pressure_kpa_ = value_at(step.profile, 0);
       stage_end_s_ = time_s + duration_s(step.profile);
@@ -113,6 +133,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
 void ChannelPlayer::back_off(double time_s, const ChannelOutput& seen) noexcept {
   const double value = start_value_;
   plan_ = nullptr;
+  verified_ = squeezing_ = stopped_by_contact_ = false;
   go_to(step_->target, value, time_s, seen);
   deadline_s_ = infinite;
   stage_ = Stage::back;
@@ -128,9 +149,13 @@ void ChannelPlayer::take(const ChannelOutput& seen) noexcept {
 
 Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept {
   take(seen);
-  contact_.observe(deficit_mm_);
+  // A sensor that stands still looks like a finger that does.
+  if (!seen.stands_still || step_->kind == StepKind::release) contact_.observe(deficit_mm_);
+  look_for_contact(time_s, seen);
   Progress progress = advance(time_s, seen);
-  if (mode_ == Mode::pressure) pressure_kpa_ = pressure_at(time_s);
+  if (mode_ == Mode::pressure) {
+    pressure_kpa_ = squeezing_ ? squeezing_kpa(time_s, seen) : pressure_at(time_s);
+  }
   if (progress == Progress::pending && time_s >= deadline_s_) {
     // Nobody who could not look may say that there is nothing.
     const bool looked = stage_ == Stage::verify && !window_.blinded(time_s);
@@ -142,12 +167,15 @@ Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept 
 }
 
 double ChannelPlayer::pressure_at(double time_s) const noexcept {
-  if (step_->kind == StepKind::pressure) return value_at(step_->profile, time_s - profile_start_s_);
+  if (profile_) return value_at(step_->profile, time_s - profile_start_s_);
   return pressure_.at(time_s).value;
 }
 
 Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexcept {
+  if (stopped_by_contact_) return stopped(seen);
+  if (squeezing_ && !squeezes_on(time_s, seen)) return Progress::pending;
   switch (stage_) {
+    case Stage::squeeze:
     case Stage::ramp:
       return time_s >= ramp_end_s_ ? after_ramp(time_s, seen) : Progress::pending;
     case Stage::settle:
@@ -168,8 +196,7 @@ Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexce
       break;
   }
   // Nobody holds what cannot be looked at any more.
-  const bool doubted = step_->kind == StepKind::grip && !usable(step_->verify, seen);
-  return doubted ? Progress::pending : Progress::passed;
+  return verified_ && !usable(step_->verify, seen) ? Progress::pending : Progress::passed;
 }
 
 Progress ChannelPlayer::pass() noexcept {
@@ -200,13 +227,16 @@ Progress ChannelPlayer::settle(double time_s, const ChannelOutput& seen) noexcep
   }
   if (time_s < stage_end_s_) return Progress::pending;
   if (step_->kind != StepKind::grip) return pass();
+  // What was reached stays while it is looked at and held.
+  if (squeezing_) stay_at(pressure_kpa_, time_s);
   stage_ = Stage::verify;
   window_.start(time_s, step_->verify.window_s);
   return verify(time_s, seen);
 }
 
 bool ChannelPlayer::usable(const Verify& verify, const ChannelOutput& seen) const noexcept {
-  return verify.by == VerifyBy::pressure ? std::isfinite(seen.pressure_kpa) : std::isfinite(deficit_mm_);
+  if (verify.by == VerifyBy::pressure) return std::isfinite(seen.pressure_kpa);
+  return std::isfinite(deficit_mm_) && !seen.stands_still;
 }
 
 bool ChannelPlayer::evident(const Verify& verify, const ChannelOutput& seen) const noexcept {
@@ -220,6 +250,7 @@ Progress ChannelPlayer::verify(double time_s, const ChannelOutput& seen) noexcep
   const Verify& verify = step_->verify;
   switch (window_.observe(time_s, usable(verify, seen), evident(verify, seen))) {
     case EvidenceWindow::Verdict::verified:
+      verified_ = true;
       return pass();
     case EvidenceWindow::Verdict::refuted:
       failure_ = GripResult::no_part;
@@ -269,8 +300,11 @@ ChannelDemand ChannelPlayer::demand(double time_s) const noexcept {
   demand.time_s = time_s;
   demand.plan = plan_;
   demand.plan_origin_s = plan_origin_s_;
-  const bool closing = step_ != nullptr && (step_->kind == StepKind::grip || step_->kind == StepKind::hold);
-  demand.feedback_held = contact_.touching() && (closing || result_ == GripResult::holding);
+  const bool watched = step_ != nullptr && (step_->kind == StepKind::grip || step_->kind == StepKind::hold ||
+                                            (step_->on_contact != OnContact::ignore && closing_));
+  demand.feedback_held = contact_.touching() && (watched || result_ == GripResult::holding);
+  demand.pressure_max_kpa = bounds_.pressure_max_kpa;
+  demand.squeeze_max_kpa = bounds_.squeeze_max_kpa;
   return demand;
 }
 

@@ -2,6 +2,7 @@
 // One channel's way through one step of a sequence.
 
 #include <cstdint>
+#include <optional>
 
 #include "control/elements/grip_detector.h"
 #include "control/elements/grip_result.h"
@@ -45,6 +46,10 @@ class ChannelPlayer {
   [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
   /// The finger touches something.
   [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
+  /// Once per attempt, when the finger has met something on its way: what it does now.
+  [[nodiscard]] std::optional<OnContact> take_contact() noexcept;
+  /// It stays with the pressure of its first touch.
+  [[nodiscard]] bool stopped_by_contact() const noexcept { return stopped_by_contact_; }
   /// What a failed step would answer now: NO PART or ERROR.
   [[nodiscard]] GripResult failure() const noexcept { return failure_; }
 
@@ -71,9 +76,28 @@ class ChannelPlayer {
   [[nodiscard]] double pressure_at(double time_s) const noexcept;
 
  private:
-  enum class Stage : std::uint8_t { ramp, settle, verify, watch, purge, free, profile, back, done };
+  enum class Stage : std::uint8_t {
+    ramp,
+    squeeze,
+    settle,
+    verify,
+    watch,
+    purge,
+    free,
+    profile,
+    back,
+    done,
+  };
 
   void go_to(const Target& target, double value, double time_s, const ChannelOutput& seen) noexcept;
+  void look_for_contact(double time_s, const ChannelOutput& seen) noexcept;
+  [[nodiscard]] OnContact on_contact() const noexcept;
+  [[nodiscard]] bool under_way() const noexcept;
+  Progress stopped(const ChannelOutput& seen) noexcept;
+  void stay_at(double pressure_kpa, double time_s) noexcept;
+  void begin_squeeze(double time_s, const ChannelOutput& seen) noexcept;
+  [[nodiscard]] bool squeezes_on(double time_s, const ChannelOutput& seen) noexcept;
+  [[nodiscard]] double squeezing_kpa(double time_s, const ChannelOutput& seen) const noexcept;
   Progress advance(double time_s, const ChannelOutput& seen) noexcept;
   Progress after_ramp(double time_s, const ChannelOutput& seen) noexcept;
   Progress settle(double time_s, const ChannelOutput& seen) noexcept;
@@ -101,9 +125,21 @@ class ChannelPlayer {
   double stage_end_s_ = 0;
   double deadline_s_ = 0;
   double deficit_mm_ = 0;
-  bool within_ = false;  ///< the tolerance
+  bool within_ = false;   ///< the tolerance
+  Bounds bounds_;         ///< of the step, or of the one before a hold
+  bool profile_ = false;  ///< the pressure is that of the step's profile
+  bool closing_ = false;  ///< the motion of the step goes up
+  /// Since when it touches something without a break.
+  std::optional<double> touching_since_s_;
+  bool met_ = false;                      ///< something, in this attempt
+  std::optional<OnContact> contact_met_;  ///< not taken yet
+  bool stopped_by_contact_ = false;
+  bool squeezing_ = false;       ///< the pressure follows what the free finger needs, by so much above it
+  double squeeze_from_kpa_ = 0;  ///< at squeeze_from_s_
+  double squeeze_from_s_ = 0;
   Contact contact_;
   EvidenceWindow window_;
+  bool verified_ = false;  ///< in this attempt
   HoldWatch hold_;
   Verify held_by_;  ///< criterion of what is held
   GripResult failure_ = GripResult::error;

@@ -164,16 +164,23 @@ void RigController::carry_out(const Orders& orders, double time_s) noexcept {
     for (Channel& channel : channels_) channel.resynchronise = false;
   }
   if (orders.begin != nullptr) player_.start(*orders.begin, time_s, output_.channels, events);
+  if (orders.release && supervisor_.state() == State::running) release(time_s);
+}
+
+void RigController::release(double time_s) noexcept {
+  const Phase phase = player_.phase();
+  conclude_sequence(player_.release(time_s, output_.channels, output_.events), phase);
+}
+
+void RigController::conclude_sequence(const SequencePlayer::Outcome& outcome, Phase phase) noexcept {
+  if (outcome.finished) supervisor_.sequence_ended(outcome.end, outcome.action, phase, output_.events);
 }
 
 void RigController::play(double time_s) noexcept {
   if (supervisor_.state() == State::idle) player_.idle_tick(time_s, output_.channels, output_.events);
   if (supervisor_.state() != State::running) return;
   const Phase phase = player_.phase();
-  const SequencePlayer::Outcome outcome = player_.tick(time_s, output_.channels, output_.events);
-  if (outcome.finished) {
-    supervisor_.sequence_ended(outcome.end, outcome.action, phase, output_.events);
-  }
+  conclude_sequence(player_.tick(time_s, output_.channels, output_.events), phase);
 }
 
 void RigController::control(std::size_t index, const TickInput& input, double time_s) noexcept {
@@ -184,6 +191,7 @@ void RigController::control(std::size_t index, const TickInput& input, double ti
       {input.now, input.readings[index], demand(index, time_s), channel.resynchronise, free_motion},
       output_.channels[index]);
   tell_changes(index);
+  tell_limits(index, time_s);
 }
 
 ChannelDemand RigController::demand(std::size_t index, double time_s) const noexcept {
@@ -193,6 +201,17 @@ ChannelDemand RigController::demand(std::size_t index, double time_s) const noex
   const bool vents = (supervisor_.venting() & bit(index)) != 0;
   demand.mode = vents ? ChannelDemand::Mode::vent : ChannelDemand::Mode::hold;
   return demand;
+}
+
+void RigController::tell_limits(std::size_t index, double time_s) noexcept {
+  ChannelOutput& seen = output_.channels[index];
+  const UpperLimit before = seen.limit;
+  const std::optional<UpperLimit> now = channels_[index].limits.observe(time_s, seen.capped_by);
+  if (!now) return;
+  seen.limit = *now;
+  const bool binds = *now != UpperLimit::none;
+  output_.events.add_of_channel(index, binds ? Event::Kind::limit_binds : Event::Kind::limit_free,
+                                binds ? *now : before, 0, seen.command_kpa);
 }
 
 void RigController::tell_changes(std::size_t index) noexcept {

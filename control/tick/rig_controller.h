@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "control/elements/limit_watch.h"
 #include "control/elements/rest_watch.h"
 #include "control/tick/channel_controller.h"
 #include "control/tick/fault_monitor.h"
@@ -41,6 +42,7 @@ class RigController {
 
     ChannelController controller;
     RestWatch rest;
+    LimitWatch limits;
     double lowest_kpa;
     double longest_fall_kpa;  ///< in a tick
     Nanoseconds longest_age;  ///< of a reading
@@ -53,11 +55,14 @@ class RigController {
   Rest look_for_rest(const PreparedSequence& sequence, double time_s) noexcept;
   void carry_out(const Orders& orders, double time_s) noexcept;
   void play(double time_s) noexcept;
+  void release(double time_s) noexcept;
+  void conclude_sequence(const SequencePlayer::Outcome& outcome, Phase phase) noexcept;
   void forget_old_readings(Nanoseconds now) noexcept;
   void stay_below_outputs(std::size_t index, double last_kpa, const TickInput& input) noexcept;
   void control(std::size_t index, const TickInput& input, double time_s) noexcept;
   [[nodiscard]] ChannelDemand demand(std::size_t index, double time_s) const noexcept;
   void tell_changes(std::size_t index) noexcept;
+  void tell_limits(std::size_t index, double time_s) noexcept;
   void conclude() noexcept;
 
   double rest_timeout_s_;

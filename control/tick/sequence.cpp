@@ -60,6 +60,11 @@ std::string_view name_of(OnFail action) noexcept {
   return names[static_cast<std::size_t>(action)];
 }
 
+std::string_view name_of(OnContact action) noexcept {
+  constexpr std::array<std::string_view, 6> names{"hold", "grip", "fail", "ignore", "squeeze", "close"};
+  return names[static_cast<std::size_t>(action)];
+}
+
 std::string_view name_of(VerifyBy by) noexcept {
   constexpr std::array<std::string_view, 3> names{"detection", "position", "pressure"};
   return names[static_cast<std::size_t>(by)];

@@ -39,6 +39,18 @@ enum class OnFail : std::uint8_t {
 /// As in the file: "vent", "hold", "abort", "release", "continue".
 [[nodiscard]] std::string_view name_of(OnFail action) noexcept;
 
+/// What a finger does that touches something on its way: how its step ends.
+enum class OnContact : std::uint8_t {
+  hold,     ///< stays with the pressure of its first touch; its step is done
+  grip,     ///< the same, and the sequence goes on with its next grip step at once
+  fail,     ///< stays so, and its step fails
+  ignore,   ///< goes on as if nothing were there
+  squeeze,  ///< of a grip with squeeze_kpa: presses by so much (not written in files)
+  close,    ///< of any other grip: goes on to its target with its feedback held (not written in files)
+};
+/// "hold", "grip", "fail", "ignore", "squeeze", "close"
+[[nodiscard]] std::string_view name_of(OnContact action) noexcept;
+
 /// On what a grip is verified.
 enum class VerifyBy : std::uint8_t {
   detection,  ///< the finger moved less than its free-motion envelope
@@ -95,6 +107,19 @@ struct Sine {
   std::uint32_t cycles = 1;
 };
 
+/// What a step may put out at most.
+struct Bounds {
+  double pressure_max_kpa = std::numeric_limits<double>::infinity();
+  /// Above the command that the free finger needs to rest at the present displacement.
+  double squeeze_max_kpa = std::numeric_limits<double>::infinity();
+};
+
+/// How a grip presses from its first touch on.
+struct Squeeze {
+  double by_kpa = 0;           ///< above what the free finger needs to rest there; 0: the target alone counts
+  double speed_kpa_per_s = 0;  ///< > 0 with by_kpa
+};
+
 /// One step as written.
 struct Step {
   StepKind kind = StepKind::move;
@@ -106,8 +131,11 @@ struct Step {
   Profile profile;                     ///< of pressure
   double settle_s = 0;                 ///< waited after the ramp
   std::optional<double> tolerance_mm;  ///< of move: within it for settle_s, or the step fails at timeout_s
-  Verify verify;                       ///< of grip
-  double hold_s = 0;
+  Bounds bounds;                       ///< of all but release; of hold where it has its own
+  OnContact on_contact = OnContact::ignore;
+  Squeeze squeeze;              ///< of grip
+  Verify verify;                ///< of grip
+  double hold_s = 0;            ///< infinite: until a release is asked for
   double reverify_every_s = 0;  ///< of hold
   double purge_s = 0;           ///< of release: stays at the lowest command
   std::optional<double> timeout_s;
@@ -137,6 +165,7 @@ struct PreparedStep {
   Step step;
   std::uint32_t channels = 0;      ///< bit i: channel i takes part
   std::uint16_t release_step = 0;  ///< where on_fail: release goes; the number of steps: nowhere
+  std::uint16_t grip_step = 0;     ///< where on_contact: grip goes; the number of steps: nowhere
   /// By channel of the rig, for feedforward `planned`; empty where nothing is planned.
   std::vector<PressurePlan> plans;
   /// nullptr if there is none.

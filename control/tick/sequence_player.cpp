@@ -41,8 +41,10 @@ void SequencePlayer::begin_step(std::uint16_t index, double time_s, std::span<co
 SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const ChannelOutput> seen,
                                              EventList& events) noexcept {
   const bool holds = now().step.kind == StepKind::hold;
+  bool to_grip = false;
   for_each_of_step([&](std::size_t i) {
     const Progress progress = channels_[i].tick(time_s, seen[i]);
+    to_grip |= take_contact(i, seen[i], events);
     if ((refused_ & bit(i)) != 0) return;
     // What was verified may be doubted again while the others are waited for.
     if (progress == Progress::pending) done_ &= ~bit(i);
@@ -53,6 +55,7 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
       if (holds) lose(i, events);
     }
   });
+  if (to_grip) return leave_for(now().grip_step, time_s, seen, events);
   // A lost part is acted on at once; every other answer waits for the other fingers.
   if (done_ != now().channels && !(holds && refused_ != 0)) {
     return {};
@@ -75,6 +78,35 @@ SequencePlayer::Outcome SequencePlayer::next_step(std::size_t index, double time
     return {};
   }
   return finished(OnFail::hold, events);
+}
+
+/// Ends the present step as it is: who takes no part in the one that follows stays where it is.
+SequencePlayer::Outcome SequencePlayer::leave_for(std::size_t index, double time_s,
+                                                  std::span<const ChannelOutput> seen,
+                                                  EventList& events) noexcept {
+  const std::uint32_t going = index < sequence_->steps.size() ? sequence_->steps[index].channels : 0;
+  for_each_of_step([&](std::size_t i) {
+    if ((going & bit(i)) == 0) channels_[i].freeze();
+  });
+  return next_step(index, time_s, seen, events);
+}
+
+/// True when the sequence is to go on with its next grip.
+bool SequencePlayer::take_contact(std::size_t channel, const ChannelOutput& seen,
+                                  EventList& events) noexcept {
+  const std::optional<OnContact> met = channels_[channel].take_contact();
+  if (!met) return false;
+  events.add_of_channel(channel, Event::Kind::contact, *met, 0, seen.displacement_mm);
+  return met == OnContact::grip && now().grip_step < sequence_->steps.size();
+}
+
+SequencePlayer::Outcome SequencePlayer::release(double time_s, std::span<const ChannelOutput> seen,
+                                                EventList& events) noexcept {
+  if (plays(StepKind::release)) return {};
+  if (!plays(StepKind::hold) && end_ == SequenceEnd::done) end_ = SequenceEnd::stopped;
+  const std::size_t to = now().release_step;
+  if (to < sequence_->steps.size()) return leave_for(to, time_s, seen, events);
+  return finished(OnFail::vent, events);
 }
 
 SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const ChannelOutput> seen,
@@ -135,7 +167,7 @@ void SequencePlayer::lose(std::size_t channel, EventList& events) noexcept {
 }
 
 SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& events) noexcept {
-  if (end_ == SequenceEnd::failed) answer_the_rest(events);
+  if (end_ != SequenceEnd::done) answer_the_rest(events);
   stop_playing();
   return {true, end_, action};
 }
@@ -220,6 +252,7 @@ Phase SequencePlayer::phase() const noexcept {
 bool SequencePlayer::free_motion(std::size_t channel) const noexcept {
   const ChannelPlayer& player = channels_[channel];
   if (player.result() == GripResult::holding) return false;
+  if (player.stopped_by_contact()) return false;
   const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
   return !(may_touch && player.touching());
 }

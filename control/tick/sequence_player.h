@@ -30,6 +30,10 @@ class SequencePlayer {
   /// One tick of the running sequence.
   Outcome tick(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
 
+  /// Somebody asks for what is held: on with the next release step, as the sequence would. Without one it is
+  /// finished, to be vented. Asked for before a hold, the sequence is not done, but stopped.
+  Outcome release(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
+
   /// The sequence ends from outside. Channels without an answer get ERROR. So do those that were HOLDING,
   /// when nobody can vouch for it any more: after a fault, or half released and not `venting`.
   void interrupt(SequenceEnd end, std::uint32_t venting, EventList& events) noexcept;
@@ -64,6 +68,9 @@ class SequencePlayer {
                   EventList& events) noexcept;
   Outcome next_step(std::size_t index, double time_s, std::span<const ChannelOutput> seen,
                     EventList& events) noexcept;
+  Outcome leave_for(std::size_t index, double time_s, std::span<const ChannelOutput> seen,
+                    EventList& events) noexcept;
+  bool take_contact(std::size_t channel, const ChannelOutput& seen, EventList& events) noexcept;
   Outcome failed(double time_s, std::span<const ChannelOutput> seen, EventList& events) noexcept;
   void answer_passed(std::size_t channel, double time_s, EventList& events) noexcept;
   void answer(std::size_t channel, GripResult result, GripEvidence evidence, EventList& events) noexcept;

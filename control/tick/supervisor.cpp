@@ -92,6 +92,9 @@ void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orde
     case Request::Kind::vent:
       answer_vent(request, orders, events);
       break;
+    case Request::Kind::release:
+      answer_release(facts, request, orders, events);
+      break;
     case Request::Kind::acknowledge:
       answer_acknowledge(facts, request, orders, events);
       break;
@@ -142,6 +145,25 @@ void Supervisor::answer_vent(const Request& request, Orders& orders, EventList& 
     end_sequence(SequenceEnd::stopped, events);
   }
   go(State::stopping, request.id, events);
+}
+
+/// The gentle way out of a hold: a sequence releases as it says itself; what stays pressed without one goes
+/// down at the slew limit.
+void Supervisor::answer_release(const Facts& facts, const Request& request, Orders& orders,
+                                EventList& events) noexcept {
+  const auto refuse = [&](RefusalCode code) { events.add(Event::Kind::request_refused, code, request.id); };
+  if (state_ == State::running) {
+    orders.release = true;
+    events.add(Event::Kind::release_asked, 0, request.id);
+  } else if (state_ == State::faulted) {
+    refuse(RefusalCode::faulted);
+  } else if (state_ == State::starting) {
+    refuse(RefusalCode::no_valid_reading);
+  } else if (state_ == State::resynchronising || facts.lowest != all_) {
+    answer_vent(request, orders, events);
+  } else {
+    refuse(RefusalCode::nothing_to_release);
+  }
 }
 
 void Supervisor::answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,

@@ -35,6 +35,7 @@ struct Facts {
 struct Orders {
   std::optional<SequenceEnd> interrupt;          ///< the player stops, for this reason
   std::optional<std::uint32_t> acknowledged_by;  ///< answers are cleared, because of this request
+  bool release = false;                          ///< the sequence that runs goes on with its release
   std::uint32_t vented = 0;                      ///< channels that a stop has vented
   std::uint32_t no_rest = 0;                     ///< channels that get ERROR: they did not come to rest
   bool seek_rest = false;                        ///< a start was accepted: look for rest from now on
@@ -65,6 +66,7 @@ class Supervisor {
   void answer_start(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
   [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input, const Facts& facts) const noexcept;
   void answer_vent(const Request& request, Orders& orders, EventList& events) noexcept;
+  void answer_release(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
   void answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,
                           EventList& events) noexcept;
   void stop(const Facts& facts, std::uint32_t request, Orders& orders, EventList& events) noexcept;

@@ -10,6 +10,7 @@
 
 #include "control/elements/fault.h"
 #include "control/elements/grip_result.h"
+#include "control/elements/limit_watch.h"
 #include "control/elements/model_health.h"
 #include "control/tick/settings.h"
 #include "model/reading.h"
@@ -44,7 +45,7 @@ enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 
 /// What the outside may ask of the controller; at most one per tick (the loop queues them).
 struct Request {
-  enum class Kind : std::uint8_t { none, start, stop, vent, acknowledge };
+  enum class Kind : std::uint8_t { none, start, stop, vent, acknowledge, release };
   Kind kind = Kind::none;
   std::uint32_t id = 0;                        ///< echoed in the events that answer it
   const PreparedSequence* sequence = nullptr;  ///< for start; outlives its run
@@ -86,21 +87,27 @@ struct ChannelOutput {
                                ///< NaN while there is no valid reading
   double deficit_mm = 0;       ///< how much less than its free-motion envelope the finger moved; NaN without
                                ///< sight and until the second valid reading in a row
-  double age_s = 0;            ///< of the reading
-  double health_rms_mm = 0;    ///< root mean square of the residual, by which a model is unfit
-  std::uint16_t step = 0;      ///< index in the sequence
+  double free_kpa = 0;       ///< the command that the free finger needs to rest at this displacement; of the
+                             ///< last valid reading
+  double squeeze_kpa = 0;    ///< the deficit as a pressure: how much of what acts squeezes; NaN without sight
+  double age_s = 0;          ///< of the reading
+  double health_rms_mm = 0;  ///< root mean square of the residual, by which a model is unfit
+  std::uint16_t step = 0;    ///< index in the sequence
   model::Validity validity = model::Validity::none_yet;
   GripResult result = GripResult::none;
   GripEvidence evidence = GripEvidence::none;  ///< on what the result rests
   HealthState health = HealthState::unknown;   ///< of the model
   bool health_changed = false;
-  bool saturated = false;            ///< the request was outside the pressure range
-  bool slewing = false;              ///< the request was further away than the slew limits allow
-  bool request_invalid = false;      ///< the request was not a number: the command was held
-  bool reference_clamped = false;    ///< the reference was outside the displacement range
-  bool out_of_reach = false;         ///< the feedforward cannot reach the reference within the limits
-  bool displacement_beyond = false;  ///< the reading is beyond the displacement range and its margin
-  bool synchronised = false;         ///< resynchronising was asked and residual_mm has settled
+  UpperLimit capped_by = UpperLimit::none;  ///< what kept the command noticeably below the request
+  UpperLimit limit = UpperLimit::none;      ///< the same, when it has done so for longer than a moment
+  bool saturated = false;                   ///< the request was outside the pressure range
+  bool slewing = false;                     ///< the request was further away than the slew limits allow
+  bool request_invalid = false;             ///< the request was not a number: the command was held
+  bool reference_clamped = false;           ///< the reference was outside the displacement range
+  bool out_of_reach = false;                ///< the feedforward cannot reach the reference within the limits
+  bool stands_still = false;                ///< the reading repeats itself as this sensor never does
+  bool displacement_beyond = false;         ///< the reading is beyond the displacement range and its margin
+  bool synchronised = false;                ///< resynchronising was asked and residual_mm has settled
 };
 
 /// `Event::channel` of what concerns the whole rig.
@@ -120,13 +127,18 @@ struct Event {
     model_health_changed,
     reading_invalid,
     reading_valid,
+    contact,        ///< a finger has touched something in a motion
+    limit_binds,    ///< a limit has kept a command down for longer than a moment
+    limit_free,     ///< it does not any more
+    release_asked,  ///< on with the release step
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
-  /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity or SequenceEnd, by kind.
+  /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity, SequenceEnd, OnContact or
+  /// UpperLimit, by kind.
   std::uint16_t detail = 0;
-  std::uint32_t request = 0;                   ///< the id of the request it answers, or 0
-  double value = 0;                            ///< a number that goes with it (a deficit, an age), or 0
+  std::uint32_t request = 0;  ///< the id of the request it answers, or 0
+  double value = 0;           ///< a number that goes with it (a deficit, an age, where a contact was), or 0
   GripEvidence evidence = GripEvidence::none;  ///< of grip_result: on what it rests
 };
 

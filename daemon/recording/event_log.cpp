@@ -17,13 +17,6 @@ namespace {
 using control::Event;
 using Kind = control::Event::Kind;
 
-/// In the order of control::Event::Kind.
-constexpr std::array<std::string_view, 11> kind_names{
-    "state_changed",        "fault_latched",   "fault_acknowledged", "sequence_started",
-    "sequence_finished",    "step_started",    "grip_result",        "request_refused",
-    "model_health_changed", "reading_invalid", "reading_valid"};
-static_assert(static_cast<std::size_t>(Kind::reading_valid) + 1 == kind_names.size());
-
 /// An event that needs no numbers to be told.
 struct Words {
   std::string_view kind;
@@ -66,25 +59,27 @@ EventEntry entry_of(const Table& table, Which which) {
   return entry;
 }
 
-void describe_state(const Event& event, EventEntry& entry) {
+using Sequence = control::PreparedSequence;
+
+void describe_state(const Event& event, const Sequence*, EventEntry& entry) {
   entry.code = control::name_of(static_cast<control::State>(event.detail));
   entry.text = fmt::format("The state is now {}.", entry.code);
 }
 
-void describe_fault(const Event& event, EventEntry& entry) {
+void describe_fault(const Event& event, const Sequence*, EventEntry& entry) {
   const control::FaultInfo& info = control::info_of(static_cast<control::FaultCode>(event.detail));
   entry.code = info.id;
   entry.text = fmt::format("Fault {} {}: {}", info.id, info.name, info.meaning);
   entry.severity = Severity::error;
 }
 
-void describe_acknowledged(const Event& event, EventEntry& entry) {
+void describe_acknowledged(const Event& event, const Sequence*, EventEntry& entry) {
   const control::FaultInfo& info = control::info_of(static_cast<control::FaultCode>(event.detail));
   entry.code = info.id;
   entry.text = fmt::format("Fault {} {} was acknowledged.", info.id, info.name);
 }
 
-void describe_step(const Event& event, const control::PreparedSequence* sequence, EventEntry& entry) {
+void describe_step(const Event& event, const Sequence* sequence, EventEntry& entry) {
   entry.code = fmt::format("{}", event.detail);
   const bool known = sequence != nullptr && event.detail < sequence->steps.size();
   const control::Step* step = known ? &sequence->steps[event.detail].step : nullptr;
@@ -92,7 +87,7 @@ void describe_step(const Event& event, const control::PreparedSequence* sequence
                                : fmt::format("Step {} begins.", event.detail);
 }
 
-void describe_result(const Event& event, EventEntry& entry) {
+void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
   const auto result = static_cast<control::GripResult>(event.detail);
   entry.code = control::title_of(result);
   entry.text = fmt::format("The grip's result is {}.", entry.code);
@@ -100,14 +95,14 @@ void describe_result(const Event& event, EventEntry& entry) {
   entry.severity = bad ? Severity::warning : Severity::information;
 }
 
-void describe_refusal(const Event& event, EventEntry& entry) {
+void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
   entry.text = fmt::format("The request was refused: {}.", control::name_of(refusal));
   entry.severity = Severity::warning;
 }
 
-void describe_health(const Event& event, EventEntry& entry) {
+void describe_health(const Event& event, const Sequence*, EventEntry& entry) {
   const auto health = static_cast<control::HealthState>(event.detail);
   entry.code = control::name_of(health);
   entry.text = fmt::format("The model is now {} (residual {:.3g} mm RMS).", entry.code, event.value);
@@ -115,66 +110,111 @@ void describe_health(const Event& event, EventEntry& entry) {
   entry.severity = good ? Severity::information : Severity::warning;
 }
 
-std::string quoted_name(const control::PreparedSequence* sequence) {
+void describe_contact(const Event& event, const Sequence*, EventEntry& entry) {
+  const auto action = static_cast<control::OnContact>(event.detail);
+  entry.code = control::name_of(action);
+  const char* then = "";
+  switch (action) {
+    case control::OnContact::hold:
+      then = "it stays with the pressure of its first touch";
+      break;
+    case control::OnContact::grip:
+      then = "it stays with the pressure of its first touch, and the grip begins";
+      break;
+    case control::OnContact::fail:
+      then = "it stays with the pressure of its first touch, and the step has failed";
+      break;
+    case control::OnContact::ignore:
+      then = "the step goes on all the same";
+      break;
+    case control::OnContact::squeeze:
+      then = "it squeezes";
+      break;
+    case control::OnContact::close:
+      then = "it closes on to its target, with its feedback held";
+      break;
+  }
+  entry.text = fmt::format("The finger has touched something at {:.2f} mm: {}.", event.value, then);
+  const bool unexpected = action == control::OnContact::hold || action == control::OnContact::fail;
+  entry.severity = unexpected ? Severity::warning : Severity::information;
+}
+
+void describe_limit(const Event& event, const Sequence*, EventEntry& entry) {
+  const bool binds = event.kind == Kind::limit_binds;
+  const auto limit = static_cast<control::UpperLimit>(event.detail);
+  entry.code = control::name_of(limit);
+  const std::string_view key = limit == control::UpperLimit::rig_pressure    ? "pressure_max_kpa of the rig"
+                               : limit == control::UpperLimit::step_pressure ? "pressure_max_kpa of the step"
+                                                                             : "squeeze_max_kpa of the step";
+  entry.text = binds ? fmt::format("The {} keeps the pressure down, at {:.1f} kPa.", key, event.value)
+                     : fmt::format("The {} does not keep the pressure down any more.", key);
+  const bool of_rig = limit == control::UpperLimit::rig_pressure;
+  entry.severity = binds && of_rig ? Severity::warning : Severity::information;
+}
+
+std::string quoted_name(const Sequence* sequence) {
   return sequence != nullptr ? fmt::format(" '{}'", sequence->name) : std::string();
 }
 
-void describe_start(const control::PreparedSequence* sequence, EventEntry& entry) {
+void describe_start(const Event&, const Sequence* sequence, EventEntry& entry) {
   entry.code = sequence != nullptr ? sequence->name : "";
   entry.text = fmt::format("The sequence{} begins.", quoted_name(sequence));
 }
 
-void describe_end(const Event& event, const control::PreparedSequence* sequence, EventEntry& entry) {
+void describe_end(const Event& event, const Sequence* sequence, EventEntry& entry) {
   entry.code = control::name_of(static_cast<control::SequenceEnd>(event.detail));
   entry.text = fmt::format("The sequence{} ended: {}.", quoted_name(sequence), entry.code);
 }
+
+void describe_reading(const Event& event, const Sequence*, EventEntry& entry) {
+  if (event.kind == Kind::reading_valid) {
+    entry.text = "The reading is valid again.";
+    return;
+  }
+  entry.code = name_of(static_cast<model::Validity>(event.detail));
+  entry.text = fmt::format("The reading is not valid: {}.", entry.code);
+  entry.severity = Severity::warning;
+}
+
+void describe_release(const Event&, const Sequence*, EventEntry& entry) {
+  entry.text = "A release was asked for.";
+}
+
+struct Telling {
+  std::string_view kind;
+  void (*describe)(const Event& event, const Sequence* sequence, EventEntry& entry);
+};
+/// In the order of control::Event::Kind.
+constexpr std::array<Telling, 15> tellings{{
+    {"state_changed", describe_state},
+    {"fault_latched", describe_fault},
+    {"fault_acknowledged", describe_acknowledged},
+    {"sequence_started", describe_start},
+    {"sequence_finished", describe_end},
+    {"step_started", describe_step},
+    {"grip_result", describe_result},
+    {"request_refused", describe_refusal},
+    {"model_health_changed", describe_health},
+    {"reading_invalid", describe_reading},
+    {"reading_valid", describe_reading},
+    {"contact", describe_contact},
+    {"limit_binds", describe_limit},
+    {"limit_free", describe_limit},
+    {"release_asked", describe_release},
+}};
+static_assert(static_cast<std::size_t>(Kind::release_asked) + 1 == tellings.size());
 
 }  // namespace
 
 EventEntry describe(const Event& event, const std::vector<std::string>& channel_names,
                     const control::PreparedSequence* sequence) {
+  const Telling& telling = tellings[static_cast<std::size_t>(event.kind)];
   EventEntry entry;
-  entry.kind = kind_names[static_cast<std::size_t>(event.kind)];
+  entry.kind = telling.kind;
   entry.request = event.request;
   entry.value = event.value;
   if (event.channel < channel_names.size()) entry.channel = channel_names[event.channel];
-  switch (event.kind) {
-    case Kind::state_changed:
-      describe_state(event, entry);
-      break;
-    case Kind::fault_latched:
-      describe_fault(event, entry);
-      break;
-    case Kind::fault_acknowledged:
-      describe_acknowledged(event, entry);
-      break;
-    case Kind::sequence_started:
-      describe_start(sequence, entry);
-      break;
-    case Kind::sequence_finished:
-      describe_end(event, sequence, entry);
-      break;
-    case Kind::step_started:
-      describe_step(event, sequence, entry);
-      break;
-    case Kind::grip_result:
-      describe_result(event, entry);
-      break;
-    case Kind::request_refused:
-      describe_refusal(event, entry);
-      break;
-    case Kind::model_health_changed:
-      describe_health(event, entry);
-      break;
-    case Kind::reading_invalid:
-      entry.code = name_of(static_cast<model::Validity>(event.detail));
-      entry.text = fmt::format("The reading is not valid: {}.", entry.code);
-      entry.severity = Severity::warning;
-      break;
-    case Kind::reading_valid:
-      entry.text = "The reading is valid again.";
-      break;
-  }
+  telling.describe(event, sequence, entry);
   if (!entry.channel.empty()) entry.text = fmt::format("{}: {}", entry.channel, entry.text);
   return entry;
 }

@@ -1,6 +1,7 @@
 #include "daemon/service/daemon.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +23,11 @@ constexpr std::size_t events_kept = 10'000;
 constexpr Nanoseconds virtual_origin = ns_per_s;
 /// How long the rig may take to become idle before a sequence of the options is given up.
 constexpr Nanoseconds patience = 10 * ns_per_s;
+
+bool waits_for_a_release(const control::PreparedSequence& sequence) {
+  return std::any_of(sequence.steps.begin(), sequence.steps.end(),
+                     [](const auto& prepared) { return std::isinf(prepared.step.hold_s); });
+}
 
 std::size_t records_of(const control::RigSettings& settings) {
   const double rows = seconds_of_rows * settings.rate_hz * static_cast<double>(settings.channels.size());
@@ -192,6 +198,10 @@ tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile r
     }
     if (!options.sequence && !options.duration_s) {
       return tl::unexpected(std::string("virtual time needs an end: a sequence or a duration"));
+    }
+    if (options.sequence && !options.duration_s && waits_for_a_release(options.sequence->prepared)) {
+      return tl::unexpected(
+          std::string("nobody can ask for a release in virtual time: this sequence would hold for ever"));
     }
   }
   return std::unique_ptr<Daemon>(

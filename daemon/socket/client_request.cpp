@@ -17,13 +17,14 @@ using Command = ClientRequest::Command;
 
 constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // what every JSON reader keeps exactly
 
-constexpr std::array<std::pair<std::string_view, Command>, 9> commands{{
+constexpr std::array<std::pair<std::string_view, Command>, 10> commands{{
     {"status", Command::status},
     {"watch", Command::watch},
     {"unwatch", Command::unwatch},
     {"start", Command::start},
     {"stop", Command::stop},
     {"vent", Command::vent},
+    {"release", Command::release},
     {"acknowledge", Command::acknowledge},
     {"events", Command::events},
     {"statistics", Command::statistics},
@@ -138,6 +139,7 @@ void read_arguments(Reader& reader, ClientRequest& request) {
     case Command::unwatch:
     case Command::stop:
     case Command::vent:
+    case Command::release:
     case Command::acknowledge:
       break;
   }

@@ -20,6 +20,7 @@ struct ClientRequest {
     start,
     stop,
     vent,
+    release,
     acknowledge,
     events,
     statistics,

@@ -82,6 +82,10 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       refuse_planned();
       ask(client, request->id, Kind::vent, nullptr, now);
       break;
+    case Command::release:
+      refuse_planned();
+      ask(client, request->id, Kind::release, nullptr, now);
+      break;
     case Command::acknowledge:
       ask(client, request->id, Kind::acknowledge, nullptr, now);
       break;

@@ -31,6 +31,11 @@ Json json_of_fault(control::FaultCode code) {
           {"remedy", info.remedy}};
 }
 
+Json limit_of(const control::ChannelOutput& channel) {
+  if (channel.limit == control::UpperLimit::none) return nullptr;
+  return control::name_of(channel.limit);
+}
+
 Json json_of_channel(const control::ChannelSettings& settings, const control::ChannelOutput& channel) {
   return {{"name", settings.name},
           {"command_kpa", number(channel.command_kpa)},
@@ -41,12 +46,15 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"feedback_kpa", number(channel.feedback_kpa)},
           {"residual_mm", number(channel.residual_mm)},
           {"deficit_mm", number(channel.deficit_mm)},
+          {"squeeze_kpa", number(channel.squeeze_kpa)},
+          {"free_kpa", number(channel.free_kpa)},
           {"age_s", number(channel.age_s)},
           {"validity", name_of(channel.validity)},
           {"result", control::title_of(channel.result)},
           {"evidence", control::name_of(channel.evidence)},
           {"saturated", channel.saturated},
           {"slewing", channel.slewing},
+          {"limit", limit_of(channel)},
           {"health", control::name_of(channel.health)},
           {"health_rms_mm", number(channel.health_rms_mm)},
           {"limits",

@@ -8,7 +8,6 @@
 namespace softgrip::control {
 
 namespace {
-constexpr double stone_yields = 0.1;  // share of the free motion that is left beyond the stone
 constexpr double noise_mm = 0.03;
 constexpr double board_watchdog_s = 0.5;
 constexpr double hand_mm_per_s = 200;
@@ -43,7 +42,7 @@ void SimulatedRig::step_plants() {
     plant.chain.step(1 / settings_.rate_hz, plant.board_kpa);
     const double free = plant.chain.reading_mm();
     const bool meets = stone_mm_ && free > *stone_mm_ && !(stone_only_left && i > 0);
-    plant.true_mm = meets ? *stone_mm_ + stone_yields * (free - *stone_mm_) : free;
+    plant.true_mm = meets ? *stone_mm_ + yields * (free - *stone_mm_) : free;
   }
   if (pulling_out_ && stone_mm_) {
     *stone_mm_ += hand_mm_per_s / settings_.rate_hz;

@@ -28,6 +28,7 @@ class SimulatedRig {
   /// A stone stops both fingers at `position_mm`. Nothing: it is pulled out, at a hand's speed.
   void stone(std::optional<double> position_mm);
   bool stone_only_left = false;  ///< the right finger closes past it
+  double yields = 0.1;           ///< share of the free motion that is left beyond it
 
   // Faults; each stays until it is taken back.
   bool wire_cut = false;    ///< no exchange succeeds; the board vents after its watchdog time

@@ -16,17 +16,18 @@ namespace {
 
 using Kind = Incident::Kind;
 
-constexpr std::array<const char*, 22> names{"start",          "start and stop at once",
-                                            "stop",           "vent",
-                                            "acknowledge",    "flood",
-                                            "terminate",      "kill",
-                                            "pause",          "pause late",
-                                            "pause all",      "line",
-                                            "replies lost",   "slow line",
-                                            "writes refused", "foreign",
-                                            "sensor stuck",   "sensor lost",
-                                            "line leaks",     "part gone",
-                                            "emergency stop", "disk full"};
+constexpr std::array<const char*, 23> names{"start",       "start and stop at once",
+                                            "stop",        "vent",
+                                            "release",     "acknowledge",
+                                            "flood",       "terminate",
+                                            "kill",        "pause",
+                                            "pause late",  "pause all",
+                                            "line",        "replies lost",
+                                            "slow line",   "writes refused",
+                                            "foreign",     "sensor stuck",
+                                            "sensor lost", "line leaks",
+                                            "part gone",   "emergency stop",
+                                            "disk full"};
 constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
 
 /// How often each happens, of all that happens.
@@ -35,14 +36,14 @@ struct Share {
   double share;
 };
 constexpr std::array shares{
-    Share{Kind::start, 20},       Share{Kind::hasty, 3},        Share{Kind::stop, 4},
-    Share{Kind::vent, 6},         Share{Kind::acknowledge, 14}, Share{Kind::flood, 2},
-    Share{Kind::terminate, 1},    Share{Kind::kill, 1},         Share{Kind::pause, 10},
-    Share{Kind::pause_late, 6},   Share{Kind::pause_all, 6},    Share{Kind::line, 6},
-    Share{Kind::replies_lost, 3}, Share{Kind::slow_line, 2},    Share{Kind::write_refused, 2},
-    Share{Kind::foreign, 2},      Share{Kind::sensor_stuck, 2}, Share{Kind::sensor_lost, 2},
-    Share{Kind::line_leaks, 2},   Share{Kind::part_gone, 6},    Share{Kind::emergency_stop, 3},
-    Share{Kind::disk_full, 2},
+    Share{Kind::start, 20},         Share{Kind::hasty, 3},        Share{Kind::stop, 4},
+    Share{Kind::vent, 6},           Share{Kind::release, 4},      Share{Kind::acknowledge, 14},
+    Share{Kind::flood, 2},          Share{Kind::terminate, 1},    Share{Kind::kill, 1},
+    Share{Kind::pause, 10},         Share{Kind::pause_late, 6},   Share{Kind::pause_all, 6},
+    Share{Kind::line, 6},           Share{Kind::replies_lost, 3}, Share{Kind::slow_line, 2},
+    Share{Kind::write_refused, 2},  Share{Kind::foreign, 2},      Share{Kind::sensor_stuck, 2},
+    Share{Kind::sensor_lost, 2},    Share{Kind::line_leaks, 2},   Share{Kind::part_gone, 6},
+    Share{Kind::emergency_stop, 3}, Share{Kind::disk_full, 2},
 };
 
 class Drawing {

@@ -15,6 +15,7 @@ struct Incident {
     hasty,  ///< the same, and at once another client stops (`value` 0) or vents
     stop,
     vent,
+    release,
     acknowledge,
     flood,          ///< a client acknowledges `target` times at once
     terminate,      ///< SIGTERM; started again a second later

@@ -378,6 +378,9 @@ void World::to_daemon(const Incident& incident) {
     case Kind::vent:
       ask(Request::Kind::vent);
       break;
+    case Kind::release:
+      ask(Request::Kind::release);
+      break;
     case Kind::acknowledge:
       ask(Request::Kind::acknowledge);
       break;

@@ -152,6 +152,18 @@ std::string bar_line(const ViewStyle& style, std::string_view label, const Bar& 
   return line.text();
 }
 
+/// What has kept the pressure below what is wanted for longer than a moment.
+void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
+  const std::string limit = text_at(channel, "limit");
+  if (limit == "-") return;
+  const char* key = limit == "rig_pressure"    ? "pressure_max_kpa of the rig"
+                    : limit == "step_pressure" ? "pressure_max_kpa of the step"
+                                               : "squeeze_max_kpa of the step";
+  Line line(style);
+  line.to_column(label_columns).add(std::string(key) + " keeps the pressure down", Tone::doubtful);
+  lines.push_back(line.text());
+}
+
 void add_channel(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
   const std::string result = text_at(channel, "result");
   const std::string validity = text_at(channel, "validity");
@@ -175,8 +187,11 @@ void add_channel(std::vector<std::string>& lines, const Json& channel, const Vie
   const Bar pressures{number_at(limits, "pressure_min_kpa").value_or(0),
                       number_at(limits, "pressure_max_kpa").value_or(100), pressure ? pressure : command,
                       command};
-  lines.push_back(bar_line(style, "pressure", pressures,
-                           with_decimals(pressure, 2) + " kPa, command " + with_decimals(command, 2)));
+  std::string pressure_numbers = with_decimals(pressure, 2) + " kPa, command " + with_decimals(command, 2);
+  if (const auto squeeze = number_at(channel, "squeeze_kpa"))
+    pressure_numbers += ", squeeze " + fixed(*squeeze, 1);
+  lines.push_back(bar_line(style, "pressure", pressures, pressure_numbers));
+  add_limit(lines, channel, style);
   const auto displacement = number_at(channel, "displacement_mm");
   const auto reference = number_at(channel, "reference_mm");
   const Bar displacements{number_at(limits, "displacement_min_mm").value_or(0),

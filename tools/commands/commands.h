@@ -21,6 +21,7 @@
   X(watch)                   \
   X(start)                   \
   X(stop)                    \
+  X(release)                 \
   X(vent)                    \
   X(acknowledge)             \
   X(events)                  \

@@ -25,6 +25,22 @@ TEST(Limits, SlewIsAsymmetric) {
   EXPECT_TRUE(limit(typical, 0, 20, 0.005).slewing);
 }
 
+TEST(Limits, ACeilingIsKeptAndGoneToAtTheSlewLimit) {
+  const LimitedCommand capped = limit(typical, 30, 20, 0.05, 25);
+  EXPECT_EQ(capped.command_kpa, 25);
+  EXPECT_TRUE(capped.capped);
+  EXPECT_FALSE(capped.saturated || capped.slewing);
+  EXPECT_DOUBLE_EQ(limit(typical, 30, 30, 0.005, 20).command_kpa, 28) << "down no faster than 400 kPa/s";
+  EXPECT_EQ(limit(typical, 30, 0, 1, -5).command_kpa, 0) << "never below the range";
+  EXPECT_FALSE(limit(typical, 24, 20, 0.05, 25).capped);
+}
+
+TEST(Limits, ACeilingThatIsNoNumberHoldsTheLastCommand) {
+  const LimitedCommand command = limit(typical, 40, 33, 0.005, nan);
+  EXPECT_EQ(command.command_kpa, 33);
+  EXPECT_TRUE(command.invalid);
+}
+
 TEST(Limits, TellsRangeFromSlew) {
   const LimitedCommand range = limit(typical, 61, 60, 0.005);
   EXPECT_EQ(range.command_kpa, 60);

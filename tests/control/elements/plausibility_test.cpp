@@ -12,21 +12,22 @@ using model::Reading;
 using model::Validity;
 
 constexpr Nanoseconds tick_ns = 5'000'000;
-constexpr PlausibilitySettings typical{0.03, 200, 0.5, 0.5, 0, 10};
+constexpr PlausibilitySettings typical{0.03, 200, 0.5, 0.5, 0, 10, 2};
 
 struct Channel {
   Plausibility judge{typical};
   Nanoseconds now = 1'000'000'000;
   std::uint32_t sequence = 0;
 
-  Validity next(double displacement_mm, double command_kpa = 0, Nanoseconds age = tick_ns) {
+  Validity next(double displacement_mm, double command_kpa = 0, Nanoseconds age = tick_ns,
+                double expected_mm = 0) {
     now += tick_ns;
     Reading reading;
     reading.displacement_mm = displacement_mm;
     reading.sampled_at = now - age;
     reading.sequence = ++sequence;
     reading.validity = Validity::valid;
-    return judge.judge(reading, now, command_kpa);
+    return judge.judge(reading, now, command_kpa, expected_mm);
   }
 };
 
@@ -77,6 +78,33 @@ TEST(Plausibility, AFrozenReadingIsFoundOnlyWhileTheCommandMoves) {
   for (int i = 0; i < 200; ++i) valid += moving.next(5, 0.2 * i) == Validity::valid;
   EXPECT_EQ(valid, 100) << "0.5 s at 5 ms";
   EXPECT_EQ(moving.next(5.001, 40), Validity::valid) << "it moves again";
+}
+
+// Against a part a finger stands still as well; a sensor with noise does not.
+TEST(Plausibility, ALivelySensorThatRepeatsItselfStandsStillAndIsFrozenWhereTheFreeFingerMoves) {
+  for (const bool lively : {true, false}) {
+    Channel channel;
+    for (int i = 0; i < 1000; ++i) (void)channel.next(5 + 0.01 * ((lively ? i : i / 40) % 3));
+    int valid = 0;
+    double moved_mm = 0;
+    for (int i = 0; i < 200; ++i) {
+      moved_mm = std::min(3.0, 0.05 * i);
+      valid += channel.next(5.005, 20, tick_ns, 5 + moved_mm) == Validity::valid;
+      EXPECT_FALSE(i < 10 && channel.judge.stands_still()) << "before 55 ms";
+      EXPECT_FALSE(i == 30 && channel.judge.stands_still() != lively) << "155 ms";
+    }
+    EXPECT_EQ(valid, lively ? 100 : 200) << "0.5 s at 5 ms";
+    (void)channel.next(5.01, 20, tick_ns, 8);
+    EXPECT_FALSE(channel.judge.stands_still());
+  }
+}
+
+TEST(Plausibility, ALivelySensorBesideAModelThatHardlyMovesIsNotFrozen) {
+  Channel channel;
+  for (int i = 0; i < 1000; ++i) (void)channel.next(5 + 0.01 * (i % 3));
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(channel.next(5.005, 20, tick_ns, 5 + 1.9e-3 * i), Validity::valid);
+  }
 }
 
 TEST(Plausibility, FreezingNeedsTheWholeTimeWithoutAChange) {

@@ -127,6 +127,24 @@ INSTANTIATE_TEST_SUITE_P(
                "detection, "
                "window_s: 0.5}, timeout_s: 3.5, on_fail: vent}\n",
                "not longer than the step's own times, 3.5 s"},
+        Misfit{"no_grip_to_go_to",
+               "  - move: {channels: [left], displacement_mm: 5, duration_s: 1, on_contact: grip}\n",
+               "no grip step comes behind it"},
+        Misfit{"unseen_squeeze",
+               "  - grip: {channels: [left], displacement_mm: 15, duration_s: 2, squeeze_kpa: 1, "
+               "squeeze_speed_kpa_per_s: 5, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, "
+               "timeout_s: 3, "
+               "on_fail: vent}\n",
+               "sees a part only from"},
+        Misfit{"blind_squeeze",
+               "  - move: {channels: [right], pressure_kpa: 10, duration_s: 1, squeeze_max_kpa: 5}\n",
+               "bound it by pressure_max_kpa"},
+        Misfit{"bound_beyond_the_rig",
+               "  - move: {channels: [left], displacement_mm: 5, duration_s: 1, pressure_max_kpa: 61}\n",
+               "allows 0 to 60 kPa"},
+        Misfit{"target_beyond_its_bound",
+               "  - move: {channels: [left], pressure_kpa: 30, duration_s: 1, pressure_max_kpa: 20}\n",
+               "above its pressure_max_kpa"},
         Misfit{"loud_signal", "  - pressure: {signal: tp1, scale: 2}\n", "kPa"},
         Misfit{"loud_points",
                "  - pressure: {points: [{time_s: 0, pressure_kpa: 0}, {time_s: 1, pressure_kpa: 70}]}\n",

@@ -26,7 +26,8 @@ std::string with_step(const std::string& step) {
 }
 
 TEST(SequenceFile, ExamplesLoadAndFitTheExampleRig) {
-  for (const char* name : {"pick_stone", "pick_screw", "empty_grip", "track_sine", "pressure_staircase"}) {
+  for (const char* name :
+       {"pick_stone", "pick_screw", "empty_grip", "track_sine", "pressure_staircase", "hand_over"}) {
     document::Problems problems;
     const auto sequence =
         load_sequence(std::string(SOFTGRIP_SOURCE_DIR "/config/sequences/") + name + ".yaml", problems);
@@ -34,6 +35,40 @@ TEST(SequenceFile, ExamplesLoadAndFitTheExampleRig) {
     EXPECT_EQ(sequence->name, name);
     EXPECT_TRUE(prepare(*sequence, two_finger_settings(), problems)) << problems.format();
   }
+}
+
+TEST(SequenceFile, TouchAndSqueezeArrive) {
+  document::Problems problems;
+  const auto sequence = read(R"(
+name: gentle
+steps:
+  - move: {displacement_mm: 5, duration_s: 1}
+  - move: {displacement_mm: 6, duration_s: 1, tolerance_mm: 1, timeout_s: 3, on_fail: vent}
+  - move: {displacement_mm: 7, duration_s: 1, on_contact: fail, retries: 2, on_fail: continue, pressure_max_kpa: 30}
+  - grip: {displacement_mm: 9, duration_s: 1, squeeze_kpa: 4, squeeze_speed_kpa_per_s: 6, settle_s: 0.1, verify: {by: detection, window_s: 0.4}, timeout_s: 4, on_fail: hold}
+  - hold: {until: release, reverify_every_s: 0.5, squeeze_max_kpa: 3, on_fail: vent}
+  - track: {mean_mm: 13, amplitude_mm: 7, frequency_hz: 0.1, cycles: 5, on_contact: grip}
+  - pressure: {signal: sp2, on_contact: hold}
+  - pressure: {signal: sp2}
+)",
+                             problems);
+  ASSERT_TRUE(sequence) << problems.format();
+  const auto& steps = sequence->steps;
+  EXPECT_EQ(steps[0].on_contact, OnContact::hold) << "what cannot fail stays";
+  EXPECT_TRUE(std::isinf(steps[0].bounds.squeeze_max_kpa) && std::isinf(steps[0].bounds.pressure_max_kpa));
+  EXPECT_EQ(steps[1].on_contact, OnContact::fail) << "what can fail does";
+  EXPECT_EQ(steps[2].on_contact, OnContact::fail);
+  EXPECT_EQ(steps[2].on_fail, OnFail::carry_on);
+  EXPECT_EQ(steps[2].retries, 2U);
+  EXPECT_EQ(steps[2].bounds.pressure_max_kpa, 30);
+  EXPECT_EQ(steps[3].squeeze.by_kpa, 4);
+  EXPECT_EQ(steps[3].squeeze.speed_kpa_per_s, 6);
+  EXPECT_EQ(steps[3].bounds.squeeze_max_kpa, 4) << "never by more than in the end";
+  EXPECT_TRUE(std::isinf(steps[4].hold_s));
+  EXPECT_EQ(steps[4].bounds.squeeze_max_kpa, 3);
+  EXPECT_EQ(steps[5].on_contact, OnContact::grip);
+  EXPECT_EQ(steps[6].on_contact, OnContact::hold);
+  EXPECT_EQ(steps[7].on_contact, OnContact::ignore) << "experiments go on";
 }
 
 TEST(SequenceFile, EveryKeyArrives) {
@@ -133,6 +168,36 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"no_target", with_step("move: {duration_s: 1}"), 3, "pressure_kpa"},
         Broken{"wrong_speed", with_step("move: {displacement_mm: 5, speed_kpa_per_s: 5}"), 3,
                "speed_mm_per_s"},
+        Broken{
+            "squeeze_without_speed",
+            with_step(
+                "grip: {displacement_mm: 5, speed_mm_per_s: 5, squeeze_kpa: 4, settle_s: 0.1, verify: {by: "
+                "detection, window_s: 0.2}, timeout_s: 3, on_fail: vent}"),
+            3, "squeeze_speed_kpa_per_s"},
+        Broken{"speed_without_squeeze",
+               with_step(
+                   "grip: {displacement_mm: 5, speed_mm_per_s: 5, squeeze_speed_kpa_per_s: 4, settle_s: 0.1, "
+                   "verify: {by: detection, window_s: 0.2}, timeout_s: 3, on_fail: vent}"),
+               3, "belongs to squeeze_kpa"},
+        Broken{
+            "squeeze_above_its_bound",
+            with_step(
+                "grip: {displacement_mm: 5, speed_mm_per_s: 5, squeeze_kpa: 4, squeeze_speed_kpa_per_s: 4, "
+                "squeeze_max_kpa: 3, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, timeout_s: 3, "
+                "on_fail: vent}"),
+            3, "below squeeze_kpa"},
+        Broken{"two_ends_of_a_hold",
+               with_step("hold: {hold_s: 5, until: release, reverify_every_s: 0.2, on_fail: vent}"), 3,
+               "not both"},
+        Broken{"no_end_of_a_hold", with_step("hold: {reverify_every_s: 0.2, on_fail: vent}"), 3, "hold_s"},
+        Broken{"contact_that_fails_somehow",
+               with_step("move: {displacement_mm: 5, speed_mm_per_s: 5, on_contact: fail}"), 3, "on_fail"},
+        Broken{
+            "contact_of_a_grip",
+            with_step(
+                "grip: {displacement_mm: 5, speed_mm_per_s: 5, on_contact: hold, settle_s: 0.1, verify: {by: "
+                "detection, window_s: 0.2}, timeout_s: 3, on_fail: vent}"),
+            3, "on_contact"},
         Broken{"both_ramps", with_step("move: {displacement_mm: 5, speed_mm_per_s: 5, duration_s: 3}"), 3,
                "not both"},
         Broken{"jump", with_step("move: {displacement_mm: 5}"), 3, "needs speed_mm_per_s"},

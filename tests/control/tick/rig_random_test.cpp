@@ -15,7 +15,8 @@ namespace {
 class Chaos {
  public:
   explicit Chaos(std::uint64_t seed) : random_(seed), settings_(make_settings()), rig_(settings_, seed) {
-    for (const char* name : {"pick_stone", "pick_screw", "empty_grip", "track_sine", "pressure_staircase"}) {
+    for (const char* name :
+         {"pick_stone", "pick_screw", "empty_grip", "track_sine", "pressure_staircase", "hand_over"}) {
       sequences_.push_back(example_sequence(name, settings_));
     }
   }
@@ -75,7 +76,7 @@ class Chaos {
   }
 
   Request::Kind ask() {
-    const auto kind = chance(0.5) ? Request::Kind::start : static_cast<Request::Kind>(any(1, 4));
+    const auto kind = chance(0.5) ? Request::Kind::start : static_cast<Request::Kind>(any(1, 5));
     rig_.request(kind, &sequences_[any<std::size_t>(0, sequences_.size() - 1)]);
     return kind;
   }

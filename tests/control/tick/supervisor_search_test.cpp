@@ -33,7 +33,8 @@ struct Tick {
 
 std::vector<Tick> all_ticks() {
   std::vector<Tick> ticks;
-  for (const Kind request : {Kind::none, Kind::start, Kind::stop, Kind::vent, Kind::acknowledge}) {
+  for (const Kind request :
+       {Kind::none, Kind::start, Kind::stop, Kind::vent, Kind::acknowledge, Kind::release}) {
     for (const FaultCode fault : {FaultCode::none, FaultCode::bus_down, FaultCode::board_watchdog_tripped,
                                   FaultCode::sensor_error, FaultCode::emergency_stop}) {
       for (const Phase phase : {Phase::idle, Phase::closing, Phase::holding, Phase::releasing}) {
@@ -105,6 +106,10 @@ class SupervisorSearch : public testing::Test {
     if (halts && may_rise(after)) return "motion goes on after a stop or a vent";
     if (tick.request == Kind::vent && supervisor.venting() != all && after != State::idle)
       return "a vent is refused";
+    if (orders.release && after == State::running && supervisor.sequence() == nullptr)
+      return "a release of nothing";
+    if (tick.request == Kind::release && before == State::resynchronising && may_rise(after))
+      return "motion goes on after a release";
     if (after == State::resynchronising && before != after && !started) return "motion that nobody asked for";
     if (after == State::running && before != after && before != State::resynchronising)
       return "motion without looking for rest";

@@ -31,6 +31,7 @@ TEST(ClientRequest, ReadsEveryCommand) {
       {R"({"command":"start","sequence":"a"})", Command::start},
       {R"({"command":"stop"})", Command::stop},
       {R"({"command":"vent"})", Command::vent},
+      {R"({"command":"release"})", Command::release},
       {R"({"command":"acknowledge"})", Command::acknowledge},
       {R"({"command":"events","since":5,"limit":10})", Command::events},
       {R"({"command":"statistics","histograms":true})", Command::statistics},

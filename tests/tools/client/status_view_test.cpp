@@ -36,6 +36,17 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
+TEST(StatusView, ALimitThatBindsIsALine) {
+  Json bound = status();
+  bound["channels"][0]["limit"] = "rig_pressure";
+  bound["channels"][0]["squeeze_kpa"] = 5.04;
+  const std::string text = joined(view_of(bound, {100, false, false}));
+  EXPECT_NE(text.find("29.50 kPa, command 30.00, squeeze 5.0\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("                pressure_max_kpa of the rig keeps the pressure down\n"),
+            std::string::npos)
+      << text;
+}
+
 /// Columns that a line takes: escapes none, a UTF-8 character one.
 std::size_t columns_of(const std::string& line) {
   std::size_t columns = 0;

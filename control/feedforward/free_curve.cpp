@@ -1,0 +1,94 @@
+#include "control/feedforward/free_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "control/feedforward/running_model.h"
+#include "model/chain.h"
+
+namespace softgrip::control {
+namespace {
+
+constexpr int levels = 32;
+constexpr std::size_t points = 65;
+constexpr double rests_after_s = 3;
+constexpr double step_s = 0.02;
+
+/// Where the finger rests under a command.
+struct Level {
+  double command_kpa = 0;
+  double pressure_kpa = 0;
+  double displacement_mm = 0;
+};
+
+/// From the lowest command up, each displacement above the one before.
+std::vector<Level> levels_of(const model::Model& model, const LimitSettings& limits) {
+  model::Chain<double> valve(valve_of(model), {}, step_s);
+  model::Chain<double> body(body_of(model), {}, step_s);
+  const bool has_valve = valve.size() > 0;
+  std::vector<Level> found;
+  for (int i = 0; i <= levels; ++i) {
+    const double range_kpa = limits.pressure_max_kpa - limits.pressure_min_kpa;
+    Level level{limits.pressure_min_kpa + range_kpa * i / levels, 0, 0};
+    valve.reset(limits.pressure_min_kpa);
+    const auto pressure = [&] { return has_valve ? valve.pressure_kpa() : level.command_kpa; };
+    body.reset(has_valve ? valve.pressure_kpa() : limits.pressure_min_kpa);
+    valve.step(0, level.command_kpa);
+    body.step(0, pressure());
+    for (double t = 0; t < rests_after_s; t += step_s) {
+      valve.step(step_s, level.command_kpa);
+      body.step(step_s, pressure());
+    }
+    level.pressure_kpa = pressure();
+    level.displacement_mm = body.reading_mm();
+    if (found.empty() || level.displacement_mm > found.back().displacement_mm) found.push_back(level);
+  }
+  return found;
+}
+
+}  // namespace
+
+FreeCurve::FreeCurve(const model::Model& model, const LimitSettings& limits) {
+  const std::vector<Level> rests = levels_of(model, limits);
+  const Level& first = rests.front();
+  const Level& last = rests.back();
+  lowest_mm_ = first.displacement_mm;
+  if (rests.size() > 1) {
+    const double range_mm = last.displacement_mm - first.displacement_mm;
+    step_mm_ = range_mm / static_cast<double>(points - 1);
+    slope_kpa_per_mm_ = (last.command_kpa - first.command_kpa) / range_mm;
+  }
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double y_mm = lowest_mm_ + step_mm_ * static_cast<double>(i);
+    while (k + 2 < rests.size() && rests[k + 1].displacement_mm < y_mm) ++k;
+    const Level& a = rests[k];
+    const Level& b = rests[std::min(k + 1, rests.size() - 1)];
+    const double gap_mm = b.displacement_mm - a.displacement_mm;
+    const double share = gap_mm > 0 ? (y_mm - a.displacement_mm) / gap_mm : 0;
+    command_kpa_.push_back(a.command_kpa + share * (b.command_kpa - a.command_kpa));
+    pressure_kpa_.push_back(a.pressure_kpa + share * (b.pressure_kpa - a.pressure_kpa));
+  }
+}
+
+double FreeCurve::at(const std::vector<double>& table, double displacement_mm) const noexcept {
+  if (!(step_mm_ > 0)) return table.front();
+  const double place = (displacement_mm - lowest_mm_) / step_mm_;
+  const double last = static_cast<double>(points - 1);
+  if (!(place > 0)) return table.front() + place * step_mm_ * slope_kpa_per_mm_;
+  if (place >= last) return table.back() + (place - last) * step_mm_ * slope_kpa_per_mm_;
+  const auto whole = static_cast<std::size_t>(place);
+  return table[whole] + (place - static_cast<double>(whole)) * (table[whole + 1] - table[whole]);
+}
+
+double FreeCurve::squeeze_for_kpa(double deficit_mm) const noexcept {
+  double most = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double y_mm = lowest_mm_ + step_mm_ * static_cast<double>(i);
+    most = std::max(most, command_kpa(y_mm + deficit_mm) - command_kpa(y_mm));
+  }
+  return most;
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,99 @@
+// What a channel does that touches something on its way: the part of ChannelPlayer
+// (control/tick/channel_player.h) that makes a grip gentle.
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "control/tick/channel_player.h"
+
+namespace softgrip::control {
+
+namespace {
+constexpr double infinite = std::numeric_limits<double>::infinity();
+/// How near a command must be to one that it falls to.
+constexpr double taken_back_kpa = 0.05;
+/// How long a touch lasts before it is one: longer than what noise and a single bad reading do.
+constexpr double contact_lasts_s = 0.02;
+using Mode = ChannelDemand::Mode;
+}  // namespace
+
+std::optional<OnContact> ChannelPlayer::take_contact() noexcept {
+  return std::exchange(contact_met_, std::nullopt);
+}
+
+OnContact ChannelPlayer::on_contact() const noexcept {
+  if (step_->kind != StepKind::grip) return step_->on_contact;
+  return step_->squeeze.by_kpa > 0 ? OnContact::squeeze : OnContact::close;
+}
+
+/// Moves in a way that can run into something. What is held is touched, and a finger that opens leaves it.
+bool ChannelPlayer::under_way() const noexcept {
+  if (!closing_ || result_ == GripResult::holding) return false;
+  return stage_ == Stage::ramp || (stage_ == Stage::settle && !squeezing_) || stage_ == Stage::profile;
+}
+
+void ChannelPlayer::look_for_contact(double time_s, const ChannelOutput& seen) noexcept {
+  if (!contact_.touching()) {
+    touching_since_s_.reset();
+    return;
+  }
+  if (!touching_since_s_) touching_since_s_ = time_s;
+  if (met_ || !under_way() || time_s - *touching_since_s_ < contact_lasts_s) return;
+  met_ = true;
+  contact_met_ = on_contact();
+  if (contact_met_ == OnContact::squeeze) {
+    begin_squeeze(time_s, seen);
+  } else if (contact_met_ != OnContact::ignore && contact_met_ != OnContact::close) {
+    // What is on its way to the finger by now is taken back: only what it was touched with stays.
+    stay_at(std::min(seen.command_kpa, seen.free_kpa + std::max(0.0, seen.squeeze_kpa)), time_s);
+    stopped_by_contact_ = true;
+  }
+}
+
+/// What was on its way to the finger when it touched is taken back first.
+Progress ChannelPlayer::stopped(const ChannelOutput& seen) noexcept {
+  if (seen.command_kpa > pressure_.final_value() + taken_back_kpa) return Progress::pending;
+  return step_->on_contact == OnContact::fail ? Progress::failed : pass();
+}
+
+void ChannelPlayer::stay_at(double pressure_kpa, double time_s) noexcept {
+  mode_ = Mode::pressure;
+  plan_ = nullptr;
+  squeezing_ = profile_ = false;
+  pressure_.start(time_s, pressure_kpa);
+}
+
+void ChannelPlayer::begin_squeeze(double time_s, const ChannelOutput& seen) noexcept {
+  const Squeeze& squeeze = step_->squeeze;
+  stay_at(seen.command_kpa, time_s);
+  squeezing_ = true;
+  squeeze_from_s_ = time_s;
+  squeeze_from_kpa_ = std::clamp(seen.command_kpa - seen.free_kpa, 0.0, squeeze.by_kpa);
+  ramp_end_s_ = time_s + (squeeze.by_kpa - squeeze_from_kpa_) / squeeze.speed_kpa_per_s;
+  stage_ = Stage::squeeze;
+}
+
+double ChannelPlayer::squeezing_kpa(double time_s, const ChannelOutput& seen) const noexcept {
+  const Squeeze& squeeze = step_->squeeze;
+  const double ramp_kpa = squeeze_from_kpa_ + squeeze.speed_kpa_per_s * (time_s - squeeze_from_s_);
+  const bool by_pressure = step_->target.quantity == Target::Quantity::pressure_kpa;
+  return std::min(seen.free_kpa + std::min(squeeze.by_kpa, ramp_kpa),
+                  by_pressure ? step_->target.value : infinite);
+}
+
+/// False when the touch is gone, and the search goes on. What yields as far as the target is followed no
+/// farther.
+bool ChannelPlayer::squeezes_on(double time_s, const ChannelOutput& seen) noexcept {
+  const bool by_displacement = step_->target.quantity == Target::Quantity::displacement_mm;
+  if (by_displacement && seen.displacement_mm >= step_->target.value) stay_at(pressure_kpa_, time_s);
+  if (contact_.touching()) return true;
+  const double began_at = start_value_;
+  met_ = squeezing_ = false;
+  go_to(step_->target, step_->target.value, time_s, seen);
+  start_value_ = began_at;
+  stage_ = Stage::ramp;
+  return false;
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,66 @@
+#include "control/feedforward/free_curve.h"
+
+#include <gtest/gtest.h>
+
+#include "control/feedforward/running_model.h"
+#include "model/chain.h"
+#include "tests/control/simulated_finger.h"
+
+namespace softgrip::control {
+namespace {
+
+using sim::model_named;
+using sim::tick_s;
+
+const LimitSettings limits = sim::twin_settings().limits;
+
+/// Where a free finger is `seconds` after a jump from 0 to a command.
+double rests_at_mm(const model::Model& model, double command_kpa, double seconds) {
+  model::Chain<double> chain(model, {}, tick_s);
+  chain.step(0, command_kpa);
+  for (double t = 0; t < seconds; t += tick_s) chain.step(tick_s, command_kpa);
+  return chain.reading_mm();
+}
+
+TEST(FreeCurve, SaysWhichCommandADisplacementNeeds) {
+  for (const char* name : {"bench_twin", "zhang2025"}) {
+    SCOPED_TRACE(name);
+    const model::Model model = model_named(name);
+    const FreeCurve curve(model, limits);
+    for (double kpa = 1; kpa < 60; kpa += 3.7) {
+      EXPECT_NEAR(curve.command_kpa(rests_at_mm(model, kpa, 3 + dead_time_s(model))), kpa, 0.05) << kpa;
+    }
+  }
+}
+
+TEST(FreeCurve, GoesOnBeyondItsEnds) {
+  const FreeCurve curve(model_named("bench_twin"), limits);
+  EXPECT_NEAR(curve.command_kpa(0), 0, 0.05);
+  EXPECT_LT(curve.command_kpa(-1), -1);
+  EXPECT_GT(curve.command_kpa(40), curve.command_kpa(35) + 1);
+}
+
+TEST(FreeCurve, TheSqueezeForADeficitIsEnoughEverywhere) {
+  const FreeCurve curve(model_named("bench_twin"), limits);
+  const double needed_kpa = curve.squeeze_for_kpa(1);
+  for (double y_mm = 0; y_mm < 30; y_mm += 0.5) {
+    EXPECT_LE(curve.command_kpa(y_mm + 1) - curve.command_kpa(y_mm), needed_kpa + 1e-9) << y_mm;
+  }
+  EXPECT_LT(needed_kpa, 3) << "and not more than it must";
+}
+
+TEST(FreeCurve, AModelThatDoesNotMoveNeedsTheLowestCommand) {
+  model::Model model = model_named("bench_twin");
+  auto values = model::flat_values(model);
+  for (const char* gain : {"bouc_wen.alpha_mm_per_kpa", "bouc_wen.beta_mm_per_kpa"}) {
+    values[model::find_path(model, gain).value()] = 0;
+  }
+  for (const char* stiffness : {"k0_kpa_per_mm", "k1_kpa_per_mm", "k2_kpa_per_mm"}) {
+    values[model::find_path(model, std::string("kelvin_voigt.") + stiffness).value()] = 1e300;
+  }
+  const FreeCurve curve(model::with_values(model, values), limits);
+  EXPECT_NEAR(curve.command_kpa(0), limits.pressure_min_kpa, 1e-6);
+}
+
+}  // namespace
+}  // namespace softgrip::control

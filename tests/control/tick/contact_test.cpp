@@ -1,0 +1,302 @@
+// Grips that are gentle: what a finger does that touches something, and that it never squeezes by more than
+// its step allows.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/feedforward/free_curve.h"
+#include "tests/control/rig_fixture.h"
+
+namespace softgrip::control {
+namespace {
+
+/// What noise and the last bit of a filter may add to a bound [kPa].
+constexpr double tolerance_kpa = 0.4;
+
+class ContactTest : public testing::Test {
+ protected:
+  /// The pressure at the left finger above what it would need to rest where it is, by its true place.
+  [[nodiscard]] double squeeze_kpa(const SimulatedRig& rig) const {
+    return rig.output().channels[0].pressure_kpa - curve.command_kpa(rig.plant_mm(0));
+  }
+  void start(SimulatedRig& rig, const PreparedSequence& sequence) {
+    ASSERT_TRUE(rig.run_until(State::idle, 1));
+    rig.request(Request::Kind::start, &sequence);
+    ASSERT_TRUE(rig.run_until(State::running, 5));
+  }
+  /// Runs to the end of the sequence; returns the largest squeeze.
+  double play(SimulatedRig& rig, const PreparedSequence& sequence, double seconds = 60) {
+    start(rig, sequence);
+    double most = 0;
+    const double end_s = rig.time_s() + seconds;
+    while (rig.time_s() < end_s && rig.output().state != State::idle) {
+      rig.tick();
+      most = std::max(most, squeeze_kpa(rig));
+    }
+    EXPECT_EQ(rig.output().state, State::idle);
+    return most;
+  }
+  static std::size_t contacts(const SimulatedRig& rig, OnContact action) {
+    return static_cast<std::size_t>(
+        std::count_if(rig.events.begin(), rig.events.end(), [&](const Event& event) {
+          return event.kind == Event::Kind::contact && event.detail == static_cast<std::uint16_t>(action);
+        }));
+  }
+  [[nodiscard]] PreparedSequence steps(const std::string& text) const {
+    return sequence_of("name: x\nsteps:\n" + text, settings);
+  }
+
+  RigSettings settings = two_finger_settings();
+  FreeCurve curve{twin(), settings.channels[0].limits};
+};
+
+TEST_F(ContactTest, AStoneIsHeldGentlyWhereverItIs) {
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  const double allowed_kpa = pick.steps[1].step.bounds.squeeze_max_kpa;
+  for (double at_mm = 2; at_mm <= 15; at_mm += 1) {
+    SCOPED_TRACE(at_mm);
+    SimulatedRig rig(settings);
+    rig.stone(at_mm);
+    EXPECT_LT(play(rig, pick), allowed_kpa + tolerance_kpa);
+    EXPECT_EQ(rig.result(0), GripResult::released);
+    EXPECT_EQ(rig.result(1), GripResult::released);
+    EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
+  }
+}
+
+TEST_F(ContactTest, TheSqueezeThatIsAskedForIsWhatThePartGets) {
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  for (const double at_mm : {5.0, 12.0}) {
+    SimulatedRig rig(settings);
+    rig.stone(at_mm);
+    start(rig, pick);
+    ASSERT_TRUE(rig.run_until_step(2, 20));
+    rig.run(1);
+    EXPECT_NEAR(squeeze_kpa(rig), pick.steps[1].step.squeeze.by_kpa, 1) << at_mm;
+    EXPECT_NEAR(rig.output().channels[0].squeeze_kpa, pick.steps[1].step.squeeze.by_kpa, 1) << at_mm;
+  }
+}
+
+TEST_F(ContactTest, AMoveStaysWithItsFirstTouchUnlessToldOtherwise) {
+  const PreparedSequence move = steps("  - move: {displacement_mm: 14, speed_mm_per_s: 10, settle_s: 2}\n");
+  SimulatedRig rig(settings);
+  rig.stone(6);
+  play(rig, move);
+  EXPECT_EQ(contacts(rig, OnContact::hold), 2U) << "one of each finger";
+  rig.run(3);
+  EXPECT_LT(squeeze_kpa(rig), curve.squeeze_for_kpa(settings.detection.margin_mm) + 1.5)
+      << "what was on its way is taken back";
+  EXPECT_GT(squeeze_kpa(rig), 0.5) << "and the touch stays";
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
+}
+
+TEST_F(ContactTest, AMoveMayGoOnWithTheGripAtOnce) {
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  SimulatedRig rig(settings);
+  rig.stone(4);
+  rig.stone_only_left = true;
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until_step(1, 20));
+  EXPECT_EQ(contacts(rig, OnContact::grip), 1U);
+  EXPECT_LT(rig.plant_mm(1), 8) << "the other finger is taken along from where it is";
+  ASSERT_TRUE(rig.run_until(State::idle, 60));
+}
+
+TEST_F(ContactTest, AMoveMayFail) {
+  const PreparedSequence move =
+      steps("  - move: {displacement_mm: 14, speed_mm_per_s: 10, on_contact: fail, on_fail: vent}\n");
+  SimulatedRig rig(settings);
+  rig.stone(6);
+  play(rig, move);
+  EXPECT_EQ(rig.result(0), GripResult::error);
+  EXPECT_EQ(rig.board_kpa(0), 0);
+  EXPECT_EQ(contacts(rig, OnContact::fail), 2U);
+}
+
+TEST_F(ContactTest, AMoveWithAToleranceFailsAtTheTouchAndNotAtItsTimeout) {
+  const PreparedSequence move = steps(
+      "  - move: {displacement_mm: 14, speed_mm_per_s: 10, tolerance_mm: 0.5, settle_s: 0.2, "
+      "timeout_s: 30, on_fail: vent}\n");
+  SimulatedRig rig(settings);
+  rig.stone(6);
+  start(rig, move);
+  EXPECT_TRUE(rig.run_until(State::idle, 5));
+  EXPECT_EQ(rig.result(0), GripResult::error);
+}
+
+TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
+  const PreparedSequence move = steps(
+      "  - move: {displacement_mm: 16, speed_mm_per_s: 8, on_contact: ignore, pressure_max_kpa: 25, "
+      "settle_s: 3}\n");
+  SimulatedRig rig(settings);
+  rig.stone(6);
+  start(rig, move);
+  double most = 0;
+  while (rig.output().state != State::idle && rig.time_s() < 20) {
+    rig.tick();
+    most = std::max(most, rig.output().channels[0].command_kpa);
+  }
+  EXPECT_NEAR(most, 25, 1e-9);
+  EXPECT_EQ(contacts(rig, OnContact::ignore), 2U);
+  EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "it binds for longer than a moment";
+}
+
+TEST_F(ContactTest, FreeMotionsMeetNothing) {
+  const PreparedSequence moves = steps(
+      "  - move: {displacement_mm: 20, speed_mm_per_s: 60, settle_s: 1}\n"
+      "  - move: {displacement_mm: 4, speed_mm_per_s: 60, settle_s: 1}\n"
+      "  - move: {pressure_kpa: 50, settle_s: 2}\n"
+      "  - move: {pressure_kpa: 0, settle_s: 2}\n");
+  SimulatedRig rig(settings);
+  play(rig, moves);
+  EXPECT_EQ(rig.count(Event::Kind::contact), 0U);
+  EXPECT_EQ(rig.count(Event::Kind::limit_binds), 0U);
+}
+
+// The finger stands still as it would before a part. Wherever the sensor freezes, nothing is held.
+TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
+  for (const char* name : {"pick_stone", "hand_over", "pick_screw", "empty_grip"}) {
+    const PreparedSequence sequence = example_sequence(name, settings);
+    for (double after_s = 0.2; after_s < 8; after_s += 0.6) {
+      SCOPED_TRACE(testing::Message() << name << " " << after_s);
+      SimulatedRig rig(settings);
+      start(rig, sequence);
+      rig.run(after_s);
+      if (rig.output().state != State::running) continue;
+      rig.fault[0].frozen_mm = rig.output().channels[0].displacement_mm;
+      const double end_s = rig.time_s() + 60;
+      while (may_rise(rig.output().state) && rig.time_s() < end_s) {
+        rig.tick();
+        ASSERT_NE(rig.result(0), GripResult::holding);
+      }
+      EXPECT_FALSE(may_rise(rig.output().state));
+      EXPECT_TRUE(rig.output().first_fault == FaultCode::reading_frozen ||
+                  rig.result(0) == GripResult::error || rig.result(0) == GripResult::no_part);
+    }
+  }
+}
+
+TEST_F(ContactTest, WhatIsHeldMayBeMoved) {
+  const PreparedSequence carry = steps(
+      "  - grip: {displacement_mm: 17, speed_mm_per_s: 4, squeeze_kpa: 5, squeeze_speed_kpa_per_s: 5, "
+      "settle_s: 0.5, verify: {by: detection, window_s: 0.3}, timeout_s: 12, on_fail: vent}\n"
+      "  - move: {pressure_kpa: 35, speed_kpa_per_s: 5, settle_s: 1}\n");
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  play(rig, carry);
+  EXPECT_EQ(rig.result(0), GripResult::holding);
+  EXPECT_NEAR(rig.board_kpa(0), 35, 1e-6) << "pressed harder on purpose";
+}
+
+TEST_F(ContactTest, ASpringIsFollowedUntilItPressesBack) {
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  SimulatedRig rig(settings, 3);
+  rig.yields = 0.5;
+  rig.stone(8);
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until_step(2, 20));
+  EXPECT_EQ(rig.result(0), GripResult::holding);
+  EXPECT_GT(rig.plant_mm(0), 8.5);
+  EXPECT_NEAR(squeeze_kpa(rig), pick.steps[1].step.squeeze.by_kpa, 1.5);
+}
+
+TEST_F(ContactTest, WhatSlipsAwayIsSearchedForAndNotChased) {
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  SimulatedRig rig(settings);
+  rig.stone(9);
+  start(rig, pick);
+  while (contacts(rig, OnContact::squeeze) < 2 && rig.time_s() < 20) rig.tick();
+  rig.run(0.1);
+  rig.stone(std::nullopt);
+  double most_mm = 0;
+  while (rig.output().state != State::idle && rig.time_s() < 60) {
+    rig.tick();
+    most_mm = std::max(most_mm, rig.plant_mm(0));
+  }
+  EXPECT_EQ(rig.result(0), GripResult::no_part);
+  EXPECT_LT(most_mm, pick.steps[1].step.target.value + 1) << "no farther than the step goes";
+}
+
+TEST_F(ContactTest, TheBoundHoldsWhileAHeldPartCreeps) {
+  const PreparedSequence pick = steps(
+      "  - grip: {displacement_mm: 17, speed_mm_per_s: 4, squeeze_kpa: 5, squeeze_speed_kpa_per_s: 5, "
+      "settle_s: 0.5, verify: {by: detection, window_s: 0.3}, timeout_s: 12, on_fail: vent}\n"
+      "  - hold: {hold_s: 60, reverify_every_s: 0.25, on_fail: vent}\n");
+  SimulatedRig rig(settings);
+  rig.stone(14);
+  play(rig, pick, 90);
+  EXPECT_EQ(rig.result(0), GripResult::holding);
+  EXPECT_LT(rig.output().channels[0].command_kpa - rig.output().channels[0].free_kpa, 5.5);
+}
+
+TEST_F(ContactTest, AHoldLastsUntilItsReleaseIsAskedFor) {
+  const PreparedSequence hand_over = example_sequence("hand_over", settings);
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  start(rig, hand_over);
+  ASSERT_TRUE(rig.run_until_step(1, 20));
+  rig.run(100);
+  EXPECT_EQ(rig.result(0), GripResult::holding);
+  rig.request(Request::Kind::release);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::release_asked));
+  ASSERT_TRUE(rig.run_until(State::idle, 10));
+  EXPECT_EQ(rig.result(0), GripResult::released);
+  const auto end = std::find_if(rig.events.begin(), rig.events.end(), [](const Event& event) {
+    return event.kind == Event::Kind::sequence_finished;
+  });
+  ASSERT_NE(end, rig.events.end());
+  EXPECT_EQ(end->detail, static_cast<std::uint16_t>(SequenceEnd::done));
+}
+
+TEST_F(ContactTest, AReleaseIsHeardInEveryStepAndNothingRisesAfterIt) {
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  const PreparedSequence grip = steps(
+      "  - grip: {pressure_kpa: 40, speed_kpa_per_s: 20, settle_s: 0.5, verify: {by: detection, window_s: "
+      "0.3}, timeout_s: 6, on_fail: vent}\n"
+      "  - hold: {until: release, reverify_every_s: 0.25, on_fail: vent}\n");
+  for (const PreparedSequence* sequence : {&pick, &grip}) {
+    for (double after_s = 0.1; after_s < 14; after_s += 0.9) {
+      SCOPED_TRACE(after_s);
+      SimulatedRig rig(settings);
+      rig.stone(12);
+      start(rig, *sequence);
+      rig.run(after_s);
+      if (rig.output().state != State::running) continue;
+      rig.request(Request::Kind::release);
+      double last_kpa = rig.tick().channels[0].command_kpa;
+      for (int i = 0; i < 200; ++i) {
+        const double kpa = rig.tick().channels[0].command_kpa;
+        ASSERT_LE(kpa, last_kpa + 1e-9);
+        last_kpa = kpa;
+      }
+      ASSERT_TRUE(rig.run_until(State::idle, 10));
+      EXPECT_EQ(rig.board_kpa(0), 0);
+      EXPECT_NE(rig.result(0), GripResult::holding);
+    }
+  }
+}
+
+TEST_F(ContactTest, AReleaseWorksAfterASequenceAndIsRefusedWhereThereIsNothing) {
+  const PreparedSequence grip = steps(
+      "  - grip: {pressure_kpa: 40, speed_kpa_per_s: 20, settle_s: 0.5, verify: {by: detection, window_s: "
+      "0.3}, timeout_s: 6, on_fail: vent}\n");
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  play(rig, grip);
+  ASSERT_EQ(rig.result(0), GripResult::holding);
+  rig.request(Request::Kind::release);
+  ASSERT_TRUE(rig.run_until(State::idle, 5));
+  EXPECT_EQ(rig.result(0), GripResult::released);
+  EXPECT_EQ(rig.board_kpa(0), 0);
+  rig.request(Request::Kind::release);
+  rig.tick();
+  const auto refused = rig.answer(Event::Kind::request_refused);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::nothing_to_release));
+}
+
+}  // namespace
+}  // namespace softgrip::control
