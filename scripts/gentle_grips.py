@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""How gently the shipped recipe grips: a table of seeded grips on simulated parts, in virtual time.
+
+    scripts/gentle_grips.py [--build build/release] [--seeds 240] [--first-seed 1] [--page PAGE.md]
+
+Each seed draws a part (stone, spring, screw, nut, washer, or none), one finger or two, and where the part is: up to
+8 mm nearer or farther than the recipe expects, and for the second finger up to 1 mm off that. tests/system/gripping.py
+says how the squeeze is judged. A third of the seeds is played again with fingers that move 2 % farther, and 2 % less
+far, than the model that the controller has. The exit code is 1 where a grip squeezed by more than its recipe allows, held nothing,
+or missed a part.
+"""
+import argparse
+import pathlib
+import statistics
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests/system"))
+
+import gripping  # noqa: E402
+
+ZONES = (("nearer by 4 to 8 mm", -8, -4), ("nearer by 0 to 4 mm", -4, 0), ("farther by 0 to 4 mm", 0, 4),
+         ("farther by 4 to 8 mm", 4, 8.001))
+HEAD = ("part", "where", "fingers", "grips", "largest squeeze, median and most [kPa]", "answers",
+        "time to the answer, median and most [s]")
+
+
+ALLOWED_KPA = gripping.bound_kpa((ROOT / "config/sequences/pick_stone.yaml").read_text())
+
+
+def key_of(trial):
+    if trial.part is None:
+        return "nothing", "-", trial.fingers
+    zone = next(name for name, low, high in ZONES if low <= trial.offset_mm < high)
+    return trial.part.name, zone, trial.fingers
+
+
+def line_of(key, judged):
+    answers = {}
+    for one in judged:
+        for told in one.answers:
+            answers[told[0]] = answers.get(told[0], 0) + 1
+    squeezes = [one.peak_kpa for one in judged]
+    times = [one.answered_s for one in judged]
+    squeeze = f"{statistics.median(squeezes):.1f}, {max(squeezes):.1f}" if key[0] != "nothing" else "-"
+    return (*key[:2], str(key[2]), str(len(judged)), squeeze,
+            ", ".join(f"{count} {answer}" for answer, count in sorted(answers.items())),
+            f"{statistics.median(times):.1f}, {max(times):.1f}")
+
+
+def table(groups):
+    order = [part.name for part in gripping.PARTS] + ["nothing"]
+    zones = [name for name, _, _ in ZONES] + ["-"]
+    keys = sorted(groups, key=lambda key: (order.index(key[0]), zones.index(key[1]), key[2]))
+    rows = [HEAD, tuple("---" for _ in HEAD)] + [line_of(key, groups[key]) for key in keys]
+    return "".join("| " + " | ".join(row) + " |\n" for row in rows)
+
+
+def page(args, groups, problems, off):
+    others = "".join(f"- {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
+                     f"{len(found)} promises broken.\n" for percent, (judged, found) in off.items())
+    return f"""# How gently the shipped recipe grips
+
+Made by `scripts/gentle_grips.py --seeds {args.seeds} --page docs/reference/gentle-grips.md`:
+`config/sequences/pick_stone.yaml`, its two places moved to where each part is expected, on the simulated rig of
+`config/rig.yaml` in virtual time. The approach ends {gripping.APPROACH_MM} mm before that place, the grip searches to {gripping.REACH_MM} mm behind
+it. Each seed draws the part, one finger or two, and how far the part is from its place. Largest squeeze: the true pressure at the finger above what the free finger would need to rest where
+it truly was, from the first touch on ([what a squeeze is](sequence-file.md#touch-and-squeeze)). The recipe allows
+{ALLOWED_KPA:g} kPa; noise and the board's last bit may add {gripping.TOLERANCE_KPA:g}.
+
+{summary(groups)}, {len(problems)} promises broken: no squeeze above
+what the recipe allows, never HOLDING on an empty grip, never NO PART on a part.
+
+{table(groups)}
+With fingers that move by so much more or less than the controller's model says, every third seed:
+
+{others}"""
+
+
+def grips(finger, seeds, folder):
+    """Plays the trials of seeds; returns the judged by group, and what was broken."""
+    groups, problems = {}, []
+    for seed in seeds:
+        trial = gripping.drawn(seed)
+        judged = gripping.play(trial, finger, folder / f"{finger.model.stem}_{seed}")
+        groups.setdefault(key_of(trial), []).append(judged)
+        for problem in gripping.broken(trial, judged, ALLOWED_KPA):
+            problems.append(problem)
+            print(f"{finger.model.stem}, seed {seed}: {problem}: {trial}", file=sys.stderr)
+    return groups, problems
+
+
+def summary(groups):
+    judged = [one for group in groups.values() for one in group]
+    told = [answers[0] for one in judged for answers in one.answers]
+    held = sum(answer == "HOLDING" for answer in told)
+    return f"{len(judged)} grips, the largest squeeze {max(one.peak_kpa for one in judged):.1f} kPa, {held} times HOLDING"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--seeds", type=int, default=240)
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--page", type=pathlib.Path)
+    args = parser.parse_args()
+    softgrip = args.build.resolve() / "tools/softgrip"
+    seeds = range(args.first_seed, args.first_seed + args.seeds)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        groups, problems = grips(gripping.Finger(softgrip, folder), seeds, folder)
+        off = {percent: grips(gripping.Finger(softgrip, folder, percent), seeds[::3], folder) for percent in (2, -2)}
+    text = page(args, groups, problems, off)
+    problems += [problem for _, found in off.values() for problem in found]
+    if args.page:
+        args.page.write_text(text)
+    print(text)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

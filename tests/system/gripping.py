@@ -1,0 +1,177 @@
+"""Grips of the shipped recipe on simulated parts in virtual time, judged from outside: what the part was squeezed by
+comes from the plant's own numbers and a curve that `softgrip simulate` gives, not from what the controller says."""
+
+import csv
+import dataclasses
+import json
+import pathlib
+import random
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MODEL = ROOT / "config/models/bench_twin.yaml"
+REACH_MM = 10  # how far behind its expected place a part is searched for
+APPROACH_MM = 4  # how far before it the approach ends
+# What the sensor's noise, the board's last bit and the filter of the readings may add to a bound.
+TOLERANCE_KPA = 0.5
+
+
+@dataclasses.dataclass(frozen=True)
+class Part:
+    name: str
+    expected_mm: float
+    yielding: float  # share of the free motion that is left beyond its surface
+
+
+PARTS = (Part("stone", 12, 0.1), Part("spring", 10, 0.5), Part("screw", 17, 0.05), Part("nut", 14, 0.02),
+         Part("washer", 18, 0.02))
+
+
+@dataclasses.dataclass(frozen=True)
+class Trial:
+    part: Part | None  # None: nothing is there
+    fingers: int
+    offset_mm: float  # from where the recipe expects the part
+    tilt_mm: float  # the second finger's part is so much farther
+    seed: int
+
+    def place_mm(self, finger):
+        return max(1.0, self.part.expected_mm + self.offset_mm + (self.tilt_mm if finger else 0))
+
+
+@dataclasses.dataclass
+class Judged:
+    answers: list
+    peak_kpa: float  # the largest squeeze; 0 where nothing was touched
+    answered_s: float | None  # from the start of motion to the first answer
+    end: str
+
+
+class Finger:
+    """What the simulated fingers really are: the model, or one that moves farther by so many percent; and the pressure
+    under which it rests at a displacement, free, three seconds after a jump."""
+
+    def __init__(self, softgrip, folder, farther_percent=0):
+        self.softgrip, self.model = softgrip, folder / f"finger_{farther_percent:g}.yaml"
+        factor = 1 + farther_percent / 100
+        scaled = {"alpha_mm_per_kpa": factor, "beta_mm_per_kpa": factor, "k0_kpa_per_mm": 1 / factor,
+                  "k1_kpa_per_mm": 1 / factor, "k2_kpa_per_mm": 1 / factor, "c1_kpa_s_per_mm": 1 / factor,
+                  "c2_kpa_s_per_mm": 1 / factor}
+        self.model.write_text(re.sub(r"(\w+): ([\d.]+)\n", lambda found: (
+            f"{found[1]}: {float(found[2]) * scaled.get(found[1], 1):.8g}\n"), MODEL.read_text()))
+        self.points = self.rests(folder)
+
+    def answer(self, rows, folder):
+        """The free finger's displacement under (time, pressure) rows."""
+        log, answer = folder / "commands.csv", folder / "free.csv"
+        log.write_text("time_s,pressure_command_kpa\n" + "".join(f"{time_s},{kpa}\n" for time_s, kpa in rows))
+        subprocess.run([self.softgrip, "simulate", "--model", self.model, "--input", log, "--out", answer], check=True,
+                       capture_output=True)
+        with open(answer, newline="") as file:
+            return [float(row["displacement_mm"]) for row in csv.DictReader(file)]
+
+    def rests(self, folder, most_kpa=75, step_kpa=2.5):
+        points = [(0.0, 0.0)]
+        for k in range(1, round(most_kpa / step_kpa) + 1):
+            jump = [(0, 0), (0.0001, k * step_kpa)] + [(0.02 * i, k * step_kpa) for i in range(1, 160)]
+            points.append((self.answer(jump, folder)[-1], k * step_kpa))
+        return points
+
+    def needs_kpa(self, displacement_mm):
+        for (y0, p0), (y1, p1) in zip(self.points, self.points[1:]):
+            if displacement_mm <= y1:
+                return p0 + (displacement_mm - y0) / (y1 - y0) * (p1 - p0)
+        return self.points[-1][1]
+
+
+def drawn(seed):
+    """A trial: a part or none, on one finger or two, up to 8 mm off."""
+    random_ = random.Random(seed)
+    part = None if random_.random() < 0.1 else random_.choice(PARTS)
+    return Trial(part, random_.choice((1, 2)), random_.uniform(-8, 8), random_.uniform(-1, 1), seed)
+
+
+def recipe(trial):
+    """The shipped one, for a part that is expected elsewhere; an empty grip expects a stone."""
+    expected_mm = (trial.part or PARTS[0]).expected_mm
+    text = (ROOT / "config/sequences/pick_stone.yaml").read_text()
+    text = text.replace("displacement_mm: 8", f"displacement_mm: {expected_mm - APPROACH_MM}", 1)
+    text = text.replace("displacement_mm: 17", f"displacement_mm: {expected_mm + REACH_MM}", 1)
+    if trial.fingers == 1:
+        text = text.replace("\nsteps:", "\nchannels: [left]\nsteps:", 1)
+    return text
+
+
+def rig(trial, finger_model, folder):
+    text = (ROOT / "config/rig.yaml").read_text()
+    text = text.replace("models/", f"{ROOT}/config/models/").replace("seed: 1", f"seed: {trial.seed}", 1)
+    plants, channels = text.split("\nchannels:", 1)
+    text = re.sub(r"model: \S+", f"model: {finger_model}", plants) + "\nchannels:" + channels
+    text = text.replace("pressure_noise_kpa: 0.1", "pressure_noise_kpa: 0")  # the judge's own reading
+    text = re.sub(r"directory: \S+}", f"directory: {folder}/runs}}", text)
+    text = re.sub(r"path: /\S+,", f"path: {folder}/softgrip.sock,", text)
+    objects = iter(range(2))
+
+    def place(found):
+        finger = next(objects)
+        if trial.part is None or finger >= trial.fingers:
+            return ""
+        return f"object: {{position_mm: {trial.place_mm(finger)}, yielding: {trial.part.yielding}}}"
+
+    return re.sub(r"object: \{.*\}.*", place, text)
+
+
+def bound_kpa(text):
+    """The largest squeeze that a recipe allows in any step."""
+    return max(float(value) for value in re.findall(r"squeeze_max_kpa: ([\d.]+)", text))
+
+
+def play(trial, finger, folder):
+    """Runs a trial in virtual time."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "rig.yaml").write_text(rig(trial, finger.model, folder))
+    (folder / "recipe.yaml").write_text(recipe(trial))
+    done = subprocess.run([finger.softgrip, "run", folder / "recipe.yaml", "--rig", folder / "rig.yaml", "--virtual-time",
+                           "--record", folder / "run", "--quiet", "--json"], capture_output=True, text=True)
+    if done.returncode not in (0, 6):
+        raise RuntimeError(f"{trial}: {done.stdout}{done.stderr}")
+    end = json.loads(done.stdout.splitlines()[-1])["sequence_end"]
+    story = json.loads((folder / "run" / "run.json").read_text())
+    with open(folder / "run" / "run.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    names = story["channels"][:trial.fingers]
+    told = [event for event in story["events"] if event["kind"] == "grip_result"]
+    began = next(event["time_s"] for event in story["events"] if event["kind"] == "step_started")
+    answers = [[event["code"] for event in told if event["channel"] == name] for name in names]
+    peak = max(peak_squeeze([row for row in rows if row["channel"] == name], trial, i, finger, folder)
+               for i, name in enumerate(names))
+    return Judged(answers, peak, told[0]["time_s"] - began if told else None, end)
+
+
+def peak_squeeze(rows, trial, number, finger, folder):
+    """Where the finger really was: the free finger's place under the commands that went out, and the part's."""
+    if trial.part is None:
+        return 0
+    free = finger.answer([(row["time_s"], row["pressure_command_kpa"]) for row in rows], folder)
+    place_mm, peak = trial.place_mm(number), 0.0
+    for row, free_mm in zip(rows, free):
+        if free_mm > place_mm:
+            touched_mm = place_mm + trial.part.yielding * (free_mm - place_mm)
+            peak = max(peak, float(row["pressure_kpa"]) - finger.needs_kpa(touched_mm))
+    return peak
+
+
+def broken(trial, judged, allowed_kpa):
+    """What a grip promises and this one did not keep; empty: all kept."""
+    told = [answer for answers in judged.answers for answer in answers]
+    problems = []
+    if judged.peak_kpa > allowed_kpa + TOLERANCE_KPA:
+        problems.append(f"squeezed by {judged.peak_kpa:.1f} kPa, {allowed_kpa:g} allowed")
+    if trial.part is None and "HOLDING" in told:
+        problems.append("HOLDING on an empty grip")
+    if trial.part is not None and "NO PART" in told:
+        problems.append("NO PART on a part")
+    if not all(judged.answers):
+        problems.append("no answer")
+    return problems
