@@ -371,7 +371,8 @@ Evidence examine_fits(const std::vector<Record>& records, const StructureFit& as
   Evidence evidence;
   evidence.as_given = examine(as_given);
   evidence.recalibrated = examine(recalibrated);
-  evidence.extended = extended.causes.empty() ? evidence.recalibrated : examine(extended);
+  evidence.extended =
+      extended.mean_square_mm2 == recalibrated.mean_square_mm2 ? evidence.recalibrated : examine(extended);
   evidence.unphysical = unphysical_signs(recalibrated.point.model, records);
   return evidence;
 }

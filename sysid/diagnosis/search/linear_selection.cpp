@@ -20,6 +20,8 @@ constexpr std::size_t fewest_looks = 2;
 /// Candidates that are judged held out.
 constexpr std::size_t finalists = 4;
 constexpr int look_iterations = 15;
+/// The weight of the structures with a cause that stands alone; it shares its own with a twin.
+constexpr double least_inclusion = 0.95;
 constexpr FitEffort finish{.most_iterations = 8, .tolerance = 1e-6};
 
 /// Residuals over the numbers of one cause, less what the base could take away of them.
@@ -162,13 +164,23 @@ class SelectorUpon {
     const ScoredCandidate& best = scored.front();
     const Spread gain = mean_difference(result_.extended_losses, best.losses, options_.seed);
     if (!(gain.lower > 0 && gain.value > 0.01 * noise_mm_ * noise_mm_)) return false;
-    const BlockLosses before = std::exchange(result_.extended_losses, best.losses);
-    result_.extended = *best.candidate.fit;
-    result_.left = structure_of(result_.extended.residual_mm, noise_mm_);
-    result_.chosen.push_back(
+    ChosenCause chosen =
         weigh(best.candidate.cause,
-              {result_.extended, result_.extended_losses, before, noise_mm_, options_.seed}, scored));
+              {*best.candidate.fit, best.losses, result_.extended_losses, noise_mm_, options_.seed}, scored);
+    if (!stands(chosen)) return false;
+    result_.extended = *best.candidate.fit;
+    result_.extended_losses = best.losses;
+    result_.left = structure_of(result_.extended.residual_mm, noise_mm_);
+    result_.chosen.push_back(std::move(chosen));
     return true;
+  }
+
+  /// By itself or, where others explain as much, as one of them.
+  [[nodiscard]] static bool stands(const ChosenCause& chosen) {
+    const bool has_twin = std::any_of(chosen.rivals.begin(), chosen.rivals.end(),
+                                      [&](const Cause& rival) { return rival.id == chosen.cause.twin; });
+    if (chosen.rivals.size() > (has_twin ? 1U : 0U)) return true;
+    return chosen.inclusion >= (has_twin ? least_inclusion / 2 : least_inclusion);
   }
 
   const SearchData& data_;

@@ -43,8 +43,6 @@ constexpr double least_share = 0.01;
 /// What causes upon a richer base must take together of what that base leaves: no base is a finger's own, and
 /// what makes up for that takes a part.
 constexpr double least_share_upon = 0.3;
-/// With a twin, that it shares its inclusion with, a cause has half of it.
-constexpr double least_inclusion_upon = 0.475;
 
 /// What a finding is called, and with which blocks it stands in the model.
 struct FindingName {
@@ -113,6 +111,11 @@ class Namer {
   UncertainPoint at_;
 };
 
+bool is_among(const std::vector<NamedCause>& causes, const NamedCause& one) {
+  return std::any_of(causes.begin(), causes.end(),
+                     [&](const NamedCause& other) { return other.cause == one.cause; });
+}
+
 /// From where on creep is slow for a base that has branches of its own.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   double longest_s = 0, slowest_s = 0;
@@ -149,8 +152,7 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
     if (without == choice.ablation.end()) continue;
     NamedCause named = namer.name(finding, without->trial);
     if (named.gain_mm2.value < least_share * excess_mm2) continue;
-    const auto same = [&](const NamedCause& other) { return other.cause == named.cause; };
-    if (std::any_of(found.named.begin(), found.named.end(), same)) continue;
+    if (is_among(found.named, named) || is_among(found.possible, named)) continue;
     (named.inclusion >= full_inclusion ? found.named : found.possible).push_back(std::move(named));
   }
   return found;
@@ -176,8 +178,8 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   std::vector<NamedCause> causes = name_chosen(upon.records, selection.extended, selection.chosen);
   const bool clear = after * after < (1 - least_share_upon) * before * before;
   for (NamedCause& cause : causes) {
-    (clear && cause.inclusion >= least_inclusion_upon ? found.named : found.possible)
-        .push_back(std::move(cause));
+    if (clear || !is_among(found.possible, cause))
+      (clear ? found.named : found.possible).push_back(std::move(cause));
   }
   if (!clear) return;
   found.fit = std::move(selection.extended);
