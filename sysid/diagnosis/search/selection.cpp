@@ -48,6 +48,7 @@ class Selector {
     }
     while (result_.extended.causes.size() > 1 && drop_idle_one()) {
     }
+    for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) add_confounded(i);
     for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) explain(i);
     return std::move(result_);
   }
@@ -172,6 +173,21 @@ class Selector {
       return false;
     stand(without(least), losses_without(least));
     return true;
+  }
+
+  /// What is confounded with a cause takes little beside it, and is all the same why its number is wrong:
+  /// here a gain is enough that no draw of blocks doubts.
+  void add_confounded(std::size_t index) {
+    for (const std::string_view id : result_.extended.causes[index].confounded_with) {
+      const Cause other = *find_cause(id);
+      if (position_of(result_.extended.point.model, other)) continue;
+      const std::vector<Candidate> found = fit_candidates(data_, result_.extended, {.only = {other}});
+      if (found.empty() || !found.front().fit) continue;
+      BlockLosses losses = held_out_losses(data_.records, division_, *found.front().fit);
+      const Spread gain = mean_difference(result_.extended_losses, losses, options_.seed);
+      if (!(gain.lower > 0 && gain.value > 0.01 * noise_ * noise_)) continue;
+      stand(*found.front().fit, std::move(losses));
+    }
   }
 
   void explain(std::size_t index) {

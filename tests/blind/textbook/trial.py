@@ -21,6 +21,10 @@ NOISE_MM = 0.04  # of the readings that textbook-world writes
 HELD_OUT_AT_MOST = {"pressure": 1.6, "command": 5}
 
 
+# What stands between the command and the measured pressure.
+OF_THE_VALVE = {"transport_delay", "valve_lag", "valve_deadband", "pressure_saturation", "supply_sag"}
+
+
 def program(build):
     return pathlib.Path(build).resolve() / "tests/blind/textbook/textbook-world"
 
@@ -102,6 +106,25 @@ def named_in(diagnosis, judged):
             "heldout_rmse_mm": diagnosis["heldout_rmse_mm"], "wall_s": diagnosis["wall_s"], **judged}
 
 
+def diagnosed(build, model, logs, work, world, threads):
+    """Where the pressure is recorded: the finger and its sensor from there, the valve from the command."""
+    threads = ("--threads", str(threads))
+    if world["columns"] != "pressure":
+        return judging.diagnose(build, model, logs, work / "out", *threads)
+    diagnosis, message = judging.diagnose(build, model, logs, work / "out", *threads, "--drive", "measured")
+    if diagnosis is None:
+        return diagnosis, message
+    valve, message = judging.diagnose(build, model, logs, work / "valve", *threads)
+    if valve is None:
+        return valve, message
+    for cause, rivals in zip(valve["causes"], valve["alternatives"]):
+        if cause["id"] in OF_THE_VALVE:
+            diagnosis["causes"].append(cause)
+            diagnosis["alternatives"].append(rivals)
+    diagnosis["wall_s"] += valve["wall_s"]
+    return diagnosis, message
+
+
 def run_world(build, folder, world, threads=1):
     """Makes the world, diagnoses its logs; returns the world with what came of it."""
     build = pathlib.Path(build).resolve()
@@ -112,7 +135,7 @@ def run_world(build, folder, world, threads=1):
         model = given_model(build, work, world, threads)
         if model is None:
             return {**world, "outcome": "failed", "message": "no model could be identified from the healthy logs"}
-        diagnosis, message = judging.diagnose(build, model, logs, work / "out", "--threads", str(threads))
+        diagnosis, message = diagnosed(build, model, logs, work, world, threads)
         if diagnosis is None:
             return {**world, "outcome": "failed", "message": message}
         own = truth["own_physics_mm"]

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""Diagnoses all seven subsets of the three logs that scripts/demo.sh makes, and writes what came of them as a page.
+
+    bench/demo_subsets.py --build BUILD [--page FILE] [--check] [SUBSET ...]
+
+SUBSET: names of logs joined by +, such as tp1+sp2; default: all seven. --check fails where an interval does not hold the
+twin's number, where something else is named, or where more logs name less than fewer did.
+"""
+import argparse
+import itertools
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+NUMBER_OF = {"transport_delay": "delay_s", "valve_lag": "time_constant_s"}
+
+
+def demo_logs():
+    """(signals, options of `softgrip simulate`) as the demo has them."""
+    text = (ROOT / "scripts/demo.sh").read_text()
+    signals = re.search(r"for signal in ([a-z0-9 ]+); do", text)[1].split()
+    options = re.search(r"--noise-mm [0-9.]+ --seed \d+ --rate-hz \d+", text)[0].split()
+    return signals, options
+
+
+def truth():
+    """The twin's delay and lag."""
+    text = (ROOT / "config/models/bench_twin.yaml").read_text()
+    return {cause: float(re.search(rf"{cause}:\s+{number}: ([0-9.]+)", text)[1]) for cause, number in NUMBER_OF.items()}
+
+
+def diagnose(softgrip, logs, out):
+    done = subprocess.run([softgrip, "diagnose", "--model", ROOT / "config/models/zhang2025.yaml", "--data", *logs, "--out",
+                           out, "--json"], check=True, capture_output=True, text=True)
+    return json.loads(done.stdout)
+
+
+def found(diagnosis):
+    """cause -> (value, low, high, inclusion) of what is named; None for a cause without a number here."""
+    rows = {}
+    for cause in diagnosis["causes"]:
+        number = cause["parameters"].get(NUMBER_OF.get(cause["id"]))
+        rows[cause["id"]] = number and (number["value"], *(number["ci95"] or (None, None)), cause["inclusion"])
+    return rows
+
+
+def complaints(results, real):
+    """What is wrong with the answers, as sentences."""
+    wrong = []
+    for subset, rows in results.items():
+        for cause, row in rows.items():
+            if cause not in real:
+                wrong.append(f"{'+'.join(subset)}: {cause} is named")
+            elif row and row[1] is not None and not row[1] <= real[cause] <= row[2]:
+                wrong.append(f"{'+'.join(subset)}: {cause} {row[1]:.4f} .. {row[2]:.4f} does not hold {real[cause]}")
+    for fewer, more in itertools.permutations(results, 2):
+        if set(fewer) < set(more):
+            wrong += [f"{'+'.join(more)} misses {cause}, which {'+'.join(fewer)} names"
+                      for cause in results[fewer] if cause in real and cause not in results[more]]
+    return wrong
+
+
+def cell(row):
+    if row is None:
+        return "not named"
+    value, low, high, inclusion = row
+    interval = f" ({low:.4f} .. {high:.4f})" if low is not None else ""
+    return f"{value:.4f} s{interval}, inclusion {inclusion:.2f}"
+
+
+def page(results, verdicts, real, options):
+    lines = ["# The demo's logs, all seven subsets", "",
+             f"The twin that the demo records has a transport delay of {real['transport_delay']} s and a valve lag of "
+             f"{real['valve_lag']} s; the model", "that is given has neither. Made by", "", "```",
+             "$ bench/demo_subsets.py --build build/release --page docs/reference/demo-subsets.md", "```", "",
+             f"(`softgrip simulate` with `{' '.join(options)}`, `softgrip diagnose --model config/models/zhang2025.yaml`). "
+             "Where logs do not say", "whether the lag is there, the interval of the delay holds both answers.", "",
+             "| logs | verdict | transport delay | valve lag |", "|---|---|---|---|"]
+    for subset, rows in results.items():
+        lines.append(f"| {' + '.join(subset)} | {verdicts[subset]} | {cell(rows.get('transport_delay'))} | "
+                     f"{cell(rows.get('valve_lag'))} |")
+    wrong = complaints(results, real)
+    lines += ["", "Every interval holds the twin's number, and no more logs name less." if not wrong else "Wrong:"]
+    return "\n".join(lines + [f"- {sentence}" for sentence in wrong]) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", required=True, type=pathlib.Path)
+    parser.add_argument("--page", type=pathlib.Path)
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("subsets", nargs="*")
+    args = parser.parse_args()
+    softgrip = args.build.resolve() / "tools/softgrip"
+    signals, options = demo_logs()
+    subsets = [tuple(s.split("+")) for s in args.subsets] or [
+        subset for count in (1, 2, 3) for subset in itertools.combinations(signals, count)]
+    results, verdicts = {}, {}
+    with tempfile.TemporaryDirectory() as folder:
+        for signal in signals:
+            subprocess.run([softgrip, "simulate", "--model", ROOT / "config/models/bench_twin.yaml", "--input", signal,
+                            "--out", f"{folder}/{signal}.csv", *options], check=True, capture_output=True)
+        for subset in subsets:
+            diagnosis = diagnose(softgrip, [f"{folder}/{signal}.csv" for signal in subset], f"{folder}/out")
+            results[subset], verdicts[subset] = found(diagnosis), diagnosis["verdict"]
+            print(" + ".join(subset), verdicts[subset], {c: cell(r) for c, r in results[subset].items()}, flush=True)
+    real = truth()
+    if args.page:
+        args.page.write_text(page(results, verdicts, real, options))
+    wrong = complaints(results, real)
+    print("\n".join(wrong), file=sys.stderr)
+    sys.exit(1 if args.check and wrong else 0)
+
+
+if __name__ == "__main__":
+    main()
