@@ -6,7 +6,8 @@
 #   scripts/fuzz.sh minimise TARGET     keeps of the grown corpus what reaches something new, at most 100 files of 4 KiB
 # It starts from the corpus in the tree and lets it grow in build/fuzz/grown/TARGET. Each run adds a line with its
 # executions, coverage and findings to build/fuzz/runs.csv; findings are in build/fuzz/findings. Exit code 1 if any.
-# FUZZ_BUILD names another folder with built targets, which is then not built.
+# FUZZ_BUILD names another folder with built targets, which is then not built. FUZZ_NICE=15 runs at that niceness instead of
+# idle priority, which on a busy machine leaves a target next to nothing.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 home=build/fuzz
@@ -29,6 +30,9 @@ gauge_fuzz|tests/sysid/diagnosis/gauge/gauge_corpus|||4096
 recording_fuzz|tests/tools/recordings/recording_corpus||tests/daemon/client_request.dict|4096
 TABLE
 }
+
+priority=(nice -n 19 chrt -i 0)
+[ -z "${FUZZ_NICE:-}" ] || priority=(nice -n "$FUZZ_NICE")
 
 row_of() { targets | awk -F'|' -v target="$1" '$1 == target'; }
 program_of() { find "${FUZZ_BUILD:-$home/tests}" -name "$1" -type f -perm -u+x | head -n 1; }
@@ -54,7 +58,7 @@ fuzz() {
   for folder in $corpus $seeds; do [ ! -d "$folder" ] || folders+=("$folder"); done
   local began=$SECONDS
   local TIMEFORMAT=%U cpu_s executions coverage
-  cpu_s=$({ time nice -n 19 chrt -i 0 "$program" "${options[@]}" "${folders[@]}" >"$log" 2>&1; } 2>&1) || status=$?
+  cpu_s=$({ time "${priority[@]}" "$program" "${options[@]}" "${folders[@]}" >"$log" 2>&1; } 2>&1) || status=$?
   executions=$(awk '/stat::number_of_executed_units/ {print $2}' "$log")
   coverage=$(grep -o 'cov: [0-9]*' "$log" | tail -n 1 | cut -d' ' -f2)
   [ -f "$home/runs.csv" ] || echo 'target,seconds,cpu_s,executions,coverage,exit_code' >"$home/runs.csv"
@@ -73,7 +77,7 @@ minimise() {
   kept=$(mktemp -d)
   local folders=("$home/grown/$target") folder
   [ ! -d "$corpus" ] || folders+=("$corpus")
-  chrt -i 0 "$(program_of "$target")" -merge=1 "-max_len=$longest" -timeout=20 "$kept" "${folders[@]}" >/dev/null 2>&1
+  "${priority[@]}" "$(program_of "$target")" -merge=1 "-max_len=$longest" -timeout=20 "$kept" "${folders[@]}" >/dev/null 2>&1
   mkdir -p "$corpus"
   # Small ones first: they are the ones that a person can read.
   find "$kept" -type f -size -9 -printf '%s %p\n' | sort -n | head -n 100 | while read -r _ file; do

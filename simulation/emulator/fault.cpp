@@ -18,13 +18,15 @@ constexpr std::array<std::string_view, 18> kind_names{
 
 constexpr double longest_s = 86400;
 
+/// Of what lasts, or comes again and again.
+constexpr double shortest_s = 1e-4;
+
 document::Range up_to(double upper) {
   return {0, upper};
 }
 
 /// The keys that only this kind has.
 void read_own_keys(FaultSpec& fault, document::MapReader& map) {
-  constexpr double shortest_interval_s = 1e-4;
   switch (fault.kind) {
     case FaultKind::late_reply:
       fault.delay_s = map.number("delay_s", up_to(60));
@@ -36,7 +38,7 @@ void read_own_keys(FaultSpec& fault, document::MapReader& map) {
       fault.code = static_cast<std::uint8_t>(map.integer("code", 1, 255));
       break;
     case FaultKind::sensor_jumping:
-      fault.interval_s = map.number("interval_s", {shortest_interval_s, 60});
+      fault.interval_s = map.number("interval_s", {shortest_s, 60});
       break;
     default:
       break;
@@ -53,7 +55,7 @@ FaultSpec read_fault(const document::Document& document, const document::Node& n
       fault_of(static_cast<FaultKind>(map.choice("kind", {kind_names.begin(), kind_names.end()})));
   fault.name = std::move(name);
   fault.at_s = map.optional_number("at_s", up_to(longest_s));
-  fault.for_s = map.optional_number("for_s", up_to(longest_s));
+  fault.for_s = map.optional_number("for_s", document::Range{shortest_s, longest_s});
   if (on_the_wire(fault.kind)) {
     if (const auto replies = map.optional_integer("replies", 1, 1'000'000)) {
       fault.replies = static_cast<std::uint32_t>(*replies);

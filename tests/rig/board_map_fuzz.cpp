@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   document::Problems problems;
   const document::Document document =
       document::parse("fuzz.yaml", std::string(reinterpret_cast<const char*>(data), size), problems);
-  const auto map = drivers::read_board_map(document, problems);
+  const auto map = rig::read_board_map(document, problems);
   (void)problems.format();
   require(map.has_value() || !problems.empty());
   if (!map || !problems.empty()) return 0;

@@ -70,6 +70,8 @@ TEST(FaultsFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(refused("faults:\n  - {name: a, kind: no_reply}\n  - {name: a, kind: no_reply}\n").find(":3:"),
             std::string::npos);
   EXPECT_NE(refused("{}\n").find("faults"), std::string::npos);
+  EXPECT_NE(refused("faults:\n  - {name: a, kind: no_reply, for_s: 0}\n").find("for_s"), std::string::npos)
+      << "what lasts no time is none";
 }
 
 TEST(FaultSchedule, FollowsTheClockFromTheFirstCommand) {
