@@ -54,6 +54,7 @@ void ChannelController::start(double command_kpa, ChannelOutput& channel) noexce
   channel = {};
   channel.command_kpa = limit(limits_, command_kpa, command_kpa, 0).command_kpa;
   channel.safe_kpa = channel.free_kpa = channel.command_kpa;
+  channel.displacement_mm = channel.pressure_kpa = not_known;  // what was never read is not 0
   running_.reset(channel.command_kpa);
   plausibility_.reset();
   health_.reset();

@@ -79,7 +79,7 @@ struct ChannelOutput {
   double command_kpa = 0;      ///< what goes to the board: clamped and slew-limited
   double safe_kpa = 0;         ///< what to write instead when the loop sends no more, by the phase it is in
   double reference_mm = 0;     ///< clamped, for now; NaN while nothing is tracked
-  double displacement_mm = 0;  ///< the reading used: the last valid one
+  double displacement_mm = 0;  ///< the reading used: the last valid one; NaN before the first
   double pressure_kpa = 0;     ///< measured, or NaN
   double feedforward_kpa = 0;  ///< 0 while nothing is tracked
   double feedback_kpa = 0;     ///< 0 while nothing is tracked

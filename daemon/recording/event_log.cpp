@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "control/elements/model_health.h"
+#include "control/elements/refusal_text.h"
 #include "control/tick/sequence.h"
 #include "daemon/recording/csv_row.h"
 
@@ -98,7 +99,7 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
-  entry.text = fmt::format("The request was refused: {}.", control::name_of(refusal));
+  entry.text = fmt::format("The request was refused. {}", sentences_of(refusal));
   entry.severity = Severity::warning;
 }
 
@@ -217,6 +218,11 @@ EventEntry describe(const Event& event, const std::vector<std::string>& channel_
   telling.describe(event, sequence, entry);
   if (!entry.channel.empty()) entry.text = fmt::format("{}: {}", entry.channel, entry.text);
   return entry;
+}
+
+std::string sentences_of(control::RefusalCode refusal) {
+  const control::RefusalText& text = control::text_of(refusal);
+  return fmt::format("{}{}{}", text.meaning, text.next.empty() ? "" : " ", text.next);
 }
 
 EventEntry describe(const BusEvent& event) {

@@ -40,6 +40,9 @@ struct EventEntry {
 /// "information", "warning", "error"
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 
+/// What a refusal means and what to do now, as sentences.
+[[nodiscard]] std::string sentences_of(control::RefusalCode refusal);
+
 /// The newest events, for all threads but the loop.
 class EventLog {
  public:

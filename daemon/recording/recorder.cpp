@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/grid.h"
+#include "base/wall_clock.h"
 
 namespace softgrip::daemon {
 
@@ -26,23 +26,6 @@ constexpr Nanoseconds retry_pause = 60 * ns_per_s;
 constexpr std::size_t events_per_file = 10'000;
 
 using Kind = control::Event::Kind;
-
-Nanoseconds read_clock(clockid_t clock) {
-  timespec time{};
-  clock_gettime(clock, &time);
-  return time.tv_sec * ns_per_s + time.tv_nsec;
-}
-
-/// The wall clock at a moment of the monotonic one, as "2025-11-20T03:46:12Z".
-std::string utc_text(Nanoseconds monotonic) {
-  const Nanoseconds wall = read_clock(CLOCK_REALTIME) - (read_clock(CLOCK_MONOTONIC) - monotonic);
-  const time_t whole = wall / ns_per_s;
-  tm parts{};
-  gmtime_r(&whole, &parts);
-  std::array<char, 32> text{};
-  strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
-}
 
 /// Letters, digits, '-' and '_' of a name; all else becomes '_'.
 std::string file_name_of(std::string_view name) {
@@ -167,7 +150,7 @@ void Recorder::begin(Nanoseconds at, const control::Event* event) {
   now.story.reason = always_ ? "always" : fault ? "fault" : "sequence";
   if (fault && !past_rows_.empty()) now.begin = past_rows_.front().at;
   if (fault && !past_events_.empty()) now.begin = std::min(now.begin, past_events_.front().at);
-  if (!provenance_.virtual_time) now.story.started_at = utc_text(now.begin);
+  if (!provenance_.virtual_time) now.story.started_at = utc_text(wall_time(now.begin));
   if (fault) {
     for (const Record& row : past_rows_) write(row);
     for (const StampedEvent& past : past_events_) write(past);
@@ -180,7 +163,8 @@ void Recorder::begin(Nanoseconds at, const control::Event* event) {
 
 std::string Recorder::folder_for(Nanoseconds at, const control::Event* event) const {
   if (!only_folder_.empty()) return only_folder_;
-  std::string name = provenance_.virtual_time ? fmt::format("run-{:04}", recordings_ + 1) : utc_text(at);
+  std::string name =
+      provenance_.virtual_time ? fmt::format("run-{:04}", recordings_ + 1) : utc_text(wall_time(at));
   for (char& c : name) c = c == ':' ? '-' : c;
   if (event != nullptr && event->kind == Kind::sequence_started) {
     const auto sequence = shelf_.find(event->request);

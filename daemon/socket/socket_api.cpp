@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/grid.h"
+#include "base/wall_clock.h"
 
 namespace softgrip::daemon {
 
@@ -90,7 +91,7 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       ask(client, request->id, Kind::acknowledge, nullptr, now);
       break;
     case Command::events:
-      tell_events(client, *request);
+      tell_events(client, *request, now);
       break;
     case Command::statistics:
       ok(client, request->id, statistics_json(sources_, request->histograms));
@@ -205,7 +206,7 @@ void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service:
     ok(asked.client, asked.id, result);
     return;
   }
-  Json error = error_json("refused", control::name_of(answer.refusal));
+  Json error = error_json("refused", sentences_of(answer.refusal));
   error["refusal"] = {{"code", control::id_of(answer.refusal)}, {"name", control::name_of(answer.refusal)}};
   error["request"] = request;
   fail(asked.client, asked.id, error);
@@ -217,10 +218,14 @@ void SocketApi::watch(ClientId client, const ClientRequest& request, Nanoseconds
   ok(client, request.id, {{"rate_hz", request.rate_hz}});
 }
 
-void SocketApi::tell_events(ClientId client, const ClientRequest& request) {
+void SocketApi::tell_events(ClientId client, const ClientRequest& request, Nanoseconds now) {
   Json list = Json::array();
-  for (const EventEntry& event : events_.since(request.since, request.limit))
-    list.push_back(event_json(event));
+  const Nanoseconds started = wall_time_now() - (now - sources_.origin);
+  for (const EventEntry& event : events_.since(request.since, request.limit)) {
+    Json json = event_json(event);
+    json["at"] = utc_text(started + nanoseconds(event.time_s), 3);
+    list.push_back(std::move(json));
+  }
   ok(client, request.id, {{"events", std::move(list)}, {"newest", events_.newest()}});
 }
 

@@ -74,7 +74,7 @@ class SocketApi {
            std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
   void answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer);
   void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
-  void tell_events(ClientId client, const ClientRequest& request);
+  void tell_events(ClientId client, const ClientRequest& request, Nanoseconds now);
   void ok(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& result);
   void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
 

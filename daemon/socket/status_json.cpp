@@ -7,6 +7,7 @@
 
 #include "base/grid.h"
 #include "daemon/recording/csv_row.h"
+#include "daemon/socket/under_pressure.h"
 
 namespace softgrip::daemon {
 
@@ -48,7 +49,7 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"deficit_mm", number(channel.deficit_mm)},
           {"squeeze_kpa", number(channel.squeeze_kpa)},
           {"free_kpa", number(channel.free_kpa)},
-          {"age_s", number(channel.age_s)},
+          {"age_s", channel.validity == model::Validity::none_yet ? Json(nullptr) : number(channel.age_s)},
           {"validity", name_of(channel.validity)},
           {"result", control::title_of(channel.result)},
           {"evidence", control::name_of(channel.evidence)},
@@ -138,6 +139,7 @@ Json status_json(const StatusSources& sources) {
             // Before the first tick there is nothing whose age could be told.
             {"time_s", snapshot.ticks == 0 ? 0.0 : seconds(snapshot.at - sources.origin)},
             {"state", control::name_of(snapshot.state)},
+            {"under_pressure", under_pressure_json(sources.rig.channels, snapshot)},
             {"fault", json_of_fault(snapshot.first_fault)},
             {"sequence", json_of_sequence(sources.service, snapshot)}};
   json["channels"] = Json::array();

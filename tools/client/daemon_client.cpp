@@ -58,7 +58,7 @@ ClientFailure failure_of(const Json& error) {
   }
   if (code == "refused") {
     const Json refusal = error.value("refusal", Json::object());
-    return {ExitCode::state_refused, "refused: " + message + " (" + refusal.value("code", "?") + ")"};
+    return {ExitCode::state_refused, "refused (" + refusal.value("code", "?") + "): " + message};
   }
   if (code == "busy" || code == "abandoned") return {ExitCode::state_refused, message};
   return {ExitCode::failed, message};

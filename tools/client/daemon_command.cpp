@@ -1,8 +1,12 @@
 #include "tools/client/daemon_command.h"
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <thread>
+
+#include "document/problem.h"
 
 namespace softgrip::tools {
 
@@ -38,6 +42,52 @@ void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& 
       std::printf("%s\n", done.c_str());
     }
   });
+}
+
+namespace {
+
+/// What stays under pressure when the rig has come to a stand; null where nothing does, or it does not in
+/// time.
+Json pressure_left(DaemonClient& client) {
+  constexpr std::chrono::milliseconds pause{20};
+  for (int looks = 0; looks < 150; ++looks) {
+    const auto status = client.ask({{"command", "status"}});
+    if (!status) return nullptr;
+    const std::string state = status->value("state", "");
+    if (state == "idle" || state == "faulted") return status->value("under_pressure", Json());
+    std::this_thread::sleep_for(pause);
+  }
+  return nullptr;
+}
+
+ExitCode end_motion(const DaemonOptions& options, const std::string& name, const std::string& done) {
+  auto client = DaemonClient::connect(options.socket);
+  if (!client) return fail(client.error().code, client.error().message);
+  auto result = client->ask({{"command", name}});
+  if (!result) return fail(result.error().code, result.error().message);
+  if (!options.json) {
+    std::printf("%s\n", done.c_str());
+    std::fflush(stdout);
+  }
+  Json left = pressure_left(*client);
+  if (options.json) {
+    (*result)["under_pressure"] = std::move(left);
+    print_json(*result);
+  } else if (left.is_object()) {
+    std::printf("%s\n", document::shown(left.value("text", ""), 1000).c_str());
+  }
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_ending_request(CLI::App& program, ExitCode& outcome, const std::string& name,
+                        const std::string& meaning, std::string done) {
+  auto options = std::make_shared<DaemonOptions>();
+  CLI::App* command = program.add_subcommand(name, meaning);
+  add_daemon_options(*command, *options);
+  command->callback(
+      [options, &outcome, name, done = std::move(done)] { outcome = end_motion(*options, name, done); });
 }
 
 void print_json(const Json& json) {

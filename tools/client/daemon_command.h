@@ -29,6 +29,11 @@ void add_daemon_options(CLI::App& command, DaemonOptions& options);
 void add_plain_request(CLI::App& program, ExitCode& outcome, const std::string& name,
                        const std::string& meaning, std::string done);
 
+/// The same for what ends motion: once the rig stands still, it is said where pressure stays on, and which
+/// command ends that; as JSON it is `under_pressure` in the result.
+void add_ending_request(CLI::App& program, ExitCode& outcome, const std::string& name,
+                        const std::string& meaning, std::string done);
+
 /// One line of JSON on the standard output; bytes that are not UTF-8 are replaced.
 void print_json(const nlohmann::ordered_json& json);
 

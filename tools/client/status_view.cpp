@@ -206,6 +206,7 @@ std::string head_line(const Json& status, const ViewStyle& style) {
   Line line(style);
   line.add("softgrip ", Tone::faint).add(text_at(status, "rig"), Tone::strong).add("  ");
   line.add(state, tone_of_state(state));
+  if (!object_at(status, "under_pressure").empty()) line.add(", UNDER PRESSURE", Tone::bad);
   const Json& sequence = object_at(status, "sequence");
   if (!sequence.empty()) {
     line.add("  " + text_at(sequence, "name"));
@@ -229,6 +230,22 @@ void add_fault(std::vector<std::string>& lines, const Json& status, const ViewSt
                       .text());
   lines.push_back(Line(style).add("  usually: " + text_at(fault, "cause")).text());
   lines.push_back(Line(style).add("  do: " + text_at(fault, "remedy")).text());
+}
+
+/// Loud, with the command that ends it; as many lines as it takes.
+void add_pressure(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
+  std::string text = text_at(object_at(status, "under_pressure"), "text");
+  if (text == "-") return;
+  while (!text.empty()) {
+    std::size_t length = text.size();
+    if (length > style.columns) {
+      const std::size_t space = text.rfind(' ', style.columns);
+      length = space == std::string::npos || space == 0 ? style.columns : space;
+    }
+    lines.push_back(Line(style).add(text.substr(0, length), Tone::bad).text());
+    text.erase(0, length);
+    if (text.starts_with(' ')) text.erase(0, 1);
+  }
 }
 
 void add_machinery(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
@@ -264,6 +281,7 @@ void add_machinery(std::vector<std::string>& lines, const Json& status, const Vi
 
 std::vector<std::string> view_of(const Json& status, const ViewStyle& style) {
   std::vector<std::string> lines{head_line(status, style)};
+  add_pressure(lines, status, style);
   add_fault(lines, status, style);
   const auto channels = status.find("channels");
   if (channels != status.end() && channels->is_array()) {
@@ -279,6 +297,7 @@ std::vector<std::string> view_of(const Json& status, const ViewStyle& style) {
 
 std::string line_of_status(const Json& status) {
   std::string line = with_decimals(number_at(status, "time_s"), 2) + " s  " + text_at(status, "state");
+  if (!object_at(status, "under_pressure").empty()) line += ", UNDER PRESSURE";
   if (const Json& fault = object_at(status, "fault"); !fault.empty()) line += " " + text_at(fault, "code");
   const auto channels = status.find("channels");
   if (channels == status.end() || !channels->is_array()) return line;

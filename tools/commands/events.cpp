@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/wall_clock.h"
 #include "tools/client/daemon_command.h"
+#include "tools/client/event_query.h"
 #include "tools/client/event_text.h"
 #include "tools/commands/commands.h"
 
@@ -17,8 +19,8 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   DaemonOptions daemon;
-  std::uint64_t since = 0;
-  std::uint64_t limit = 100;
+  std::string since;
+  EventQuery query;
   bool follow = false;
 };
 
@@ -27,24 +29,30 @@ void print(const Json& event, bool json) {
     print_json(event);
     return;
   }
-  std::printf("%6s %s\n", std::to_string(event.value("id", std::uint64_t{0})).c_str(),
+  std::printf("%6s  %s\n", std::to_string(event.value("id", std::uint64_t{0})).c_str(),
               line_of_event(event).c_str());
   std::fflush(stdout);
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(Options options) {
   constexpr std::chrono::milliseconds pause{200};
+  if (!options.since.empty()) {
+    const auto since = parse_since(options.since, wall_time_now());
+    if (!since) {
+      return fail(ExitCode::usage,
+                  "--since takes an event's number, or a time: 10min, 2h, 10:15, 2026-11-21 10:15");
+    }
+    options.query.since = *since;
+  }
   auto client = DaemonClient::connect(options.daemon.socket);
   if (!client) return fail(client.error().code, client.error().message);
-  std::uint64_t since = options.since;
   while (true) {
-    const auto result = client->ask({{"command", "events"}, {"since", since}, {"limit", options.limit}});
-    if (!result) return fail(result.error().code, result.error().message);
-    for (const Json& event : result->value("events", Json::array())) {
-      print(event, options.daemon.json);
-      since = event.value("id", since);
-    }
+    std::uint64_t newest = 0;
+    const auto events = events_of(*client, options.query, newest);
+    if (!events) return fail(events.error().code, events.error().message);
+    for (const Json& event : *events) print(event, options.daemon.json);
     if (!options.follow) return ExitCode::done;
+    options.query.since.id = newest;
     std::this_thread::sleep_for(pause);
   }
 }
@@ -53,14 +61,19 @@ ExitCode run(const Options& options) {
 
 void add_events(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("events", "What the daemon had to tell, oldest first");
+  CLI::App* command = program.add_subcommand("events", "What the daemon had to tell, the newest last");
   add_daemon_options(*command, options->daemon);
-  command->add_option("--since", options->since, "Only events after the one with this number")
-      ->capture_default_str();
-  command->add_option("--limit", options->limit, "At most so many at once")
+  command
+      ->add_option("-n,--lines,--limit", options->query.lines, "The newest so many; the daemon keeps 10000")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_flag("--follow", options->follow, "Go on with new ones until interrupted");
+      ->check(CLI::Range(1, 10'000));
+  command->add_option("--since", options->since,
+                      "Only those behind the event with this number, or since a time: 10min, 2h, 10:15, "
+                      "2026-11-21 10:15");
+  command->add_option("--severity", options->query.severity, "Only those that are at least so grave")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"information", "warning", "error"}));
+  command->add_flag("-f,--follow", options->follow, "Go on with new ones until interrupted");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

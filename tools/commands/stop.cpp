@@ -6,8 +6,9 @@
 namespace softgrip::tools {
 
 void add_stop(CLI::App& program, ExitCode& outcome) {
-  add_plain_request(program, outcome, "stop",
-                    "Ends the running sequence as the rig file's safe_action says for its phase", "stopping");
+  add_ending_request(program, outcome, "stop",
+                     "Ends the running sequence as the rig file's safe_action says for its phase",
+                     "stopping");
 }
 
 }  // namespace softgrip::tools

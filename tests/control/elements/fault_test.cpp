@@ -1,5 +1,7 @@
 #include "control/elements/fault.h"
 
+#include "control/elements/refusal_text.h"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -47,11 +49,23 @@ TEST(Faults, CodesAreStable) {
 
 TEST(Refusals, HaveIdAndName) {
   std::set<std::string> ids;
-  for (int i = 0; i <= 9; ++i) {
+  for (int i = 0; i <= 11; ++i) {
     const auto code = static_cast<RefusalCode>(i);
-    EXPECT_EQ(id_of(code), "R0" + std::to_string(i));
+    EXPECT_EQ(id_of(code), std::string(i < 10 ? "R0" : "R") + std::to_string(i));
     EXPECT_TRUE(ids.insert(std::string(name_of(code))).second);
+    EXPECT_FALSE(i > 0 && (text_of(code).meaning.empty() || text_of(code).next.empty()));
   }
+}
+
+std::string refusal_table() {
+  std::ostringstream out;
+  out << "| code | name | meaning | what to do |\n|---|---|---|---|\n";
+  for (int i = 1; i <= 11; ++i) {
+    const auto code = static_cast<RefusalCode>(i);
+    out << "| " << id_of(code) << " | `" << name_of(code) << "` | " << text_of(code).meaning << " | "
+        << text_of(code).next << " |\n";
+  }
+  return out.str();
 }
 
 /// The table of docs/reference/faults.md.
@@ -70,12 +84,9 @@ TEST(Faults, TheManualSaysWhatTheCodeSays) {
   const std::string manual((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   EXPECT_NE(manual.find(table()), std::string::npos) << "the table in docs/reference/faults.md should read:\n"
                                                      << table();
-  for (int i = 1; i <= 9; ++i) {
-    const auto code = static_cast<RefusalCode>(i);
-    EXPECT_NE(manual.find("| " + std::string(id_of(code)) + " | `" + std::string(name_of(code)) + "` |"),
-              std::string::npos)
-        << name_of(code);
-  }
+  EXPECT_NE(manual.find(refusal_table()), std::string::npos)
+      << "the table of refusals in docs/reference/faults.md should read:\n"
+      << refusal_table();
 }
 
 }  // namespace

@@ -36,6 +36,33 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
+TEST(StatusView, PressureThatStaysOnIsSaidFirstAndCompletely) {
+  Json pressed = status();
+  pressed["state"] = "idle";
+  pressed["under_pressure"] = {
+      {"channels", Json::array()},
+      {"command", "softgrip release"},
+      {"text", "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip release` lets it down."}};
+  const auto wide = view_of(pressed, {100, false, false});
+  EXPECT_EQ(wide[0], "softgrip bench  idle, UNDER PRESSURE  pick_stone: step 3/4 hold  12.3 s");
+  EXPECT_EQ(wide[1], "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip release` lets it down.");
+  const auto narrow = view_of(pressed, {60, false, false});
+  EXPECT_EQ(narrow[1], "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip");
+  EXPECT_EQ(narrow[2], "release` lets it down.");
+  EXPECT_NE(line_of_status(pressed).find("idle, UNDER PRESSURE"), std::string::npos);
+}
+
+TEST(StatusView, AReadingThatWasNeverThereIsNotZero) {
+  Json blind = status();
+  blind["channels"][0]["displacement_mm"] = nullptr;
+  blind["channels"][0]["reference_mm"] = nullptr;
+  blind["channels"][0]["age_s"] = nullptr;
+  blind["channels"][0]["validity"] = "none_yet";
+  const std::string text = joined(view_of(blind, {100, false, false}));
+  EXPECT_NE(text.find("- mm, reference -\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("reading none_yet   model"), std::string::npos) << text;
+}
+
 TEST(StatusView, ALimitThatBindsIsALine) {
   Json bound = status();
   bound["channels"][0]["limit"] = "rig_pressure";

@@ -1,0 +1,56 @@
+#include "daemon/socket/under_pressure.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::daemon {
+namespace {
+
+using control::State;
+
+class UnderPressure : public testing::Test {
+ protected:
+  UnderPressure() : channels_(2) {
+    channels_[0].name = "left";
+    channels_[1].name = "right";
+    for (auto& channel : channels_) channel.limits.pressure_min_kpa = 2;
+    snapshot_.channel_count = 2;
+    snapshot_.state = State::idle;
+    set(2, 2);
+  }
+  void set(double left_kpa, double right_kpa) {
+    snapshot_.channels[0].command_kpa = left_kpa;
+    snapshot_.channels[1].command_kpa = right_kpa;
+  }
+  [[nodiscard]] nlohmann::ordered_json json() const { return under_pressure_json(channels_, snapshot_); }
+
+  std::vector<control::ChannelSettings> channels_;
+  Snapshot snapshot_;
+};
+
+TEST_F(UnderPressure, NothingIsSaidAtTheLowestCommandsOrInMotion) {
+  EXPECT_TRUE(json().is_null());
+  set(30, 30);
+  for (const State state : {State::resynchronising, State::running, State::stopping}) {
+    snapshot_.state = state;
+    EXPECT_TRUE(json().is_null()) << name_of(state);
+  }
+}
+
+TEST_F(UnderPressure, WhatStaysOnIsNamedWithTheCommandThatEndsIt) {
+  set(2, 36.04);
+  const auto idle = json();
+  ASSERT_EQ(idle["channels"].size(), 1U);
+  EXPECT_EQ(idle["channels"][0]["name"], "right");
+  EXPECT_EQ(idle["command"], "softgrip release");
+  EXPECT_EQ(idle["text"],
+            "Pressure stays on: right 36.0 kPa. `softgrip release` lets it down; what is held drops.");
+  snapshot_.state = State::faulted;
+  set(33, 36);
+  EXPECT_EQ(json()["command"], "softgrip vent") << "a release is refused then";
+  EXPECT_NE(json()["text"].get<std::string>().find("left 33.0 kPa, right 36.0 kPa"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

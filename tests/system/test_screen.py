@@ -1,0 +1,61 @@
+"""What the screen says: pressure that stays on, refusals as sentences, events as a journal."""
+
+import json
+import re
+
+import bench
+
+
+class Screen(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        self.emulated = self.emulator("--object", "stone")
+        self.softgripd = self.daemon(self.rig(self.emulated.port))
+        self.softgripd.wait_for_state("idle")
+
+    def hold(self):
+        self.softgripd.start("hand_over")
+        bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
+
+    def test_pressure_that_stays_on_after_a_stop_is_said_everywhere_until_it_is_let_down(self):
+        self.assertIsNone(self.softgripd.status()["under_pressure"])
+        self.hold()
+        self.assertIsNone(self.softgripd.status()["under_pressure"], "a hold is what was asked for")
+        stopped = self.softgrip("stop").stdout
+        self.assertRegex(stopped, r"stopping\nPressure stays on: left [\d.]+ kPa, right [\d.]+ kPa\. `softgrip release`")
+        self.assertEqual(self.softgripd.status()["state"], "idle")
+        self.assertEqual([one["name"] for one in self.softgripd.status()["under_pressure"]["channels"]],
+                         ["left", "right"])
+        for command in (("status",), ("watch", "--count", "1")):
+            self.assertIn("UNDER PRESSURE", self.softgrip(*command).stdout)
+        self.softgrip("release")
+        bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
+        bench.wait_for("the end of it", lambda: self.softgripd.status()["under_pressure"] is None)
+        self.assertNotIn("UNDER PRESSURE", self.softgrip("status").stdout)
+
+    def test_a_refusal_is_a_sentence_with_the_next_command(self):
+        refused = self.softgrip("stop", expect=5).stderr
+        self.assertIn("refused (R07): No sequence runs.", refused)
+        self.assertIn("`softgrip release`", refused)
+
+    def test_events_are_a_journal(self):
+        self.hold()
+        self.softgrip("vent")
+        self.softgripd.wait_for_state("idle")
+        every = self.softgrip("events", "--json").stdout.splitlines()
+        told = [json.loads(line) for line in every]
+        self.assertEqual([event["id"] for event in told], sorted(event["id"] for event in told))
+        last = self.softgrip("events", "-n", "3").stdout.splitlines()
+        self.assertEqual([int(line.split()[0]) for line in last], [event["id"] for event in told[-3:]])
+        for line in last:
+            self.assertRegex(line, r"^ *\d+  \d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{3}  (information|warning|error) ")
+        self.assertEqual(len(self.softgrip("events", "--since", str(told[2]["id"])).stdout.splitlines()),
+                         len(told) - 3)
+        self.assertEqual(self.softgrip("events", "--since", "1h", "--json").stdout.splitlines(), every)
+        grave = self.softgrip("events", "--severity", "warning").stdout
+        self.assertIsNone(re.search(r"  information ", grave))
+        self.softgrip("events", "--since", "once", expect=2)
+
+
+if __name__ == "__main__":
+    bench.main()

@@ -1,0 +1,88 @@
+#include "tools/client/event_query.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "base/wall_clock.h"
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t page = 1000;
+
+std::size_t rank_of(std::string_view severity) {
+  return severity == "error" ? 2U : severity == "warning" ? 1U : 0U;
+}
+
+std::optional<Nanoseconds> duration_of(std::string_view number, std::string_view unit) {
+  constexpr std::array<std::pair<std::string_view, Nanoseconds>, 5> units{
+      {{"s", 1}, {"m", 60}, {"min", 60}, {"h", 3600}, {"d", 86400}}};
+  const auto* const found =
+      std::find_if(units.begin(), units.end(), [&](const auto& known) { return known.first == unit; });
+  if (found == units.end() || number.size() > 6) return std::nullopt;
+  return std::strtol(std::string(number).c_str(), nullptr, 10) * found->second * ns_per_s;
+}
+
+/// A local time of day or date; what is not given is that of `now`, or 0 behind what is.
+std::optional<Nanoseconds> local_moment(const std::string& text, Nanoseconds now) {
+  const time_t now_s = now / ns_per_s;
+  for (const char* format : {"%Y-%m-%d %H:%M:%S", "%Y-%m-%d %H:%M", "%Y-%m-%d", "%H:%M:%S", "%H:%M"}) {
+    tm parts{};
+    if (::localtime_r(&now_s, &parts) == nullptr) return std::nullopt;
+    parts.tm_hour = parts.tm_min = parts.tm_sec = 0;
+    parts.tm_isdst = -1;
+    const char* const end = ::strptime(text.c_str(), format, &parts);
+    if (end != nullptr && *end == '\0') return static_cast<Nanoseconds>(std::mktime(&parts)) * ns_per_s;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Since> parse_since(const std::string& text, Nanoseconds now) {
+  const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  if (!text.empty() && digits == text.size() && digits < 17) {
+    return Since{std::strtoull(text.c_str(), nullptr, 10), {}};
+  }
+  std::optional<Nanoseconds> moment;
+  if (digits > 0) {
+    const auto before =
+        duration_of(std::string_view(text).substr(0, digits), std::string_view(text).substr(digits));
+    if (before) moment = now - *before;
+  }
+  if (!moment) moment = local_moment(text, now);
+  if (!moment) return std::nullopt;
+  return Since{0, utc_text(*moment, 3)};
+}
+
+bool wanted(const EventQuery& query, const Json& event) {
+  return event.value("id", std::uint64_t{0}) > query.since.id && event.value("at", "") >= query.since.at &&
+         rank_of(event.value("severity", "")) >= rank_of(query.severity);
+}
+
+tl::expected<std::vector<Json>, ClientFailure> events_of(DaemonClient& client, const EventQuery& query,
+                                                         std::uint64_t& newest) {
+  std::vector<Json> found;
+  newest = query.since.id;
+  for (;;) {
+    const auto result = client.ask({{"command", "events"}, {"since", newest}, {"limit", page}});
+    if (!result) return tl::unexpected{result.error()};
+    const Json events = result->value("events", Json::array());
+    for (const Json& event : events) {
+      newest = std::max(newest, event.value("id", newest));
+      if (wanted(query, event)) found.push_back(event);
+    }
+    if (events.size() < page) break;
+  }
+  if (found.size() > query.lines) found.erase(found.begin(), found.end() - static_cast<long>(query.lines));
+  return found;
+}
+
+}  // namespace softgrip::tools
