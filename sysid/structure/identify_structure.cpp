@@ -50,7 +50,8 @@ StructureEvidence evidence_of(const StructureChoice& choice) {
 
 /// Intervals of the numbers that the fit moved, those that stand at zero or at a bound without one.
 void add_estimates(const StructureTrial& trial, Identification& result) {
-  const auto residuals = residuals_for(result.records, FitSpace(trial.point.model, result.records, free_numbers(trial.point.model)));
+  const auto residuals = residuals_for(
+      result.records, FitSpace(trial.point.model, result.records, free_numbers(trial.point.model)));
   const std::vector<double> z = residuals->space().z(trial.point);
   const Uncertainty uncertainty = uncertainty_at(*residuals, z, std::numeric_limits<double>::infinity());
   const FittedPoint fit{*residuals, z, uncertainty};
