@@ -1,9 +1,13 @@
 #include "sysid/structure/structure.h"
 
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+
 namespace softgrip::sysid {
 
 std::string_view name_of(HysteresisForm form) {
-  return form == HysteresisForm::play ? "prandtl_ishlinskii" : "bouc_wen";
+  return form == HysteresisForm::play ? model::PrandtlIshlinskii<double>::info.id
+                                      : model::BoucWen<double>::info.id;
 }
 
 std::string description_of(const BaseStructure& s) {

@@ -182,7 +182,7 @@ std::string_view name_of(Ingredient ingredient) {
   constexpr std::array<std::string_view, 9> names{
       "hysteresis", "play operators (Bouc-Wen instead)",      "creep",
       "slow creep", "dependence of creep on pressure",        "delay",
-      "lag",        "a time constant of its own for venting", "characteristic"};
+      "lag",        "a time constant of its own for venting", "bent characteristic"};
   return names[static_cast<std::size_t>(ingredient)];
 }
 

@@ -16,6 +16,7 @@
 #include "sysid/identification/validate.h"
 #include "sysid/pages/page.h"
 #include "sysid/structure/identify_structure.h"
+#include "sysid/structure/structure.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
@@ -47,11 +48,14 @@ sysid::ShowProgress progress_on(const ProgressLine& line) {
   };
 }
 
+constexpr const char* automatic = "auto";
+
 /// The structure that is to be looked for, if none was given.
 std::optional<sysid::StructureQuestion> question_of(const Options& options) {
-  if (options.structure == "bouc_wen") return sysid::StructureQuestion::bouc_wen;
-  if (options.structure == "prandtl_ishlinskii") return sysid::StructureQuestion::prandtl_ishlinskii;
-  if (options.structure == "auto") return sysid::StructureQuestion::automatic;
+  using sysid::HysteresisForm, sysid::StructureQuestion;
+  if (options.structure == name_of(HysteresisForm::bouc_wen)) return StructureQuestion::bouc_wen;
+  if (options.structure == name_of(HysteresisForm::play)) return StructureQuestion::prandtl_ishlinskii;
+  if (options.structure == automatic) return StructureQuestion::automatic;
   return std::nullopt;
 }
 
@@ -208,12 +212,14 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
 
 /// Chooses among structures of its own: what belongs to the fit of a given one is refused beside it.
 void add_structure_option(CLI::App& command, Options& options) {
-  CLI::Option* const structure =
-      command
-          .add_option(
-              "--structure", options.structure,
-              "Choose among a few structures: auto, bouc_wen or prandtl_ishlinskii [that of the start]")
-          ->check(CLI::IsMember({"auto", "bouc_wen", "prandtl_ishlinskii"}));
+  using sysid::HysteresisForm;
+  const std::vector<std::string> names{automatic, std::string(name_of(HysteresisForm::bouc_wen)),
+                                       std::string(name_of(HysteresisForm::play))};
+  CLI::Option* const structure = command
+                                     .add_option("--structure", options.structure,
+                                                 "Choose among a few structures: " + names[0] + ", " +
+                                                     names[1] + " or " + names[2] + " [that of the start]")
+                                     ->check(CLI::IsMember(names));
   for (const char* other : {"--branches", "--fix", "--free", "--exponents", "--robust", "--profile"})
     structure->excludes(command.get_option(other));
 }
