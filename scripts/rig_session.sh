@@ -16,13 +16,13 @@ start_rig() {
 }
 
 # start_daemon [SED_EXPRESSION ...]: the example rig, on that port, changed by the expressions. softgrip-rig is an
-# ordinary process: on a busy machine it may answer late, so this bus may be silent for 0.4 s where the example allows
-# 25 ms.
+# ordinary process: on a busy machine it may answer late, so this bus may be silent for 0.28 s, within the board's
+# watchdog, where the example allows 25 ms.
 start_daemon() {
   cp -r config/boards config/models config/sequences "$work/"
   local edits=(-e "s#port: 1502#port: $port#" -e "s#directory: /tmp/softgrip-runs#directory: $runs#"
                -e "s#path: /tmp/softgrip.sock#path: $work/sock#"
-               -e "s#exchange_deadline_s: [0-9.]*#exchange_deadline_s: 0.2#" -e "s#bus_down_cycles: [0-9]*#bus_down_cycles: 80#"
+               -e "s#exchange_deadline_s: [0-9.]*#exchange_deadline_s: 0.2#" -e "s#bus_down_cycles: [0-9]*#bus_down_cycles: 55#"
                -e "s#invalid_reading_cycles: [0-9]*#invalid_reading_cycles: 80#" -e "s#max_age_s: [0-9.]*#max_age_s: 0.4#"
                -e "s#readback_cycles: [0-9]*#readback_cycles: 80#" -e "s#max_missed_commands: [0-9]*#max_missed_commands: 80#")
   for edit in "$@"; do edits+=(-e "$edit"); done
