@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/named.h"
 #include "model/parameter.h"
 #include "sysid/fitting/trajectory.h"
 
@@ -30,6 +34,15 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index)
 }
 
 }  // namespace
+
+bool is_movable(const model::Model& model, std::size_t flat_index) {
+  const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
+  if (spec.whole || spec.placed) return false;
+  const model::ParameterPlace place = model::place_of(model, flat_index);
+  const bool is_k0 = model::is<model::KelvinVoigt>(model.blocks[place.block]) && place.value == 0;
+  return !is_k0 ||
+         !(model::position_of<model::BoucWen>(model) || model::position_of<model::PrandtlIshlinskii>(model));
+}
 
 double FreeParameter::to_z(double value) const {
   return logarithmic ? std::log(std::max(value, 1e-300)) : value / scale;

@@ -35,6 +35,10 @@ struct FreeParameter {
   [[nodiscard]] double upper_z() const { return to_z(upper); }
 };
 
+/// Whether a fit of a base moves this number: no exponent, nothing that stands where it was put, and of the
+/// springs no k0 where the hysteresis has an instantaneous gain (only their sum shows).
+[[nodiscard]] bool is_movable(const model::Model& model, std::size_t flat_index);
+
 /// A point of the search: a whole model and the start of every record.
 struct FitPoint {
   model::Model model;

@@ -19,12 +19,8 @@ namespace softgrip::sysid {
 
 std::vector<std::size_t> free_numbers(const model::Model& model) {
   std::vector<std::size_t> flat;
-  const auto creep = model::position_of<model::KelvinVoigt>(model);
   for (std::size_t i = 0; i < model::parameter_count(model); ++i) {
-    const model::ParameterPlace place = model::place_of(model, i);
-    const model::ParameterSpec& spec = model::parameter_spec(model, i);
-    if (spec.whole || spec.placed || (creep && place.block == *creep && place.value == 0)) continue;
-    flat.push_back(i);
+    if (is_movable(model, i)) flat.push_back(i);
   }
   return flat;
 }

@@ -74,7 +74,7 @@ class Designer {
     noise_.innovation_mm = std::max(noise_.innovation_mm, 1e-6);
     data_ = make_search_data(d_.records, d_.as_given.point.model);
     data_.threads = options_.threads;
-    data_.scales.residual_lines = spectrum_peaks(data_.records, d_.recalibrated.residual_mm, 3);
+    data_.scales.residual_lines = spectrum_peaks(data_.records, d_.recalibrated.residual_mm);
     limits_ = options_.limits.value_or(RigLimits{data_.scales.largest_kpa, usual_slew_kpa_per_s});
     for (const NamedCause& named : d_.causes) add_contest(named);
     if (d_.causes.empty()) add_contest_of_rejected();

@@ -1,10 +1,10 @@
 #include "sysid/diagnosis/report/diagnosis_json.h"
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "model/catalogue.h"
+#include "sysid/diagnosis/verdict/budget.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -19,12 +19,7 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-/// What the recalibrated model leaves beyond the noise, held out [mm^2].
-double excess_mm2(const Diagnosis& d) {
-  return std::max(d.recalibrated_rmse_mm * d.recalibrated_rmse_mm - d.noise_mm * d.noise_mm, 0.0);
-}
-
-Json cause_json(const NamedCause& named, const Diagnosis& d) {
+Json cause_json(const NamedCause& named, const Budget& budget) {
   Json parameters = Json::object();
   for (const CauseParameter& p : named.parameters) {
     Json one{{"value", p.value}};
@@ -37,22 +32,20 @@ Json cause_json(const NamedCause& named, const Diagnosis& d) {
           {"parameters", std::move(parameters)},
           {"heldout_gain_percent", spread(named.heldout_gain_percent)},
           {"inclusion", named.inclusion},
-          {"share_percent",
-           excess_mm2(d) > 0 ? std::clamp(100 * named.gain_mm2.value / excess_mm2(d), 0.0, 100.0) : 0.0}};
+          {"share_percent", budget.share_percent(named)}};
 }
 
 /// Where the misfit goes, in mean squares of held-out readings.
-Json budget_json(const Diagnosis& d) {
+Json budget_json(const Diagnosis& d, const Budget& budget) {
   Json causes = Json::object();
   for (const NamedCause& named : d.causes) causes[std::string(named.cause.id)] = spread(named.gain_mm2);
-  const double noise_mm2 = d.noise_mm * d.noise_mm;
   return {{"unit", "mm^2"},
-          {"as_given", number(d.as_given_rmse_mm * d.as_given_rmse_mm)},
-          {"recalibrated", number(d.recalibrated_rmse_mm * d.recalibrated_rmse_mm)},
+          {"as_given", number(budget.as_given)},
+          {"recalibrated", number(budget.recalibrated)},
           {"causes", std::move(causes)},
-          {"extended", number(d.extended_rmse_mm * d.extended_rmse_mm)},
-          {"left", std::max(d.extended_rmse_mm * d.extended_rmse_mm - noise_mm2, 0.0)},
-          {"noise", noise_mm2}};
+          {"extended", number(budget.extended)},
+          {"left", budget.left()},
+          {"noise", budget.noise}};
 }
 
 Json candidates_json(const std::vector<CandidateScore>& candidates) {
@@ -173,10 +166,11 @@ Json json_of(const Diagnosis& d) {
   Json json;
   json["schema"] = 1;
   json["verdict"] = name_of(d.verdict);
+  const Budget budget = budget_of(d);
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();
   for (const NamedCause& named : d.causes) {
-    json["causes"].push_back(cause_json(named, d));
+    json["causes"].push_back(cause_json(named, budget));
     Json ids = Json::array();
     for (const Cause& rival : named.rivals) ids.push_back(rival.id);
     json["alternatives"].push_back(std::move(ids));
@@ -192,7 +186,7 @@ Json json_of(const Diagnosis& d) {
   }
   json["gain_percent"] = spread(d.gain);
   json["unexplained_percent"] = d.unexplained_percent;
-  json["budget"] = budget_json(d);
+  json["budget"] = budget_json(d, budget);
   json["base"] = d.base.empty() ? Json(nullptr) : Json(d.base);
   json["next_experiment"] = nullptr;
   json["null_calibration"] = nullptr;
@@ -211,7 +205,7 @@ Json json_of(const Diagnosis& d) {
   }
   json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
   json["partial_causes"] = Json::array();
-  for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, d));
+  for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, budget));
   json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},
                           {"left", d.structure_left.excess_mm}};
   Json candidates = Json::object();

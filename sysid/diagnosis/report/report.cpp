@@ -11,6 +11,7 @@
 #include "sysid/diagnosis/report/report_figures.h"
 #include "sysid/diagnosis/report/report_gauge.h"
 #include "sysid/diagnosis/report/report_tables.h"
+#include "sysid/diagnosis/verdict/budget.h"
 #include "sysid/identification/log_figures.h"
 #include "sysid/pages/page.h"
 #include "sysid/pages/provenance.h"
@@ -256,33 +257,31 @@ void add_next(Page& page, const DiagnosisReport& report) {
                  significant(next.rig_minutes, 2) + " minutes of rig time; run it with " + next.file + ".");
 }
 
-}  // namespace
-
 /// Where the misfit goes, from the given model to the noise.
 void add_budget(Page& page, const Diagnosis& d) {
   const auto text = [](double mm2) { return significant(mm2, 3); };
-  const double noise_mm2 = d.noise_mm * d.noise_mm;
-  const double recalibrated_mm2 = d.recalibrated_rmse_mm * d.recalibrated_rmse_mm;
-  const double extended_mm2 = d.extended_rmse_mm * d.extended_rmse_mm;
+  const Budget budget = budget_of(d);
   page.section("The budget of the misfit");
   Table table{"Mean squares of held-out readings; what one finding takes is measured by leaving it out",
               {"", "mean square [mm²]", "95 %", "inclusion"},
               {false, true, true, true},
               {}};
-  table.rows.push_back({"as given", text(d.as_given_rmse_mm * d.as_given_rmse_mm), "", ""});
-  table.rows.push_back({"recalibrated", text(recalibrated_mm2), "", ""});
+  table.rows.push_back({"as given", text(budget.as_given), "", ""});
+  table.rows.push_back({"recalibrated", text(budget.recalibrated), "", ""});
   for (const NamedCause& named : d.causes) {
     table.rows.push_back({"– " + std::string(named.cause.title), text(named.gain_mm2.value),
                           text(named.gain_mm2.lower) + " to " + text(named.gain_mm2.upper),
                           fixed(named.inclusion, 2)});
   }
-  table.rows.push_back({"extended", text(extended_mm2), "", ""});
-  table.rows.push_back({"of which noise", text(noise_mm2), "", ""});
-  table.rows.push_back({"left", text(std::max(extended_mm2 - noise_mm2, 0.0)), "", ""});
+  table.rows.push_back({"extended", text(budget.extended), "", ""});
+  table.rows.push_back({"of which noise", text(budget.noise), "", ""});
+  table.rows.push_back({"left", text(budget.left()), "", ""});
   page.table(table);
   if (!d.base.empty())
     page.paragraph("The given base does not hold; the extended model's is: " + d.base + ".");
 }
+
+}  // namespace
 
 std::string diagnosis_html(const DiagnosisReport& report) {
   const Diagnosis& d = report.result;

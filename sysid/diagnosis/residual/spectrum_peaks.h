@@ -21,11 +21,14 @@ struct Line {
   return std::max(0.2, 10 / std::max(campaign_s, 1.0));
 }
 
+/// So many a search for causes looks at.
+inline constexpr std::size_t looked_at_lines = 3;
+
 /// The lines that stand out against their neighbourhood in the residual's spectrum over the whole campaign,
 /// the clearest first.
 /// @param residual_mm  by record, as long as the record; NaN where there is no reading.
 [[nodiscard]] std::vector<Line> spectrum_peaks(const std::vector<Record>& records,
                                                const std::vector<std::vector<double>>& residual_mm,
-                                               std::size_t count);
+                                               std::size_t count = looked_at_lines);
 
 }  // namespace softgrip::sysid

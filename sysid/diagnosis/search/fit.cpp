@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "model/blocks/bouc_wen.h"
-#include "model/blocks/kelvin_voigt.h"
-#include "model/blocks/prandtl_ishlinskii.h"
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "sysid/fitting/minimise.h"
@@ -17,15 +14,9 @@ namespace softgrip::sysid {
 namespace {
 
 bool moves(const model::Model& model, const std::vector<Cause>& causes, std::size_t flat_index) {
-  const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
-  if (spec.whole || spec.placed) return false;
   const model::ParameterPlace place = model::place_of(model, flat_index);
-  const model::BlockSpec& block = model.blocks[place.block];
-  if (const CauseForm* form = form_among(causes, block)) return form->is_fitted(place.value);
-  // The hysteresis' instantaneous gain and 1/k0 enter only as their sum.
-  const bool is_k0 = model::is<model::KelvinVoigt>(block) && place.value == 0;
-  return !is_k0 ||
-         !(model::position_of<model::BoucWen>(model) || model::position_of<model::PrandtlIshlinskii>(model));
+  const CauseForm* form = form_among(causes, model.blocks[place.block]);
+  return is_movable(model, flat_index) && (form == nullptr || form->is_fitted(place.value));
 }
 
 void bound_by_forms(FitSpace& space, const std::vector<Record>& records, const model::Model& model,

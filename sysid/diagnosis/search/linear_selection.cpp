@@ -1,12 +1,13 @@
 #include "sysid/diagnosis/search/linear_selection.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "base/parallel.h"
+#include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/linear_holdout.h"
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
@@ -57,32 +58,20 @@ struct Look {
   double mean_square_mm2 = std::numeric_limits<double>::infinity();
 };
 
-Look look_from(const SearchData& data, const StructureFit& base, const Scan& scan, const Cause& cause,
+Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
                const FitPoint& start) {
-  const FitSpace numbers = cause_space(data.thinned, start, cause);
-  const ResidualsBesideBase residuals(scan, data.thinned, numbers);
+  const FitSpace numbers = cause_space(records, start, cause);
+  const ResidualsBesideBase residuals(base, records, numbers);
   MinimiseOptions options;
   options.normal_equations = true;
   options.most_iterations = look_iterations;
   options.tolerance = 1e-5;
   const Minimum minimum = minimise(residuals, numbers.z(start), options);
-  Look look;
-  look.mean_square_mm2 = minimum.rmse_mm * minimum.rmse_mm;
-
-  std::vector<double> left(residuals.count());
-  if (!residuals.inner().evaluate(minimum.z, left, {})) return {};
-  const Eigen::VectorXd answer =
-      scan.answer_to(Eigen::Map<const Eigen::VectorXd>(left.data(), static_cast<Eigen::Index>(left.size())));
-  const FitSpace space = structure_space(data.thinned, base.point.model, base.causes);
-  std::vector<double> z = space.z(base.point);
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    z[i] = std::clamp(z[i] + answer(static_cast<Eigen::Index>(i)), space.free()[i].lower_z(),
-                      space.free()[i].upper_z());
-  }
-  look.point = space.point(z);
-  const FitPoint with_cause = numbers.point(minimum.z);
-  look.point.model =
-      model::with_block(look.point.model, with_cause.model.blocks[*position_of(with_cause.model, cause)]);
+  Eigen::VectorXd left(static_cast<Eigen::Index>(residuals.count()));
+  if (!residuals.inner().evaluate(minimum.z, {left.data(), residuals.count()}, {})) return {};
+  Look look{base.answer_to(left), minimum.rmse_mm * minimum.rmse_mm};
+  const model::Model with_cause = numbers.point(minimum.z).model;
+  look.point.model = model::with_block(look.point.model, with_cause.blocks[*position_of(with_cause, cause)]);
   return look;
 }
 
@@ -90,13 +79,10 @@ class SelectorUpon {
  public:
   SelectorUpon(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
                const SelectionOptions& options)
-      : data_(data), noise_mm_(noise_mm), division_(division), options_(options) {
-    result_.base = std::move(base);
-    result_.base_losses = linear_held_out_losses(data.records, division, result_.base);
-    result_.base_structure = structure_of(result_.base.residual_mm, noise_mm);
-    result_.extended = result_.base;
-    result_.extended_losses = result_.base_losses;
-    result_.left = result_.base_structure;
+      : data_(data), noise_mm_(noise_mm), division_(division), options_(options), scales_(data.scales) {
+    scales_.residual_lines = spectrum_peaks(data.records, base.residual_mm);
+    BlockLosses losses = linear_held_out_losses(data.records, division, base);
+    result_ = selection_from(std::move(base), std::move(losses), noise_mm);
   }
 
   Selection run() {
@@ -109,26 +95,23 @@ class SelectorUpon {
   /// Every cause that the structure lacks, with the best of its looks; best first.
   std::vector<std::pair<Cause, Look>> looks() {
     const StructureFit& current = result_.extended;
-    const std::vector<Scan> scans = [&] {
-      std::vector<Scan> one;
-      one.emplace_back(data_.thinned, current.causes, current.point);
-      return one;
-    }();
+    const Scan scan(data_.thinned, current.causes, current.point);
     std::vector<std::pair<Cause, Look>> list;
-    if (!scans.front().usable()) return list;
+    if (!scan.usable()) return list;
     for (const Cause& cause : all_causes()) {
       if (cause.found_by_fitting && !position_of(current.point.model, cause) &&
-          unanswerable(cause, data_.scales).empty())
+          unanswerable(cause, scales_).empty())
         list.emplace_back(cause, Look{});
     }
     parallel_for(list.size(), data_.threads, [&](std::size_t i) {
       auto& [cause, best] = list[i];
-      for (const FitPoint& start : best_starts(scans, cause, data_.scales, fewest_looks)) {
-        Look look = look_from(data_, current, scans.front(), cause, start);
+      for (const FitPoint& start : best_starts({&scan, 1}, cause, scales_, fewest_looks)) {
+        Look look = look_from(data_.thinned, scan, cause, start);
         if (look.mean_square_mm2 < best.mean_square_mm2) best = std::move(look);
       }
       if (options_.progress) options_.progress("tried " + std::string(cause.id));
     });
+    std::erase_if(list, [](const auto& one) { return !std::isfinite(one.second.mean_square_mm2); });
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
       return a.second.mean_square_mm2 < b.second.mean_square_mm2;
     });
@@ -141,16 +124,11 @@ class SelectorUpon {
     parallel_for(scored.size(), data_.threads, [&](std::size_t i) {
       auto& [cause, look] = found[i];
       scored[i].candidate.cause = cause;
-      if (look.point.model.blocks.empty()) {
-        scored[i].candidate.why_not = "no start led to a fit";
-        return;
-      }
       std::vector<Cause> causes = result_.extended.causes;
       causes.push_back(cause);
       scored[i].candidate.fit = fit_structure(data_.records, causes, look.point, finish);
       scored[i].losses = linear_held_out_losses(data_.records, division_, *scored[i].candidate.fit);
     });
-    std::erase_if(scored, [](const ScoredCandidate& s) { return !s.candidate.fit; });
     std::stable_sort(scored.begin(), scored.end(), [](const ScoredCandidate& a, const ScoredCandidate& b) {
       return rmse_mm(a.losses) < rmse_mm(b.losses);
     });
@@ -187,6 +165,7 @@ class SelectorUpon {
   double noise_mm_;
   const Division& division_;
   const SelectionOptions& options_;
+  Scales scales_;
   Selection result_;
 };
 

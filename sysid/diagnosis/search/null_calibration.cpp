@@ -19,7 +19,6 @@ namespace {
 
 constexpr FitEffort recalibration{.most_iterations = 12, .tolerance = 1e-6};
 constexpr std::size_t burn_in = 500;
-constexpr std::size_t looked_at_lines = 3;
 
 /// What drives a residual that is taken for noise.
 struct Innovations {
@@ -77,10 +76,9 @@ double searched_gain_percent(const SearchData& data, const StructureFit& recalib
                              const Innovations& innovations, const Division& division, std::uint64_t seed) {
   SearchData null = make_search_data(null_records(data, recalibrated, innovations, seed), data.given.model);
   null.threads = 1;
-  null.given_is_base = data.given_is_base;
   null.scales.has_valve = data.scales.has_valve;
   StructureFit base = fit_structure(null.records, {}, recalibrated.point, recalibration);
-  null.scales.residual_lines = spectrum_peaks(null.records, base.residual_mm, looked_at_lines);
+  null.scales.residual_lines = spectrum_peaks(null.records, base.residual_mm);
   SelectionOptions options;
   options.seed = seed;
   options.most_causes = 1;  // whether anything is named is decided with the first

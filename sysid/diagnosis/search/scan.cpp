@@ -29,15 +29,14 @@ struct Judged {
 }  // namespace
 
 Scan::Scan(const std::vector<Record>& records, const std::vector<Cause>& causes, FitPoint place)
-    : records_(records), place_(std::move(place)) {
-  const FitSpace space = structure_space(records_, place_.model, causes);
-  const auto residuals = residuals_for(records_, space);
+    : records_(records), place_(std::move(place)), space_(structure_space(records_, place_.model, causes)) {
+  const auto residuals = residuals_for(records_, space_);
   const auto rows = static_cast<Eigen::Index>(residuals->count());
-  const auto columns = static_cast<Eigen::Index>(space.size());
+  const auto columns = static_cast<Eigen::Index>(space_.size());
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
   residual_.resize(rows);
-  usable_ = residuals->evaluate(space.z(place_), {residual_.data(), residuals->count()},
-                                {jacobian.data(), residuals->count() * space.size()});
+  usable_ = residuals->evaluate(space_.z(place_), {residual_.data(), residuals->count()},
+                                {jacobian.data(), residuals->count() * space_.size()});
   if (!usable_) return;
   jacobian_ = jacobian;
   Eigen::MatrixXd normal = jacobian_.transpose() * jacobian_;
@@ -51,8 +50,14 @@ Eigen::MatrixXd Scan::left_of(const Eigen::MatrixXd& columns) const {
   return columns - jacobian_ * normal_.solve(jacobian_.transpose() * columns);
 }
 
-Eigen::VectorXd Scan::answer_to(const Eigen::VectorXd& residual) const {
-  return -normal_.solve(jacobian_.transpose() * residual);
+FitPoint Scan::answer_to(const Eigen::VectorXd& residual) const {
+  const Eigen::VectorXd step = -normal_.solve(jacobian_.transpose() * residual);
+  std::vector<double> z = space_.z(place_);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const FreeParameter& free = space_.free()[i];
+    z[i] = std::clamp(z[i] + step(static_cast<Eigen::Index>(i)), free.lower_z(), free.upper_z());
+  }
+  return space_.point(z);
 }
 
 Eigen::VectorXd Scan::residual_at(const model::Model& model) const {

@@ -31,15 +31,15 @@ class Scan {
   [[nodiscard]] double mean_square_with(const model::BlockSpec& block) const;
   /// Columns over all readings without what the structure's own parameters could take away.
   [[nodiscard]] Eigen::MatrixXd left_of(const Eigen::MatrixXd& columns) const;
-  /// By how much the structure's own numbers, as structure_space() counts them, would move to take away what
-  /// they can of a residual.
-  [[nodiscard]] Eigen::VectorXd answer_to(const Eigen::VectorXd& residual) const;
+  /// The place, its numbers moved within their bounds so that they take away what they can of a residual.
+  [[nodiscard]] FitPoint answer_to(const Eigen::VectorXd& residual) const;
 
  private:
   [[nodiscard]] Eigen::VectorXd residual_at(const model::Model& model) const;
 
   const std::vector<Record>& records_;
   FitPoint place_;
+  FitSpace space_;  ///< the structure's own numbers
   bool usable_ = false;
   Eigen::MatrixXd jacobian_;
   Eigen::LDLT<Eigen::MatrixXd> normal_;

@@ -44,8 +44,7 @@ std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   std::vector<Scan> scans;
   scans.emplace_back(data.thinned, current.causes, current.point);
   // Recalibration may have walked far from the truth to swallow the effect.
-  if (current.causes.empty() && data.given_is_base)
-    scans.emplace_back(data.thinned, current.causes, data.given);
+  if (current.causes.empty()) scans.emplace_back(data.thinned, current.causes, data.given);
   return scans;
 }
 

@@ -16,9 +16,8 @@ struct SearchData {
   std::vector<Record> records;
   std::vector<Record> thinned;  ///< for the first look at many starts
   Scales scales;
-  unsigned threads = 0;       ///< 0: as many as there are cores
-  FitPoint given;             ///< the model as it was given: a second place to start from
-  bool given_is_base = true;  ///< it has the structure of the base
+  unsigned threads = 0;  ///< 0: as many as there are cores
+  FitPoint given;        ///< the model as it was given: a second place to start from
 };
 
 /// Prepares records for the search: thinned copies, scales.

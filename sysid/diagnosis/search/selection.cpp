@@ -31,12 +31,8 @@ class Selector {
   Selector(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
            const SelectionOptions& options)
       : data_(data), noise_(noise_mm), division_(division), options_(options) {
-    result_.base = std::move(base);
-    result_.base_losses = held_out_losses(data_.records, division_, result_.base);
-    result_.base_structure = structure_of(result_.base.residual_mm, noise_);
-    result_.extended = result_.base;
-    result_.extended_losses = result_.base_losses;
-    result_.left = result_.base_structure;
+    BlockLosses losses = held_out_losses(data_.records, division_, base);
+    result_ = selection_from(std::move(base), std::move(losses), noise_);
   }
 
   Selection run() {
@@ -48,7 +44,8 @@ class Selector {
     }
     while (result_.extended.causes.size() > 1 && drop_idle_one()) {
     }
-    for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) add_confounded(i);
+    while (add_confounded()) {
+    }
     for (std::size_t i = 0; i < result_.extended.causes.size(); ++i) explain(i);
     return std::move(result_);
   }
@@ -177,17 +174,15 @@ class Selector {
 
   /// What is confounded with a cause takes little beside it, and is all the same why its number is wrong:
   /// here a gain is enough that no draw of blocks doubts.
-  void add_confounded(std::size_t index) {
-    for (const std::string_view id : result_.extended.causes[index].confounded_with) {
-      const Cause other = *find_cause(id);
-      if (position_of(result_.extended.point.model, other)) continue;
-      const std::vector<Candidate> found = fit_candidates(data_, result_.extended, {.only = {other}});
-      if (found.empty() || !found.front().fit) continue;
-      BlockLosses losses = held_out_losses(data_.records, division_, *found.front().fit);
-      const Spread gain = mean_difference(result_.extended_losses, losses, options_.seed);
+  bool add_confounded() {
+    result_.undecided = fit_confounded(data_, result_.extended, division_);
+    for (Confounded& one : result_.undecided) {
+      const Spread gain = mean_difference(result_.extended_losses, one.losses, options_.seed);
       if (!(gain.lower > 0 && gain.value > 0.01 * noise_ * noise_)) continue;
-      stand(*found.front().fit, std::move(losses));
+      stand(std::move(one.fit), std::move(one.losses));
+      return true;
     }
+    return false;
   }
 
   void explain(std::size_t index) {
@@ -220,6 +215,14 @@ class Selector {
 };
 
 }  // namespace
+
+Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm) {
+  Selection selection;
+  selection.base_structure = selection.left = structure_of(base.residual_mm, noise_mm);
+  selection.extended_losses = selection.base_losses = std::move(losses);
+  selection.extended = selection.base = std::move(base);
+  return selection;
+}
 
 Selection select_causes(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
                         const SelectionOptions& options) {

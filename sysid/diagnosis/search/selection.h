@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sysid/diagnosis/residual/noise.h"
+#include "sysid/diagnosis/search/confounded.h"
 #include "sysid/diagnosis/search/holdout.h"
 #include "sysid/diagnosis/search/search.h"
 
@@ -42,8 +43,12 @@ struct Selection {
   BlockLosses base_losses;
   BlockLosses extended_losses;
   Structure base_structure;
-  Structure left;  ///< in the extended structure's residual
+  Structure left;                     ///< in the extended structure's residual
+  std::vector<Confounded> undecided;  ///< beside the extended structure, and no clear gain over it
 };
+
+/// Nothing chosen yet.
+[[nodiscard]] Selection selection_from(StructureFit base, BlockLosses losses, double noise_mm);
 
 struct SelectionOptions {
   /// Three at once meet almost any curve, named or not: what two leave is said to be unexplained. The

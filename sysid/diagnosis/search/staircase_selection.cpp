@@ -94,7 +94,7 @@ std::optional<StaircaseSelection> select_behind_staircase(const SearchData& data
   SearchData driven = make_search_data(found->records, data.given.model);
   driven.threads = data.threads;
   StructureFit base = base_behind(*found);
-  driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm, 3);
+  driven.scales.residual_lines = spectrum_peaks(driven.records, base.residual_mm);
   // What a course that is a jump off here and there leaves is no second cause.
   SelectionOptions behind = options;
   if (!leaves_too_much(structure_of(base.residual_mm, noise_mm), plain.base_structure, noise_mm))

@@ -22,7 +22,6 @@
 #include "sysid/diagnosis/causes/stiffening.h"
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
-#include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/linear_selection.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/fitting/trajectory.h"
@@ -165,17 +164,13 @@ bool outdoes(const BaseFindings& found, const Selection& plain) {
 }
 
 void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question) {
-  SearchData upon = data;
-  upon.given = found.fit.point;
-  upon.given_is_base = false;
-  upon.scales.residual_lines = spectrum_peaks(upon.records, found.fit.residual_mm, 3);
   SelectionOptions options;
   options.seed = question.seed;
   options.progress = question.progress;
-  Selection selection = select_causes_upon(upon, found.fit, question.noise_mm, question.division, options);
+  Selection selection = select_causes_upon(data, found.fit, question.noise_mm, question.division, options);
   if (selection.chosen.empty()) return;
   const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
-  std::vector<NamedCause> causes = name_chosen(upon.records, selection.extended, selection.chosen);
+  std::vector<NamedCause> causes = name_chosen(data.records, selection.extended, selection.chosen);
   const bool clear = after * after < (1 - least_share_upon) * before * before;
   for (NamedCause& cause : causes) {
     if (clear || !is_among(found.possible, cause))

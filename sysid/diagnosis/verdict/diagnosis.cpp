@@ -67,7 +67,7 @@ class Diagnostician {
     hide_more_outliers(*base);
     d_.recalibrated = *base;
     if (const auto wrong = why_not_about(data_.records, *base)) return Failure(*wrong);
-    data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm, 3);
+    data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm);
     clock.ended("recalibration");
     const Division division = divide(data_.records, block_s);
     Selection selection = search(std::move(*base), division);
@@ -83,6 +83,7 @@ class Diagnostician {
       base_.reset();  // a second cause explained it after all
     }
     if (base_) {
+      measure_recalibrated(selection);
       adopt_base(selection);
       clock.ended("held-out logs and intervals");
       return std::move(d_);
@@ -90,15 +91,16 @@ class Diagnostician {
     if (options_.gauge) {
       const GaugeQuestion question{*options_.gauge, d_.noise_mm, options_.seed, !d_.staircase};
       d_.gauge = weigh_gauge(question, data_, division, selection, d_.warnings);
+      if (d_.gauge->replaced) selection.undecided = fit_confounded(data_, selection.extended, division);
       clock.ended("gauge");
     }
     measure(selection, division);
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     if (d_.null_calibration) clock.ended("nulls");
-    name(selection, division);
+    name(selection);
     conclude(selection);
     clock.ended("held-out logs and intervals");
-    if (options_.gauge && d_.verdict == Verdict::unexplained) {
+    if (options_.gauge && options_.null_campaigns == 0 && d_.verdict == Verdict::unexplained) {
       look_for_base(selection, division);
       if (base_) adopt_base(selection);
       clock.ended("base");
@@ -184,7 +186,7 @@ class Diagnostician {
 
   /// Where no cause on the given base explains the data, the base itself may be the finding.
   void ask_for_base(const Selection& selection, const Division& division) {
-    if (asked_for_base_ || options_.null_campaigns > 0) return;
+    if (asked_for_base_) return;
     asked_for_base_ = true;
     if (auto strangers = strangers_among(data_.records, d_.recalibrated)) {
       d_.warnings.push_back(*strangers);
@@ -228,7 +230,6 @@ class Diagnostician {
   }
 
   void adopt_base(const Selection& selection) {
-    measure_recalibrated(selection);
     d_.base = base_->description;
     d_.extended = std::move(base_->fit);
     d_.extended_rmse_mm = rmse_mm(base_->losses);
@@ -304,11 +305,11 @@ class Diagnostician {
     return model;
   }
 
-  void name(const Selection& selection, const Division& division) {
+  void name(const Selection& selection) {
     if (d_.outliers.present) causes_.push_back(outlier_cause(d_.outliers, d_.noise_mm));
     std::vector<NamedCause> chosen = name_chosen(data_.records, selection.extended, selection.chosen);
     if (!d_.staircase) {
-      for (std::string& sentence : mix_intervals(chosen, data_, selection, division, options_.seed))
+      for (std::string& sentence : mix_intervals(chosen, data_.records, selection, options_.seed))
         d_.warnings.push_back(std::move(sentence));
     }
     for (NamedCause& named : chosen) {

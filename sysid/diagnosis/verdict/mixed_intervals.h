@@ -6,16 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "sysid/diagnosis/search/search.h"
 #include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
 
 namespace softgrip::sysid {
 
-/// Widens the intervals of `named` (the chosen of `selection`) by every structure with one more cause that is
-/// confounded with one of them and that the held-out blocks do not rule out. Returns a sentence for each.
-[[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const SearchData& data,
-                                                     const Selection& selection, const Division& division,
-                                                     std::uint64_t seed);
+/// Widens the intervals of `named` (the chosen of `selection`) by every undecided structure that the held-out
+/// blocks do not rule out. Returns a sentence for each.
+[[nodiscard]] std::vector<std::string> mix_intervals(std::vector<NamedCause>& named,
+                                                     const std::vector<Record>& records,
+                                                     const Selection& selection, std::uint64_t seed);
 
 }  // namespace softgrip::sysid

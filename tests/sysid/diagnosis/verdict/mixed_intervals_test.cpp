@@ -32,11 +32,12 @@ Named delay_of(SignalName signal, const model::Model& twin) {
   Selection selection;
   selection.extended = *fit_candidates(data, base, {.only = {delay}}).front().fit;
   selection.extended_losses = held_out_losses(data.records, division, selection.extended);
+  selection.undecided = fit_confounded(data, selection.extended, division);
   selection.chosen.push_back({delay, {}, {}, {}, {}, 1});
   Named named{name_chosen(data.records, selection.extended, selection.chosen), {}, {}};
   if (named.causes.empty()) return named;
   named.alone = named.causes.front().parameters.front().ci95;
-  named.sentences = mix_intervals(named.causes, data, selection, division, 1);
+  named.sentences = mix_intervals(named.causes, data.records, selection, 1);
   return named;
 }
 

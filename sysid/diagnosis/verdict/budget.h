@@ -1,0 +1,32 @@
+#pragma once
+// Where the misfit goes: mean squares of held-out readings, from the given model down to the noise.
+
+#include <algorithm>
+
+#include "sysid/diagnosis/verdict/diagnosis.h"
+
+namespace softgrip::sysid {
+
+/// All in mm^2.
+struct Budget {
+  double as_given = 0;
+  double recalibrated = 0;
+  double extended = 0;
+  double noise = 0;
+
+  /// What recalibration leaves beyond the noise.
+  [[nodiscard]] double excess() const { return std::max(recalibrated - noise, 0.0); }
+  /// What the extended model does.
+  [[nodiscard]] double left() const { return std::max(extended - noise, 0.0); }
+  /// What one finding takes of the excess, by leaving it out [%], from 0 to 100.
+  [[nodiscard]] double share_percent(const NamedCause& named) const {
+    return excess() > 0 ? std::clamp(100 * named.gain_mm2.value / excess(), 0.0, 100.0) : 0.0;
+  }
+};
+
+[[nodiscard]] inline Budget budget_of(const Diagnosis& d) {
+  return {d.as_given_rmse_mm * d.as_given_rmse_mm, d.recalibrated_rmse_mm * d.recalibrated_rmse_mm,
+          d.extended_rmse_mm * d.extended_rmse_mm, d.noise_mm * d.noise_mm};
+}
+
+}  // namespace softgrip::sysid
