@@ -3,51 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <random>
 #include <vector>
 
 #include "model/dual.h"
 #include "model/signals.h"
 #include "tests/model/presets.h"
-
-namespace {
-// Counts allocations of this program while armed.
-bool armed = false;
-std::size_t allocations = 0;
-void* counted(std::size_t size) {
-  if (armed) ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t size) {
-  return counted(size);
-}
-void* operator new[](std::size_t size) {
-  return counted(size);
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  if (armed) ++allocations;
-  return std::malloc(size);
-}
-void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocation_counter.h"
 
 namespace softgrip::model::testing {
 namespace {
@@ -188,19 +150,18 @@ TEST(Chain, SteppingAllocatesNothing) {
     const double dt = 1 / rate_hz;
     Chain<double> chain(everything(typical), {}, dt, 3);
     const Chain<double> start = chain;
-    allocations = 0;
-    armed = true;
     double sum = 0;
-    for (int i = 1; i < 5000; ++i) {
-      const double u = value_kpa(SignalName::tp1, i * dt);
-      chain.step(0, u);
-      sum += chain.peek(dt, u) + chain.peek(dt, Dual<double>(u, 1.0)).v;
-      sum += chain.step(dt, u);
-    }
-    chain.reset(0);
-    chain = start;
-    armed = false;
-    EXPECT_EQ(allocations, 0u);
+    const std::size_t made = softgrip::test::allocations_of([&] {
+      for (int i = 1; i < 5000; ++i) {
+        const double u = value_kpa(SignalName::tp1, i * dt);
+        chain.step(0, u);
+        sum += chain.peek(dt, u) + chain.peek(dt, Dual<double>(u, 1.0)).v;
+        sum += chain.step(dt, u);
+      }
+      chain.reset(0);
+      chain = start;
+    });
+    EXPECT_EQ(made, 0U);
     EXPECT_TRUE(std::isfinite(sum));
   }
 }

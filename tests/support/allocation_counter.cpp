@@ -6,10 +6,10 @@
 namespace {
 
 thread_local bool armed = false;
-thread_local std::size_t allocations = 0;
+thread_local std::size_t counted = 0;
 
 void count() noexcept {
-  if (armed) ++allocations;
+  if (armed) ++counted;
 }
 
 }  // namespace
@@ -71,16 +71,14 @@ void operator delete[](void* block, std::size_t) noexcept {
   std::free(block);
 }
 
-namespace softgrip::drivers::test {
+namespace softgrip::test {
 
-void start_counting() noexcept {
-  allocations = 0;
-  armed = true;
+void count_allocations(bool on) noexcept {
+  armed = on;
 }
 
-std::size_t stop_counting() noexcept {
-  armed = false;
-  return allocations;
+std::size_t allocations() noexcept {
+  return counted;
 }
 
-}  // namespace softgrip::drivers::test
+}  // namespace softgrip::test

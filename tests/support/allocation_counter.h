@@ -5,19 +5,21 @@
 
 #include <cstddef>
 
-namespace softgrip::drivers::test {
+namespace softgrip::test {
 
-/// From now on this thread's allocations are counted, from 0.
-void start_counting() noexcept;
-/// How many there were; counting ends.
-[[nodiscard]] std::size_t stop_counting() noexcept;
+/// Whether this thread's allocations are counted from now on; at first they are not.
+void count_allocations(bool on) noexcept;
+/// How many were counted in this thread so far.
+[[nodiscard]] std::size_t allocations() noexcept;
 
 /// How many allocations `work` makes in this thread.
 template <class Work>
 std::size_t allocations_of(const Work& work) {
-  start_counting();
+  const std::size_t before = allocations();
+  count_allocations(true);
   work();
-  return stop_counting();
+  count_allocations(false);
+  return allocations() - before;
 }
 
-}  // namespace softgrip::drivers::test
+}  // namespace softgrip::test

@@ -1,5 +1,5 @@
-"""The shipped rig on a serial line, for cells of the fault matrix: a pseudo-terminal of the emulator that takes the time of
-its bytes. Its board has no watchdog and no read-back."""
+"""The shipped rig on a serial line: a pseudo-terminal of the emulator that takes the time of its bytes. Its board has no
+watchdog and no read-back."""
 
 import os
 import re
@@ -17,7 +17,7 @@ def board_priority():
     return ["chrt", "-f", "40"] if resource.getrlimit(resource.RLIMIT_RTPRIO)[0] >= 40 or os.geteuid() == 0 else []
 
 
-def rig_file(folder, rate_hz):
+def rig_file(folder, rate_hz, *changes):
     """Half the rate that fits: bytes cross a pseudo-terminal in a kernel thread that waits its turn on a busy machine."""
     text = (folder / "config" / "rig_rtu.yaml").read_text()
     for pattern, replacement in (
@@ -28,11 +28,11 @@ def rig_file(folder, rate_hz):
             (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
             (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
             (r"directory: /tmp/softgrip-runs", f"directory: {folder}/runs"),
-            (r"path: /tmp/softgrip.sock", f"path: {folder}/softgripd.sock")):
+            (r"path: /tmp/softgrip.sock", f"path: {folder}/softgripd.sock"), *changes):
         text, count = re.subn(pattern, replacement, text)
         if count == 0:
             raise AssertionError(f"rig_rtu.yaml has no {pattern}")
-    path = folder / "config" / "matrix.yaml"
+    path = folder / "config" / "serial.yaml"
     path.write_text(text)
     return path
 

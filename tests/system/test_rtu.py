@@ -8,50 +8,20 @@ import unittest
 
 import bench
 import serial_rig
-
-
-RATE_HZ = 20
+from serial_rig import RATE_HZ
 
 
 class Line(bench.BenchTest):
     """The shipped rig on a serial line, on a pseudo-terminal of the emulator."""
 
-    def setUp(self):
-        super().setUp()
-        self.device = self.folder / "line"
-
     def line_rig(self, *changes):
-        text = (self.folder / "config" / "rig_rtu.yaml").read_text()
-        for pattern, replacement in (
-                (r"device: .*", f"device: {self.device}"),
-                # Half of what fits: bytes cross a pseudo-terminal in a kernel thread that waits its turn on a busy machine.
-                (r"rate_hz: \d+", f"rate_hz: {RATE_HZ}"),
-                (r"exchange_deadline_s: [\d.]+", "exchange_deadline_s: 0.3"),
-                (r"bus_down_cycles: \d+", "bus_down_cycles: 30"),
-                (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 30"),
-                (r"readback_cycles: \d+", "readback_cycles: 30"),
-                (r"max_missed_commands: \d+", "max_missed_commands: 30"),
-                (r"max_age_s: [\d.]+", "max_age_s: 0.8"),
-                (r"longest_pause_s: [\d.]+", "longest_pause_s: 0.2"),
-                (r"real_time: .*", "real_time: {required: false, priority: 70, cpus: [], lock_memory: false}"),
-                (r"directory: /tmp/softgrip-runs", f"directory: {self.folder}/runs"),
-                (r"path: /tmp/softgrip.sock", f"path: {self.folder}/softgripd.sock"),
-                *changes):
-            text, count = re.subn(pattern, replacement, text)
-            self.assertGreater(count, 0, pattern)
-        path = self.folder / "config" / "test_rig.yaml"
-        path.write_text(text)
-        return path
+        return serial_rig.rig_file(self.folder, RATE_HZ, *changes)
 
     def line_emulator(self, rig, *arguments):
-        process = bench.Process("softgrip-rig", [*serial_rig.board_priority(), bench.SOFTGRIP_RIG, "--model",
-                                                 self.folder / "config/models/bench_twin.yaml", "--rig", rig,
-                                                 "--control", self.folder / "rig.sock", *arguments], self.folder)
-        self.processes.append(process)
-        bench.wait_for("the line", lambda: f"listening on {self.device}" in process.output(), pause_s=0.05)
-        control = bench.Lines(self.folder / "rig.sock")
-        self.addCleanup(control.close)
-        return control
+        emulator = serial_rig.Emulator(self.folder, rig, *arguments)
+        self.processes.append(emulator)
+        self.addCleanup(emulator.control.close)
+        return emulator
 
     def report(self, rig):
         done = subprocess.run([str(bench.SOFTGRIPD), "--config", str(rig), "--check"], capture_output=True, text=True,
@@ -85,13 +55,13 @@ class Line(bench.BenchTest):
     def test_an_adapter_that_is_pulled_out_comes_back(self):
         faults = self.write("faults.yaml", "faults:\n  - {name: unplugged, kind: disconnect}\n")
         rig = self.line_rig()
-        control = self.line_emulator(rig, "--faults", faults)
+        emulator = self.line_emulator(rig, "--faults", faults)
         daemon = self.daemon(rig)
         daemon.wait_for_state("idle")
-        self.assertEqual(control.ask("fault unplugged"), "ok")
-        bench.wait_for("the name to go", lambda: not self.device.is_symlink())
+        emulator.ask("fault unplugged")
+        bench.wait_for("the name to go", lambda: not (self.folder / "line").is_symlink())
         daemon.wait_for_state("faulted")
-        self.assertEqual(control.ask("clear unplugged"), "ok")
+        emulator.ask("clear unplugged")
         daemon.wait_for_event("bus_recovered")
         self.assertEqual(daemon.status()["state"], "faulted", "nothing moves until somebody acknowledges")
         bench.wait_for("the bus", lambda: daemon.status()["bus"]["connected"])

@@ -1,31 +1,12 @@
-// A tick allocates nothing, whatever it does. A program of its own: it replaces operator new.
+// A tick of one channel allocates nothing, whatever it does.
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
+#include <vector>
 
 #include "control/tick/channel_controller.h"
 #include "tests/control/simulated_finger.h"
-
-namespace {
-bool armed = false;
-long allocations = 0;
-}  // namespace
-
-// NOLINTBEGIN(misc-definitions-in-headers): the replacement functions of the language
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (armed) ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-// NOLINTEND(misc-definitions-in-headers)
+#include "tests/support/allocation_counter.h"
 
 namespace softgrip::control {
 namespace {
@@ -33,12 +14,8 @@ namespace {
 using Mode = ChannelDemand::Mode;
 
 TEST(ChannelControllerAllocation, TheHookSeesAnAllocation) {
-  armed = true;
-  allocations = 0;
-  delete new int(1);  // NOLINT(cppcoreguidelines-owning-memory)
-  std::vector<int> kept(100);
-  armed = false;
-  EXPECT_GE(allocations, 1) << kept.size();
+  std::vector<int> kept;
+  EXPECT_GT(test::allocations_of([&] { kept.resize(100); }), 0U);
 }
 
 TEST(ChannelControllerAllocation, NoTickAllocates) {
@@ -52,8 +29,8 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
     sim::SimulatedFinger finger(settings.model, 0.02, 3);
     ChannelInput input;
     Reference reference;
-    armed = true;
-    allocations = 0;
+    const std::size_t before = test::allocations();
+    test::count_allocations(true);
     for (int k = 1; k < 20000; ++k) {
       input.now = k * sim::tick_ns;
       if (k % 500 == 0) {
@@ -68,12 +45,12 @@ TEST(ChannelControllerAllocation, NoTickAllocates) {
       if (k % 700 == 0) input.now += 7 * sim::tick_ns;
       input.demand.time_s = k * sim::tick_s;
       controller.tick(input, output);
-      armed = false;  // the finger is not what is tested
+      test::count_allocations(false);  // the finger is not what is tested
       input.reading = finger.write(output.command_kpa, input.now);
-      armed = true;
+      test::count_allocations(true);
     }
-    armed = false;
-    EXPECT_EQ(allocations, 0) << "feedforward " << static_cast<int>(kind);
+    test::count_allocations(false);
+    EXPECT_EQ(test::allocations(), before) << "feedforward " << static_cast<int>(kind);
   }
 }
 

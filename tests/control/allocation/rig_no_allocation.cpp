@@ -1,62 +1,22 @@
-// A tick of the whole rig allocates nothing, in any state. A program of its own: it replaces operator new, in
-// the form that does not throw too, which the standard library's algorithms use.
+// A tick of the whole rig allocates nothing, in any state.
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-#include <vector>
-
 #include "tests/control/rig_fixture.h"
-
-namespace {
-thread_local bool counting = false;
-thread_local std::size_t allocations = 0;
-
-void* counted(std::size_t size) noexcept {
-  allocations += counting ? 1U : 0U;
-  return std::malloc(size == 0 ? 1 : size);
-}
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (void* memory = counted(size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  return counted(size);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t&) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocation_counter.h"
 
 namespace softgrip::control {
 namespace {
 
-TEST(TickAllocation, TheHookCounts) {
-  counting = true;
-  const std::vector<int> kept(100);
-  counting = false;
-  EXPECT_EQ(allocations, 1U) << kept.size();
-}
-
 TEST(TickAllocation, NoneInAnyState) {
   const RigSettings settings = two_finger_settings();
   SimulatedRig rig(settings);
-  rig.around_tick = [](bool begins) { counting = begins; };
+  rig.around_tick = test::count_allocations;
   rig.stone(12);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   const PreparedSequence track = example_sequence("track_sine", settings);
   const PreparedSequence profile = example_sequence("pressure_staircase", settings);
-  allocations = 0;
+  const std::size_t before = test::allocations();
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   for (const PreparedSequence* sequence : {&pick, &track, &profile}) {
     rig.request(Request::Kind::start, sequence);
@@ -77,7 +37,7 @@ TEST(TickAllocation, NoneInAnyState) {
   rig.run(1);
   EXPECT_EQ(rig.output().state, State::idle);
   EXPECT_GT(rig.count(Event::Kind::fault_latched), 0U);
-  EXPECT_EQ(allocations, 0U);
+  EXPECT_EQ(test::allocations(), before);
 }
 
 // Planned motion, the grip that is not planned for (backing off), another start.
@@ -87,8 +47,8 @@ TEST(TickAllocation, NoneOfAPlan) {
   SimulatedRig rig(settings);
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   ASSERT_NE(pick.steps[0].plan_of(0), nullptr);
-  rig.around_tick = [](bool begins) { counting = begins; };
-  allocations = 0;
+  rig.around_tick = test::count_allocations;
+  const std::size_t before = test::allocations();
   ASSERT_TRUE(rig.run_until(State::idle, 1));
   for (int i = 0; i < 2; ++i) {
     rig.request(Request::Kind::start, &pick);
@@ -97,7 +57,7 @@ TEST(TickAllocation, NoneOfAPlan) {
     rig.request(Request::Kind::stop);
     rig.run(15);
   }
-  EXPECT_EQ(allocations, 0U);
+  EXPECT_EQ(test::allocations(), before);
 }
 
 }  // namespace

@@ -163,11 +163,11 @@ TEST_F(IioBoardTest, AnExchangeAllocatesNothing) {
   IioBoard board(settings_);
   ASSERT_EQ(board.connect(5s), BusStatus::ok);
   BusStatus status = BusStatus::disconnected;
-  const std::size_t made = test::allocations_of([&] { status = exchange(board, 10, 20); });
+  const std::size_t made = softgrip::test::allocations_of([&] { status = exchange(board, 10, 20); });
   EXPECT_EQ(status, BusStatus::ok);
   EXPECT_EQ(made, 0U);
   put("iio:device0/in_voltage0_raw", "no");
-  EXPECT_EQ(test::allocations_of([&] { status = exchange(board, 10, 200); }), 0U);
+  EXPECT_EQ(softgrip::test::allocations_of([&] { status = exchange(board, 10, 200); }), 0U);
 }
 
 TEST(IioChannel, NamesAreVoltagesAndCurrents) {

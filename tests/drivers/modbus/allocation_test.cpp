@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using namespace simulation;
 using namespace rig;
-using test::allocations_of;
+using softgrip::test::allocations_of;
 using test::RegisterServer;
 
 TEST(Allocation, TheCounterCounts) {

@@ -1,0 +1,31 @@
+"""What the scripts of scripts/ start: an emulated rig and a daemon against it, by scripts/rig_session.sh."""
+
+import subprocess
+import unittest
+
+import bench
+
+
+class RigSession(unittest.TestCase):
+    """As scripts/demo.sh uses it."""
+
+    def test_a_rig_and_a_daemon_come_up_and_end(self):
+        done = subprocess.run(["bash", "-euc", """
+            build=$1 work=$(mktemp -d)
+            runs=$work/runs
+            mkdir "$runs"
+            . scripts/rig_session.sh
+            trap 'stop_daemon; stop_rig; rm -rf "$work"' EXIT
+            start_rig --object stone
+            start_daemon
+            "$softgrip" status
+            stop_daemon
+            stop_rig
+            """, "session", str(bench.BUILD)], cwd=bench.SOURCE, capture_output=True, text=True,
+                              timeout=bench.PATIENCE_S)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("idle", done.stdout)
+
+
+if __name__ == "__main__":
+    bench.main()
