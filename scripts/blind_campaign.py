@@ -2,7 +2,8 @@
 """Hides effects in fresh worlds (tests/blind), lets `softgrip diagnose` find them, counts.
 
     scripts/blind_campaign.py --work DIR [--build build/release] [--seeds 20] [--clean 200] [--outside 60] [--pairs 60]
-                              [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--page docs/reference/blind-campaign.md]
+                              [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--workers 1]
+                              [--page docs/reference/blind-campaign.md]
 
 Resumable: every world's outcome is one line of DIR/results.jsonl, and worlds that stand there are not run again.
 --page writes the table, and the pictures beside it.
@@ -12,13 +13,13 @@ import itertools
 import pathlib
 import random
 import sys
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/blind"))
 sys.path.insert(0, str(ROOT / "scripts"))
 
 import blind_page  # noqa: E402
+import campaign  # noqa: E402
 import judging  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
@@ -50,6 +51,11 @@ def worlds(args, ids, outside):
         yield {"causes": causes, "strength": strength, "seed": args.first_seed + k}
 
 
+def told(world, result):
+    return (f"{'+'.join(world['causes']) or 'clean'} {world['strength']:g} seed {world['seed']}: {result['outcome']} "
+            f"{', '.join(result.get('named', []))} {result.get('rivals') if result['outcome'] == 'ambiguous_right' else ''}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
@@ -61,34 +67,21 @@ def main():
     parser.add_argument("--strengths", type=float, nargs="+", default=[8, 2])
     parser.add_argument("--causes", nargs="+")
     parser.add_argument("--first-seed", type=int, default=1000)
-    parser.add_argument("--most-minutes", type=float, help="stop after so long; run again to go on")
-    parser.add_argument("--part", default="1/1", help="K/N: every N-th world only, from the K-th on; the parts can run side by side")
+    parser.add_argument("--most-minutes", type=float, help="begin no world after so long; run again to go on")
+    parser.add_argument("--workers", type=int, default=1, help="diagnoses side by side")
     parser.add_argument("--page", type=pathlib.Path)
     args = parser.parse_args()
     args.build = args.build.resolve()
     ledger = Ledger(args.work / "results.jsonl", ("causes", "strength", "seed"))
     ids, outside = judging.library(args.build)
     planned = list(worlds(args, ids, outside))
-    part, parts = (int(number) for number in args.part.split("/"))
-    began = time.monotonic()
-    for number, world in enumerate(planned, 1):
-        if world in ledger or number % parts != part % parts:
-            continue
-        if args.most_minutes and time.monotonic() - began > 60 * args.most_minutes:
-            print(f"stopped after {args.most_minutes:g} minutes, {len(ledger.rows)} of {len(planned)} worlds done")
-            break
-        result = judging.run_world(args.build, args.work, world)
-        ledger.add(result)
-        print(f"{number}/{len(planned)} {'+'.join(world['causes']) or 'clean'} {world['strength']:g} "
-              f"seed {world['seed']}: {result['outcome']} {', '.join(result.get('named', []))} "
-              f"{result.get('rivals') if result['outcome'] == 'ambiguous_right' else ''}", flush=True)
+    campaign.run(ledger, planned, lambda world: judging.run_world(args.build, args.work, world), told, args.workers,
+                 args.most_minutes)
     if args.page:
-        command = f"scripts/blind_campaign.py --work DIR --first-seed {args.first_seed}"
-        for option in ("seeds", "clean", "outside", "pairs"):
-            if getattr(args, option) != parser.get_default(option):
-                command += f" --{option} {getattr(args, option)}"
+        command = campaign.command("scripts/blind_campaign.py", parser, args, (
+            "first_seed", "seeds", "clean", "outside", "pairs", "strengths", "causes"))
         keys = {ledger.key(world) for world in planned} | ledger.known
-        blind_page.write(args.page, ledger.rows, len(keys), f"{command} --page {args.page}")
+        blind_page.write(args.page, ledger.rows, len(keys), command)
 
 
 if __name__ == "__main__":

@@ -11,17 +11,16 @@ stopped, what has been done is a fair sample of what was planned. --page writes 
 --most-minutes 0 writes it from what has been done.
 """
 import argparse
-import concurrent.futures
 import itertools
 import pathlib
 import random
 import sys
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 for folder in ("tests/blind", "tests/blind/textbook", "scripts"):
     sys.path.insert(0, str(ROOT / folder))
 
+import campaign  # noqa: E402
 import textbook_page  # noqa: E402
 import trial  # noqa: E402
 from blind_campaign import TWINS  # noqa: E402
@@ -67,30 +66,6 @@ def told(world, result):
             f"{', wrong ' + ', '.join(result['wrong']) if result.get('wrong') else ''}")
 
 
-def run(args, ledger, planned):
-    """As many worlds side by side as there are workers, until all are done or the time is up."""
-    until = time.monotonic() + 60 * args.most_minutes if args.most_minutes is not None else None
-    left = iter([world for world in planned if world not in ledger])
-    with concurrent.futures.ThreadPoolExecutor(args.workers) as pool:
-        running = {}
-
-        def fill():
-            while len(running) < args.workers and (until is None or time.monotonic() < until):
-                world = next(left, None)
-                if world is None:
-                    break
-                running[pool.submit(trial.run_world, args.build, args.work, world)] = world
-
-        fill()
-        while running:
-            done, _ = concurrent.futures.wait(running, return_when=concurrent.futures.FIRST_COMPLETED)
-            for future in done:
-                world, result = running.pop(future), future.result()
-                ledger.add(result)
-                print(f"{len(ledger.rows)}/{len(planned)} {told(world, result)}", flush=True)
-            fill()
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
@@ -111,16 +86,13 @@ def main():
     args.build = args.build.resolve()
     ledger = Ledger(args.work / "textbook.jsonl", KEYS)
     planned = worlds(args, trial.listed(args.build, "--list"), trial.listed(args.build, "--makes"))
-    run(args, ledger, planned)
+    campaign.run(ledger, planned, lambda world: trial.run_world(args.build, args.work, world), told, args.workers,
+                 args.most_minutes)
     if args.page:
-        command = "scripts/textbook_campaign.py --work DIR"
-        for option in ("clean", "seeds", "pairs", "triples", "strengths", "columns", "given", "first_seed"):
-            value = getattr(args, option)
-            if value != parser.get_default(option):
-                words = " ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in value) if isinstance(value, list) else value
-                command += f" --{option.replace('_', '-')} {words}"
+        command = campaign.command("scripts/textbook_campaign.py", parser, args, (
+            "clean", "seeds", "pairs", "triples", "strengths", "columns", "given", "causes", "first_seed"))
         keys = {ledger.key(world) for world in planned} | ledger.known
-        textbook_page.write(args.page, ledger.rows, len(keys), f"{command} --page {args.page}")
+        textbook_page.write(args.page, ledger.rows, len(keys), command)
 
 
 if __name__ == "__main__":
