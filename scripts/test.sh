@@ -4,16 +4,18 @@
 # threads; then clang-tidy over the sources that differ from origin's main.
 #   scripts/test.sh            all of it
 #   scripts/test.sh --quick    the release build and the tests that take no more than a moment each
-# Everything under the sanitizers: scripts/sanitize.sh all. Every source under clang-tidy: scripts/tidy.py. The pages that
-# say how to add something, carried out in a copy of the sources: ctest --preset release -L recipe.
+#   scripts/test.sh --all      hours: with the tests labelled campaign (more blind worlds) and recipe (the pages that say how
+#                              to add something, carried out in a copy of the sources), every test under the sanitizers,
+#                              every source under clang-tidy
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 
-quick=false
+quick=false all=false
 case "${1:-}" in
   "") ;;
   --quick) quick=true ;;
-  *) echo "usage: scripts/test.sh [--quick]" >&2; exit 2 ;;
+  --all) all=true ;;
+  *) echo "usage: scripts/test.sh [--quick | --all]" >&2; exit 2 ;;
 esac
 
 if $quick; then wanted="build tests"; else wanted="build tests package lint"; fi
@@ -35,16 +37,23 @@ build release
 
 if $quick; then
   say "test"
-  run_ctest release 'blind|system|recipe|long'
+  run_ctest release 'blind|system|recipe|campaign|long'
   say "done"
   exit 0
 fi
 
 say "test"
-run_ctest release recipe
+if $all; then run_ctest release ''; else run_ctest release 'recipe|campaign'; fi
 say "package"
 bash scripts/package.sh | tail -n 1
 say "sanitizers"
+if $all; then
+  bash scripts/sanitize.sh all
+  say "clang-tidy: every source"
+  python3 scripts/tidy.py
+  say "done"
+  exit 0
+fi
 bash scripts/sanitize.sh
 mapfile -t changed < <(git diff --name-only --diff-filter=d origin/main...HEAD -- '*.cpp' 2>/dev/null || true)
 if [ ${#changed[@]} -gt 0 ] && [ ${#changed[@]} -le 40 ]; then
