@@ -16,7 +16,12 @@ class Play {
 
   /// As if the input had risen from 0.
   void reset(const T& input) {
-    output_ = dragged(input, T(0.0));
+    output_ = T(0.0);
+    settle(input);
+  }
+  /// The input went straight to `input`, however long ago.
+  void settle(const T& input) {
+    output_ = dragged(input, output_);
     dragging_ = false;
   }
   [[nodiscard]] const T& output() const { return output_; }

@@ -12,7 +12,9 @@
 namespace softgrip::model {
 
 /// y += w1 play_r1(p) + w2 play_r2(p) + ..., a play with threshold 0 being the elastic gain. Rate
-/// independent. With weights that are not negative it rises with the pressure, and so has an inverse.
+/// independent. With weights that are not negative it rises with the pressure, and so has an inverse. A
+/// finger that had been loaded before begins with operators that were dragged along then, and its first
+/// loading is no steeper than later ones; y is 0 where that left it.
 template <class T>
 class PrandtlIshlinskii {
  public:
@@ -20,7 +22,9 @@ class PrandtlIshlinskii {
       block_info("prandtl_ishlinskii", Station::actuator, Kind::element, Inverse::implicit,
                  "Prandtl-Ishlinskii hysteresis", "Rate-independent hysteresis as a sum of play operators.",
                  "y += w1 o1 + w2 o2 + ..., |p - o| <= r in every operator, o moves only when it must");
-  static constexpr std::array<ParameterSpec, 0> parameters{};
+  static constexpr std::array parameters{
+      parameter("trained_kpa", "kPa", "largest load before the start; 0: a finger that was never loaded",
+                Typical{15.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0})};
   static constexpr std::array repeated{
       parameter("r#_kpa", "kPa", "threshold of operator #, above that of the one before; 0: elastic",
                 Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}, Placed{}),
@@ -28,13 +32,13 @@ class PrandtlIshlinskii {
                 Neutral{0.0})};
   static constexpr std::size_t max_parts = 24;
 
-  PrandtlIshlinskii(std::span<const T> values, const Preparation&) {
-    for (std::size_t i = 0; i + 1 < values.size(); i += 2)
-      operators_.push_back({Play<T>(values[i]), values[i + 1]});
+  PrandtlIshlinskii(std::span<const T> values, const Preparation&) : trained_kpa_(values[0]) {
+    for (std::size_t i = 1; i + 1 < values.size(); i += 2)
+      operators_.push_back({Play<T>(values[i]), values[i + 1], T(0.0)});
   }
 
   static std::string_view objection(std::span<const double> values) {
-    for (std::size_t i = 2; i < values.size(); i += 2) {
+    for (std::size_t i = 3; i < values.size(); i += 2) {
       if (values[i] <= values[i - 2]) return "the thresholds must rise from operator to operator";
     }
     return {};
@@ -43,8 +47,11 @@ class PrandtlIshlinskii {
   void reset(const T& input) {
     output_ = T(0.0);
     for (Operator& each : operators_) {
-      each.play.reset(input);
-      output_ += each.weight * each.play.output();
+      each.play.reset(trained_kpa_);
+      each.play.settle(T(0.0));
+      each.zero_kpa = each.play.output();
+      each.play.settle(input);
+      output_ += each.weight * (each.play.output() - each.zero_kpa);
     }
   }
   [[nodiscard]] T output() const { return output_; }
@@ -55,9 +62,9 @@ class PrandtlIshlinskii {
     const bool lasts = !is_zero(in.duration_s);
     for (Operator& each : operators_) {
       each.play.step(in, [&](const Segment<T>& part) {
-        if (lasts) mean += each.weight * part.mean * (part.duration_s / in.duration_s);
+        if (lasts) mean += each.weight * (part.mean - each.zero_kpa) * (part.duration_s / in.duration_s);
       });
-      end += each.weight * each.play.output();
+      end += each.weight * (each.play.output() - each.zero_kpa);
     }
     output_ = end;
     return {in.duration_s, begin, end, lasts ? mean : T((begin + end) * 0.5)};
@@ -66,7 +73,8 @@ class PrandtlIshlinskii {
   template <class U>
   [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
     U sum(0.0);
-    for (const Operator& each : operators_) sum = sum + each.weight * each.play.peek(end_kpa);
+    for (const Operator& each : operators_)
+      sum = sum + each.weight * (each.play.peek(end_kpa) - each.zero_kpa);
     return sum;
   }
 
@@ -74,8 +82,10 @@ class PrandtlIshlinskii {
   struct Operator {
     Play<T> play;
     T weight;
+    T zero_kpa;  ///< its output at the start, at no pressure
   };
 
+  T trained_kpa_;
   std::vector<Operator> operators_;
   T output_{0.0};
 };

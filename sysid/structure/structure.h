@@ -58,6 +58,7 @@ struct NonlinearNumbers {
   double curvature = 0;                 ///< of the characteristic
   double growing_per_kpa = 0;           ///< Bouc-Wen: gamma + eta
   double narrowing = 0.5;               ///< Bouc-Wen: eta / (gamma + eta), in (0, 1]
+  double trained_kpa = 0;               ///< plays: the largest load before the logs
   std::vector<double> peak_before_kpa;  ///< by record, see StartState; of records that start from rest 0
 
   bool operator==(const NonlinearNumbers&) const = default;

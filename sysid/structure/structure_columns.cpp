@@ -71,7 +71,12 @@ class Finger {
     lag_.reset(q_);
     for (const double hinge : grid.hinges_kpa)
       hinged_.emplace_back(grid.hinge_ladder_s, std::max(q_ - hinge, 0.0));
-    if (structure.hysteresis == HysteresisForm::play) plays_.resize(grid.thresholds_kpa.size(), 0);
+    if (structure.hysteresis == HysteresisForm::play) {
+      plays_.resize(grid.thresholds_kpa.size(), 0);
+      move(0, numbers.trained_kpa);
+      move(numbers.trained_kpa, 0);
+      untouched_ = plays_;
+    }
     move(0, std::max(q_, peak_kpa));
     if (peak_kpa > q_) move(peak_kpa, q_);
   }
@@ -86,7 +91,7 @@ class Finger {
   void write(const ColumnLayout& layout, Row&& row) const {
     row(ColumnLayout::elastic()) = q_;
     for (std::size_t i = 0; i < plays_.size() && i < layout.hysteretic(); ++i)
-      row(layout.hysteresis(i)) = plays_[i];
+      row(layout.hysteresis(i)) = plays_[i] - untouched_[i];
     if (structure_.hysteresis == HysteresisForm::bouc_wen && layout.hysteretic() == 1)
       row(1) = steepest_ * q_ - g_;
     for (std::size_t b = 0; b < layout.branches(); ++b) row(layout.creep(b)) = ladder_.values()[b];
@@ -123,7 +128,7 @@ class Finger {
   model::TransportDelay<double> delay_;
   Ladder ladder_;
   std::vector<Ladder> hinged_;
-  std::vector<double> plays_;
+  std::vector<double> plays_, untouched_;  ///< now, and where the finger's past left them
   double g_ = 0;
   double steepest_;  ///< dg/dp is never above it
   double q_;

@@ -143,6 +143,8 @@ class Search {
       coordinates_.push_back(logarithmic(&N::growing_per_kpa, 1.5, growing, growing / 300, growing * 300));
       coordinates_.push_back(straight(&N::narrowing, 0.3, 0.5, 0.02, 1));
     }
+    if (structure_.hysteretic && structure_.hysteresis == HysteresisForm::play)
+      coordinates_.push_back(straight(&N::trained_kpa, grid_.largest_kpa, 0, 0, 2 * grid_.largest_kpa));
     for (std::size_t r = 0; r < records_.size(); ++r) {
       if (!records_[r].start_unknown) continue;
       const double width = grid_.largest_kpa, first = records_[r].drive_kpa.front();
@@ -241,8 +243,8 @@ std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t
 std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, const StructureGrid& grid) {
   std::vector<double> peaks;
   for (const Record& record : records) peaks.push_back(record.start_unknown ? record.drive_kpa.front() : 0);
-  NonlinearNumbers quick{0.02, 0.15, 0.15, 0, 2 / grid.largest_kpa, 0.5, peaks};
-  NonlinearNumbers late{0.15, 0.05, 0.05, 0, 6 / grid.largest_kpa, 0.5, peaks};
+  NonlinearNumbers quick{0.02, 0.15, 0.15, 0, 2 / grid.largest_kpa, 0.5, 0, peaks};
+  NonlinearNumbers late{0.15, 0.05, 0.05, 0, 6 / grid.largest_kpa, 0.5, 1.2 * grid.largest_kpa, peaks};
   return {quick, late};
 }
 

@@ -56,7 +56,7 @@ class Builder {
           {elastic + steepest_state(fit_.numbers) * beta, beta, fit_.numbers.growing_per_kpa - eta, eta, 1});
       return;
     }
-    std::vector<double> parts{0, elastic};
+    std::vector<double> parts{fit_.numbers.trained_kpa, 0, elastic};
     for (std::size_t i = 0; i < layout_.hysteretic(); ++i) {
       if (const double w = weight(ColumnLayout::hysteresis(i)); w > 0)
         parts.insert(parts.end(), {fit_.grid.thresholds_kpa[i], w});

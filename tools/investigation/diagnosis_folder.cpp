@@ -49,7 +49,7 @@ ClosedLoopQuestion closed_loop_question(const sysid::Diagnosis& diagnosis, std::
 Consequences consequences_of(const sysid::Diagnosis& diagnosis, const ConsequenceOptions& options) {
   Consequences consequences;
   consequences.experiment = sysid::design_experiment(diagnosis, options.experiment);
-  const bool extended = diagnosis.extended_model.blocks.size() > diagnosis.recalibrated_model.blocks.size();
+  const bool extended = sysid::is_extended(diagnosis);
   if (options.closed_loop && extended)
     consequences.closed_loop = measure_closed_loop(closed_loop_question(diagnosis, options.seed));
   return consequences;

@@ -95,6 +95,18 @@ StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause
   return fit;
 }
 
+std::vector<Record> without_effects(std::vector<Record> records, const FitPoint& point,
+                                    const std::vector<Cause>& causes) {
+  model::Model bare = point.model;
+  for (const Cause& cause : causes) bare = without(std::move(bare), cause);
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    const std::vector<double> with = predict(point.model, records[k], point.starts[k]);
+    const std::vector<double> rest = predict(bare, records[k], point.starts[k]);
+    for (std::size_t i = 0; i < with.size(); ++i) records[k].reading_mm[i] -= with[i] - rest[i];
+  }
+  return records;
+}
+
 StructureFit without_cause(StructureFit fit, const Cause& cause) {
   std::erase(fit.causes, cause);
   fit.point.model = without(std::move(fit.point.model), cause);

@@ -47,6 +47,10 @@ struct FitEffort {
 [[nodiscard]] StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                               const FitPoint& point);
 
+/// The readings without what the causes of a point's model do to them.
+[[nodiscard]] std::vector<Record> without_effects(std::vector<Record> records, const FitPoint& point,
+                                                  const std::vector<Cause>& causes);
+
 /// The structure without one of its causes, as it stands: its residuals are still those with the cause.
 [[nodiscard]] StructureFit without_cause(StructureFit fit, const Cause& cause);
 /// The same, fitted again from there.

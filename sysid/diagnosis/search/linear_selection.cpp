@@ -1,6 +1,7 @@
 #include "sysid/diagnosis/search/linear_selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -19,11 +20,18 @@ namespace {
 
 constexpr std::size_t fewest_looks = 2;
 /// Candidates that are judged held out.
-constexpr std::size_t finalists = 4;
+constexpr std::size_t finalists = 5;
+/// Of base and cause, each fitted beside the other.
+constexpr int turns = 2;
 constexpr int look_iterations = 15;
+/// A fit begins where the base answers to the cause best; a base that is not linear by far goes too far at
+/// once.
+constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
 /// The weight of the structures with a cause that stands alone; it shares its own with a twin.
 constexpr double least_inclusion = 0.95;
-constexpr FitEffort finish{.most_iterations = 8, .tolerance = 1e-6};
+/// Of what the base leaves beyond the noise, as a mean square.
+constexpr double one_more_share = 0.05;
+constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
 
 /// Residuals over the numbers of one cause, less what the base could take away of them.
 class ResidualsBesideBase final : public Residuals {
@@ -69,9 +77,18 @@ Look look_from(const std::vector<Record>& records, const Scan& base, const Cause
   const Minimum minimum = minimise(residuals, numbers.z(start), options);
   Eigen::VectorXd left(static_cast<Eigen::Index>(residuals.count()));
   if (!residuals.inner().evaluate(minimum.z, {left.data(), residuals.count()}, {})) return {};
-  Look look{base.answer_to(left), minimum.rmse_mm * minimum.rmse_mm};
   const model::Model with_cause = numbers.point(minimum.z).model;
-  look.point.model = model::with_block(look.point.model, with_cause.blocks[*position_of(with_cause, cause)]);
+  Look look{{}, minimum.rmse_mm * minimum.rmse_mm};
+  double least_mm2 = std::numeric_limits<double>::infinity();
+  for (const double share : answers) {
+    FitPoint point = base.answer_to(left, share);
+    point.model = model::with_block(point.model, with_cause.blocks[*position_of(with_cause, cause)]);
+    const double left_mm2 = evaluate_structure(records, {}, point).mean_square_mm2;
+    if (!(left_mm2 < least_mm2)) continue;
+    least_mm2 = left_mm2;
+    look.point = std::move(point);
+  }
+  if (look.point.starts.empty()) return {};
   return look;
 }
 
@@ -118,6 +135,36 @@ class SelectorUpon {
     return list;
   }
 
+  [[nodiscard]] double left_mm2(const FitPoint& point) const {
+    return evaluate_structure(data_.thinned, {}, point).mean_square_mm2;
+  }
+
+  /// A base that was fitted while a cause was missing has bent itself to it: the base and the cause's numbers
+  /// in turns, each to what the other leaves.
+  [[nodiscard]] FitPoint settled(FitPoint point, const Cause& cause) const {
+    if (!options_.base_again) return point;
+    double least_mm2 = left_mm2(point);
+    for (int turn = 0; turn < turns; ++turn) {
+      std::vector<Cause> all = result_.extended.causes;
+      all.push_back(cause);
+      FitPoint again = options_.base_again(without_effects(data_.records, point, all));
+      for (const Cause& one : result_.extended.causes)
+        again.model = model::with_block(again.model, point.model.blocks[*position_of(point.model, one)]);
+      const Scan scan(data_.thinned, result_.extended.causes, again);
+      again.model = model::with_block(again.model, point.model.blocks[*position_of(point.model, cause)]);
+      if (!scan.usable()) return point;
+      Look look = look_from(data_.thinned, scan, cause, again);
+      const double by_itself_mm2 = left_mm2(again);
+      const bool moved = std::isfinite(look.mean_square_mm2) && left_mm2(look.point) < by_itself_mm2;
+      FitPoint& better = moved ? look.point : again;
+      const double now_mm2 = left_mm2(better);
+      if (!(now_mm2 < least_mm2)) return point;
+      point = std::move(better);
+      least_mm2 = now_mm2;
+    }
+    return point;
+  }
+
   std::vector<ScoredCandidate> score() {
     std::vector<std::pair<Cause, Look>> found = looks();
     std::vector<ScoredCandidate> scored(std::min(finalists, found.size()));
@@ -126,7 +173,7 @@ class SelectorUpon {
       scored[i].candidate.cause = cause;
       std::vector<Cause> causes = result_.extended.causes;
       causes.push_back(cause);
-      scored[i].candidate.fit = fit_structure(data_.records, causes, look.point, finish);
+      scored[i].candidate.fit = fit_structure(data_.records, causes, settled(look.point, cause), finish);
       scored[i].losses = linear_held_out_losses(data_.records, division_, *scored[i].candidate.fit);
     });
     std::stable_sort(scored.begin(), scored.end(), [](const ScoredCandidate& a, const ScoredCandidate& b) {
@@ -141,7 +188,7 @@ class SelectorUpon {
     if (scored.empty()) return false;
     const ScoredCandidate& best = scored.front();
     const Spread gain = mean_difference(result_.extended_losses, best.losses, options_.seed);
-    if (!(gain.lower > 0 && gain.value > 0.01 * noise_mm_ * noise_mm_)) return false;
+    if (!(gain.lower > 0 && gain.value > worth_mm2())) return false;
     ChosenCause chosen =
         weigh(best.candidate.cause,
               {*best.candidate.fit, best.losses, result_.extended_losses, noise_mm_, options_.seed}, scored);
@@ -151,6 +198,14 @@ class SelectorUpon {
     result_.left = structure_of(result_.extended.residual_mm, noise_mm_);
     result_.chosen.push_back(std::move(chosen));
     return true;
+  }
+
+  /// What one more cause must take of the mean square. The first may be small; what comes after it makes up
+  /// for the form of its equation as well.
+  [[nodiscard]] double worth_mm2() const {
+    const double least = 0.01 * noise_mm_ * noise_mm_;
+    if (result_.chosen.empty()) return least;
+    return std::max(least, one_more_share * std::pow(result_.base_structure.excess_mm, 2));
   }
 
   /// By itself or, where others explain as much, as one of them.

@@ -50,12 +50,12 @@ Eigen::MatrixXd Scan::left_of(const Eigen::MatrixXd& columns) const {
   return columns - jacobian_ * normal_.solve(jacobian_.transpose() * columns);
 }
 
-FitPoint Scan::answer_to(const Eigen::VectorXd& residual) const {
+FitPoint Scan::answer_to(const Eigen::VectorXd& residual, double share) const {
   const Eigen::VectorXd step = -normal_.solve(jacobian_.transpose() * residual);
   std::vector<double> z = space_.z(place_);
   for (std::size_t i = 0; i < z.size(); ++i) {
     const FreeParameter& free = space_.free()[i];
-    z[i] = std::clamp(z[i] + step(static_cast<Eigen::Index>(i)), free.lower_z(), free.upper_z());
+    z[i] = std::clamp(z[i] + share * step(static_cast<Eigen::Index>(i)), free.lower_z(), free.upper_z());
   }
   return space_.point(z);
 }

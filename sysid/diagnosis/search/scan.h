@@ -31,8 +31,9 @@ class Scan {
   [[nodiscard]] double mean_square_with(const model::BlockSpec& block) const;
   /// Columns over all readings without what the structure's own parameters could take away.
   [[nodiscard]] Eigen::MatrixXd left_of(const Eigen::MatrixXd& columns) const;
-  /// The place, its numbers moved within their bounds so that they take away what they can of a residual.
-  [[nodiscard]] FitPoint answer_to(const Eigen::VectorXd& residual) const;
+  /// The place, its numbers moved within their bounds by a `share` of what would take away all that they can
+  /// of a residual, if they were linear.
+  [[nodiscard]] FitPoint answer_to(const Eigen::VectorXd& residual, double share) const;
 
  private:
   [[nodiscard]] Eigen::VectorXd residual_at(const model::Model& model) const;

@@ -59,6 +59,9 @@ struct SelectionOptions {
   /// Asked where one cause stands and leaves structure: what another explanation leaves as a mean square. A
   /// second cause is followed to the end only where it comes near. Infinity: there is no other.
   std::function<double(const Selection&)> to_beat_mm2;
+  /// The base fitted to other readings of the same records. Empty: it stays as it is but for what it answers
+  /// linearly.
+  std::function<FitPoint(const std::vector<Record>&)> base_again;
 };
 
 /// @param base  the base structure fitted to data.records.

@@ -22,6 +22,7 @@
 #include "sysid/diagnosis/causes/stiffening.h"
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
+#include "sysid/diagnosis/search/linear_holdout.h"
 #include "sysid/diagnosis/search/linear_selection.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/fitting/trajectory.h"
@@ -42,6 +43,9 @@ constexpr double least_share = 0.01;
 /// What causes upon a richer base must take together of what that base leaves: no base is a finger's own, and
 /// what makes up for that takes a part.
 constexpr double least_share_upon = 0.3;
+
+/// Where a cause was missing a choice of the ridge and of the simplest structure says little.
+constexpr double most_ridge = 1e-5;
 
 /// What a finding is called, and with which blocks it stands in the model.
 struct FindingName {
@@ -69,12 +73,11 @@ constexpr std::array names{
 
 /// Whether the richer base foretells the second halves of the logs from the first clearly better than the
 /// given one; a given one that moves the wrong way first is none of a finger, however well it follows one.
-bool foretells_better(const SearchData& data, const StructureTrial& chosen, const StructureFit& given,
+bool foretells_better(const std::vector<Record>& records, const StructureTrial& chosen, const FitPoint& given,
                       Drive drive) {
-  if (beta_over_gain(given.point.model) > 1) return true;
-  const HeldOutContinuation halves(data.records);
-  const double before_mm =
-      rmse_mm(halves.judge(fit_structure(halves.first_half(), given.causes, given.point).point));
+  if (beta_over_gain(given.model) > 1) return true;
+  const HeldOutContinuation halves(records);
+  const double before_mm = rmse_mm(halves.judge(fit_structure(halves.first_half(), {}, given).point));
   const double with_mm = rmse_mm(halves.judge(fit_again(chosen, halves.first_half(), drive)));
   return with_mm < worth_having * before_mm;
 }
@@ -123,6 +126,17 @@ double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   return std::max(longest_s / 10, std::min(1.5 * slowest_s, longest_s));
 }
 
+/// A structure that foretells better, and what it is without its ingredients.
+std::optional<StructureChoice> better_structure(const std::vector<Record>& records, const FitPoint& given,
+                                                const StructureChoiceOptions& options) {
+  StructureChoice choice = choose_structure(records, options);
+  const StructureTrial& chosen = choice.trials[choice.chosen];
+  // The published element with delay and lag is the given one with two causes: they are searched as causes.
+  if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
+    return std::nullopt;
+  return choice;
+}
+
 }  // namespace
 
 std::optional<BaseFindings> find_base(const SearchData& data, const Selection& plain,
@@ -133,22 +147,26 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   options.seed = question.seed;
   options.threads = question.threads;
   options.progress = question.progress;
-  const StructureChoice choice = choose_structure(data.records, options);
-  const StructureTrial& chosen = choice.trials[choice.chosen];
-  // The published element with delay and lag is the given one with two causes: they are searched as causes.
-  if (chosen.structure.published || !foretells_better(data, chosen, plain.base, question.drive))
-    return std::nullopt;
+  auto choice = better_structure(data.records, plain.base.point, options);
+  if (!choice && !plain.extended.causes.empty()) {
+    // An effect that no structure has may spoil all of them.
+    choice = better_structure(without_effects(data.records, plain.extended.point, plain.extended.causes),
+                              plain.base.point, options);
+  }
+  if (!choice) return std::nullopt;
+  const StructureTrial& chosen = choice->trials[choice->chosen];
   BaseFindings found;
+  found.chosen = chosen;
   found.fit = evaluate_structure(data.records, {}, chosen.point);
-  found.losses = held_out_losses(data.records, question.division, found.fit);
+  found.losses = linear_held_out_losses(data.records, question.division, found.fit);
   found.description = description_of(chosen.structure);
   const double excess_mm2 =
       std::max(std::pow(rmse_mm(plain.base_losses), 2) - question.noise_mm * question.noise_mm, 1e-300);
   const Namer namer(data, chosen, question);
   for (const FindingName& finding : names) {
-    const auto without = std::find_if(choice.ablation.begin(), choice.ablation.end(),
+    const auto without = std::find_if(choice->ablation.begin(), choice->ablation.end(),
                                       [&](const auto& w) { return w.ingredient == finding.ingredient; });
-    if (without == choice.ablation.end()) continue;
+    if (without == choice->ablation.end()) continue;
     NamedCause named = namer.name(finding, without->trial);
     if (named.gain_mm2.value < least_share * excess_mm2) continue;
     if (is_among(found.named, named) || is_among(found.possible, named)) continue;
@@ -167,6 +185,13 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   SelectionOptions options;
   options.seed = question.seed;
   options.progress = question.progress;
+  StructureTrial base = found.chosen;
+  base.structure.hysteresis = HysteresisForm::play;
+  base.structure.characteristic = true;
+  base.ridge = std::min(base.ridge, most_ridge);
+  options.base_again = [base, drive = question.drive](const std::vector<Record>& readings) {
+    return fit_again(base, readings, drive);
+  };
   Selection selection = select_causes_upon(data, found.fit, question.noise_mm, question.division, options);
   if (selection.chosen.empty()) return;
   const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
@@ -177,6 +202,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
       (clear ? found.named : found.possible).push_back(std::move(cause));
   }
   if (!clear) return;
+  found.description = description_of(base.structure);
   found.fit = std::move(selection.extended);
   found.losses = std::move(selection.extended_losses);
 }

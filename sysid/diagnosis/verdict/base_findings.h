@@ -11,11 +11,13 @@
 #include "sysid/diagnosis/search/search.h"
 #include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
+#include "sysid/structure/structure_choice.h"
 
 namespace softgrip::sysid {
 
 struct BaseFindings {
-  StructureFit fit;  ///< the richer base, with the causes that were found on it
+  StructureFit fit;       ///< the richer base, with the causes that were found on it
+  StructureTrial chosen;  ///< the richer base as it was found
   std::string description;
   BlockLosses losses;                ///< held out, on the division that was asked for
   std::vector<NamedCause> named;     ///< at full inclusion

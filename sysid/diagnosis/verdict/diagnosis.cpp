@@ -72,7 +72,7 @@ class Diagnostician {
     const Division division = divide(data_.records, block_s);
     Selection selection = search(std::move(*base), division);
     clock.ended("search");
-    if (leaves_too_much(selection)) {
+    if (leaves_too_much(selection) || (base_ && selection.left.present)) {
       if (may_ask_at_once()) look_for_base(selection, division);
       clock.ended("base");
       if (!base_is_far_better(selection) && look_for_staircase(selection, division)) {
@@ -203,7 +203,8 @@ class Diagnostician {
     if (left_by_outliers(structure_of(recalibrated.residual_mm, d_.noise_mm))) options.most_causes = 0;
     if (may_ask_at_once()) {
       options.to_beat_mm2 = [&](const Selection& one_cause) {
-        if (leaves_too_much(one_cause)) ask_for_base(one_cause, division);
+        if (leaves_too_much(one_cause) || one_cause.left.excess_mm > d_.noise_mm)
+          ask_for_base(one_cause, division);
         return base_ ? base_->fit.mean_square_mm2 : std::numeric_limits<double>::infinity();
       };
     }

@@ -99,7 +99,7 @@ def held_out(build, logs, work, threads):
 
 def named_in(diagnosis, judged):
     """What the ledger keeps of a diagnosis and of what it is worth."""
-    closed_loop = diagnosis["closed_loop"] or {}
+    closed_loop = diagnosis.get("closed_loop") or {}
     return {"verdict": diagnosis["verdict"], "named": [c["id"] for c in diagnosis["causes"]],
             "rivals": diagnosis["alternatives"], "partial": [c["id"] for c in diagnosis["partial_causes"]],
             "base": diagnosis["base"], "feedforward": closed_loop.get("gains", {}).get("extended", {}).get("feedforward"),

@@ -31,7 +31,7 @@ double wanted_mm(double t) {
 /// Twelve plays, seven branches of creep, creep that depends on the pressure and a bend.
 model::Model play_body() {
   model::Model m;
-  std::vector<double> plays{0, 0.15}, ladder{1e9};
+  std::vector<double> plays{0, 0, 0.15}, ladder{1e9};
   for (int i = 1; i < 12; ++i) plays.insert(plays.end(), {57 * std::pow(i / 12.0, 1.5), 0.03});
   for (int i = 0; i < 7; ++i) ladder.insert(ladder.end(), {40, 40 * 0.05 * std::pow(3.0, i)});
   m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(), plays});

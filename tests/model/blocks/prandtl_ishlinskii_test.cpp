@@ -15,7 +15,7 @@ namespace {
 
 using Block = PrandtlIshlinskii<double>;
 
-const std::vector<double> operators{0, 0.2, 2, 0.1, 5, 0.07, 20, 0.05};
+const std::vector<double> operators{0, 0, 0.2, 2, 0.1, 5, 0.07, 20, 0.05};
 
 Block fresh() {
   return {std::span<const double>(operators), Preparation{}};
@@ -32,6 +32,23 @@ TEST(PrandtlIshlinskii, FirstLoadingIsTheInitialCurve) {
         0.2 * p + 0.1 * std::max(p - 2, 0.0) + 0.07 * std::max(p - 5, 0.0) + 0.05 * std::max(p - 20, 0.0);
     EXPECT_NEAR(block.output(), wanted, 1e-12) << p;
     block.step(straight(p, p + 0.5), {});
+  }
+}
+
+TEST(PrandtlIshlinskii, ATrainedFingerLoadsAsItWillAgain) {
+  std::vector<double> trained = operators;
+  trained.front() = 60;
+  Block block(std::span<const double>(trained), Preparation{});
+  block.reset(0);
+  Block loaded_once = fresh();
+  loaded_once.step(straight(0, 60), {});
+  loaded_once.step(straight(60, 0), {});
+  const double zero_mm = loaded_once.output();
+  EXPECT_GT(zero_mm, 0) << "a finger that was never loaded does not come back whole";
+  for (double p = 0; p < 60; p += 0.5) {
+    EXPECT_NEAR(block.output(), loaded_once.output() - zero_mm, 1e-12) << p;
+    block.step(straight(p, p + 0.5), {});
+    loaded_once.step(straight(p, p + 0.5), {});
   }
 }
 
@@ -119,8 +136,8 @@ TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
 
 TEST(PrandtlIshlinskii, ThresholdsRise) {
   EXPECT_TRUE(Block::objection(operators).empty());
-  EXPECT_FALSE(Block::objection(std::vector<double>{2, 0.1, 2, 0.2}).empty());
-  EXPECT_FALSE(Block::objection(std::vector<double>{5, 0.1, 2, 0.2}).empty());
+  EXPECT_FALSE(Block::objection(std::vector<double>{0, 2, 0.1, 2, 0.2}).empty());
+  EXPECT_FALSE(Block::objection(std::vector<double>{0, 5, 0.1, 2, 0.2}).empty());
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ model::Model play_finger() {
   m = model::with_block(std::move(m), {model::block_type<model::TransportDelay>(), {0.06}});
   m = model::with_block(std::move(m), {*model::find_block("asymmetric_valve_lag"), {0.08, 0.2}});
   m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
-                                       {0, 0.2, 1.3, 0.06, 4.1, 0.05, 9.7, 0.04, 17, 0.03}});
+                                       {0, 0, 0.2, 1.3, 0.06, 4.1, 0.05, 9.7, 0.04, 17, 0.03}});
   m = model::with_block(std::move(m),
                         {model::block_type<model::KelvinVoigt>(), {1e9, 25, 7.5, 30, 75, 40, 1100}});
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
@@ -99,7 +99,7 @@ TEST(StructureProjection, WeightsAreNeverNegative) {
   const BaseStructure structure{.characteristic = false};
   const StructureGrid grid = grid_for(records);
   const Eigen::MatrixXd columns =
-      structure_columns(records, structure, grid, {0.05, 0.1, 0.1, 0, 0, 0.5, {0}});
+      structure_columns(records, structure, grid, {0.05, 0.1, 0.1, 0, 0, 0.5, 0, {0}});
   const ColumnLayout layout(structure, grid, records);
   const Eigen::VectorXd readings = Eigen::Map<const Eigen::VectorXd>(
       records[0].reading_mm.data(), static_cast<Eigen::Index>(records[0].reading_mm.size()));
@@ -150,6 +150,21 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   }
 }
 
+TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
+  model::Model trained = play_finger();
+  const std::size_t plays = *model::position_of<model::PrandtlIshlinskii>(trained);
+  trained.blocks[plays].values.front() = 50;
+  const std::vector<Log> logs{simulated(trained, SignalName::tp1, 100, 0.03, 5),
+                              simulated(trained, SignalName::sp2, 100, 0.03, 6)};
+  const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
+  const auto block = model::position_of<model::PrandtlIshlinskii>(found->model);
+  ASSERT_TRUE(block);
+  // Beyond twice the largest threshold every operator has been dragged along, and more is the same.
+  EXPECT_GT(found->model.blocks[*block].values.front(), 30);
+}
+
 TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
   const Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 7);
   const auto one = identify_structure({log}, StructureQuestion::prandtl_ishlinskii);
@@ -170,7 +185,7 @@ TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
   const std::vector<Record> records = make_records(logs, {});
   const StructureGrid grid = grid_for(records);
-  const NonlinearNumbers truth{0.06, 0.08, 0.2, 0.6, 0, 0.5, {0}};
+  const NonlinearNumbers truth{0.06, 0.08, 0.2, 0.6, 0, 0.5, 0, {0}};
   StructureFitOptions options;
   options.ridge = 1e-7;
   const FittedStructure searched = fit_form(records, {}, grid, options);
