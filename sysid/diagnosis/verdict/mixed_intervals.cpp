@@ -25,6 +25,11 @@ bool widen(NamedCause& named, const std::vector<CauseParameter>& with) {
   return wider;
 }
 
+bool is_confounded(const Cause& cause, const Cause& other) {
+  return std::find(cause.confounded_with.begin(), cause.confounded_with.end(), other.id) !=
+         cause.confounded_with.end();
+}
+
 }  // namespace
 
 std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const std::vector<Record>& records,
@@ -34,11 +39,15 @@ std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const std
     if (winning_share(other.losses, selection.extended_losses, seed) < least_weight) continue;
     const FitSpace space = structure_space(records, other.fit.point.model, other.fit.causes);
     const UncertainPoint at = uncertain_point(records, other.fit.point, space);
+    std::string beside;
     for (NamedCause& cause : named) {
-      if (widen(cause, block_numbers(at, cause.block_type)))
-        sentences.push_back("these logs do not say whether " + std::string(other.cause.id) +
-                            " is there beside " + std::string(cause.cause.id) +
-                            ": the intervals hold both answers");
+      if (!widen(cause, block_numbers(at, cause.block_type)) || !is_confounded(cause.cause, other.cause))
+        continue;
+      beside += (beside.empty() ? "" : " and ") + std::string(cause.cause.id);
+    }
+    if (!beside.empty()) {
+      sentences.push_back("these logs do not say whether " + std::string(other.cause.id) +
+                          " is there beside " + beside + ": the intervals hold both answers");
     }
   }
   return sentences;
