@@ -149,10 +149,10 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
                                   trials.begin());
 }
 
-/// The first that is within one standard error of the best.
-std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials) {
+/// The first from `first` on that is within one standard error of the best.
+std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
   const std::size_t best = best_of(trials);
-  for (std::size_t i = 0; i < best; ++i) {
+  for (std::size_t i = first; i < best; ++i) {
     if (!trials[i].invertible) continue;
     const LossDifference behind = loss_difference(trials[i].block_losses_mm2, trials[best].block_losses_mm2);
     if (behind.mean_mm2 <= behind.standard_error_mm2) return i;
@@ -205,6 +205,10 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
     choice.trials[i] = judge.judge(structures[i], choice.ridge, fold_iterations);
   });
   choice.chosen = simplest_of_the_best(choice.trials);
+  const StructureTrial& simplest = choice.trials[choice.chosen];
+  if (simplest.structure.published && choice.trials[best_of(choice.trials)].heldout_rmse_mm <
+                                          options.published_yields_below * simplest.heldout_rmse_mm)
+    choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
   say("taking one ingredient away after the other");
   ablate(judge, options, choice);
   return choice;

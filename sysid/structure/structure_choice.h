@@ -16,6 +16,9 @@ namespace softgrip::sysid {
 enum class StructureQuestion { automatic, bouc_wen, prandtl_ishlinskii };
 
 struct StructureChoiceOptions {
+  /// The published element gives way to what leaves less than this share of its held-out error, however
+  /// uncertain that is; 0: to nothing. Where a cause is missing, one block may spoil what all say.
+  double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
   Drive drive = Drive::command;  ///< with the measured pressure no dead time is looked for
   std::size_t starts = 20;       ///< of the published element's search

@@ -147,6 +147,7 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   options.seed = question.seed;
   options.threads = question.threads;
   options.progress = question.progress;
+  options.published_yields_below = worth_having;
   auto choice = better_structure(data.records, plain.base.point, options);
   if (!choice && !plain.extended.causes.empty()) {
     // An effect that no structure has may spoil all of them.
