@@ -1,15 +1,18 @@
 #!/usr/bin/python3
-"""How gently the shipped recipe grips: a table of seeded grips on simulated parts, in virtual time.
+"""How gently the shipped recipe grips: a table of seeded grips on simulated parts, in virtual time and over the wire.
 
-    scripts/gentle_grips.py [--build build/release] [--seeds 240] [--first-seed 1] [--page PAGE.md]
+    scripts/gentle_grips.py [--build build/release] [--seeds 240] [--wire 0] [--side-by-side 8] [--first-seed 1] [--page PAGE.md]
 
 Each seed draws a part (stone, spring, screw, nut, washer, or none), one finger or two, and where the part is: up to
 8 mm nearer or farther than the recipe expects, and for the second finger up to 1 mm off that. tests/system/gripping.py
 says how the squeeze is judged. A third of the seeds is played again with fingers that move 2 % farther, and 2 % less
-far, than the model that the controller has. The exit code is 1 where a grip squeezed by more than its recipe allows, held nothing,
+far, than the model that the controller has. The first --wire seeds are played again in real time, softgripd against
+softgrip-rig over Modbus TCP, so many rigs --side-by-side. The exit code is 1 where a grip squeezed by more than its recipe allows, held nothing,
 or missed a part.
 """
 import argparse
+import concurrent.futures
+import os
 import pathlib
 import statistics
 import sys
@@ -18,13 +21,23 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests/system"))
 
-import gripping  # noqa: E402
-
 ZONES = (("nearer by 4 to 8 mm", -8, -4), ("nearer by 0 to 4 mm", -4, 0), ("farther by 0 to 4 mm", 0, 4),
          ("farther by 4 to 8 mm", 4, 8.001))
 HEAD = ("part", "where", "fingers", "grips", "largest squeeze, median and most [kPa]", "answers",
         "time to the answer, median and most [s]")
 
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+parser.add_argument("--seeds", type=int, default=240)
+parser.add_argument("--wire", type=int, default=0)
+parser.add_argument("--side-by-side", type=int, default=8)
+parser.add_argument("--first-seed", type=int, default=1)
+parser.add_argument("--page", type=pathlib.Path)
+args = parser.parse_args()
+os.environ["SOFTGRIP_BUILD"] = str(args.build.resolve())
+
+import gripping  # noqa: E402
 
 ALLOWED_KPA = gripping.bound_kpa((ROOT / "config/sequences/pick_stone.yaml").read_text())
 
@@ -57,12 +70,21 @@ def table(groups):
     return "".join("| " + " | ".join(row) + " |\n" for row in rows)
 
 
-def page(args, groups, problems, off):
+def page(groups, problems, off, wire):
     others = "".join(f"- {abs(percent)} % {'farther' if percent > 0 else 'less far'}: {summary(judged)}, "
                      f"{len(found)} promises broken.\n" for percent, (judged, found) in off.items())
+    over_the_wire = "" if wire is None else f"""
+## Over the wire
+
+The first {args.wire} of these trials again in real time, `softgripd` at 100 Hz against `softgrip-rig` over Modbus TCP,
+{args.side_by_side} rigs side by side; both fingers meet the part at the same place. {summary(wire[0])}, {len(wire[1])}
+promises broken.
+
+{table(wire[0])}"""
+    wanted = f"--seeds {args.seeds}" + (f" --wire {args.wire}" if args.wire else "")
     return f"""# How gently the shipped recipe grips
 
-Made by `scripts/gentle_grips.py --seeds {args.seeds} --page docs/reference/gentle-grips.md`:
+Made by `scripts/gentle_grips.py {wanted} --page docs/reference/gentle-grips.md`:
 `config/sequences/pick_stone.yaml`, its two places moved to where each part is expected, on the simulated rig of
 `config/rig.yaml` in virtual time. The approach ends {gripping.APPROACH_MM} mm before that place, the grip searches to {gripping.REACH_MM} mm behind
 it. Each seed draws the part, one finger or two, and how far the part is from its place. Largest squeeze: the true pressure at the finger above what the free finger would need to rest where
@@ -75,19 +97,20 @@ what the recipe allows, never HOLDING on an empty grip, never NO PART on a part.
 {table(groups)}
 With fingers that move by so much more or less than the controller's model says, every third seed:
 
-{others}"""
+{others}{over_the_wire}"""
 
 
-def grips(finger, seeds, folder):
+def grips(finger, seeds, folder, play=gripping.play, side_by_side=1):
     """Plays the trials of seeds; returns the judged by group, and what was broken."""
     groups, problems = {}, []
-    for seed in seeds:
-        trial = gripping.drawn(seed)
-        judged = gripping.play(trial, finger, folder / f"{finger.model.stem}_{seed}")
+    trials = [gripping.drawn(seed) for seed in seeds]
+    with concurrent.futures.ThreadPoolExecutor(side_by_side) as pool:
+        all_judged = list(pool.map(lambda trial: play(trial, finger, folder / f"{finger.model.stem}_{trial.seed}"), trials))
+    for trial, judged in zip(trials, all_judged):
         groups.setdefault(key_of(trial), []).append(judged)
         for problem in gripping.broken(trial, judged, ALLOWED_KPA):
             problems.append(problem)
-            print(f"{finger.model.stem}, seed {seed}: {problem}: {trial}", file=sys.stderr)
+            print(f"{finger.model.stem}, seed {trial.seed}: {problem}: {trial}", file=sys.stderr)
     return groups, problems
 
 
@@ -99,20 +122,16 @@ def summary(groups):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
-    parser.add_argument("--seeds", type=int, default=240)
-    parser.add_argument("--first-seed", type=int, default=1)
-    parser.add_argument("--page", type=pathlib.Path)
-    args = parser.parse_args()
     softgrip = args.build.resolve() / "tools/softgrip"
     seeds = range(args.first_seed, args.first_seed + args.seeds)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         groups, problems = grips(gripping.Finger(softgrip, folder), seeds, folder)
         off = {percent: grips(gripping.Finger(softgrip, folder, percent), seeds[::3], folder) for percent in (2, -2)}
-    text = page(args, groups, problems, off)
-    problems += [problem for _, found in off.values() for problem in found]
+        wire = grips(gripping.Finger(softgrip, folder), seeds[:args.wire], folder / "wire", gripping.play_on_the_wire,
+                     args.side_by_side) if args.wire else None
+    text = page(groups, problems, off, wire)
+    problems += [problem for _, found in off.values() for problem in found] + (wire[1] if wire else [])
     if args.page:
         args.page.write_text(text)
     print(text)

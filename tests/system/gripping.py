@@ -1,5 +1,6 @@
-"""Grips of the shipped recipe on simulated parts in virtual time, judged from outside: what the part was squeezed by
-comes from the plant's own numbers and a curve that `softgrip simulate` gives, not from what the controller says."""
+"""Grips of the shipped recipe on simulated parts, in virtual time or over the wire, judged from outside: what the part was
+squeezed by comes from the plant's own numbers and a curve that `softgrip simulate` gives, not from what the controller
+says."""
 
 import csv
 import dataclasses
@@ -7,7 +8,11 @@ import json
 import pathlib
 import random
 import re
+import shutil
 import subprocess
+import types
+
+import bench
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODEL = ROOT / "config/models/bench_twin.yaml"
@@ -136,9 +141,35 @@ def play(trial, finger, folder):
                            "--record", folder / "run", "--quiet", "--json"], capture_output=True, text=True)
     if done.returncode not in (0, 6):
         raise RuntimeError(f"{trial}: {done.stdout}{done.stderr}")
-    end = json.loads(done.stdout.splitlines()[-1])["sequence_end"]
-    story = json.loads((folder / "run" / "run.json").read_text())
-    with open(folder / "run" / "run.csv", newline="") as file:
+    return judged(trial, finger, folder, folder / "run", json.loads(done.stdout.splitlines()[-1])["sequence_end"])
+
+
+def play_on_the_wire(trial, finger, folder):
+    """Runs a trial with softgripd against softgrip-rig, in real time. Both fingers meet the part at the first one's place."""
+    shutil.copytree(ROOT / "config", folder / "config")
+    (folder / "config/sequences/recipe.yaml").write_text(recipe(trial))
+    there = () if trial.part is None else ("--object", f"{trial.place_mm(0)}:{trial.part.yielding}")
+    emulated = bench.Emulator(folder, "--seed", trial.seed, "--pressure-noise-kpa", 0, *there)
+    daemon = None
+    try:
+        daemon = bench.Daemon(folder, bench.BenchTest.rig(types.SimpleNamespace(folder=folder), emulated.port))
+        daemon.wait_for_state("idle")
+        daemon.start("recipe")
+        finished = bench.wait_for("the recipe's end", lambda: next(
+            (event for event in daemon.events() if event["kind"] == "sequence_finished"), None), patience_s=90)
+        daemon.end()
+    finally:
+        for process in (daemon, emulated):
+            if process and process.running():
+                process.kill()
+    recording = next((folder / "runs").glob("*/run.json")).parent
+    return judged(dataclasses.replace(trial, tilt_mm=0), finger, folder, recording, finished["code"])
+
+
+def judged(trial, finger, folder, recording, end):
+    """What came of a trial, by its recording."""
+    story = json.loads((recording / "run.json").read_text())
+    with open(recording / "run.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     names = story["channels"][:trial.fingers]
     told = [event for event in story["events"] if event["kind"] == "grip_result"]
