@@ -5,22 +5,37 @@
 
 namespace softgrip::control {
 
-std::string_view name_of(UpperLimit limit) noexcept {
-  constexpr std::array<std::string_view, 4> names{"none", "rig_pressure", "step_pressure", "step_squeeze"};
+std::string_view name_of(BindingLimit limit) noexcept {
+  constexpr std::array<std::string_view, 6> names{"none",         "rig_pressure", "step_pressure",
+                                                  "step_squeeze", "rig_slew_up",  "rig_slew_down"};
   return names[static_cast<std::size_t>(limit)];
 }
 
-std::optional<UpperLimit> LimitWatch::observe(double time_s, UpperLimit now) noexcept {
-  if (now != UpperLimit::none) {
-    if (now_ == UpperLimit::none) since_s_ = time_s;
+std::string_view words_of(BindingLimit limit) noexcept {
+  constexpr std::array<std::string_view, 6> words{
+      "",
+      "pressure_max_kpa of the rig keeps the pressure down",
+      "pressure_max_kpa of the step keeps the pressure down",
+      "squeeze_max_kpa of the step keeps the pressure down",
+      "slew_up_kpa_per_s of the rig keeps the pressure behind what is asked for",
+      "slew_down_kpa_per_s of the rig keeps the pressure behind what is asked for"};
+  return words[static_cast<std::size_t>(limit)];
+}
+
+std::optional<BindingLimit> LimitWatch::observe(double time_s, BindingLimit now) noexcept {
+  if (now != BindingLimit::none) {
+    if (now_ == BindingLimit::none) since_s_ = time_s;
+    if (now_ != now) change_s_ = time_s;
     now_ = now;
     last_s_ = time_s;
-  } else if (now_ != UpperLimit::none && time_s - last_s_ > gap_s) {
-    now_ = UpperLimit::none;
+  } else if (now_ != BindingLimit::none && time_s - last_s_ > gap_s) {
+    now_ = BindingLimit::none;
   }
-  const bool binds = now_ != UpperLimit::none && time_s - since_s_ >= moment_s;
-  if (binds && told_ == UpperLimit::none) return told_ = now_;
-  if (now_ == UpperLimit::none && told_ != UpperLimit::none) return told_ = UpperLimit::none;
+  const bool none_told = told_ == BindingLimit::none;
+  const bool binds =
+      now_ != BindingLimit::none && now_ != told_ && time_s - (none_told ? since_s_ : change_s_) >= moment_s;
+  if (binds) return told_ = now_;
+  if (now_ == BindingLimit::none && !none_told) return told_ = BindingLimit::none;
   return std::nullopt;
 }
 

@@ -102,11 +102,18 @@ void ChannelController::send(const ChannelDemand& demand, double wanted_kpa,
   channel.saturated = limited.saturated;
   channel.slewing = limited.slewing;
   channel.request_invalid = limited.invalid;
-  channel.capped_by = UpperLimit::none;
-  if (wanted_kpa <= std::min(ceiling_kpa, limits_.pressure_max_kpa) + unnoticed_kpa) return;
-  channel.capped_by = limits_.pressure_max_kpa <= ceiling_kpa   ? UpperLimit::rig_pressure
-                      : demand.pressure_max_kpa <= squeezed_kpa ? UpperLimit::step_pressure
-                                                                : UpperLimit::step_squeeze;
+  if (wanted_kpa > std::min(ceiling_kpa, limits_.pressure_max_kpa) + unnoticed_kpa) {
+    channel.bound_by = limits_.pressure_max_kpa <= ceiling_kpa   ? BindingLimit::rig_pressure
+                       : demand.pressure_max_kpa <= squeezed_kpa ? BindingLimit::step_pressure
+                                                                 : BindingLimit::step_squeeze;
+    return;
+  }
+  // A vent is meant to go down at the slew limit.
+  const double behind_kpa = in_range(limits_, wanted_kpa) - limited.command_kpa;
+  const bool slewed = limited.slewing && demand.mode != DemandMode::vent;
+  channel.bound_by = !slewed || std::abs(behind_kpa) <= unnoticed_kpa ? BindingLimit::none
+                     : behind_kpa > 0                                 ? BindingLimit::rig_slew_up
+                                                                      : BindingLimit::rig_slew_down;
 }
 
 /// Returns how many ticks it is since the last one.

@@ -58,17 +58,14 @@ FaultMonitor::FaultMonitor(const RigSettings& settings)
 Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelOutput> seen,
                             bool starting) noexcept {
   remember(seen);
-  cause_present_ = input.emergency_stop || input.inputs_lost;
+  cause_ = {};
   Fault first;
   const auto note = [&first](const Fault& fault) {
     if (first.code == FaultCode::none) first = fault;
   };
-  if (input.emergency_stop) {
-    note({FaultCode::emergency_stop, whole_rig, 0});
-  }
-  if (input.inputs_lost) {
-    note({FaultCode::inputs_lost, whole_rig, 0});
-  }
+  if (input.emergency_stop) note_cause({FaultCode::emergency_stop, whole_rig, 0});
+  if (input.inputs_lost) note_cause({FaultCode::inputs_lost, whole_rig, 0});
+  note(cause_);
   note(bus(input.bus, starting));
   for (std::size_t i = 0; i < channels_.size(); ++i) note(channel(i, input, seen[i], starting));
   if (settings_.slipped_cycles > 0 && input.slipped_cycles >= settings_.slipped_cycles) {
@@ -80,15 +77,16 @@ Fault FaultMonitor::observe(const TickInput& input, std::span<const ChannelOutpu
 Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
   const bool good = bus.connected && bus.consecutive_failures == 0 && bus.fault == FaultCode::none;
   bus_cycles_ = good ? 0 : bus_cycles_ + 1;
-  cause_present_ = cause_present_ || !good;
-  if (good || (starting && !said_by_board(bus.fault))) {
-    return {};
-  }
+  if (good) return {};
   const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
-  if (inhibits(code) || bus_cycles_ >= settings_.bus_down_cycles) {
-    return {code, whole_rig, static_cast<double>(bus_cycles_)};
-  }
-  return {};
+  const Fault fault{code, whole_rig, static_cast<double>(bus_cycles_)};
+  note_cause(fault);
+  if (starting && !said_by_board(bus.fault)) return {};
+  return inhibits(code) || bus_cycles_ >= settings_.bus_down_cycles ? fault : Fault{};
+}
+
+void FaultMonitor::note_cause(const Fault& fault) noexcept {
+  if (cause_.code == FaultCode::none) cause_ = fault;
 }
 
 Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const ChannelOutput& seen,
@@ -104,15 +102,17 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
                             off(channel, readback, readback_window_, settings_.readback_tolerance_kpa);
   channel.readback_cycles = readback_off ? channel.readback_cycles + 1 : 0;
   const bool pressure_off = pressure_due(channel, input.readings[index].pressure_kpa, starting);
-  cause_present_ = cause_present_ || channel.invalid_cycles > 0 || channel.beyond_cycles > 0 ||
-                   readback_off || channel.pressure_cycles > 0;
+  const Fault of_pressure{FaultCode::pressure_not_followed, number, input.readings[index].pressure_kpa};
+  const Fault of_readback{FaultCode::readback_mismatch, number, readback};
+  if (channel.invalid_cycles > 0) note_cause({code_of(seen.validity), number, seen.age_s});
+  if (channel.beyond_cycles > 0) {
+    note_cause({FaultCode::displacement_beyond_limits, number, seen.displacement_mm});
+  }
+  if (readback_off) note_cause(of_readback);
+  if (channel.pressure_cycles > 0) note_cause(of_pressure);
   if (of_reading.code != FaultCode::none) return of_reading;
-  if (readback_off && channel.readback_cycles >= settings_.readback_cycles) {
-    return {FaultCode::readback_mismatch, number, readback};
-  }
-  if (pressure_off) {
-    return {FaultCode::pressure_not_followed, number, input.readings[index].pressure_kpa};
-  }
+  if (readback_off && channel.readback_cycles >= settings_.readback_cycles) return of_readback;
+  if (pressure_off) return of_pressure;
   if (settings_.model_unfit_is_fault && seen.health_changed && seen.health == HealthState::unfit) {
     return {FaultCode::model_unfit, number, seen.health_rms_mm};
   }

@@ -13,12 +13,6 @@
 
 namespace softgrip::control {
 
-struct Fault {
-  FaultCode code = FaultCode::none;
-  std::uint8_t channel = whole_rig;
-  double value = 0;  ///< what goes with it: an age, a displacement, a read-back, a number of cycles
-};
-
 class FaultMonitor {
  public:
   explicit FaultMonitor(const RigSettings& settings);
@@ -28,8 +22,8 @@ class FaultMonitor {
   /// that is due now, in the order of the checks below.
   Fault observe(const TickInput& input, std::span<const ChannelOutput> seen, bool starting) noexcept;
 
-  /// Something that is or grows to a fault is there in this tick: acknowledging would not last.
-  [[nodiscard]] bool cause_present() const noexcept { return cause_present_; }
+  /// The gravest that is there in this tick and is a fault or grows to one: acknowledging would not last.
+  [[nodiscard]] const Fault& cause() const noexcept { return cause_; }
   /// No bus fault is there in this tick.
   [[nodiscard]] bool bus_good() const noexcept { return bus_cycles_ == 0; }
 
@@ -43,6 +37,7 @@ class FaultMonitor {
     std::vector<double> sent_kpa;      ///< ring of the past commands, as far back as anything looks
   };
   void remember(std::span<const ChannelOutput> seen) noexcept;
+  void note_cause(const Fault& fault) noexcept;
   Fault bus(const BusHealth& bus, bool starting) noexcept;
   Fault channel(std::size_t index, const TickInput& input, const ChannelOutput& seen, bool starting) noexcept;
   Fault reading(Channel& channel, std::uint8_t index, const ChannelOutput& seen,
@@ -59,7 +54,7 @@ class FaultMonitor {
   std::vector<Channel> channels_;
   std::size_t ring_at_ = 0;
   std::uint32_t bus_cycles_ = 0;
-  bool cause_present_ = false;
+  Fault cause_;
 };
 
 }  // namespace softgrip::control

@@ -14,6 +14,8 @@ namespace {
 constexpr std::array<std::string_view, 6> state_names{"starting", "idle",     "resynchronising",
                                                       "running",  "stopping", "faulted"};
 constexpr std::array<std::string_view, 4> end_names{"done", "failed", "stopped", "faulted"};
+/// Above the lowest command by less is no pressure to speak of.
+constexpr double unnoticed_kpa = 0.1;
 constexpr std::uint32_t bit(std::size_t channel) noexcept {
   return 1U << channel;
 }
@@ -83,6 +85,8 @@ const TickOutput& RigController::tick(const TickInput& input) noexcept {
   conclude();
   output_.state = supervisor_.state();
   output_.first_fault = supervisor_.first_fault();
+  output_.cause = monitor_.cause();
+  look_for_pressure();
   return output_;
 }
 
@@ -114,7 +118,7 @@ void RigController::forget_old_readings(Nanoseconds now) noexcept {
 Facts RigController::facts(const TickInput& input, double time_s) noexcept {
   Facts facts;
   facts.fault = monitor_.observe(input, output_.channels, supervisor_.state() == State::starting);
-  facts.cause_present = monitor_.cause_present();
+  facts.cause = monitor_.cause();
   facts.bus_good = monitor_.bus_good();
   facts.phase = player_.phase();
   for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -205,11 +209,11 @@ ChannelDemand RigController::demand(std::size_t index, double time_s) const noex
 
 void RigController::tell_limits(std::size_t index, double time_s) noexcept {
   ChannelOutput& seen = output_.channels[index];
-  const UpperLimit before = seen.limit;
-  const std::optional<UpperLimit> now = channels_[index].limits.observe(time_s, seen.capped_by);
+  const BindingLimit before = seen.limit;
+  const std::optional<BindingLimit> now = channels_[index].limits.observe(time_s, seen.bound_by);
   if (!now) return;
   seen.limit = *now;
-  const bool binds = *now != UpperLimit::none;
+  const bool binds = *now != BindingLimit::none;
   output_.events.add_of_channel(index, binds ? Event::Kind::limit_binds : Event::Kind::limit_free,
                                 binds ? *now : before, 0, seen.command_kpa);
 }
@@ -225,6 +229,15 @@ void RigController::tell_changes(std::size_t index) noexcept {
   if (seen.health_changed) {
     output_.events.add_of_channel(index, Event::Kind::model_health_changed, seen.health, 0,
                                   seen.health_rms_mm);
+  }
+}
+
+void RigController::look_for_pressure() noexcept {
+  output_.under_pressure = 0;
+  if (moves(output_.state)) return;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const bool pressed = output_.channels[i].command_kpa > channels_[i].lowest_kpa + unnoticed_kpa;
+    output_.under_pressure |= pressed ? bit(i) : 0;
   }
 }
 

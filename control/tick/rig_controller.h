@@ -64,6 +64,7 @@ class RigController {
   void tell_changes(std::size_t index) noexcept;
   void tell_limits(std::size_t index, double time_s) noexcept;
   void conclude() noexcept;
+  void look_for_pressure() noexcept;
 
   double rest_timeout_s_;
   double margin_mm_;

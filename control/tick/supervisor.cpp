@@ -44,7 +44,7 @@ void Supervisor::latch(const Facts& facts, Orders& orders, EventList& events) no
   if (first) fault_phase_ = facts.phase;
   if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;
   if (!first) return;
-  first_fault_ = fault.code;
+  first_fault_ = fault;
   orders.interrupt = SequenceEnd::faulted;
   end_sequence(SequenceEnd::faulted, events);
   go(State::faulted, 0, events);
@@ -169,12 +169,15 @@ void Supervisor::answer_release(const Facts& facts, const Request& request, Orde
 void Supervisor::answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,
                                     EventList& events) noexcept {
   if (state_ == State::faulted) {
-    if (facts.cause_present) {
-      events.add(Event::Kind::request_refused, RefusalCode::cause_persists, request.id);
+    const Fault& cause = facts.cause;
+    if (cause.code != FaultCode::none) {
+      events.add_of_channel(cause.channel, Event::Kind::request_refused, RefusalCode::cause_persists,
+                            request.id, static_cast<double>(cause.code));
       return;
     }
-    events.add(Event::Kind::fault_acknowledged, first_fault_, request.id);
-    first_fault_ = FaultCode::none;
+    events.add_of_channel(first_fault_.channel, Event::Kind::fault_acknowledged, first_fault_.code,
+                          request.id);
+    first_fault_ = {};
     told_ = 0;
     orders.acknowledged_by = request.id;
     go(State::starting, request.id, events);

@@ -21,8 +21,8 @@ enum class Rest : std::uint8_t { pending, at_rest, timed_out };
 
 /// What the supervisor must know of a tick beside its input. Masks: bit i is channel i.
 struct Facts {
-  Fault fault;                 ///< due now
-  bool cause_present = false;  ///< something that is or grows to a fault
+  Fault fault;  ///< due now
+  Fault cause;  ///< what is there and is a fault or grows to one
   bool bus_good = false;
   std::uint32_t ready = 0;    ///< channels with a valid reading, or that use none
   std::uint32_t lowest = 0;   ///< channels whose command is the lowest
@@ -51,7 +51,7 @@ class Supervisor {
   void sequence_ended(SequenceEnd end, OnFail action, Phase phase, EventList& events) noexcept;
 
   [[nodiscard]] State state() const noexcept { return state_; }
-  [[nodiscard]] FaultCode first_fault() const noexcept { return first_fault_; }
+  [[nodiscard]] const Fault& first_fault() const noexcept { return first_fault_; }
   /// Outside `running`: the channels that go to their lowest command; the others stay where they are.
   [[nodiscard]] std::uint32_t venting() const noexcept { return venting_; }
   /// The channels that must be vented when the loop is left now, in the given phase of the player.
@@ -78,7 +78,7 @@ class Supervisor {
   std::uint32_t all_;
   std::uint64_t rig_;
   State state_ = State::starting;
-  FaultCode first_fault_ = FaultCode::none;
+  Fault first_fault_;
   Phase fault_phase_ = Phase::idle;  ///< in which it came
   std::uint32_t told_ = 0;           ///< faults told since the latch, by their place in all_faults()
   std::uint32_t venting_ = 0;

@@ -98,20 +98,27 @@ struct ChannelOutput {
   GripEvidence evidence = GripEvidence::none;  ///< on what the result rests
   HealthState health = HealthState::unknown;   ///< of the model
   bool health_changed = false;
-  UpperLimit capped_by = UpperLimit::none;  ///< what kept the command noticeably below the request
-  UpperLimit limit = UpperLimit::none;      ///< the same, when it has done so for longer than a moment
-  bool saturated = false;                   ///< the request was outside the pressure range
-  bool slewing = false;                     ///< the request was further away than the slew limits allow
-  bool request_invalid = false;             ///< the request was not a number: the command was held
-  bool reference_clamped = false;           ///< the reference was outside the displacement range
-  bool out_of_reach = false;                ///< the feedforward cannot reach the reference within the limits
-  bool stands_still = false;                ///< the reading repeats itself as this sensor never does
-  bool displacement_beyond = false;         ///< the reading is beyond the displacement range and its margin
-  bool synchronised = false;                ///< resynchronising was asked and residual_mm has settled
+  BindingLimit bound_by = BindingLimit::none;  ///< what kept the command noticeably from the request
+  BindingLimit limit = BindingLimit::none;     ///< the same, when it has done so for longer than a moment
+  bool saturated = false;                      ///< the request was outside the pressure range
+  bool slewing = false;                        ///< the request was further away than the slew limits allow
+  bool request_invalid = false;                ///< the request was not a number: the command was held
+  bool reference_clamped = false;              ///< the reference was outside the displacement range
+  bool out_of_reach = false;         ///< the feedforward cannot reach the reference within the limits
+  bool stands_still = false;         ///< the reading repeats itself as this sensor never does
+  bool displacement_beyond = false;  ///< the reading is beyond the displacement range and its margin
+  bool synchronised = false;         ///< resynchronising was asked and residual_mm has settled
 };
 
 /// `Event::channel` of what concerns the whole rig.
 inline constexpr std::uint8_t whole_rig = 0xff;
+
+/// What is wrong, and with which channel.
+struct Fault {
+  FaultCode code = FaultCode::none;
+  std::uint8_t channel = whole_rig;
+  double value = 0;  ///< what goes with it: an age, a displacement, a read-back, a number of cycles
+};
 
 /// Something worth telling, at most a few per tick.
 struct Event {
@@ -128,14 +135,14 @@ struct Event {
     reading_invalid,
     reading_valid,
     contact,        ///< a finger has touched something in a motion
-    limit_binds,    ///< a limit has kept a command down for longer than a moment
+    limit_binds,    ///< a limit has kept a command from what is wanted for longer than a moment
     limit_free,     ///< it does not any more
     release_asked,  ///< on with the release step
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
   /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity, SequenceEnd, OnContact or
-  /// UpperLimit, by kind.
+  /// BindingLimit, by kind.
   std::uint16_t detail = 0;
   std::uint32_t request = 0;  ///< the id of the request it answers, or 0
   double value = 0;           ///< a number that goes with it (a deficit, an age, where a contact was), or 0
@@ -177,7 +184,11 @@ class EventList {
 
 struct TickOutput {
   State state = State::starting;
-  FaultCode first_fault = FaultCode::none;  ///< the first that latched
+  Fault first_fault;  ///< the first that latched
+  Fault cause;        ///< what is there in this tick and is a fault or grows to one
+  /// Channels whose command stays above their lowest although nothing moves: behind a sequence that ended in
+  /// a hold, after a stop or a fault that holds. Bit i is channel i.
+  std::uint32_t under_pressure = 0;
   std::size_t channel_count = 0;
   std::array<ChannelOutput, max_channels> channels{};
   EventList events;

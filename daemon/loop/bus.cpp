@@ -122,6 +122,7 @@ bool Bus::ensure_session() noexcept {
   if (clock_.now() < next_attempt_) return false;
   report_.health.connected = false;
   publish();  // connect() may take its time; the loop shall know meanwhile
+  statistics_.attempts.fetch_add(1, std::memory_order_relaxed);
   const BusStatus status = board_.connect(reconnect_.connect_deadline);
   if (status == BusStatus::ok) {
     session_ = Session::opened;
@@ -136,6 +137,7 @@ bool Bus::ensure_session() noexcept {
 
 void Bus::put_off_next_attempt() noexcept {
   next_attempt_ = clock_.now() + pause_;
+  statistics_.retry_pause.store(pause_, std::memory_order_relaxed);
   pause_ = std::min<Nanoseconds>(2 * pause_, reconnect_.longest_pause.count());
 }
 
@@ -178,6 +180,7 @@ void Bus::choose_outputs() noexcept {
 
 void Bus::note_success(Nanoseconds duration) noexcept {
   session_ = Session::proven;
+  statistics_.attempts.store(0, std::memory_order_relaxed);
   pause_ = reconnect_.first_pause.count();
   statistics_.exchange.add(duration);
   report_.health.connected = true;

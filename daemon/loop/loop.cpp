@@ -120,10 +120,13 @@ void Loop::show(const control::BusHealth& bus) noexcept {
   snapshot.ticks = ticks_;
   snapshot.state = output_.state;
   snapshot.first_fault = output_.first_fault;
+  snapshot.cause = output_.cause;
+  snapshot.under_pressure = output_.under_pressure;
   snapshot.channel_count = channels_;
   std::copy_n(output_.channels.begin(), channels_, snapshot.channels.begin());
   snapshot.bus = bus;
   wires_.snapshot.publish();
+  wires_.under_pressure.store(output_.under_pressure != 0, std::memory_order_relaxed);
   wires_.state.store(output_.state, std::memory_order_relaxed);
 }
 

@@ -37,7 +37,9 @@ struct BusStatistics {
   Counter exchanges;
   Counter failures;
   Counter slips;
-  Counter sessions;  ///< successful connects
+  Counter sessions;                         ///< successful connects
+  std::atomic<std::uint64_t> attempts{0};   ///< to connect since the last good exchange
+  std::atomic<Nanoseconds> retry_pause{0};  ///< at most so long until the next one
 };
 
 }  // namespace softgrip::daemon

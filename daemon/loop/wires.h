@@ -75,7 +75,9 @@ struct Snapshot {
   Nanoseconds at = 0;
   std::uint64_t ticks = 0;
   control::State state = control::State::starting;
-  control::FaultCode first_fault = control::FaultCode::none;
+  control::Fault first_fault;
+  control::Fault cause;              ///< what is there in this tick and is a fault or grows to one
+  std::uint32_t under_pressure = 0;  ///< as in control::TickOutput
   std::size_t channel_count = 0;
   std::array<control::ChannelOutput, control::max_channels> channels{};
   control::BusHealth bus;
@@ -122,6 +124,7 @@ struct Wires {
   Ring<control::Request> stops{16};  ///< ... these, and these before ...
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< of the last tick
+  std::atomic<bool> under_pressure{false};                      ///< some finger stays so, of the last tick
   std::atomic<bool> enable_on{false};                           ///< the enable output, as it was written
   InputLevels inputs;
   std::atomic<std::uint64_t> records_dropped{0};  ///< no room: the recorder lagged

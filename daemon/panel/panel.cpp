@@ -13,6 +13,13 @@ namespace {
 /// Edges taken at once: the kernel keeps 16 per line.
 constexpr std::size_t edges_at_once = 32;
 
+/// How a lamp blinks while pressure stays on: half of this on, half of it off.
+constexpr Nanoseconds blink_period = ns_per_s;
+
+bool in_dark_half(Nanoseconds now) noexcept {
+  return now % blink_period >= blink_period / 2;
+}
+
 bool works(State state) noexcept {
   return state != State::starting && state != State::faulted;
 }
@@ -151,8 +158,11 @@ void Panel::drive(Nanoseconds now) noexcept {
   write(GpioRole::enable, enable);
   wires_.enable_on.store(enable && !dropped_.load(), std::memory_order_relaxed);
   if (changed) tell(enable ? PanelEvent::Kind::enable_on : PanelEvent::Kind::enable_off, now);
-  write(GpioRole::ready_lamp, works(state) && !hangs && !lost_);
-  write(GpioRole::fault_lamp, state == State::faulted || hangs || lost_);
+  const bool broken = hangs || lost_;
+  // Where the loop hangs nobody knows what stands at the fingers any more: the fault lamp is steady then.
+  const bool dark = !broken && wires_.under_pressure.load(std::memory_order_relaxed) && in_dark_half(now);
+  write(GpioRole::ready_lamp, works(state) && !broken && !dark);
+  write(GpioRole::fault_lamp, (state == State::faulted || broken) && !dark);
 }
 
 void Panel::write(GpioRole role, bool active) noexcept {

@@ -20,6 +20,9 @@ namespace softgrip::daemon {
 /// milliseconds: neither belongs into a tick or an exchange. It sleeps until an edge comes, and looks at the
 /// levels every `look_interval_s` all the same. The loop sees two flags and the time of the last look.
 ///
+/// While pressure stays on although nothing moves, the lamp that is on blinks, half a second on and half a
+/// second off: the ready lamp of an idle rig, the fault lamp of a faulted one.
+///
 /// The emergency stop counts as pressed from the start. It counts as released when the loop has latched it
 /// and the line has been steadily released; motion then still needs an acknowledgement.
 class Panel {

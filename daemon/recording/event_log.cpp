@@ -62,6 +62,11 @@ EventEntry entry_of(const Table& table, Which which) {
 
 using Sequence = control::PreparedSequence;
 
+/// What is still there, of a refused acknowledgement.
+control::FaultCode refused_because_of(const Event& event) {
+  return static_cast<control::FaultCode>(static_cast<std::uint16_t>(event.value));
+}
+
 void describe_state(const Event& event, const Sequence*, EventEntry& entry) {
   entry.code = control::name_of(static_cast<control::State>(event.detail));
   entry.text = fmt::format("The state is now {}.", entry.code);
@@ -99,7 +104,9 @@ void describe_result(const Event& event, const Sequence*, EventEntry& entry) {
 void describe_refusal(const Event& event, const Sequence*, EventEntry& entry) {
   const auto refusal = static_cast<control::RefusalCode>(event.detail);
   entry.code = control::id_of(refusal);
-  entry.text = fmt::format("The request was refused. {}", sentences_of(refusal));
+  // The finger stands before the sentence already.
+  entry.text =
+      fmt::format("The request was refused. {}", sentences_of(refusal, {refused_because_of(event)}, {}));
   entry.severity = Severity::warning;
 }
 
@@ -142,14 +149,12 @@ void describe_contact(const Event& event, const Sequence*, EventEntry& entry) {
 
 void describe_limit(const Event& event, const Sequence*, EventEntry& entry) {
   const bool binds = event.kind == Kind::limit_binds;
-  const auto limit = static_cast<control::UpperLimit>(event.detail);
+  const auto limit = static_cast<control::BindingLimit>(event.detail);
   entry.code = control::name_of(limit);
-  const std::string_view key = limit == control::UpperLimit::rig_pressure    ? "pressure_max_kpa of the rig"
-                               : limit == control::UpperLimit::step_pressure ? "pressure_max_kpa of the step"
-                                                                             : "squeeze_max_kpa of the step";
-  entry.text = binds ? fmt::format("The {} keeps the pressure down, at {:.1f} kPa.", key, event.value)
-                     : fmt::format("The {} does not keep the pressure down any more.", key);
-  const bool of_rig = limit == control::UpperLimit::rig_pressure;
+  const std::string_view words = control::words_of(limit);
+  entry.text = binds ? fmt::format("The {}, at {:.1f} kPa.", words, event.value)
+                     : fmt::format("No more: the {}.", words);
+  const bool of_rig = limit == control::BindingLimit::rig_pressure;
   entry.severity = binds && of_rig ? Severity::warning : Severity::information;
 }
 
@@ -220,8 +225,20 @@ EventEntry describe(const Event& event, const std::vector<std::string>& channel_
   return entry;
 }
 
-std::string sentences_of(control::RefusalCode refusal) {
+std::string title_of(const control::Fault& fault, const std::vector<std::string>& channel_names) {
+  const control::FaultInfo& info = control::info_of(fault.code);
+  const bool of_channel = fault.channel < channel_names.size();
+  return fmt::format("{} {}{}{}", info.id, info.name, of_channel ? " of " : "",
+                     of_channel ? channel_names[fault.channel] : "");
+}
+
+std::string sentences_of(control::RefusalCode refusal, const control::Fault& cause,
+                         const std::vector<std::string>& channel_names) {
   const control::RefusalText& text = control::text_of(refusal);
+  if (refusal == control::RefusalCode::cause_persists && cause.code != control::FaultCode::none) {
+    return fmt::format("What caused a fault is still there: {}. {} Then acknowledge again.",
+                       title_of(cause, channel_names), control::info_of(cause.code).remedy);
+  }
   return fmt::format("{}{}{}", text.meaning, text.next.empty() ? "" : " ", text.next);
 }
 

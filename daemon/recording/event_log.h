@@ -40,8 +40,13 @@ struct EventEntry {
 /// "information", "warning", "error"
 [[nodiscard]] std::string_view name_of(Severity severity) noexcept;
 
-/// What a refusal means and what to do now, as sentences.
-[[nodiscard]] std::string sentences_of(control::RefusalCode refusal);
+/// "F202 reading_out_of_range of left"; without a finger where it concerns the whole rig.
+[[nodiscard]] std::string title_of(const control::Fault& fault,
+                                   const std::vector<std::string>& channel_names);
+
+/// What a refusal means and what to do now, as sentences. `cause`: of cause_persists, what is still there.
+[[nodiscard]] std::string sentences_of(control::RefusalCode refusal, const control::Fault& cause,
+                                       const std::vector<std::string>& channel_names);
 
 /// The newest events, for all threads but the loop.
 class EventLog {

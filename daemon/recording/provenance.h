@@ -21,6 +21,7 @@ struct Provenance {
   std::string rig;  ///< its name
   std::vector<SourceFile> files;
   std::vector<std::string> channel_names;
+  bool simulated = false;          ///< no board: fingers, valves and sensors are computed
   bool measures_pressure = false;  ///< some channel does
   double rate_hz = 0;
   std::uint32_t decimation = 1;

@@ -64,6 +64,7 @@ Provenance provenance_of(const rig::RigFile& rig, const DaemonOptions& options) 
   for (const control::ChannelSettings& channel : rig.settings.channels) {
     provenance.channel_names.push_back(channel.name);
   }
+  provenance.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
   provenance.measures_pressure = measures_pressure(rig);
   provenance.rate_hz = rig.settings.rate_hz;
   provenance.decimation = rig.recorder.decimation;
@@ -139,12 +140,12 @@ void DaemonParts::conclude(Outcome& outcome) {
       break;
     case Errand::State::not_idle:
       outcome.ending = Ending::not_idle;
-      outcome.message = fmt::format("the rig did not become idle within {} s{}", patience / ns_per_s,
-                                    outcome.last.first_fault == control::FaultCode::none
-                                        ? ""
-                                        : fmt::format(": {} {} is latched, `softgrip acknowledge` clears it",
-                                                      control::info_of(outcome.last.first_fault).id,
-                                                      control::info_of(outcome.last.first_fault).name));
+      outcome.message =
+          fmt::format("the rig did not become idle within {} s{}", patience / ns_per_s,
+                      outcome.last.first_fault.code == control::FaultCode::none
+                          ? ""
+                          : fmt::format(": {} is latched, `softgrip acknowledge` clears it",
+                                        title_of(outcome.last.first_fault, outcome.channel_names)));
       break;
     default:
       outcome.ending = Ending::sequence_ended;

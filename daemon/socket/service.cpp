@@ -10,6 +10,18 @@ namespace softgrip::daemon {
 
 using Kind = control::Event::Kind;
 
+namespace {
+
+/// The fault that an answer is about.
+control::Fault fault_in(const control::Event& event) {
+  const double number = event.kind == Kind::fault_acknowledged ? event.detail
+                        : event.kind == Kind::request_refused  ? event.value
+                                                               : 0;
+  return {static_cast<control::FaultCode>(static_cast<std::uint16_t>(number)), event.channel, 0};
+}
+
+}  // namespace
+
 Service::Service(std::vector<std::string> channel_names, Nanoseconds origin, Wires& wires, EventLog& log,
                  SequenceShelf& shelf)
     : channel_names_(std::move(channel_names)),
@@ -58,6 +70,8 @@ void Service::pump() {
   for (BusEvent event; wires_.bus_events.pop(event);) {
     EventEntry entry = describe(event);
     entry.time_s = seconds(event.at - origin_);
+    if (event.kind == BusEvent::Kind::failed) bus_failure_ = entry.text;
+    if (event.kind == BusEvent::Kind::recovered) bus_failure_.clear();
     log_.add(std::move(entry));
   }
   for (PanelEvent event; wires_.panel_events.pop(event);) {
@@ -95,6 +109,7 @@ void Service::take(const StampedEvent& stamped) {
     const bool refused = event.kind == Kind::request_refused;
     answer->second.kind = refused ? Answer::Kind::refused : Answer::Kind::accepted;
     if (refused) answer->second.refusal = static_cast<control::RefusalCode>(event.detail);
+    answer->second.fault = fault_in(event);
   }
   EventEntry entry = describe(event, channel_names_, sequence_ ? &sequence_->prepared : nullptr);
   entry.time_s = seconds(stamped.at - origin_);

@@ -35,6 +35,7 @@ class Service {
     enum class Kind : std::uint8_t { pending, accepted, refused };
     Kind kind = Kind::pending;
     control::RefusalCode refusal = control::RefusalCode::none;
+    control::Fault fault;  ///< that was acknowledged, or whose cause is still there; none where there is none
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
   /// Nobody waits for the answer any more.
@@ -51,6 +52,10 @@ class Service {
   [[nodiscard]] const std::shared_ptr<const LoadedSequence>& sequence() const noexcept { return sequence_; }
   /// The request that started it, or 0.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
+
+  /// The first failure since the last good exchange, in a sentence; empty while the board answers.
+  [[nodiscard]] const std::string& bus_failure() const noexcept { return bus_failure_; }
+  [[nodiscard]] const std::vector<std::string>& channel_names() const noexcept { return channel_names_; }
 
   /// The newest state of the loop.
   [[nodiscard]] const Snapshot& snapshot() noexcept;
@@ -72,6 +77,7 @@ class Service {
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
   Ending ending_;
+  std::string bus_failure_;
   std::uint64_t events_dropped_ = 0;  // told so far
 };
 

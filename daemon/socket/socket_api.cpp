@@ -202,11 +202,15 @@ void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service:
   }
   if (answer.kind == Service::Answer::Kind::accepted) {
     Json result{{"request", request}};
+    if (answer.fault.code != control::FaultCode::none) {
+      result["acknowledged"] = fault_title_json(answer.fault, sources_.service.channel_names());
+    }
     if (!asked.remarks.warnings().empty()) result["warnings"] = json_of(asked.remarks.warnings());
     ok(asked.client, asked.id, result);
     return;
   }
-  Json error = error_json("refused", sentences_of(answer.refusal));
+  Json error =
+      error_json("refused", sentences_of(answer.refusal, answer.fault, sources_.service.channel_names()));
   error["refusal"] = {{"code", control::id_of(answer.refusal)}, {"name", control::name_of(answer.refusal)}};
   error["request"] = request;
   fail(asked.client, asked.id, error);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/grid.h"
@@ -32,12 +33,49 @@ Json json_of_fault(control::FaultCode code) {
           {"remedy", info.remedy}};
 }
 
-Json limit_of(const control::ChannelOutput& channel) {
-  if (channel.limit == control::UpperLimit::none) return nullptr;
-  return control::name_of(channel.limit);
+/// The latched one, whether its cause or another one is still there, and what clears it.
+Json json_of_latched(const Snapshot& snapshot, const std::vector<std::string>& names) {
+  Json json = json_of_fault(snapshot.first_fault.code);
+  if (json.is_null()) return json;
+  const control::Fault& cause = snapshot.cause;
+  const bool gone = cause.code == control::FaultCode::none;
+  json["channel"] = fault_title_json(snapshot.first_fault, names)["channel"];
+  json["present"] = fault_title_json(cause, names);
+  json["next"] =
+      gone ? "The cause is gone: `softgrip acknowledge` clears the fault; nothing moves until the next start."
+           : fmt::format("Still there: {}. `softgrip acknowledge` clears the fault once that is gone.",
+                         title_of(cause, names));
+  return json;
+}
+
+/// The path as it was named to the daemon.
+Json rig_file_of(const Provenance& provenance) {
+  for (const SourceFile& file : provenance.files) {
+    if (file.role == "rig") return file.path;
+  }
+  return nullptr;
+}
+
+Json json_of_bus(const StatusSources& sources, const control::BusHealth& health) {
+  const BusStatistics& bus = sources.bus;
+  const std::string& failure = sources.service.bus_failure();
+  return {{"board", sources.board},
+          {"connected", health.connected},
+          {"fault", json_of_fault(health.fault)},
+          {"consecutive_failures", health.consecutive_failures},
+          {"answered", bus.exchange.summary().count > 0},
+          {"attempts", bus.attempts.load(std::memory_order_relaxed)},
+          {"retry_s", seconds(bus.retry_pause.load(std::memory_order_relaxed))},
+          {"failure", failure.empty() ? Json(nullptr) : Json(failure)}};
+}
+
+/// Null where nothing binds.
+Json text_or_null(std::string_view text, bool is_there) {
+  return is_there ? Json(text) : Json(nullptr);
 }
 
 Json json_of_channel(const control::ChannelSettings& settings, const control::ChannelOutput& channel) {
+  const bool bound = channel.limit != control::BindingLimit::none;
   return {{"name", settings.name},
           {"command_kpa", number(channel.command_kpa)},
           {"pressure_kpa", number(channel.pressure_kpa)},
@@ -55,7 +93,8 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
           {"evidence", control::name_of(channel.evidence)},
           {"saturated", channel.saturated},
           {"slewing", channel.slewing},
-          {"limit", limit_of(channel)},
+          {"limit", text_or_null(control::name_of(channel.limit), bound)},
+          {"limit_text", text_or_null(control::words_of(channel.limit), bound)},
           {"health", control::name_of(channel.health)},
           {"health_rms_mm", number(channel.health_rms_mm)},
           {"limits",
@@ -131,25 +170,33 @@ Json json_of(const Histogram& histogram, bool with_bins) {
 
 }  // namespace
 
+Json fault_title_json(const control::Fault& fault, const std::vector<std::string>& channel_names) {
+  if (fault.code == control::FaultCode::none) return nullptr;
+  const control::FaultInfo& info = control::info_of(fault.code);
+  const bool of_channel = fault.channel < channel_names.size();
+  return {{"code", info.id},
+          {"name", info.name},
+          {"channel", of_channel ? Json(channel_names[fault.channel]) : Json(nullptr)}};
+}
+
 Json status_json(const StatusSources& sources) {
   const Snapshot& snapshot = sources.service.snapshot();
   Json json{{"version", sources.provenance.software_version},
             {"rig", sources.provenance.rig},
+            {"rig_file", rig_file_of(sources.provenance)},
+            {"simulated", sources.provenance.simulated},
             {"rate_hz", sources.provenance.rate_hz},
             // Before the first tick there is nothing whose age could be told.
             {"time_s", snapshot.ticks == 0 ? 0.0 : seconds(snapshot.at - sources.origin)},
             {"state", control::name_of(snapshot.state)},
             {"under_pressure", under_pressure_json(sources.rig.channels, snapshot)},
-            {"fault", json_of_fault(snapshot.first_fault)},
+            {"fault", json_of_latched(snapshot, sources.service.channel_names())},
             {"sequence", json_of_sequence(sources.service, snapshot)}};
   json["channels"] = Json::array();
   for (std::size_t i = 0; i < snapshot.channel_count; ++i) {
     json["channels"].push_back(json_of_channel(sources.rig.channels[i], snapshot.channels[i]));
   }
-  json["bus"] = {{"board", sources.board},
-                 {"connected", snapshot.bus.connected},
-                 {"fault", json_of_fault(snapshot.bus.fault)},
-                 {"consecutive_failures", snapshot.bus.consecutive_failures}};
+  json["bus"] = json_of_bus(sources, snapshot.bus);
   const Histogram::Summary wake_up = sources.loop.wake_up.summary();
   json["loop"] = {{"ticks", snapshot.ticks},
                   {"slips", sources.loop.slips_woken_late.value() + sources.loop.slips_took_long.value()},

@@ -31,6 +31,9 @@ struct StatusSources {
   const Wires* wires = nullptr;               ///< needed with them
 };
 
+/// {"code", "name", "channel"} of a fault, the channel null where it concerns the whole rig; null of none.
+[[nodiscard]] nlohmann::ordered_json fault_title_json(const control::Fault& fault,
+                                                      const std::vector<std::string>& channel_names);
 [[nodiscard]] nlohmann::ordered_json status_json(const StatusSources& sources);
 [[nodiscard]] nlohmann::ordered_json statistics_json(const StatusSources& sources, bool with_histograms);
 [[nodiscard]] nlohmann::ordered_json event_json(const EventEntry& event);

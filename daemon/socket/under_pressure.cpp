@@ -7,22 +7,18 @@ namespace softgrip::daemon {
 
 namespace {
 using Json = nlohmann::ordered_json;
-
-/// Above the lowest command by less is no pressure to speak of.
-constexpr double unnoticed_kpa = 0.1;
 }  // namespace
 
 Json under_pressure_json(const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot) {
-  if (control::moves(snapshot.state)) return nullptr;
+  if (snapshot.under_pressure == 0) return nullptr;
   Json pressed = Json::array();
   std::string list;
   for (std::size_t i = 0; i < snapshot.channel_count; ++i) {
     const double command_kpa = snapshot.channels[i].command_kpa;
-    if (!(command_kpa > channels[i].limits.pressure_min_kpa + unnoticed_kpa)) continue;
+    if ((snapshot.under_pressure & (1U << i)) == 0) continue;
     pressed.push_back({{"name", channels[i].name}, {"command_kpa", command_kpa}});
     list += fmt::format("{}{} {:.1f} kPa", list.empty() ? "" : ", ", channels[i].name, command_kpa);
   }
-  if (pressed.empty()) return nullptr;
   const bool idle = snapshot.state == control::State::idle;
   const char* const command = idle ? "softgrip release" : "softgrip vent";
   return {

@@ -11,7 +11,7 @@
 
 namespace softgrip::daemon {
 
-/// Null where the rig moves or every command is the lowest; else `channels`, a list of `name` and
+/// Null where no finger stays under pressure; else `channels`, a list of `name` and
 /// `command_kpa`; `command`, which ends it; and `text`, which says both in a sentence or two.
 [[nodiscard]] nlohmann::ordered_json under_pressure_json(
     const std::vector<control::ChannelSettings>& channels, const Snapshot& snapshot);

@@ -23,20 +23,45 @@ std::vector<std::string> told(double seconds, Binds&& binds) {
 
 TEST(LimitWatch, AMomentIsNotTold) {
   EXPECT_TRUE(told(2, [](double t) {
-                return t > 0.5 && t < 0.9 ? UpperLimit::rig_pressure : UpperLimit::none;
+                return t > 0.5 && t < 0.9 ? BindingLimit::rig_pressure : BindingLimit::none;
               }).empty());
 }
 
 TEST(LimitWatch, WhatLastsIsToldOnceAndSoIsItsEnd) {
   const auto all =
-      told(5, [](double t) { return t > 1 && t < 4 ? UpperLimit::step_squeeze : UpperLimit::none; });
+      told(5, [](double t) { return t > 1 && t < 4 ? BindingLimit::step_squeeze : BindingLimit::none; });
   EXPECT_EQ(all, (std::vector<std::string>{"step_squeeze", "none"}));
+}
+
+TEST(LimitWatch, AnotherLimitThatTakesItsPlaceIsToldWhenItHasLasted) {
+  const auto all = told(6, [](double t) {
+    return t > 4 ? BindingLimit::none : t > 2 ? BindingLimit::rig_pressure : BindingLimit::rig_slew_up;
+  });
+  EXPECT_EQ(all, (std::vector<std::string>{"rig_slew_up", "rig_pressure", "none"}));
+}
+
+TEST(LimitWatch, TwoLimitsThatTakeTurnsAreToldOnce) {
+  int tick = 0;
+  const auto all = told(5, [&](double t) {
+    const BindingLimit one = ++tick % 2 == 0 ? BindingLimit::step_pressure : BindingLimit::step_squeeze;
+    return t < 3 ? one : BindingLimit::none;
+  });
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all.back(), "none");
+}
+
+TEST(LimitWatch, EveryLimitHasANameAndWords) {
+  EXPECT_EQ(name_of(BindingLimit::rig_slew_down), "rig_slew_down");
+  EXPECT_EQ(words_of(BindingLimit::rig_slew_up),
+            "slew_up_kpa_per_s of the rig keeps the pressure behind what is asked for");
+  EXPECT_TRUE(words_of(BindingLimit::none).empty());
 }
 
 TEST(LimitWatch, NoiseAcrossTheCeilingIsOneLimit) {
   int tick = 0;
-  const auto all = told(
-      5, [&](double t) { return t < 3 && ++tick % 3 == 0 ? UpperLimit::step_pressure : UpperLimit::none; });
+  const auto all = told(5, [&](double t) {
+    return t < 3 && ++tick % 3 == 0 ? BindingLimit::step_pressure : BindingLimit::none;
+  });
   EXPECT_EQ(all, (std::vector<std::string>{"step_pressure", "none"}));
 }
 

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "control/feedforward/free_curve.h"
 #include "tests/control/rig_fixture.h"
@@ -143,6 +147,46 @@ TEST_F(ContactTest, AMoveMayPressOnAndIsBoundedByItsPressure) {
   EXPECT_GE(rig.count(Event::Kind::limit_binds), 1U) << "it binds for longer than a moment";
 }
 
+// One line per limit of the rig file and of a step: which of them is told when it lasts.
+TEST_F(ContactTest, EveryLimitThatLastsIsAnEvent) {
+  const auto told = [](const SimulatedRig& rig) {
+    std::set<std::string> names;
+    for (const Event& event : rig.events) {
+      if (event.kind == Event::Kind::limit_binds)
+        names.emplace(name_of(static_cast<BindingLimit>(event.detail)));
+    }
+    return names;
+  };
+  using Names = std::set<std::string>;
+  const std::string onto_a_stone =
+      "  - move: {displacement_mm: 16, speed_mm_per_s: 8, on_contact: ignore, settle_s: 3";
+  struct Case {
+    std::string step;
+    std::function<void(LimitSettings&)> limit;
+    Names expected;
+  };
+  const std::vector<Case> cases{
+      {onto_a_stone + ", pressure_max_kpa: 25}\n", [](LimitSettings&) {}, {"step_pressure"}},
+      {onto_a_stone + ", squeeze_max_kpa: 6}\n", [](LimitSettings&) {}, {"step_squeeze"}},
+      {onto_a_stone + "}\n", [](LimitSettings& limits) { limits.pressure_max_kpa = 42; }, {"rig_pressure"}},
+      {"  - move: {pressure_kpa: 30, settle_s: 2}\n",
+       [](LimitSettings& limits) { limits.slew_up_kpa_per_s = 10; },
+       {"rig_slew_up"}},
+      {"  - move: {pressure_kpa: 30, settle_s: 1}\n  - move: {pressure_kpa: 0, settle_s: 3}\n",
+       [](LimitSettings& limits) { limits.slew_down_kpa_per_s = 12; },
+       {"rig_slew_down"}}};
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.step);
+    RigSettings bounded = settings;
+    for (ChannelSettings& channel : bounded.channels) one.limit(channel.limits);
+    const PreparedSequence sequence = sequence_of("name: bound\nsteps:\n" + one.step, bounded);
+    SimulatedRig rig(bounded);
+    rig.stone(6);
+    play(rig, sequence);
+    EXPECT_EQ(told(rig), one.expected);
+  }
+}
+
 TEST_F(ContactTest, FreeMotionsMeetNothing) {
   const PreparedSequence moves = steps(
       "  - move: {displacement_mm: 20, speed_mm_per_s: 60, settle_s: 1}\n"
@@ -172,7 +216,7 @@ TEST_F(ContactTest, ASensorThatFreezesIsNoPart) {
         ASSERT_NE(rig.result(0), GripResult::holding);
       }
       EXPECT_FALSE(may_rise(rig.output().state));
-      EXPECT_TRUE(rig.output().first_fault == FaultCode::reading_frozen ||
+      EXPECT_TRUE(rig.output().first_fault.code == FaultCode::reading_frozen ||
                   rig.result(0) == GripResult::error || rig.result(0) == GripResult::no_part);
     }
   }

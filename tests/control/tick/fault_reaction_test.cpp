@@ -126,7 +126,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
     ++cycles;
   }
   EXPECT_LE(cycles, fault.bound_cycles);
-  EXPECT_EQ(rig.output().first_fault, fault.code);
+  EXPECT_EQ(rig.output().first_fault.code, fault.code);
   const double at_latch_kpa = rig.output().channels[0].command_kpa;
   EXPECT_NEAR(at_latch_kpa, before_kpa, 10) << "no more than a few cycles of motion";
   if (phase.step >= 0) {
@@ -143,7 +143,7 @@ TEST_P(FaultReaction, LatchesActsAndStaysUntilAcknowledged) {
   fault.mend(rig);
   rig.run(1);
   EXPECT_EQ(rig.output().state, State::faulted);
-  EXPECT_EQ(rig.output().first_fault, fault.code);
+  EXPECT_EQ(rig.output().first_fault.code, fault.code);
   rig.request(Request::Kind::start, &pick);
   rig.tick();
   const auto refused = rig.answer(Event::Kind::request_refused);
@@ -230,7 +230,7 @@ TEST_F(SingleFault, AFrozenReadingIsFoundWhileTheCommandMoves) {
   start(rig, track);
   rig.fault[0].frozen_mm = rig.output().channels[0].displacement_mm;
   ASSERT_TRUE(rig.run_until(State::faulted, 5));
-  EXPECT_EQ(rig.output().first_fault, FaultCode::reading_frozen);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::reading_frozen);
 }
 
 TEST_F(SingleFault, ABurstLineIsNoPart) {
@@ -245,7 +245,7 @@ TEST_F(SingleFault, ABurstLineIsNoPart) {
     rig.tick();
     ASSERT_NE(rig.result(0), GripResult::holding);
   }
-  EXPECT_EQ(rig.output().first_fault, FaultCode::pressure_not_followed);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed);
 }
 
 TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
@@ -255,7 +255,7 @@ TEST_F(SingleFault, AFingerThatStillHasPressureAtTheStartIsGivenTimeToDeflate) {
   rig.run(1);
   EXPECT_EQ(rig.output().state, State::idle);
   rig.run(1);
-  EXPECT_EQ(rig.output().first_fault, FaultCode::pressure_not_followed) << "but not for ever";
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed) << "but not for ever";
 }
 
 TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
@@ -267,7 +267,7 @@ TEST_F(SingleFault, AStutteringWireDoesNotHideABurstLine) {
     rig.wire_cut = i % 3 == 0;
     rig.tick();
   }
-  EXPECT_EQ(rig.output().first_fault, FaultCode::pressure_not_followed);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::pressure_not_followed);
   rig.wire_cut = false;
   rig.fault[0].no_pressure = true;
   rig.run(1);
@@ -283,7 +283,7 @@ TEST_F(SingleFault, APressureThatIsNotMeasuredIsNoFault) {
   const PreparedSequence pick = example_sequence("pick_stone", settings);
   start(rig, pick);
   ASSERT_TRUE(rig.run_until(State::idle, 60));
-  EXPECT_EQ(rig.output().first_fault, FaultCode::none);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
 }
 
 TEST_F(SingleFault, ADisplacementThatDriftsBeyondTheLimits) {
@@ -293,7 +293,7 @@ TEST_F(SingleFault, ADisplacementThatDriftsBeyondTheLimits) {
     rig.fault[1].offset_mm += 0.2;
     rig.tick();
   }
-  EXPECT_EQ(rig.output().first_fault, FaultCode::displacement_beyond_limits);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::displacement_beyond_limits);
   const LimitSettings& limits = settings.channels[1].limits;
   EXPECT_NEAR(rig.fault[1].offset_mm, limits.displacement_max_mm + limits.displacement_margin_mm, 1.5);
 }
@@ -309,7 +309,7 @@ TEST_F(SingleFault, AnUnfitModelIsAFaultOnlyWhereTheRigFileSaysSo) {
       rig.fault[0].offset_mm = std::min(6.0, rig.fault[0].offset_mm + 0.05);
       rig.tick();
     }
-    EXPECT_EQ(rig.output().first_fault, is_fault ? FaultCode::model_unfit : FaultCode::none);
+    EXPECT_EQ(rig.output().first_fault.code, is_fault ? FaultCode::model_unfit : FaultCode::none);
     EXPECT_GT(rig.count(Event::Kind::model_health_changed), 0U);
   }
 }
@@ -321,7 +321,7 @@ TEST_F(SingleFault, ACommandThatIsNoNumberNeverLeaves) {
   const PreparedSequence track = example_sequence("track_sine", settings);
   rig.request(Request::Kind::start, &track);
   ASSERT_TRUE(rig.run_until(State::faulted, 5));
-  EXPECT_EQ(rig.output().first_fault, FaultCode::not_finite);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::not_finite);
 }
 
 TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
@@ -337,7 +337,7 @@ TEST_F(SingleFault, TheFirstFaultIsKeptAndLaterOnesAreTold) {
   EXPECT_GT(rig.board_kpa(0), 20) << "held, as the settings say";
   rig.emergency_stop = true;
   rig.run(1);
-  EXPECT_EQ(rig.output().first_fault, FaultCode::sensor_error);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::sensor_error);
   EXPECT_EQ(rig.count(Event::Kind::fault_latched), 2U);
   EXPECT_EQ(rig.board_kpa(0), 0) << "a later fault can only turn a hold into a vent";
 }
@@ -404,7 +404,7 @@ TEST_F(SingleFault, ALaterFaultDoesAsThePhaseOfTheFirstSays) {
   const double held_kpa = rig.board_kpa(0);
   rig.fault[0].validity = model::Validity::out_of_range;
   rig.run(1);
-  ASSERT_EQ(rig.output().first_fault, FaultCode::reading_out_of_range);
+  ASSERT_EQ(rig.output().first_fault.code, FaultCode::reading_out_of_range);
   rig.fault[0].validity.reset();
   rig.fault[1].validity = model::Validity::sensor_error;
   rig.run(1);
@@ -413,6 +413,53 @@ TEST_F(SingleFault, ALaterFaultDoesAsThePhaseOfTheFirstSays) {
   rig.emergency_stop = true;
   rig.run(1);
   EXPECT_LT(rig.board_kpa(0), 1) << "but an emergency stop has its own word";
+}
+
+TEST_F(SingleFault, NamesItsFingerUntilItIsAcknowledged) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.fault[1].validity = model::Validity::sensor_error;
+  ASSERT_TRUE(rig.run_until(State::faulted, 1));
+  EXPECT_EQ(rig.output().first_fault.channel, 1);
+  EXPECT_EQ(rig.output().cause.code, FaultCode::sensor_error);
+  EXPECT_EQ(rig.output().cause.channel, 1);
+  rig.fault[1].validity.reset();
+  rig.fault[0].validity = model::Validity::out_of_range;
+  rig.run(0.1);
+  EXPECT_EQ(rig.output().first_fault.channel, 1) << "the first one stays";
+  EXPECT_EQ(rig.output().cause.code, FaultCode::reading_out_of_range) << "but another one is in the way now";
+  EXPECT_EQ(rig.output().cause.channel, 0);
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  const auto refused = rig.answer(Event::Kind::request_refused);
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->channel, 0);
+  EXPECT_EQ(refused->value, static_cast<double>(FaultCode::reading_out_of_range));
+  rig.fault[0].validity.reset();
+  rig.run(0.1);
+  EXPECT_EQ(rig.output().cause.code, FaultCode::none);
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  const auto acknowledged = rig.answer(Event::Kind::fault_acknowledged);
+  ASSERT_TRUE(acknowledged);
+  EXPECT_EQ(acknowledged->channel, 1);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
+}
+
+TEST_F(SingleFault, PressureThatItHoldsIsSaidAndNotThatOfARunningHold) {
+  settings.safety.safe_action.fill(SafeAction::hold);
+  SimulatedRig rig(settings);
+  rig.stone(12);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  start(rig, pick);
+  ASSERT_TRUE(rig.run_until_step(2, 20));
+  EXPECT_EQ(rig.output().under_pressure, 0U) << "a hold is what was asked for";
+  rig.request(Request::Kind::stop);
+  ASSERT_TRUE(rig.run_until(State::idle, 5));
+  EXPECT_EQ(rig.output().under_pressure, 3U);
+  rig.request(Request::Kind::vent);
+  rig.run(2);
+  EXPECT_EQ(rig.output().under_pressure, 0U);
 }
 
 TEST_F(SingleFault, SilenceAtPowerUpIsNoFault) {
@@ -436,7 +483,7 @@ TEST_F(SingleFault, ABriefDropoutIsBridged) {
     rig.fault[0].validity.reset();
     rig.run(2 / settings.rate_hz);
   }
-  EXPECT_EQ(rig.output().first_fault, FaultCode::none);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
   ASSERT_TRUE(rig.run_until_step(2, 20));
   EXPECT_EQ(rig.result(0), GripResult::holding);
 }

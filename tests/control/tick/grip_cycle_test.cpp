@@ -298,7 +298,7 @@ steps:
   rig.stone(8);
   play(rig, move);
   EXPECT_EQ(rig.result(0), GripResult::error);
-  EXPECT_EQ(rig.output().first_fault, FaultCode::none) << "a timeout is an answer, not a fault";
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::none) << "a timeout is an answer, not a fault";
   EXPECT_EQ(rig.board_kpa(0), 0);
 }
 

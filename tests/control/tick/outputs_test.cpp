@@ -59,7 +59,7 @@ TEST_F(Outputs, WhatTheBusHasTakenBackIsGoneAtOnceAndStaysSo) {
     rig.outputs_kpa = {0, 0};
     rig.tick();
     EXPECT_EQ(rig.output().state, State::faulted);
-    EXPECT_EQ(rig.output().first_fault, said);
+    EXPECT_EQ(rig.output().first_fault.code, said);
     EXPECT_EQ(command(rig), 0);
     EXPECT_EQ(rig.output().channels[0].safe_kpa, 0) << "what a silent loop leaves to be written";
     rig.bus_fault = FaultCode::none;

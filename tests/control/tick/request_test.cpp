@@ -167,7 +167,7 @@ TEST_F(Requests, AnOpenedInterlockStopsOnlySequencesThatSaySo) {
     rig.interlock_open = true;
     rig.run(1);
     EXPECT_EQ(rig.output().state, always ? State::idle : State::running);
-    EXPECT_EQ(rig.output().first_fault, FaultCode::none);
+    EXPECT_EQ(rig.output().first_fault.code, FaultCode::none);
   }
 }
 

@@ -89,9 +89,9 @@ class Chaos {
       EXPECT_EQ(asked, Request::Kind::acknowledge) << "at " << rig_.time_s();
     }
     if (before.state == State::faulted && now.state == State::faulted) {
-      EXPECT_EQ(before.first_fault, now.first_fault);
+      EXPECT_EQ(before.first_fault.code, now.first_fault.code);
     }
-    EXPECT_EQ(now.state == State::faulted, now.first_fault != FaultCode::none);
+    EXPECT_EQ(now.state == State::faulted, now.first_fault.code != FaultCode::none);
     if (now.state == State::running && before.state != State::running) {
       EXPECT_EQ(before.state, State::resynchronising);
     }

@@ -74,7 +74,7 @@ class SupervisorSearch : public testing::Test {
     input.emergency_stop = tick.fault == FaultCode::emergency_stop;
     Facts facts;
     facts.fault = {tick.fault, whole_rig, 0};
-    facts.cause_present = tick.cause_present;
+    if (tick.cause_present) facts.cause.code = FaultCode::sensor_error;
     facts.bus_good = tick.bus_good;
     facts.ready = tick.all_ready ? all : 1;
     facts.lowest = tick.all_lowest ? all : 0;

@@ -90,7 +90,7 @@ TEST_F(LoopTest, InputsThatNobodyReadsAnyMoreAreLost) {
     exchange();
   }
   EXPECT_EQ(snapshot().state, State::faulted);
-  EXPECT_EQ(snapshot().first_fault, FaultCode::inputs_lost);
+  EXPECT_EQ(snapshot().first_fault.code, FaultCode::inputs_lost);
 }
 
 TEST_F(LoopTest, InputsThatAreSaidToBeLostAreLostAtOnce) {
@@ -131,7 +131,7 @@ TEST_F(LoopTest, AnExchangeThatHangsIsAFaultAfterTheConfiguredCycles) {
     tick();
   }
   EXPECT_EQ(snapshot().state, State::faulted);
-  EXPECT_EQ(snapshot().first_fault, FaultCode::bus_down);
+  EXPECT_EQ(snapshot().first_fault.code, FaultCode::bus_down);
 }
 
 TEST_F(LoopTest, ACutWireStopsMotionUntilAcknowledgedAndStartedAgain) {
@@ -209,7 +209,7 @@ TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
   loop.join();
   EXPECT_GE(parts.loop_statistics.slips_woken_late.value(), 100U);
   EXPECT_LE(parts.loop_statistics.ticks.value(), 10U) << "no burst";
-  EXPECT_EQ(parts.service.snapshot().first_fault, FaultCode::cycles_lost);
+  EXPECT_EQ(parts.service.snapshot().first_fault.code, FaultCode::cycles_lost);
 }
 
 }  // namespace

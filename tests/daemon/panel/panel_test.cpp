@@ -157,6 +157,43 @@ TEST_F(PanelTest, EnableAndLampsFollowTheState) {
   EXPECT_TRUE(wires_.enable_on.load());
 }
 
+TEST_F(PanelTest, PressureThatStaysOnMakesTheLampBlinkThatIsOn) {
+  make(all_lines());
+  make_ready();
+  const auto lit = [&](GpioRole role) {
+    const std::size_t before = terminals_.written(role).size();
+    run(3.5);
+    const std::vector<bool> written = terminals_.written(role);
+    return std::count(written.begin() + static_cast<std::ptrdiff_t>(before), written.end(), true);
+  };
+  EXPECT_EQ(lit(GpioRole::ready_lamp), 0) << "it is on and stays on";
+  EXPECT_TRUE(is_on(GpioRole::ready_lamp));
+  wires_.under_pressure.store(true);
+  EXPECT_NEAR(static_cast<double>(lit(GpioRole::ready_lamp)), 3.5, 1);
+  EXPECT_FALSE(is_on(GpioRole::fault_lamp)) << "nothing is wrong";
+  EXPECT_TRUE(is_on(GpioRole::enable)) << "what holds the part is not switched off";
+  wires_.state.store(control::State::faulted);
+  EXPECT_NEAR(static_cast<double>(lit(GpioRole::fault_lamp)), 3.5, 1);
+  EXPECT_FALSE(is_on(GpioRole::ready_lamp));
+  wires_.under_pressure.store(false);
+  run(0.02);
+  EXPECT_TRUE(is_on(GpioRole::fault_lamp));
+  EXPECT_EQ(lit(GpioRole::fault_lamp), 0) << "steady again";
+}
+
+TEST_F(PanelTest, ALoopThatHangsUnderPressureHasASteadyFaultLamp) {
+  rig::GpioSettings settings = all_lines();
+  settings.stale_after_s = 0.05;
+  make(settings);
+  make_ready();
+  wires_.under_pressure.store(true);
+  run(0.2, false);
+  const std::size_t before = terminals_.written(GpioRole::fault_lamp).size();
+  run(1.2, false);
+  EXPECT_TRUE(is_on(GpioRole::fault_lamp));
+  EXPECT_EQ(terminals_.written(GpioRole::fault_lamp).size(), before);
+}
+
 TEST_F(PanelTest, AFaultDropsTheEnableOnlyIfTheRigSaysSo) {
   for (const bool drops : {true, false}) {
     rig::GpioSettings settings = all_lines();
