@@ -80,7 +80,9 @@ Fault FaultMonitor::bus(const BusHealth& bus, bool starting) noexcept {
   if (good) return {};
   const FaultCode code = bus.fault == FaultCode::none ? FaultCode::bus_down : bus.fault;
   const Fault fault{code, whole_rig, static_cast<double>(bus_cycles_)};
-  note_cause(fault);
+  // A board that nobody reaches has tripped because of that: the silence is what has to be mended.
+  const bool unreached = !bus.connected && code == FaultCode::board_watchdog_tripped;
+  note_cause({unreached ? FaultCode::bus_down : code, whole_rig, fault.value});
   if (starting && !said_by_board(bus.fault)) return {};
   return inhibits(code) || bus_cycles_ >= settings_.bus_down_cycles ? fault : Fault{};
 }

@@ -37,6 +37,94 @@ class Doctor(bench.BenchTest):
         self.assertEqual(findings["board"]["verdict"], "fail")
         self.assertIn("cable", findings["board"]["advice"])
 
+    def failures(self, report):
+        """Names of what failed; how punctual a busy machine is, is not the rig's."""
+        return [finding["name"] for finding in report["findings"]
+                if finding["verdict"] == "fail" and finding["name"] not in ("timer", "bus time", "loop")]
+
+    @staticmethod
+    def swapped(key, one, other):
+        """Changes of the rig file that swap two terminals."""
+        kind = "output" if key == "valve" else "input"
+        return [(rf"{key}: \{{{kind}: {a},", f"{key}: {{{kind}: {b},")
+                for a, b in ((one, 99), (other, one), (99, other))]
+
+    def crossed(self, *swaps):
+        emulator = self.emulator()
+        changes = [change for key, one, other in swaps for change in self.swapped(key, one, other)]
+        report, findings = self.doctor(self.rig(emulator.port, changes), "--move", expect=6)
+        self.assertEqual(max(emulator.commands_kpa()), 0)
+        return report, findings
+
+    def test_crossed_sensors_are_named_by_the_inputs_to_swap(self):
+        report, findings = self.crossed(("sensor", 0, 1))
+        self.assertEqual(self.failures(report), ["sensors left, right"])
+        self.assertIn("crossed", findings["sensors left, right"]["text"])
+        self.assertIn("swap input 1 (`left`) and input 0 (`right`)", findings["sensors left, right"]["advice"])
+        for name in ("finger left", "model right"):
+            self.assertEqual(findings[name]["verdict"], "not_judged")
+        self.assertEqual(findings["valve left"]["verdict"], "ok", "its monitor is where it belongs")
+
+    def test_crossed_monitors_are_named_by_the_inputs_to_swap(self):
+        report, findings = self.crossed(("pressure_monitor", 4, 5))
+        self.assertEqual(self.failures(report), ["monitors left, right"])
+        self.assertIn("swap input 5 (`left`) and input 4 (`right`)", findings["monitors left, right"]["advice"])
+        self.assertEqual(findings["valve left"]["verdict"], "not_judged")
+        self.assertEqual(findings["finger left"]["verdict"], "ok")
+
+    def test_crossed_valves_are_named_by_the_outputs_to_swap(self):
+        report, findings = self.crossed(("valve", 0, 1))
+        self.assertEqual(self.failures(report), ["valves left, right"])
+        self.assertIn("swap output 1 (`left`) and output 0 (`right`)", findings["valves left, right"]["advice"])
+
+    def test_one_sensor_without_its_cable_is_one_failure(self):
+        emulator = self.emulator("--faults", self.write("faults.yaml", (
+            "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")))
+        emulator.ask("fault blind")
+        rig = self.rig(emulator.port)
+        report, findings = self.doctor(rig, "--move", expect=6)
+        self.assertEqual(self.failures(report), ["sensor left"])
+        self.assertIn("see `sensor left`", findings["finger left"]["text"])
+        self.assertEqual(findings["finger right"]["verdict"], "ok")
+        daemon = self.daemon(rig)
+        bench.wait_for("an answer of the daemon", lambda: daemon.status()["bus"]["connected"])
+        report, _ = self.doctor(rig, expect=6)
+        self.assertEqual(self.failures(report), ["sensor left"])
+
+    def test_a_daemon_without_its_board_is_one_failure(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        emulator.kill()
+        daemon.wait_for_state("faulted")
+        report, findings = self.doctor(rig, expect=6)
+        self.assertEqual(self.failures(report), ["board"])
+        self.assertIn("see `board`", findings["fault"]["text"])
+        self.assertEqual(findings["sensor left"]["verdict"], "not_judged")
+
+    def test_without_a_daemon_the_rig_is_named(self):
+        """Beside the shipped config/rig.yaml, which is the simulated rig."""
+        self.rig(1)
+        asked = self.softgrip("doctor", expect=2)
+        self.assertIn("--rig RIG", asked.stderr)
+        self.assertIn("config/rig.yaml would be the simulated rig", asked.stderr)
+        named = self.softgrip("doctor", "--rig", "config/rig.yaml", expect=None)
+        self.assertRegex(named.stdout.splitlines()[-1], r"SIMULATED: no board, valve, finger or sensor was examined$")
+        self.assertTrue(json.loads(self.softgrip("doctor", "--rig", "config/rig.yaml", "--json", expect=None)
+                                   .stdout)["simulated"])
+
+    def test_a_daemon_knows_its_rig_file(self):
+        emulator = self.emulator()
+        daemon = self.daemon(self.rig(emulator.port))
+        daemon.wait_for_state("idle")
+        report = json.loads(self.softgrip("doctor", "--json", expect=None).stdout)
+        self.assertEqual(report["rig"], "bench")
+        self.assertTrue(report["rig_file"].endswith("config/test_rig.yaml"), report["rig_file"])
+        self.assertFalse(report["simulated"])
+        self.assertIn("disk", {finding["name"] for finding in report["findings"]})
+        self.softgrip("doctor", "--move", expect=5)
+
     def test_no_folder_for_recordings(self):
         emulator = self.emulator()
         rig = self.rig(emulator.port, [(r"directory: \S+/runs", "directory: /proc/runs")])

@@ -1,9 +1,12 @@
 // softgrip doctor: is this rig fit to run today?
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "base/clock.h"
 #include "daemon/service/board_lock.h"
@@ -20,6 +23,11 @@
 namespace softgrip::tools {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
+constexpr const char* daemon_holds_the_board =
+    "softgripd runs and holds the board: stop it, or leave out --move";
+
 struct Options {
   std::string rig;
   std::string socket;
@@ -27,17 +35,22 @@ struct Options {
   bool json = false;
 };
 
-/// Asks the daemon; nothing is left to be looked at but the disk and the clock.
-void ask_running(DaemonClient& client, const rig::RigFile& rig, doctor::Findings& findings) {
+bool is_simulated(const rig::RigFile& rig) {
+  return std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
+}
+
+/// Asks the daemon; nothing is left to be looked at but the disk and the clock. Returns its status, or null.
+Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings& findings) {
   const auto status = client.ask({{"command", "status"}});
   const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
   if (!status || !statistics) {
     const ClientFailure& failure = !status ? status.error() : statistics.error();
     findings.fail("daemon", failure.message,
                   "its socket is there but it does not answer: `systemctl status softgripd`");
-    return;
+    return nullptr;
   }
-  doctor::examine_daemon(*status, *statistics, rig.name, findings);
+  doctor::examine_daemon(*status, *statistics, rig, findings);
+  return *status;
 }
 
 void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings) {
@@ -57,8 +70,60 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   doctor::examine_rig(rig, *board, pace, move, {}, findings);
 }
 
+ExitCode conclude(const Options& options, const doctor::Examination& examination,
+                  const doctor::Findings& findings) {
+  if (options.json) {
+    print_json(doctor::json_of(examination, findings));
+  } else {
+    const std::size_t columns = on_terminal() ? terminal_columns() : 100;
+    std::fputs(doctor::text_of(examination, findings, columns, wants_colour()).c_str(), stdout);
+  }
+  return findings.worst() == doctor::Verdict::fail ? ExitCode::not_acceptable : ExitCode::done;
+}
+
+/// Which rig it is about is nobody's guess: a file that happens to lie here may be another rig's, or none's.
+ExitCode ask_for_a_name(const std::string& socket) {
+  const std::string near = configuration_path("rig.yaml");
+  std::string hint;
+  if (::access(near.c_str(), R_OK) == 0) {
+    document::Problems problems;
+    const auto rig = rig::load_rig(near, problems);
+    hint = "; " + near + (rig && is_simulated(*rig) ? " would be the simulated rig" : " lies here");
+  }
+  return fail(ExitCode::usage, "no daemon runs on " + socket +
+                                   " that could be asked: name the rig, `softgrip doctor --rig RIG`, or the "
+                                   "daemon's socket with --socket" +
+                                   hint);
+}
+
+/// Without a rig file: what runs here, if anything does.
+ExitCode run_unnamed(const Options& options) {
+  const std::string socket = options.socket.empty() ? default_socket_path() : options.socket;
+  auto client = DaemonClient::connect(socket);
+  if (!client && client.error().nobody_listens) return ask_for_a_name(socket);
+  if (!client) return fail(client.error().code, client.error().message);
+  if (options.move) return fail(ExitCode::state_refused, daemon_holds_the_board);
+  doctor::Findings findings;
+  const Json status = ask_running(*client, "", findings);
+  doctor::examine_clock(findings);
+  doctor::Examination examination{"-", "-", true};
+  if (status.is_object()) {
+    examination.rig = status.value("rig", "-");
+    examination.simulated = status.value("simulated", false);
+    if (const auto file = status.find("rig_file"); file != status.end() && file->is_string()) {
+      examination.rig_file = file->get<std::string>();
+    }
+  }
+  document::Problems problems;
+  if (::access(examination.rig_file.c_str(), R_OK) == 0) {
+    if (const auto rig = rig::load_rig(examination.rig_file, problems)) doctor::examine_disk(*rig, findings);
+  }
+  return conclude(options, examination, findings);
+}
+
 ExitCode run(const Options& options) {
-  const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
+  if (options.rig.empty()) return run_unnamed(options);
+  const std::string& path = options.rig;
   if (const auto code = unreadable(path)) return *code;
   document::Problems problems;
   const auto rig = rig::load_rig(path, problems);
@@ -69,10 +134,10 @@ ExitCode run(const Options& options) {
   auto client = DaemonClient::connect(options.socket.empty() ? rig->socket.path : options.socket);
   const bool runs = client.has_value() || !client.error().nobody_listens;
   if (runs && options.move) {
-    return fail(ExitCode::state_refused, "softgripd runs and holds the board: stop it, or leave out --move");
+    return fail(ExitCode::state_refused, daemon_holds_the_board);
   }
   if (client) {
-    ask_running(*client, *rig, findings);
+    ask_running(*client, rig->name, findings);
     doctor::examine_clock(findings);
     doctor::examine_disk(*rig, findings);
   } else if (runs) {
@@ -81,14 +146,7 @@ ExitCode run(const Options& options) {
     look_myself(*rig, options.move, findings);
   }
 
-  const doctor::Examination examination{rig->name, path, runs, options.move};
-  if (options.json) {
-    print_json(doctor::json_of(examination, findings));
-  } else {
-    const std::size_t columns = on_terminal() ? terminal_columns() : 100;
-    std::fputs(doctor::text_of(examination, findings, columns, wants_colour()).c_str(), stdout);
-  }
-  return findings.worst() == doctor::Verdict::fail ? ExitCode::not_acceptable : ExitCode::done;
+  return conclude(options, {rig->name, path, runs, options.move, is_simulated(*rig)}, findings);
 }
 
 }  // namespace
@@ -98,14 +156,15 @@ void add_doctor(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand(
       "doctor",
       "Is this rig fit to run today? Computer, board, sensors, disk: ok, warn or fail, and what to do");
-  command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
+  command->add_option("--rig", options->rig, "Rig file; without it a running daemon is asked for its own");
   command->add_flag("--move", options->move,
                     "I allow it to move: each finger a little, within its limits, to see that it follows");
   command->add_option("--socket", options->socket, "Of a running daemon [the rig file's]");
   command->add_flag("--json", options->json, "The findings as JSON");
   command->footer(
       "Without a daemon it writes the lowest pressures to the board and reads; a running daemon is asked "
-      "instead.\nExit codes: 0 fit, 6 not fit, 3 the rig file is refused, 4 it cannot be read, 5 --move "
+      "instead.\nExit codes: 0 fit, 6 not fit, 2 no rig is named and no daemon runs, 3 the rig file is "
+      "refused, 4 it cannot be read, 5 --move "
       "while "
       "the daemon runs.");
   command->callback([options, &outcome] { outcome = run(*options); });

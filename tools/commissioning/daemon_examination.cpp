@@ -35,7 +35,7 @@ Json list_in(const Json& json, const char* key) {
 }
 
 void judge_state(const Json& status, const std::string& rig, Findings& findings) {
-  if (text_in(status, "rig") != rig) {
+  if (!rig.empty() && text_in(status, "rig") != rig) {
     findings.warn("daemon",
                   fmt::format("it runs the rig `{}`, the file is of `{}`", text_in(status, "rig"), rig),
                   "name the rig file that it was started with");
@@ -43,13 +43,35 @@ void judge_state(const Json& status, const std::string& rig, Findings& findings)
     findings.ok("daemon",
                 fmt::format("softgripd {}, {}", text_in(status, "version"), text_in(status, "state")));
   }
+}
+
+/// The finding that says what is behind the latched fault, if its cause is still there and judged by itself.
+std::string judged_elsewhere(const Json& status, const Json& fault) {
+  const Json present = part(fault, "present");
+  const std::string code = text_in(present, "code");
+  const std::string channel = text_in(present, "channel");
+  const bool of_bus = code.starts_with("F1") || code.starts_with("F3");
+  if (of_bus && channel.empty() && !is_set(part(status, "bus"), "connected")) return "board";
+  for (const Json& one : list_in(status, "channels")) {
+    const bool invalid = text_in(one, "validity") != "valid";
+    if (code.starts_with("F20") && invalid && text_in(one, "name") == channel) return "sensor " + channel;
+  }
+  return {};
+}
+
+void judge_fault(const Json& status, Findings& findings) {
   const Json fault = part(status, "fault");
   if (fault.empty()) return;
-  findings.fail(
-      "fault",
-      fmt::format("{} {}: {}", text_in(fault, "code"), text_in(fault, "name"), text_in(fault, "meaning")),
-      fmt::format("usually {}. {} Then `softgrip acknowledge`", text_in(fault, "cause"),
-                  text_in(fault, "remedy")));
+  const std::string channel = text_in(fault, "channel");
+  const std::string title =
+      text_in(fault, "code") + " " + text_in(fault, "name") + (channel.empty() ? "" : " of " + channel);
+  if (const std::string where = judged_elsewhere(status, fault); !where.empty()) {
+    findings.not_judged("fault", title + " is latched, see `" + where + "`");
+    return;
+  }
+  findings.fail("fault", title + ": " + text_in(fault, "meaning"),
+                fmt::format("usually {}. {} {}", text_in(fault, "cause"), text_in(fault, "remedy"),
+                            text_in(fault, "next")));
 }
 
 void judge_real_time(const Json& status, Findings& findings) {
@@ -95,7 +117,11 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
       fmt::format("{}: {:.0f} exchanges, {:.0f} failed, p99 {:.3g} ms", text_in(bus, "board"), exchanges,
                   failures, number_in(part(counts, "exchange"), "p99_us") * 1e-3);
   if (!is_set(bus, "connected")) {
-    findings.fail("board", text + "; not connected",
+    const std::string failure = text_in(bus, "failure");
+    findings.fail("board",
+                  fmt::format("{}; not connected, tried {:.0f} times, every {:.2g} s{}", text,
+                              number_in(bus, "attempts"), number_in(bus, "retry_s"),
+                              failure.empty() ? "" : ". " + failure),
                   "power, cable and address of the board; softgripd reconnects");
   } else if (failures > 1e-3 * exchanges) {
     findings.warn("board", text,
@@ -105,9 +131,14 @@ void judge_bus(const Json& status, const Json& statistics, Findings& findings) {
   }
 }
 
-void judge_channel(const Json& channel, bool has_run, Findings& findings) {
+void judge_channel(const Json& channel, bool connected, bool has_run, Findings& findings) {
   const std::string name = text_in(channel, "name");
   const std::string validity = text_in(channel, "validity");
+  if (!connected) {
+    findings.not_judged("sensor " + name, "see `board`");
+    findings.not_judged("model " + name, "see `board`");
+    return;
+  }
   const std::string text = fmt::format("{:.3f} mm at {:.2f} kPa", number_in(channel, "displacement_mm"),
                                        number_in(channel, "command_kpa"));
   if (validity == "valid") {
@@ -115,6 +146,8 @@ void judge_channel(const Json& channel, bool has_run, Findings& findings) {
   } else {
     findings.fail("sensor " + name, "readings are not valid: " + validity,
                   "look at the sensor's own display, its wire and its window");
+    findings.not_judged("model " + name, "see `sensor " + name + "`");
+    return;
   }
   const std::string health = text_in(channel, "health");
   const std::string residual =
@@ -158,12 +191,13 @@ void judge_rest(const Json& status, Findings& findings) {
 
 void examine_daemon(const Json& status, const Json& statistics, const std::string& rig, Findings& findings) {
   judge_state(status, rig, findings);
+  judge_fault(status, findings);
   judge_real_time(status, findings);
   judge_loop(status, statistics, findings);
   judge_bus(status, statistics, findings);
   const bool has_run = !part(status, "sequence").empty();
   for (const Json& channel : list_in(status, "channels")) {
-    judge_channel(channel, has_run, findings);
+    judge_channel(channel, is_set(part(status, "bus"), "connected"), has_run, findings);
   }
   judge_rest(status, findings);
 }

@@ -5,7 +5,8 @@
 
 namespace softgrip::tools::doctor {
 
-/// `status` and `statistics` as its socket answers them; `rig` is the name in the rig file that was given.
+/// `status` and `statistics` as its socket answers them; `rig` is the name in the rig file that was given,
+/// empty if none was.
 void examine_daemon(const nlohmann::ordered_json& status, const nlohmann::ordered_json& statistics,
                     const std::string& rig, Findings& findings);
 

@@ -16,6 +16,8 @@ std::string mark(Verdict verdict, bool colour) {
   switch (verdict) {
     case Verdict::ok:
       return colour ? fmt::format("\033[32m{}{}", " ok   ", reset) : " ok   ";
+    case Verdict::not_judged:
+      return colour ? fmt::format("\033[2m{}{}", " --   ", reset) : " --   ";
     case Verdict::warn:
       return colour ? fmt::format("\033[33m{}{}", " warn ", reset) : " warn ";
     case Verdict::fail:
@@ -37,14 +39,20 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t wid
   return result + text.substr(at);
 }
 
-std::string verdict_line(const Findings& findings) {
+std::string verdict_line(const Examination& examination, const Findings& findings) {
   const std::size_t fails = findings.count(Verdict::fail);
   const std::size_t warnings = findings.count(Verdict::warn);
+  const std::size_t open = findings.count(Verdict::not_judged);
+  std::string line;
   if (fails > 0) {
-    return fmt::format("NOT FIT: {}{}\n", counted(fails, "failure"),
+    line = fmt::format("NOT FIT: {}{}", counted(fails, "failure"),
                        warnings > 0 ? " and " + counted(warnings, "warning") : "");
+  } else {
+    line = warnings > 0 ? fmt::format("fit to run, with {}", counted(warnings, "warning")) : "fit to run";
   }
-  return warnings > 0 ? fmt::format("fit to run, with {}\n", counted(warnings, "warning")) : "fit to run\n";
+  if (open > 0) line += fmt::format("; {} not judged", open);
+  if (examination.simulated) line += ". SIMULATED: no board, valve, finger or sensor was examined";
+  return line + "\n";
 }
 
 }  // namespace
@@ -53,6 +61,8 @@ std::string_view name_of(Verdict verdict) noexcept {
   switch (verdict) {
     case Verdict::ok:
       return "ok";
+    case Verdict::not_judged:
+      return "not_judged";
     case Verdict::warn:
       return "warn";
     case Verdict::fail:
@@ -82,7 +92,8 @@ std::string text_of(const Examination& examination, const Findings& findings, st
   for (const Finding& finding : findings.list()) name_width = std::max(name_width, finding.name.size());
   const std::size_t indent = mark_width + name_width + 2;
   const std::size_t width = std::max(columns > indent ? columns - indent : 0, narrowest);
-  std::string text = fmt::format("rig {} ({}): {}\n", examination.rig, examination.rig_file,
+  std::string text = fmt::format("rig {} ({}){}: {}\n", examination.rig, examination.rig_file,
+                                 examination.simulated ? ", SIMULATED" : "",
                                  examination.daemon_runs ? "softgripd runs and was asked"
                                  : examination.moved     ? "no softgripd runs; looked at and moved"
                                                          : "no softgripd runs; looked at, not moved");
@@ -93,7 +104,7 @@ std::string text_of(const Examination& examination, const Findings& findings, st
     text += fmt::format("{}{}\n", std::string(indent, ' '),
                         wrapped("-> " + finding.advice, indent + 3, width - 3));
   }
-  return text + verdict_line(findings);
+  return text + verdict_line(examination, findings);
 }
 
 nlohmann::ordered_json json_of(const Examination& examination, const Findings& findings) {
@@ -101,6 +112,7 @@ nlohmann::ordered_json json_of(const Examination& examination, const Findings& f
                               {"rig_file", examination.rig_file},
                               {"daemon_runs", examination.daemon_runs},
                               {"moved", examination.moved},
+                              {"simulated", examination.simulated},
                               {"verdict", name_of(findings.worst())},
                               {"findings", nlohmann::ordered_json::array()}};
   for (const Finding& finding : findings.list()) {

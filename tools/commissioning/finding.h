@@ -9,8 +9,9 @@
 
 namespace softgrip::tools::doctor {
 
-enum class Verdict { ok, warn, fail };
-/// "ok", "warn", "fail"
+/// `not_judged`: it follows from something else that is wrong, and says nothing of its own.
+enum class Verdict { ok, not_judged, warn, fail };
+/// "ok", "not_judged", "warn", "fail"
 [[nodiscard]] std::string_view name_of(Verdict verdict) noexcept;
 
 struct Finding {
@@ -29,6 +30,10 @@ class Findings {
   void fail(std::string name, std::string text, std::string advice) {
     add({std::move(name), Verdict::fail, std::move(text), std::move(advice)});
   }
+  /// `because`: what has to be mended first.
+  void not_judged(std::string name, const std::string& because) {
+    add({std::move(name), Verdict::not_judged, "not judged: " + because, ""});
+  }
   void add(Finding finding) { list_.push_back(std::move(finding)); }
 
   [[nodiscard]] const std::vector<Finding>& list() const noexcept { return list_; }
@@ -44,7 +49,8 @@ struct Examination {
   std::string rig;       ///< its name
   std::string rig_file;  ///< its path
   bool daemon_runs = false;
-  bool moved = false;  ///< the fingers were moved for it
+  bool moved = false;      ///< the fingers were moved for it
+  bool simulated = false;  ///< there is no board: nothing real was examined
 };
 
 /// Findings in columns of a terminal that is `columns` wide, with colours if `colour`; ends with the verdict.

@@ -118,7 +118,7 @@ HandDrive::Expected<Motion> move_and_watch(const rig::RigFile& rig, HandDrive& d
   beside.begin_mean();
   const auto there = drive.sample(settings.settle_s / 2, watch);
   if (!there) return tl::unexpected(there.error());
-  motion.up = (*there)[channel];
+  motion.up = *there;
   motion.model_mm = beside.mean_mm();
   if (const auto down = drive.ramp(channel, lowest, speed, watch); !down) return tl::unexpected(down.error());
   const auto after = drive.sample(settings.settle_s, watch);
@@ -127,51 +127,81 @@ HandDrive::Expected<Motion> move_and_watch(const rig::RigFile& rig, HandDrive& d
   return motion;
 }
 
-void judge_motion(const rig::RigFile& rig, std::size_t channel, const ChannelSample& rest,
-                  const Motion& motion, Findings& findings) {
-  const control::ChannelSettings& of = rig.settings.channels[channel];
-  const double step_kpa = motion.command_kpa - of.limits.pressure_min_kpa;
-  const std::string name = "valve " + of.name;
-  bool valve_follows = true;
-  if (motion.up.pressure_kpa.count > 0) {
-    const double off = motion.up.pressure_kpa.mean - motion.command_kpa;
-    valve_follows = std::abs(off) <= std::max(share_of_step * step_kpa, pressure_floor_kpa);
-    const std::string text = fmt::format("{:.2f} kPa were asked for, the monitor shows {:.2f}",
-                                         motion.command_kpa, motion.up.pressure_kpa.mean);
-    if (valve_follows) {
-      findings.ok(name, text);
-    } else {
-      findings.fail(name, text,
-                    "supply pressure, valve power, a leak or a kinked line; if all is well there, "
-                    "calibrate valve and monitor");
-    }
+bool has_moved(const Sample& rest, const Sample& seen, double model_mm) {
+  const double least_mm = std::max(noises * rest.deviation, share_of_model * std::abs(model_mm));
+  return std::abs(seen.mean - rest.mean) >= least_mm;
+}
+
+namespace {
+
+/// False if the pressure does not come: then nothing that hangs on it is judged.
+bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, double command_kpa,
+                 Findings& findings) {
+  const double step_kpa = command_kpa - of.limits.pressure_min_kpa;
+  const std::string text =
+      fmt::format("{:.2f} kPa were asked for, the monitor shows {:.2f}", command_kpa, monitor.mean);
+  const double allowed_kpa = std::max(share_of_step * step_kpa, pressure_floor_kpa);
+  const bool follows = std::abs(monitor.mean - command_kpa) <= allowed_kpa;
+  if (follows) {
+    findings.ok("valve " + of.name, text);
   } else {
-    findings.ok(name, "no pressure monitor: judged by the finger alone");
+    findings.fail("valve " + of.name, text,
+                  "supply pressure, valve power, a leak or a kinked line; if all is well there, "
+                  "calibrate valve and monitor");
   }
-  if (!of.displacement_used) return;
-  const double moved_mm = motion.up.displacement_mm.mean - rest.displacement_mm.mean;
-  const double least_mm =
-      std::max(noises * rest.displacement_mm.deviation, share_of_model * std::abs(motion.model_mm));
+  return follows;
+}
+
+void judge_finger(const control::ChannelSettings& of, const Sample& rest, const Sample& seen,
+                  const Motion& motion, bool pressure_seen, Findings& findings) {
+  const double moved_mm = seen.mean - rest.mean;
+  const std::string name = "finger " + of.name;
   const std::string text = fmt::format("moved {:.2f} mm at {:.1f} kPa, the model {:.2f} mm", moved_mm,
                                        motion.command_kpa, motion.model_mm);
-  if (motion.up.displacement_mm.invalid > 0) {
-    findings.fail(
-        "finger " + of.name,
-        fmt::format("readings were not valid on the way: {}", daemon::name_of(motion.up.displacement_mm.why)),
-        "the finger leaves the sensor's range, or its beam is cut");
-  } else if (std::abs(moved_mm) < least_mm) {
-    findings.fail(
-        "finger " + of.name, text,
-        motion.up.pressure_kpa.count > 0 && valve_follows
-            ? "the pressure is there: a sensor that is stuck, a burst finger, or a line blocked behind "
-              "the valve"
-            : "no supply, a blocked line, or a sensor that is stuck: move the finger by hand and watch");
+  const auto broken = [&](const std::string& what, const std::string& advice) {
+    findings.fail(name, what, advice);
+    findings.not_judged("model " + of.name, "see `" + name + "`");
+  };
+  if (seen.invalid > 0) {
+    broken(fmt::format("readings were not valid on the way: {}", daemon::name_of(seen.why)),
+           "the finger leaves the sensor's range, or its beam is cut");
+  } else if (!has_moved(rest, seen, motion.model_mm)) {
+    broken(text,
+           pressure_seen
+               ? "the pressure is there: a sensor that is stuck, a burst finger, or a line blocked behind "
+                 "the valve"
+               : "no supply, a blocked line, or a sensor that is stuck: move the finger by hand and watch");
   } else if (moved_mm * motion.model_mm < 0) {
-    findings.fail("finger " + of.name, text, "the sensor's sign is wrong: calibrate it");
+    broken(text, "the sensor's sign is wrong: calibrate it");
   } else {
-    findings.ok("finger " + of.name, text);
+    findings.ok(name, text);
     judge_model(of, motion, findings);
   }
+}
+
+}  // namespace
+
+void judge_motion(const rig::RigFile& rig, std::size_t channel, const ChannelSample& rest,
+                  const Motion& motion, const NotJudged& known, Findings& findings) {
+  const control::ChannelSettings& of = rig.settings.channels[channel];
+  const Sample& monitor = motion.up[channel].pressure_kpa;
+  std::string finger_waits = known.finger;
+  bool pressure_seen = false;
+  if (!known.valve.empty()) {
+    findings.not_judged("valve " + of.name, known.valve);
+  } else if (monitor.count == 0) {
+    findings.ok("valve " + of.name, "no pressure monitor: judged by the finger alone");
+  } else {
+    pressure_seen = judge_valve(of, monitor, motion.command_kpa, findings);
+    if (!pressure_seen && finger_waits.empty()) finger_waits = "see `valve " + of.name + "`";
+  }
+  if (!of.displacement_used) return;
+  if (!finger_waits.empty()) {
+    findings.not_judged("finger " + of.name, finger_waits);
+    findings.not_judged("model " + of.name, finger_waits);
+    return;
+  }
+  judge_finger(of, rest.displacement_mm, motion.up[channel].displacement_mm, motion, pressure_seen, findings);
 }
 
 }  // namespace softgrip::tools::doctor

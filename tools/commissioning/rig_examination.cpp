@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/numbers.h"
 #include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
+#include "tools/commissioning/crossing.h"
 #include "tools/commissioning/motion.h"
 
 namespace softgrip::tools::doctor {
@@ -92,8 +95,9 @@ void judge_displacement(const control::ChannelSettings& channel, const Sample& s
   }
 }
 
-void judge_rest(const control::ChannelSettings& channel, const control::FaultSettings& faults,
-                const ChannelSample& sample, double command_kpa, Findings& findings) {
+void judge_rest(const control::ChannelSettings& channel, const drivers::ChannelWiring& wiring,
+                const control::FaultSettings& faults, const ChannelSample& sample, double command_kpa,
+                Findings& findings) {
   judge_displacement(channel, sample.displacement_mm, findings);
   const double span = channel.limits.pressure_max_kpa - channel.limits.pressure_min_kpa;
   const double off = std::abs(sample.readback_kpa.mean - command_kpa);
@@ -104,7 +108,13 @@ void judge_rest(const control::ChannelSettings& channel, const control::FaultSet
                     sample.readback_kpa.mean),
         "another master writes too, a latched trip or manual mode of the board, or a wrong scaling");
   }
-  if (sample.pressure_kpa.count == 0) return;
+  if (sample.pressure_kpa.count == 0) {
+    if (wiring.pressure) {
+      findings.fail("pressure " + channel.name, "no reading of the pressure monitor is valid",
+                    "its wire and its supply; compare `valid_v` or `valid_ma` with what it delivers");
+    }
+    return;
+  }
   const std::string text = fmt::format("{} kPa at rest, noise {:.2f} kPa", fixed(sample.pressure_kpa.mean, 2),
                                        sample.pressure_kpa.deviation);
   if (std::abs(sample.pressure_kpa.mean - command_kpa) > 0.05 * span) {
@@ -125,6 +135,54 @@ void failed(const DriveFailure& failure, const rig::RigFile& rig, const std::str
     case DriveFailure::Kind::beyond:
       return findings.fail(name, failure.text,
                            "look at the finger; calibrate the sensor; compare with the limits");
+  }
+}
+
+void leave_channels(const rig::RigFile& rig, const std::string& because, Findings& findings) {
+  for (const control::ChannelSettings& channel : rig.settings.channels) {
+    findings.not_judged("sensor " + channel.name, because);
+  }
+}
+
+/// What is known of a channel before its motion is judged.
+NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings, const ChannelSample& rest,
+                   std::size_t channel) {
+  using Kind = Crossing::Kind;
+  const std::string& name = rig.settings.channels[channel].name;
+  const bool valves = is_crossed(crossings, Kind::valves, channel);
+  NotJudged known;
+  if (rig.wiring[channel].pressure && rest.pressure_kpa.count == 0)
+    known.valve = "see `pressure " + name + "`";
+  if (is_crossed(crossings, Kind::monitors, channel)) known.valve = "the monitors are crossed";
+  if (valves) known.valve = "the valves are crossed";
+  if (rest.displacement_mm.invalid > 0) known.finger = "see `sensor " + name + "`";
+  if (is_crossed(crossings, Kind::sensors, channel)) known.finger = "the sensors are crossed";
+  if (valves) known.finger = known.valve;
+  return known;
+}
+
+/// Every finger by itself, all sensors watched: only together do they show which wires are swapped.
+void move_all(const rig::RigFile& rig, HandDrive& drive, const std::vector<ChannelSample>& rest,
+              const MoveSettings& settings, Findings& findings) {
+  std::vector<Motion> motions;
+  while (motions.size() < rest.size()) {
+    const std::size_t i = motions.size();
+    auto motion = move_and_watch(rig, drive, i, rest[i], settings);
+    if (!motion) {
+      failed(motion.error(), rig, "motion " + rig.settings.channels[i].name, findings);
+      break;
+    }
+    motions.push_back(std::move(*motion));
+  }
+  const std::vector<Crossing> crossings = find_crossings(rig, rest, motions);
+  tell_crossings(rig, crossings, findings);
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    if (i < motions.size()) {
+      judge_motion(rig, i, rest[i], motions[i], known_of(rig, crossings, rest[i], i), findings);
+    } else if (i > motions.size()) {
+      findings.not_judged("motion " + rig.settings.channels[i].name,
+                          "see `motion " + rig.settings.channels[motions.size()].name + "`");
+    }
   }
 }
 
@@ -158,7 +216,8 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, boo
                  const MoveSettings& settings, Findings& findings) {
   HandDrive drive(rig, board, pace);
   if (const auto connected = drive.connect(); !connected) {
-    return findings.fail("board", connected.error().text, advice_for_silence(rig));
+    findings.fail("board", connected.error().text, advice_for_silence(rig));
+    return leave_channels(rig, "the board does not answer", findings);
   }
   if (!move && may_hold_a_part(rig)) {
     findings.ok("board", board.describe() + " answers");
@@ -167,21 +226,17 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, boo
                          "take the part out, then run it with --move");
   }
   const auto rest = drive.sample(settings.look_s);
-  if (!rest) return failed(rest.error(), rig, "board", findings);
+  if (!rest) {
+    failed(rest.error(), rig, "board", findings);
+    return leave_channels(rig, "see `board`", findings);
+  }
   findings.ok("board", board.describe() + " answers");
   judge_bus(rig, drive.exchange_times_s(), findings);
   for (std::size_t i = 0; i < rest->size(); ++i) {
-    judge_rest(rig.settings.channels[i], rig.settings.faults, (*rest)[i], drive.command_kpa(i), findings);
+    judge_rest(rig.settings.channels[i], rig.wiring[i], rig.settings.faults, (*rest)[i], drive.command_kpa(i),
+               findings);
   }
-  for (std::size_t i = 0; move && i < rest->size(); ++i) {
-    const auto motion = move_and_watch(rig, drive, i, (*rest)[i], settings);
-    if (motion) {
-      judge_motion(rig, i, (*rest)[i], *motion, findings);
-      continue;
-    }
-    failed(motion.error(), rig, "motion " + rig.settings.channels[i].name, findings);
-    break;
-  }
+  if (move) move_all(rig, drive, *rest, settings, findings);
   if (!drive.leave()) {
     findings.fail("safe state", "the board did not confirm the lowest pressures",
                   "look at the fingers before you reach in; vent by hand");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -24,6 +25,32 @@ namespace {
 using simulation::LineFault;
 using simulation::SensorFault;
 using Event = simulation::SimulatedEvent;
+
+/// A board whose left pressure monitor says nothing.
+class BlindMonitor final : public drivers::Board {
+ public:
+  explicit BlindMonitor(drivers::Board& board) : board_(board) {}
+  [[nodiscard]] std::size_t channels() const noexcept override { return board_.channels(); }
+  [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds deadline) noexcept override {
+    return board_.connect(deadline);
+  }
+  [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
+                                            std::span<model::Reading> readings,
+                                            std::chrono::nanoseconds deadline) noexcept override {
+    const drivers::BusStatus status = board_.exchange(commands_kpa, readings, deadline);
+    readings[0].pressure_kpa = std::numeric_limits<double>::quiet_NaN();
+    return status;
+  }
+  [[nodiscard]] std::string describe() const override { return board_.describe(); }
+  [[nodiscard]] Budget budget() const override { return board_.budget(); }
+  [[nodiscard]] bool has_watchdog() const noexcept override { return board_.has_watchdog(); }
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
+    return board_.watchdog_time();
+  }
+
+ private:
+  drivers::Board& board_;
+};
 
 class DoctorTest : public ::testing::Test {
  protected:
@@ -68,6 +95,11 @@ class DoctorTest : public ::testing::Test {
       EXPECT_FALSE(found.advice.empty()) << name << " does not say what to do";
     }
   }
+  void expect_not_judged(const std::string& name, const std::string& because) {
+    const Finding found = finding(name);
+    EXPECT_EQ(found.verdict, Verdict::not_judged) << name << ": " << found.text;
+    EXPECT_EQ(found.text, "not judged: " + because);
+  }
   [[nodiscard]] double output_kpa(std::size_t channel) { return board_->plant(channel).held_command_kpa(); }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
@@ -105,8 +137,10 @@ TEST_F(DoctorTest, ABoardThatIsAwayIsAllThatIsSaid) {
   board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
   board_->happen(lost);
   examine_rig(rig_, *board_, pace_, true, {}, findings_);
-  ASSERT_EQ(findings_.list().size(), 1U);
   expect("board", Verdict::fail, "the simulated bus is down");
+  EXPECT_EQ(findings_.count(Verdict::fail), 1U);
+  expect_not_judged("sensor left", "the board does not answer");
+  expect_not_judged("sensor right", "the board does not answer");
 }
 
 TEST_F(DoctorTest, ABoardThatFallsSilentOnTheWay) {
@@ -117,6 +151,7 @@ TEST_F(DoctorTest, ABoardThatFallsSilentOnTheWay) {
   at_once(silent);
   examine(true);
   expect("motion left", Verdict::fail, "simulated");
+  expect_not_judged("motion right", "see `motion left`");
   expect("safe state", Verdict::fail, "did not confirm");
 }
 
@@ -140,6 +175,31 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
   expect("sensor left", Verdict::fail, "out_of_range");
 }
 
+TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsValveIsJudgedAllTheSame) {
+  Event blind;
+  blind.kind = Event::Kind::sensor_fault;
+  blind.channel = 0;
+  blind.sensor.kind = SensorFault::Kind::out_of_range;
+  at_once(blind);
+  examine(true);
+  expect("sensor left", Verdict::fail, "out_of_range");
+  expect("valve left", Verdict::ok, "the monitor shows");
+  expect_not_judged("finger left", "see `sensor left`");
+  expect_not_judged("model left", "see `sensor left`");
+  expect("finger right", Verdict::ok, "moved");
+  EXPECT_EQ(findings_.count(Verdict::fail), 1U) << text_of({"", "", false, true}, findings_, 100, false);
+}
+
+TEST_F(DoctorTest, AMonitorWithoutAValidReadingIsNamedAndTheFingerJudgedAlone) {
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
+  BlindMonitor board(*board_);
+  examine_rig(rig_, board, pace_, true, {}, findings_);
+  expect("pressure left", Verdict::fail, "no reading");
+  expect_not_judged("valve left", "see `pressure left`");
+  expect("finger left", Verdict::ok, "moved");
+  EXPECT_EQ(findings_.count(Verdict::fail), 1U);
+}
+
 TEST_F(DoctorTest, ASensorThatIsStuckShowsItselfWhenTheFingerMoves) {
   sensor_fault(SensorFault::Kind::stuck);
   examine(false);
@@ -155,7 +215,9 @@ TEST_F(DoctorTest, AValveThatDoesNotFollow) {
   line_fault(LineFault::Kind::blocked);
   examine(true);
   expect("valve left", Verdict::fail, "15.00 kPa were asked for");
-  expect("finger left", Verdict::fail, "moved");
+  expect_not_judged("finger left", "see `valve left`");
+  expect_not_judged("model left", "see `valve left`");
+  EXPECT_EQ(findings_.count(Verdict::fail), 2U) << "of both fingers: the lines are blocked for all";
   EXPECT_EQ(output_kpa(0), 0);
 }
 
@@ -191,8 +253,9 @@ TEST_F(DoctorTest, AWrongSignOfTheSensor) {
   Motion motion;
   motion.command_kpa = 15;
   motion.model_mm = 5;
-  motion.up.displacement_mm.mean = -5;
-  judge_motion(rig_, 0, rest, motion, findings_);
+  motion.up.resize(2);
+  motion.up[0].displacement_mm.mean = -5;
+  judge_motion(rig_, 0, rest, motion, {}, findings_);
   expect("finger left", Verdict::fail, "moved -5.00 mm");
   EXPECT_NE(finding("finger left").advice.find("sign"), std::string::npos);
 }
@@ -312,6 +375,56 @@ TEST(ExamineDaemon, SurvivesAnAnswerThatSaysNothing) {
   Findings findings;
   examine_daemon({}, {}, "bench", findings);
   EXPECT_EQ(findings.worst(), Verdict::fail);
+}
+
+TEST(ExamineDaemon, OneUnpluggedCableIsOneFailure) {
+  auto status = healthy_status();
+  status["bus"] = {{"board", "ADAM"}, {"connected", false}, {"attempts", 7}, {"retry_s", 2}};
+  status["channels"][0]["validity"] = "stale";
+  status["fault"] = {{"code", "F101"},
+                     {"name", "bus_down"},
+                     {"channel", nullptr},
+                     {"present", {{"code", "F101"}, {"name", "bus_down"}, {"channel", nullptr}}}};
+  Findings findings;
+  examine_daemon(status, healthy_statistics(), "bench", findings);
+  EXPECT_EQ(findings.count(Verdict::fail), 1U);
+  const std::string text = text_of({"bench", "rig.yaml", true}, findings, 200, false);
+  EXPECT_NE(text.find("FAIL board"), std::string::npos) << text;
+  EXPECT_NE(text.find("tried 7 times, every 2 s"), std::string::npos) << text;
+  EXPECT_NE(text.find("F101 bus_down is latched, see `board`"), std::string::npos) << text;
+}
+
+TEST(ExamineDaemon, AnUnpluggedSensorIsOneFailureAndAFaultWhoseCauseIsGoneIsOne) {
+  auto status = healthy_status();
+  status["channels"][0]["validity"] = "out_of_range";
+  status["fault"] = {{"code", "F202"},
+                     {"name", "reading_out_of_range"},
+                     {"channel", "left"},
+                     {"present", {{"code", "F202"}, {"name", "reading_out_of_range"}, {"channel", "left"}}}};
+  Findings findings;
+  examine_daemon(status, healthy_statistics(), "bench", findings);
+  EXPECT_EQ(findings.count(Verdict::fail), 1U);
+  EXPECT_EQ(findings.count(Verdict::not_judged), 2U) << "the fault and the model";
+  status["channels"][0]["validity"] = "valid";
+  status["fault"]["present"] = nullptr;
+  status["fault"]["next"] = "The cause is gone.";
+  findings = {};
+  examine_daemon(status, healthy_statistics(), "bench", findings);
+  EXPECT_EQ(findings.count(Verdict::fail), 1U);
+  const std::string text = text_of({"bench", "rig.yaml", true}, findings, 200, false);
+  EXPECT_NE(text.find("F202 reading_out_of_range of left: "), std::string::npos) << text;
+  EXPECT_NE(text.find("The cause is gone."), std::string::npos) << text;
+}
+
+TEST(Findings, SimulatedIsPartOfTheVerdict) {
+  Findings findings;
+  findings.ok("board", "answers");
+  const Examination simulated{"x", "rig.yaml", false, false, true};
+  EXPECT_EQ(text_of(simulated, findings, 100, false),
+            "rig x (rig.yaml), SIMULATED: no softgripd runs; looked at, not moved\n"
+            " ok   board  answers\n"
+            "fit to run. SIMULATED: no board, valve, finger or sensor was examined\n");
+  EXPECT_TRUE(json_of(simulated, findings)["simulated"]);
 }
 
 TEST(Findings, TheTextNamesWhatToDoUnderWhatIsWrong) {

@@ -1,0 +1,148 @@
+#include "tools/commissioning/crossing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "rig/rig_file.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+using Kind = Crossing::Kind;
+
+/// A monitor has followed a valve when it rose by at least this share of the step.
+constexpr double share_of_step = 0.5;
+
+bool sensor_followed(const rig::RigFile& rig, const ChannelSample& rest, const Motion& motion,
+                     std::size_t sensor) {
+  const Sample& seen = motion.up[sensor].displacement_mm;
+  if (!rig.settings.channels[sensor].displacement_used || seen.count == 0 || seen.invalid > 0) return false;
+  return has_moved(rest.displacement_mm, seen, motion.model_mm);
+}
+
+bool monitor_followed(const rig::RigFile& rig, const ChannelSample& rest, const Motion& motion,
+                      std::size_t moved, std::size_t monitor) {
+  const Sample& seen = motion.up[monitor].pressure_kpa;
+  if (seen.count == 0 || rest.pressure_kpa.count == 0) return false;
+  const double step_kpa = motion.command_kpa - rig.settings.channels[moved].limits.pressure_min_kpa;
+  return seen.mean - rest.pressure_kpa.mean >= share_of_step * step_kpa;
+}
+
+/// Of each channel that was moved the one that showed it, if it was one alone.
+using Shown = std::vector<std::optional<std::size_t>>;
+
+template <class Followed>
+Shown who_showed(std::size_t count, const Followed& followed) {
+  Shown shown(count);
+  for (std::size_t moved = 0; moved < count; ++moved) {
+    std::size_t how_many = 0;
+    for (std::size_t other = 0; other < count; ++other) {
+      if (!followed(moved, other)) continue;
+      shown[moved] = other;
+      ++how_many;
+    }
+    if (how_many != 1) shown[moved].reset();
+  }
+  return shown;
+}
+
+/// Follows the arrows from `first`; empty where they do not come back to it through other channels.
+std::vector<std::size_t> circle_from(const Shown& shown, std::size_t first) {
+  std::vector<std::size_t> circle{first};
+  for (auto next = shown[first]; next && *next != first; next = shown[*next]) {
+    if (std::find(circle.begin(), circle.end(), *next) != circle.end()) return {};
+    circle.push_back(*next);
+  }
+  const bool closed = shown[circle.back()] == first;
+  return closed && circle.size() > 1 ? circle : std::vector<std::size_t>{};
+}
+
+std::vector<std::vector<std::size_t>> circles_of(const Shown& shown) {
+  std::vector<std::vector<std::size_t>> circles;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const std::vector<std::size_t> circle = circle_from(shown, i);
+    // Each once: from its lowest channel.
+    if (!circle.empty() && *std::min_element(circle.begin(), circle.end()) == i) circles.push_back(circle);
+  }
+  return circles;
+}
+
+std::string terminal(const rig::RigFile& rig, Kind kind, std::size_t channel) {
+  const drivers::ChannelWiring& wiring = rig.wiring[channel];
+  const bool many = std::any_of(rig.wiring.begin(), rig.wiring.end(), [](const auto& other) {
+    return other.valve.module > 0 || other.displacement.module > 0;
+  });
+  const bool valve = kind == Kind::valves;
+  const drivers::InputWiring& input =
+      kind == Kind::monitors && wiring.pressure ? *wiring.pressure : wiring.displacement;
+  const std::size_t number = valve ? wiring.valve.output : input.input;
+  const std::size_t module = valve ? wiring.valve.module : input.module;
+  return fmt::format("{} {}{}", valve ? "output" : "input", number,
+                     many ? fmt::format(" of module {}", module) : "");
+}
+
+}  // namespace
+
+std::vector<Crossing> find_crossings(const rig::RigFile& rig, std::span<const ChannelSample> rest,
+                                     std::span<const Motion> motions) {
+  const auto sensors = circles_of(who_showed(motions.size(), [&](std::size_t moved, std::size_t other) {
+    return sensor_followed(rig, rest[other], motions[moved], other);
+  }));
+  const auto monitors = circles_of(who_showed(motions.size(), [&](std::size_t moved, std::size_t other) {
+    return monitor_followed(rig, rest[other], motions[moved], moved, other);
+  }));
+  const auto holds = [](const auto& circles, const std::vector<std::size_t>& circle) {
+    return std::find(circles.begin(), circles.end(), circle) != circles.end();
+  };
+  std::vector<Crossing> crossings;
+  for (const auto& circle : sensors) {
+    crossings.push_back({holds(monitors, circle) ? Kind::valves : Kind::sensors, circle});
+  }
+  for (const auto& circle : monitors) {
+    if (!holds(sensors, circle)) crossings.push_back({Kind::monitors, circle});
+  }
+  return crossings;
+}
+
+void tell_crossings(const rig::RigFile& rig, std::span<const Crossing> crossings, Findings& findings) {
+  for (const Crossing& crossing : crossings) {
+    const bool valves = crossing.kind == Kind::valves;
+    const char* const key = valves ? "valve" : crossing.kind == Kind::sensors ? "sensor" : "pressure_monitor";
+    std::string names;
+    std::string shown;
+    std::string terminals;
+    for (std::size_t k = 0; k < crossing.channels.size(); ++k) {
+      const std::size_t channel = crossing.channels[k];
+      const std::size_t other = crossing.channels[(k + 1) % crossing.channels.size()];
+      const std::string& name = rig.wiring[channel].name;
+      const bool last = k + 1 == crossing.channels.size();
+      names += (k > 0 ? ", " : "") + name;
+      shown +=
+          fmt::format("{}when `{}` was moved, {} of `{}` showed it", k > 0 ? "; " : "", name,
+                      valves ? "sensor and monitor" : fmt::format("the {}", key), rig.wiring[other].name);
+      terminals += fmt::format("{}{} (`{}`)",
+                               k == 0 ? ""
+                               : last ? " and "
+                                      : ", ",
+                               terminal(rig, crossing.kind, channel), name);
+    }
+    const char* const what = valves ? "valves " : crossing.kind == Kind::sensors ? "sensors " : "monitors ";
+    findings.fail(
+        what + names, "crossed: " + shown,
+        fmt::format("swap {}: their wires at the board, or their numbers under `{}` in the rig file{}",
+                    terminals, key, valves ? "; or the lines between valves and fingers" : ""));
+  }
+}
+
+bool is_crossed(std::span<const Crossing> crossings, Kind kind, std::size_t channel) {
+  return std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
+    return crossing.kind == kind &&
+           std::find(crossing.channels.begin(), crossing.channels.end(), channel) != crossing.channels.end();
+  });
+}
+
+}  // namespace softgrip::tools::doctor
