@@ -57,6 +57,9 @@ softgrip_room(daemon/service
 
 # From a log to the reason.
 softgrip_room(sysid/logs USES base document model)
+softgrip_room(sysid/import USES base document sysid/logs)
+# Nobody else is to be compiled against them.
+target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5)
 softgrip_room(sysid/pages USES base model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification
@@ -88,11 +91,13 @@ softgrip_room(sysid/diagnosis/report
 softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
 
 # Programs.
-softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/diagnosis/gauge
+softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/import sysid/diagnosis/gauge
   LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
 softgrip_room(tools/client USES base document tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
+  LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 # What moves a rig by hand: doctor and calibrate.
 softgrip_room(tools/commissioning
@@ -110,7 +115,7 @@ softgrip_room(tools/studies
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/pages
        sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
-       tools/recordings tools/commissioning tools/investigation tools/studies
+       tools/recordings tools/importing tools/commissioning tools/investigation tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)

@@ -81,7 +81,8 @@ function(softgrip_program name files output)
   target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LIBRARIES})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${output})
   # All symbols are bound at the start: a first call in the loop must not look one up.
-  target_link_options(${name} PRIVATE -Wl,-z,relro,-z,now)
+  # And only libraries of which it calls something are loaded.
+  target_link_options(${name} PRIVATE -Wl,-z,relro,-z,now,--as-needed)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 

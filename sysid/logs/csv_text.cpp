@@ -17,13 +17,13 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-bool split(std::string_view line, std::vector<Cell>& cells) {
+bool split(std::string_view line, std::vector<Cell>& cells, char separator) {
   cells.clear();
   std::size_t begin = 0;
   bool quoted = false;
   for (std::size_t i = 0; i <= line.size(); ++i) {
     if (i < line.size() && line[i] == '"') quoted = !quoted;
-    if (i == line.size() || (line[i] == ',' && !quoted)) {
+    if (i == line.size() || (line[i] == separator && !quoted)) {
       cells.push_back({line.substr(begin, i - begin), static_cast<int>(begin) + 1});
       begin = i + 1;
     }

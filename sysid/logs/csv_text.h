@@ -16,8 +16,8 @@ struct Cell {
   int column;
 };
 
-/// Splits at commas outside double quotes. The cells keep their quotes. False where a quote is not closed.
-bool split(std::string_view line, std::vector<Cell>& cells);
+/// Splits at separators outside double quotes. The cells keep their quotes. False where a quote is not closed.
+bool split(std::string_view line, std::vector<Cell>& cells, char separator = ',');
 
 /// Without the blanks around it, and without the double quotes around that.
 [[nodiscard]] std::string_view unquoted(std::string_view text);

@@ -1,9 +1,12 @@
 #include "tools/command_line/log_input.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
+#include <set>
 
 #include "document/problem.h"
 #include "tools/command_line/command.h"
+#include "tools/command_line/import_hint.h"
 
 namespace softgrip::tools {
 
@@ -45,8 +48,17 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
     }
   }
   if (problems.empty()) return std::move(campaign.logs);
-  const ExitCode refused = refuse(problems);
+  const ExitCode refused = refuse_logs(problems);
   return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);
+}
+
+ExitCode refuse_logs(const document::Problems& problems) {
+  const ExitCode refused = refuse(problems);
+  std::set<std::string> told;
+  for (const document::Problem& problem : problems.list()) {
+    if (told.insert(problem.file).second) std::fputs(import_hint(problem.file).c_str(), stderr);
+  }
+  return refused;
 }
 
 tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path) {

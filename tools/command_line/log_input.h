@@ -7,6 +7,7 @@
 #include <tl/expected.hpp>
 
 #include "base/exit_code.h"
+#include "document/problem.h"
 #include "sysid/diagnosis/gauge/gauge_file.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
@@ -33,6 +34,10 @@ void add_log_options(CLI::App& command, LogInput& input);
 /// Reads all logs; where one is refused, prints all problems and returns the exit code.
 [[nodiscard]] tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std::string>& paths,
                                                                         const LogInput& input);
+
+/// Prints the problems of logs and, of each file, how `softgrip import` would make a log of it. Returns
+/// ExitCode::input_refused.
+ExitCode refuse_logs(const document::Problems& problems);
 
 /// Reads a gauge file; where it is refused, prints all problems and returns the exit code.
 [[nodiscard]] tl::expected<sysid::GaugeFile, ExitCode> read_gauge(const std::string& path);

@@ -9,6 +9,7 @@
   X(doctor)                  \
   X(calibrate)               \
   X(simulate)                \
+  X(import)                  \
   X(plot)                    \
   X(identify)                \
   X(validate)                \

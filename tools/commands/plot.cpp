@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "tools/command_line/log_input.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
 #include "tools/recordings/recording.h"
@@ -53,7 +54,7 @@ void report(const Options& options, const Recording& recording) {
 ExitCode run(const Options& options) {
   document::Problems problems;
   const auto recording = read_recording(options.recording, problems);
-  if (!recording) return problems.empty() ? recording.error() : refuse(problems);
+  if (!recording) return problems.empty() ? recording.error() : refuse_logs(problems);
   if (const auto written = write_output(options.out, picture_of(*recording)); !written) {
     return fail(ExitCode::io, written.error());
   }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/numbers.h"
+#include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
@@ -56,7 +57,7 @@ tl::expected<sysid::Log, ExitCode> read_input(const Options& options) {
     return tl::unexpected{
         fail(ExitCode::io, problems.list().front().message + " (signals are " + signal_names() + ")")};
   }
-  if (campaign.logs.empty()) return tl::unexpected{refuse(problems)};
+  if (campaign.logs.empty()) return tl::unexpected{refuse_logs(problems)};
   sysid::Log log = std::move(campaign.logs.front());
   // What was measured on a finger would pass for the model's.
   log.pressure_kpa.clear();

@@ -1,0 +1,75 @@
+#include "sysid/import/array_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::size_t widest_matrix = 200;
+
+double finite_or_none(double value) {
+  return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+void ArrayCollector::add(const std::string& name, const std::string& unit, std::size_t rows,
+                         std::size_t columns, const std::vector<double>& values) {
+  if (values.size() != rows * columns || values.size() < 2) return;
+  values_ += values.size();
+  const bool is_vector = rows == 1 || columns == 1;
+  // Few rows of many values lie on their side.
+  const bool lies = !is_vector && columns > rows;
+  const std::size_t count = is_vector ? 1 : std::min(rows, columns);
+  const std::size_t length = values.size() / count;
+  if (count > widest_matrix) return pass_over(name, std::to_string(count) + " columns");
+  for (std::size_t k = 0; k < count; ++k) {
+    TableColumn column;
+    const std::string number = std::to_string(k + 1);
+    column.name = is_vector ? name : name + (lies ? "(" + number + ",:)" : "(:," + number + ")");
+    column.unit = unit;
+    column.values.reserve(length);
+    for (std::size_t i = 0; i < length; ++i)
+      column.values.push_back(finite_or_none(values[lies ? i * count + k : k * length + i]));
+    columns_.push_back(std::move(column));
+  }
+}
+
+void ArrayCollector::pass_over(const std::string& name, const std::string& what) {
+  notes_.push_back("'" + document::shown(name) + "' is passed over: " + what);
+}
+
+std::optional<Table> ArrayCollector::table(const std::string& format, document::Problems& problems) const {
+  std::map<std::size_t, std::size_t> count_by_length;
+  for (const TableColumn& column : columns_) ++count_by_length[column.values.size()];
+  std::size_t length = 0;
+  std::size_t most = 0;
+  for (const auto& [candidate, count] : count_by_length) {
+    if (count < most) continue;
+    most = count;
+    length = candidate;
+  }
+  Table table;
+  table.file = file_;
+  table.format = format;
+  table.notes = notes_;
+  for (const TableColumn& column : columns_) {
+    if (column.values.size() == length) {
+      table.columns.push_back(column);
+    } else {
+      table.notes.push_back("'" + document::shown(column.name) +
+                            "' is passed over: " + std::to_string(column.values.size()) +
+                            " values where others have " + std::to_string(length));
+    }
+  }
+  if (most >= 2) return table;
+  std::string said;
+  for (const std::string& note : table.notes) said += (said.empty() ? "" : "; ") + note;
+  problems.add({file_, {1, 1}, {}, "no two arrays of numbers that are equally long", said});
+  return std::nullopt;
+}
+
+}  // namespace softgrip::sysid

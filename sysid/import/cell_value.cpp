@@ -1,0 +1,72 @@
+#include "sysid/import/cell_value.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <optional>
+
+#include "base/numbers.h"
+#include "sysid/import/moments.h"
+#include "sysid/import/units.h"
+#include "sysid/logs/csv_text.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::array<std::string_view, 14> missing_words{
+    "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "-nan", "inf", "-inf", "+inf", "infinity", "."};
+constexpr std::size_t longest_number = 64;
+
+std::optional<double> number_of(std::string_view text, CellValue& value) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) {
+    const auto number = to_number(text);
+    value.with_point = number && text.find('.') != std::string_view::npos;
+    return number;
+  }
+  const bool decimal = text.size() <= longest_number && text.find('.') == std::string_view::npos &&
+                       text.find(',', comma + 1) == std::string_view::npos && comma + 1 < text.size() &&
+                       std::isdigit(static_cast<unsigned char>(text[comma + 1])) != 0;
+  if (!decimal) return std::nullopt;
+  std::string pointed(text);
+  pointed[comma] = '.';
+  value.with_comma = true;
+  return to_number(pointed);
+}
+
+bool is_among(const std::vector<std::string>& missing, std::string_view text, std::optional<double> number) {
+  return std::any_of(missing.begin(), missing.end(), [&](const std::string& word) {
+    const auto as_number = number ? to_number(word) : std::nullopt;
+    return word == lower_case(text) || (as_number && *as_number == *number);
+  });
+}
+
+}  // namespace
+
+CellValue cell_value(std::string_view cell, const std::vector<std::string>& missing) {
+  CellValue value;
+  const std::string_view text = trimmed(unquoted(cell));
+  if (text.empty()) {
+    value.kind = CellKind::missing;
+    return value;
+  }
+  const auto number = number_of(text, value);
+  if (number && !std::isfinite(*number)) {
+    value.kind = CellKind::missing;
+  } else if (!missing.empty() && is_among(missing, text, number)) {
+    value.kind = CellKind::missing;
+  } else if (number) {
+    value.kind = CellKind::number;
+    value.number = *number;
+  } else if (std::find(missing_words.begin(), missing_words.end(), lower_case(text)) != missing_words.end()) {
+    value.kind = CellKind::missing;
+  } else if (const auto moment = moment_of(text)) {
+    value.kind = CellKind::moment;
+    value.moment = moment->time;
+    value.dated = moment->dated;
+  }
+  return value;
+}
+
+}  // namespace softgrip::sysid

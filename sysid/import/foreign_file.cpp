@@ -1,0 +1,124 @@
+#include "sysid/import/foreign_file.h"
+
+#include <zlib.h>
+
+#include <array>
+#include <filesystem>
+
+#include "base/files.h"
+#include "base/sha256.h"
+#include "sysid/import/array_table.h"
+#include "sysid/import/hdf5_table.h"
+#include "sysid/import/mat_table.h"
+#include "sysid/import/text_table.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::size_t most_bytes = std::size_t{1} << 30;
+constexpr std::string_view hdf5_signature{"\x89HDF\r\n\x1a\n"};
+
+/// HDF5 begins at 0 or behind a block of 512, 1024, ... bytes of somebody else's.
+bool is_hdf5(std::string_view bytes) {
+  if (bytes.starts_with(hdf5_signature)) return true;
+  for (std::size_t at = 512; at < bytes.size(); at *= 2) {
+    if (bytes.substr(at).starts_with(hdf5_signature)) return true;
+  }
+  return false;
+}
+
+/// Version 4 has no signature: a header of five small numbers, and a name that ends in a zero.
+bool is_matlab_4(std::string_view bytes) {
+  constexpr std::size_t header = 20;
+  if (bytes.size() < header) return false;
+  std::array<std::uint32_t, 5> words{};
+  for (std::size_t i = 0; i < header; ++i)
+    words[i / 4] |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[i])) << (8 * (i % 4));
+  const auto [type, rows, columns, imaginary, name] = words;
+  return type < 60 && type % 10 < 3 && rows < most_values && columns < most_values && imaginary < 2 &&
+         name > 1 && name < 64 && bytes.size() > header + name && bytes[header + name - 1] == '\0' &&
+         bytes[header] > ' ';
+}
+
+/// What is surely something else, in words.
+std::string_view known_but_unread(std::string_view bytes) {
+  if (bytes.starts_with("PK\x03\x04")) return "a spreadsheet (.xlsx, .ods) or an archive";
+  if (bytes.starts_with("\xd0\xcf\x11\xe0")) return "an old spreadsheet (.xls)";
+  if (bytes.starts_with("PAR1")) return "a Parquet file";
+  if (bytes.starts_with("TDSm")) return "a LabVIEW file (.tdms)";
+  if (bytes.starts_with("BZh")) return "packed by bzip2";
+  if (bytes.starts_with("\xfd"
+                        "7zXZ"))
+    return "packed by xz";
+  if (bytes.starts_with("\x28\xb5\x2f\xfd")) return "packed by zstd";
+  return {};
+}
+
+std::optional<Table> read_bytes(const std::string& path, std::string_view bytes, const TableOptions& options,
+                                document::Problems& problems) {
+  if (bytes.starts_with("MATLAB 5.0")) return read_mat_table(path, problems);
+  if (is_hdf5(bytes)) return read_hdf5_table(path, bytes.starts_with("MATLAB 7.3"), problems);
+  if (is_matlab_4(bytes)) return read_mat_table(path, problems);
+  if (const std::string_view known = known_but_unread(bytes); !known.empty()) {
+    problems.add({path, {1, 1}, {}, "this is " + std::string(known), "export it as CSV"});
+    return std::nullopt;
+  }
+  return parse_text_table(path, bytes, options, problems);
+}
+
+}  // namespace
+
+tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::size_t bound) {
+  z_stream stream{};
+  constexpr int gzip_window = 15 + 16;
+  if (inflateInit2(&stream, gzip_window) != Z_OK) return tl::unexpected(std::string("zlib cannot begin"));
+  // zlib's interface reads through a pointer that is not const.
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  std::string text;
+  std::string chunk(std::size_t{1} << 18, '\0');
+  int state = Z_OK;
+  while (state == Z_OK && text.size() <= bound) {
+    stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+    stream.avail_out = static_cast<uInt>(chunk.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+    text.append(chunk, 0, chunk.size() - stream.avail_out);
+    // Several packed one behind the other are one text.
+    if (state == Z_STREAM_END && stream.avail_in > 0) state = inflateReset(&stream);
+  }
+  inflateEnd(&stream);
+  if (text.size() > bound)
+    return tl::unexpected("unpacked it is larger than " + std::to_string(bound) + " bytes");
+  if (state == Z_BUF_ERROR) return tl::unexpected(std::string("the gzip file is cut off"));
+  if (state != Z_STREAM_END) return tl::unexpected(std::string("the gzip file is broken"));
+  return text;
+}
+
+std::optional<Table> read_foreign_file(const std::string& given, const TableOptions& options,
+                                       document::Problems& problems, bool& unreadable) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const std::string path = fs::is_directory(given, error) ? (fs::path(given) / "run.csv").string() : given;
+  const auto bytes = read_file(path, most_bytes);
+  if (!bytes) {
+    unreadable = true;
+    problems.add({path, {1, 1}, {}, bytes.error(), {}});
+    return std::nullopt;
+  }
+  std::optional<Table> table;
+  if (bytes->starts_with("\x1f\x8b")) {
+    const auto text = gunzipped(*bytes, most_bytes);
+    if (!text) {
+      problems.add({path, {1, 1}, {}, text.error(), {}});
+      return std::nullopt;
+    }
+    table = parse_text_table(path, *text, options, problems);
+    if (table) table->format = "gzip, " + table->format;
+  } else {
+    table = read_bytes(path, *bytes, options, problems);
+  }
+  if (table) table->sha256 = sha256(*bytes);
+  return table;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,175 @@
+#include "sysid/import/hdf5_table.h"
+
+#include <hdf5.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "sysid/import/array_table.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr int deepest_group = 8;
+constexpr std::size_t longest_unit = 64;
+
+/// An identifier of libhdf5 that closes itself.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  Handle(Handle&&) = delete;
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  [[nodiscard]] hid_t get() const { return id_; }
+  [[nodiscard]] explicit operator bool() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+std::string text_of(hid_t attribute, hid_t type) {
+  if (H5Tis_variable_str(type) > 0) {
+    char* text = nullptr;
+    const Handle memory(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_size(memory.get(), H5T_VARIABLE);
+    H5Tset_cset(memory.get(), H5Tget_cset(type));
+    if (H5Aread(attribute, memory.get(), &text) < 0 || text == nullptr) return {};
+    const std::unique_ptr<char, herr_t (*)(void*)> owned(text, H5free_memory);
+    return std::string(text).substr(0, longest_unit);
+  }
+  const std::size_t size = H5Tget_size(type);
+  if (size == 0 || size > longest_unit) return {};
+  std::string text(size, '\0');
+  if (H5Aread(attribute, type, text.data()) < 0) return {};
+  return text.substr(0, text.find('\0'));
+}
+
+/// A text among the attributes; empty: there is none of the name.
+std::string attribute_text(hid_t object, const char* name) {
+  if (H5Aexists(object, name) <= 0) return {};
+  const Handle attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose);
+  const Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  const bool one_text =
+      attribute && H5Tget_class(type.get()) == H5T_STRING && H5Sget_simple_extent_npoints(space.get()) == 1;
+  return one_text ? text_of(attribute.get(), type.get()) : std::string();
+}
+
+std::string unit_of(hid_t dataset) {
+  for (const char* name : {"units", "unit", "Units", "Unit"}) {
+    if (std::string unit = attribute_text(dataset, name); !unit.empty()) return unit;
+  }
+  return {};
+}
+
+/// What MATLAB stores as numbers and means as such.
+bool is_matlab_number(const std::string& kind) {
+  return kind.empty() || kind == "double" || kind == "single" || kind == "logical" ||
+         kind.find("int") != std::string::npos;
+}
+
+bool is_number(hid_t type) {
+  const H5T_class_t kind = H5Tget_class(type);
+  return kind == H5T_INTEGER || kind == H5T_FLOAT;
+}
+
+/// HDF5 lies by rows, tables by columns.
+std::vector<double> by_columns(const std::vector<double>& values, std::size_t rows, std::size_t columns) {
+  std::vector<double> turned(values.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (std::size_t k = 0; k < columns; ++k) turned[k * rows + i] = values[i * columns + k];
+  }
+  return turned;
+}
+
+void collect_members(hid_t dataset, hid_t type, const std::string& name, std::size_t rows,
+                     ArrayCollector& arrays) {
+  const int members = H5Tget_nmembers(type);
+  for (int i = 0; i < members; ++i) {
+    const std::unique_ptr<char, herr_t (*)(void*)> member(H5Tget_member_name(type, static_cast<unsigned>(i)),
+                                                          H5free_memory);
+    const Handle kind(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose);
+    if (!member || !is_number(kind.get())) continue;
+    const Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), H5Tclose);
+    H5Tinsert(one.get(), member.get(), 0, H5T_NATIVE_DOUBLE);
+    std::vector<double> values(rows);
+    if (H5Dread(dataset, one.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+      arrays.pass_over(name + "." + member.get(), "it cannot be read");
+    } else {
+      arrays.add(name + "." + member.get(), {}, rows, 1, values);
+    }
+  }
+}
+
+void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arrays) {
+  const Handle type(H5Dget_type(dataset), H5Tclose);
+  const Handle space(H5Dget_space(dataset), H5Sclose);
+  std::array<hsize_t, 2> size{1, 1};
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank < 1 || rank > 2) return arrays.pass_over(name, std::to_string(rank) + " dimensions");
+  H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
+  if (size[1] == 0 || size[0] > most_values / size[1]) return arrays.pass_over(name, "empty, or too large");
+  if (H5Tget_class(type.get()) == H5T_COMPOUND && rank == 1)
+    return collect_members(dataset, type.get(), name, size[0], arrays);
+  const std::string matlab_class = attribute_text(dataset, "MATLAB_class");
+  if (!is_number(type.get()) || !is_matlab_number(matlab_class))
+    return arrays.pass_over(
+        name, matlab_class.empty() ? "no numbers" : "MATLAB's " + matlab_class + ", no numbers");
+  std::vector<double> values(size[0] * size[1]);
+  if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    return arrays.pass_over(name, "it cannot be read");
+  if (matlab_class.empty()) {
+    arrays.add(name, unit_of(dataset), size[0], size[1], by_columns(values, size[0], size[1]));
+  } else {
+    arrays.add(name, {}, size[1], size[0], values);  // MATLAB counts dimensions the other way round
+  }
+}
+
+struct Visit {
+  ArrayCollector& arrays;
+  std::string prefix;
+  char separator = '/';
+  int depth = 0;
+};
+
+herr_t visit(hid_t group, const char* name, const H5L_info_t* /*info*/, void* data) {
+  auto& where = *static_cast<Visit*>(data);
+  if (name[0] == '#') return 0;  // what MATLAB refers to by itself
+  const std::string path = where.prefix + name;
+  const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+  if (!object) {
+    where.arrays.pass_over(path, "it cannot be opened");
+    return 0;
+  }
+  const H5I_type_t kind = H5Iget_type(object.get());
+  if (kind == H5I_DATASET) collect_dataset(object.get(), path, where.arrays);
+  if (kind == H5I_GROUP && where.depth < deepest_group) {
+    Visit inside{where.arrays, path + where.separator, where.separator, where.depth + 1};
+    H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &inside);
+  }
+  return where.arrays.full() ? 1 : 0;
+}
+
+}  // namespace
+
+std::optional<Table> read_hdf5_table(const std::string& path, bool matlab, document::Problems& problems) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what it says goes into our own message
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file) {
+    problems.add(
+        {path, {1, 1}, {}, "an HDF5 file that cannot be read: broken, cut off, or open for writing", {}});
+    return std::nullopt;
+  }
+  ArrayCollector arrays(path);
+  Visit root{arrays, {}, matlab ? '.' : '/', 0};
+  H5Literate(file.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &root);
+  return arrays.table(matlab ? "MATLAB 7.3" : "HDF5", problems);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,19 @@
+#pragma once
+// HDF5 files, and MATLAB's of version 7.3, which are such; through libhdf5.
+
+#include <optional>
+#include <string>
+
+#include "document/problem.h"
+#include "sysid/import/table.h"
+
+namespace softgrip::sysid {
+
+/// Datasets of numbers in one or two dimensions, named by their path ("run1/pressure"), and members of
+/// compounds
+/// ("table.pressure"). An attribute `units` or `unit` is the unit. Everything else is passed over and said.
+/// Of a file of MATLAB's (`matlab`) names are "run.pressure", and texts, cells and objects are passed over.
+[[nodiscard]] std::optional<Table> read_hdf5_table(const std::string& path, bool matlab,
+                                                   document::Problems& problems);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,209 @@
+#include "sysid/import/proposal.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Words that tell a role, lower-case; in German too, as loggers there write them.
+struct Words {
+  Role role;
+  std::initializer_list<std::string_view> surely;  ///< a part of the name is this
+};
+const std::array<Words, role_count>& words() {
+  static const std::array<Words, role_count> list{{
+      {Role::time,
+       {"time", "t", "zeit", "timestamp", "elapsed", "date", "datetime", "clock", "uhrzeit", "epoch"}},
+      {Role::command,
+       {"command", "cmd", "set", "setpoint", "desired", "demand", "target", "ref", "reference", "soll", "sp",
+        "pd", "input", "commanded", "sollwert", "valve", "ventil"}},
+      {Role::pressure, {"pressure", "press", "p", "druck", "pm", "prs", "regulator"}},
+      {Role::displacement,
+       {"displacement", "disp",     "x",         "y",          "position", "pos",     "deflection",
+        "stroke",       "tip",      "bend",      "weg",        "laser",    "encoder", "enc",
+        "height",       "distance", "extension", "elongation", "travel",   "hub"}},
+      {Role::temperature, {"temperature", "temp", "temperatur"}},
+      {Role::supply, {"supply", "tank", "vordruck", "source", "versorgung", "reservoir"}},
+  }};
+  return list;
+}
+
+/// "pSetpoint_kPa[1]" is p, setpoint, kpa, 1.
+std::vector<std::string> parts_of(std::string_view name) {
+  std::vector<std::string> parts(1);
+  bool was_lower = false;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalpha(byte) == 0 && byte < 0x80) {
+      if (!parts.back().empty()) parts.emplace_back();
+      was_lower = false;
+      continue;
+    }
+    if (std::isupper(byte) != 0 && was_lower) parts.emplace_back();
+    parts.back() += c;
+    was_lower = std::islower(byte) != 0;
+  }
+  for (std::string& part : parts) part = lower_case(part);
+  return parts;
+}
+
+bool names(std::string_view name, Role role) {
+  const std::vector<std::string> parts = parts_of(name);
+  const auto& surely = words()[static_cast<std::size_t>(role)].surely;
+  return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
+    return std::find(surely.begin(), surely.end(), part) != surely.end();
+  });
+}
+
+/// The unit that a column carries, whatever it is of.
+std::string open_unit(const TableColumn& column) {
+  return column.unit.empty() ? split_unit(column.name).unit : column.unit;
+}
+
+/// How well a column would do for a role; 0: not at all.
+int fitness(const TableColumn& column, const RoleSpec& spec) {
+  const bool time = spec.role == Role::time;
+  // A few bad cells are to be told, not to be walked around.
+  if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
+  const std::string unit = column.unit.empty() ? split_unit(column.name, spec.quantity).unit : column.unit;
+  const std::string anywhere = open_unit(column);
+  const bool of_quantity = !unit.empty() && unit_named(unit, spec.quantity).has_value();
+  const bool elsewhere =
+      !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && unit_named(anywhere).has_value();
+  if (elsewhere) return 0;
+  const std::string bare = split_unit(column.name, spec.quantity).name;
+  const bool named = names(bare, spec.role);
+  if (time && column.moments > 0) return 4;
+  // A pressure that is asked for is no measured one, and the supply's is neither.
+  const bool pressure = spec.role == Role::pressure;
+  if (pressure && (names(bare, Role::command) || names(bare, Role::supply))) return 0;
+  if (spec.role == Role::command && names(bare, Role::displacement) && !of_quantity) return 0;
+  if (named) return of_quantity ? 5 : 3;
+  const bool by_unit_alone = pressure || spec.role == Role::displacement || time;
+  return of_quantity && by_unit_alone ? 2 : 0;
+}
+
+bool taken(const Mapping& mapping, const Table& table, std::size_t index) {
+  return std::any_of(mapping.columns.begin(), mapping.columns.end(), [&](const ColumnMapping& column) {
+    return std::any_of(column.columns.begin(), column.columns.end(),
+                       [&](const std::string& word) { return column_index(table, word) == index; });
+  });
+}
+
+/// Numbers without a unit that count seconds, milliseconds, ... since 1970 say it by their size.
+std::string epoch_unit(const TableColumn& column) {
+  const auto first =
+      std::find_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); });
+  if (first == column.values.end() || column.moments > 0) return {};
+  constexpr double earliest_s = 6e8;  // 1989
+  constexpr double latest_s = 4e9;    // 2096
+  double factor = 1;
+  for (const char* unit : {"s", "ms", "us", "ns"}) {
+    if (*first >= earliest_s * factor && *first <= latest_s * factor) return unit;
+    factor *= 1000;
+  }
+  return {};
+}
+
+void choose(const Table& table, const RoleSpec& spec, Proposal& proposal) {
+  int best = 0;
+  std::size_t chosen = table.columns.size();
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const int fit = taken(proposal.mapping, table, i) ? 0 : fitness(table.columns[i], spec);
+    if (fit <= best) continue;
+    best = fit;
+    chosen = i;
+  }
+  if (chosen == table.columns.size()) return;
+  ColumnMapping& column = proposal.mapping[spec.role];
+  column.columns = {word_of(table, chosen)};
+  proposal.guessed.push_back(spec.role);
+}
+
+void say_what_is_missing(Proposal& proposal) {
+  const Mapping& mapping = proposal.mapping;
+  if (!mapping[Role::time].given() && !mapping.rate_hz)
+    proposal.missing.emplace_back("a time: --time COLUMN, or --rate-hz R");
+  if (!mapping[Role::command].given() && !mapping[Role::pressure].given())
+    proposal.missing.emplace_back("a pressure: --command COLUMN (asked for) or --pressure COLUMN (measured)");
+  if (!mapping[Role::displacement].given())
+    proposal.missing.emplace_back("a displacement: --displacement COLUMN");
+}
+
+/// Up to three values from the beginning, the middle and the end.
+std::string glimpse(const TableColumn& column) {
+  std::string text;
+  const std::size_t rows = column.values.size();
+  for (const std::size_t at : {std::size_t{0}, rows / 2, rows - 1}) {
+    const double value = rows == 0 ? std::nan("") : column.values[at];
+    text += (text.empty() ? "" : " .. ") + (std::isfinite(value) ? significant(value, 5) : std::string("-"));
+  }
+  return column.moments > 0 ? "dates or times of day" : text;
+}
+
+}  // namespace
+
+std::string unit_text(const Table& table, const ColumnMapping& column, Quantity quantity) {
+  if (!column.unit.empty()) return column.unit;
+  for (const std::string& word : column.columns) {
+    const std::size_t index = column_index(table, word);
+    if (index == table.columns.size()) continue;
+    if (!table.columns[index].unit.empty()) return table.columns[index].unit;
+    const std::string unit = split_unit(table.columns[index].name, quantity).unit;
+    if (!unit.empty()) return unit;
+  }
+  return {};
+}
+
+Proposal propose(const Table& table, const Mapping& given, bool optional_too) {
+  Proposal proposal{given, {}, {}};
+  const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
+  // What is asked for before what is measured, which any column of a pressure could be.
+  for (const Role role :
+       {Role::time, Role::displacement, Role::supply, Role::command, Role::pressure, Role::temperature}) {
+    const bool needed = (role == Role::time && !given.rate_hz) || role == Role::displacement ||
+                        ((role == Role::command || role == Role::pressure) && !given[Role::command].given() &&
+                         !given[Role::pressure].given());
+    if (open(role) && (needed || optional_too) && !(role == Role::time && given.rate_hz))
+      choose(table, spec_of(role), proposal);
+  }
+  ColumnMapping& time = proposal.mapping[Role::time];
+  if (time.given() && time.unit.empty() && !time.scale && unit_text(table, time, Quantity::time).empty()) {
+    const std::size_t index = column_index(table, time.columns.front());
+    if (index < table.columns.size()) time.unit = epoch_unit(table.columns[index]);
+  }
+  say_what_is_missing(proposal);
+  return proposal;
+}
+
+std::string mapping_table(const Table& table, const Mapping& mapping) {
+  std::string text;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const TableColumn& column = table.columns[i];
+    std::string use = "-";
+    for (const RoleSpec& spec : roles) {
+      const ColumnMapping& mapped = mapping[spec.role];
+      const bool here = std::any_of(mapped.columns.begin(), mapped.columns.end(),
+                                    [&](const std::string& word) { return column_index(table, word) == i; });
+      if (!here) continue;
+      const std::string unit = unit_text(table, mapped, spec.quantity);
+      use = std::string(spec.word) + (column.moments > 0 ? "" : unit.empty() ? " (no unit)" : " in " + unit);
+    }
+    std::string name = column.name.empty() ? "(no name)" : document::shown(column.name, 40);
+    std::string line = "  " + std::to_string(i + 1) + "  " + name;
+    line.resize(std::max<std::size_t>(line.size() + 2, 34), ' ');
+    line += glimpse(column);
+    line.resize(std::max<std::size_t>(line.size() + 2, 68), ' ');
+    text += line + use + "\n";
+  }
+  return text;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,190 @@
+#include "sysid/import/samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "base/numbers.h"
+#include "base/statistics.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double finest_s = 1e-9;
+constexpr double most_missing = 0.2;
+constexpr double hole_s = 0.5;
+constexpr double hole_intervals = 20;
+constexpr double hole_change = 0.02;
+
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + (count == 1 ? " sample " : " samples ") + what;
+}
+
+/// Keeps the samples with these indices, in this order.
+void keep(Samples& samples, const std::vector<std::size_t>& kept) {
+  if (kept.size() == samples.size()) return;
+  const auto of = [&](const auto& all) {
+    std::decay_t<decltype(all)> chosen;
+    chosen.reserve(kept.size());
+    for (const std::size_t i : kept) chosen.push_back(all[i]);
+    return chosen;
+  };
+  for (std::vector<double>& values : samples.values) {
+    if (!values.empty()) values = of(values);
+  }
+  samples.row = of(samples.row);
+}
+
+void keep_range(Samples& samples, std::size_t first, std::size_t last) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = first; i < last; ++i) kept.push_back(i);
+  keep(samples, kept);
+}
+
+/// A second counted from 1970 has steps of 0.24 us: what comes of a difference behind that is noise.
+double resolution_s(double largest_s) {
+  const double step = std::nextafter(largest_s, 2 * largest_s + 1) - largest_s;
+  return std::max(finest_s, std::pow(10.0, std::ceil(std::log10(step) - 1e-9)));
+}
+
+double rounded(double value, double step) {
+  const double per_second = std::round(1 / step);
+  return step < 1 ? std::round(value * per_second) / per_second : value;
+}
+
+/// Times count from the first sample.
+void from_zero(std::vector<double>& time_s, std::vector<std::string>& notes) {
+  const double first = time_s.front();
+  double largest = 0;
+  for (const double time : time_s) largest = std::max(largest, std::abs(time));
+  const double step = resolution_s(largest);
+  for (double& time : time_s) time = rounded(time - first, step);
+  if (first != 0)
+    notes.push_back("times are counted from the first sample, which is at " + significant(first, 12) + " s");
+}
+
+double width_of(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return values.empty() ? 0 : *high - *low;
+}
+
+double usual_interval_s(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  return median_of(std::span<double>(steps));
+}
+
+/// A sensor that is slower than the log.
+void leave_out_unread(Samples& samples, std::vector<std::string>& notes) {
+  const std::vector<double>& readings = samples[Role::displacement];
+  std::vector<std::size_t> read;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (std::isfinite(readings[i])) read.push_back(i);
+  }
+  const std::size_t unread = readings.size() - read.size();
+  if (read.empty() || static_cast<double>(unread) <= most_missing * static_cast<double>(readings.size()))
+    return;
+  notes.push_back(counted(unread, "of ") + std::to_string(readings.size()) +
+                  " have no displacement and are left out");
+  keep(samples, read);
+}
+
+}  // namespace
+
+std::optional<SampleProblem> order_in_time(const Mapping& mapping, Samples& samples,
+                                           std::vector<std::string>& notes) {
+  std::vector<std::size_t> timed;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (std::isfinite(samples[Role::time][i])) timed.push_back(i);
+  }
+  if (timed.empty()) return SampleProblem{0, "no sample has a time", {}};
+  if (timed.size() < samples.size())
+    notes.push_back(counted(samples.size() - timed.size(), "without a time left out"));
+  keep(samples, timed);
+  from_zero(samples[Role::time], notes);
+  const std::vector<double>& time_s = samples[Role::time];
+  std::vector<std::size_t> kept;
+  std::size_t repeated = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (time_s[i] < mapping.from_s || time_s[i] > mapping.to_s) continue;
+    if (!kept.empty() && time_s[i] < time_s[kept.back()])
+      return SampleProblem{samples.row[i],
+                           "the time goes back, from " + significant(time_s[kept.back()], 7) + " s to " +
+                               significant(time_s[i], 7) + " s after the first sample",
+                           "two runs in one file? Cut it here and import each"};
+    if (!kept.empty() && time_s[i] == time_s[kept.back()]) {
+      ++repeated;
+    } else {
+      kept.push_back(i);
+    }
+  }
+  if (kept.empty())
+    return SampleProblem{0, "no samples between --from-s and --to-s",
+                         "the file has " + significant(time_s.back()) + " s"};
+  if (repeated > 0) notes.push_back(counted(repeated, "at the time of the one before left out"));
+  keep(samples, kept);
+  if (samples[Role::time].front() != 0) from_zero(samples[Role::time], notes);
+  return std::nullopt;
+}
+
+void complete_drive(Samples& samples, std::vector<std::string>& notes) {
+  leave_out_unread(samples, notes);
+  if (samples[Role::command].empty()) {
+    samples[Role::command] = samples[Role::pressure];
+    notes.emplace_back(
+        "no command is given: the measured pressure stands for it (--drive measured says so to a fit)");
+  }
+  std::vector<double>& command = samples[Role::command];
+  const auto first = std::find_if(command.begin(), command.end(), [](double v) { return std::isfinite(v); });
+  if (const auto before = static_cast<std::size_t>(first - command.begin());
+      before > 0 && first != command.end()) {
+    notes.push_back(counted(before, "before the first command left out"));
+    keep_range(samples, before, samples.size());
+    const double begin_s = samples[Role::time].front();
+    for (double& time : samples[Role::time]) time = rounded(time - begin_s, finest_s);
+  }
+  std::size_t carried = 0;
+  std::vector<double>& whole = samples[Role::command];
+  for (std::size_t i = 1; i < whole.size(); ++i) {
+    if (std::isfinite(whole[i])) continue;
+    whole[i] = whole[i - 1];
+    ++carried;
+  }
+  if (carried > 0) notes.push_back(counted(carried, "without a command keep the one before"));
+}
+
+void cut_at_holes(Samples& samples, std::vector<std::string>& notes) {
+  const std::vector<double>& time_s = samples[Role::time];
+  const std::vector<double>& command = samples[Role::command];
+  const double long_s = std::max(hole_s, hole_intervals * usual_interval_s(time_s));
+  const double change_kpa = hole_change * width_of(command);
+  std::vector<std::size_t> edges{0};
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (time_s[i] - time_s[i - 1] > long_s && std::abs(command[i] - command[i - 1]) > change_kpa)
+      edges.push_back(i);
+  }
+  if (edges.size() == 1) return;
+  edges.push_back(samples.size());
+  std::size_t longest = 0;
+  const auto length_s = [&](std::size_t k) { return time_s[edges[k + 1] - 1] - time_s[edges[k]]; };
+  for (std::size_t k = 1; k + 1 < edges.size(); ++k) {
+    if (length_s(k) > length_s(longest)) longest = k;
+  }
+  std::string others;
+  for (std::size_t k = 0; k + 1 < edges.size(); ++k) {
+    if (k == longest) continue;
+    others += (others.empty() ? "" : ", ") + significant(time_s[edges[k]], 6) + " to " +
+              significant(time_s[edges[k + 1] - 1], 6) + " s";
+  }
+  notes.push_back("the command changed unseen in " + std::to_string(edges.size() - 2) +
+                  (edges.size() == 3 ? " hole" : " holes") + ": the longest piece is kept, " +
+                  significant(time_s[edges[longest]], 6) + " to " +
+                  significant(time_s[edges[longest + 1] - 1], 6) +
+                  " s; with --from-s and --to-s the others: " + others);
+  keep_range(samples, edges[longest], edges[longest + 1]);
+  const double begin_s = samples[Role::time].front();
+  for (double& time : samples[Role::time]) time = rounded(time - begin_s, finest_s);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,27 @@
+#include "sysid/import/table.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace softgrip::sysid {
+
+std::size_t column_index(const Table& table, std::string_view word) {
+  const auto named = [&](const TableColumn& column) { return column.name == word && !word.empty(); };
+  const auto count = std::count_if(table.columns.begin(), table.columns.end(), named);
+  if (count == 1) {
+    const auto found = std::find_if(table.columns.begin(), table.columns.end(), named);
+    return static_cast<std::size_t>(found - table.columns.begin());
+  }
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool is_number = error == std::errc{} && end == word.data() + word.size();
+  if (count > 1 || !is_number || number < 1 || number > table.columns.size()) return table.columns.size();
+  return number - 1;
+}
+
+std::string word_of(const Table& table, std::size_t index) {
+  const std::string& name = table.columns[index].name;
+  return column_index(table, name) == index ? name : std::to_string(index + 1);
+}
+
+}  // namespace softgrip::sysid

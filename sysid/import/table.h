@@ -1,0 +1,60 @@
+#pragma once
+// A foreign file as columns of numbers, whatever its format was; what they mean is the mapping's business.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "document/problem.h"
+
+namespace softgrip::sysid {
+
+/// A cell that is neither a number nor a word for none.
+struct BadCell {
+  std::size_t row = 0;
+  document::Location at;
+  std::string line_text;
+  std::string text;
+};
+
+struct TableColumn {
+  std::string name;            ///< as the file has it; empty where it names no columns
+  std::string unit;            ///< of a row of units or an attribute, as written; empty: none
+  std::vector<double> values;  ///< by row; NaN: nothing was there
+  /// How many of them were dates or times of day; their values are seconds after the first of these.
+  std::size_t moments = 0;
+  std::vector<BadCell> bad;  ///< the first few
+  std::size_t bad_count = 0;
+};
+
+/// All columns are equally long.
+struct Table {
+  std::string file;    ///< as the user named it
+  std::string format;  ///< in words: "CSV, ';' between columns, decimal comma"
+  std::string sha256;  ///< of the file's bytes
+  std::vector<TableColumn> columns;
+  std::vector<int> line;              ///< of each row in the text; empty of a binary file
+  std::vector<std::string> channels;  ///< texts of a column named "channel", in the order of their first rows
+  std::vector<std::string> notes;     ///< what was passed over
+
+  [[nodiscard]] std::size_t rows() const noexcept {
+    return columns.empty() ? 0 : columns.front().values.size();
+  }
+};
+
+/// How a text is to be understood where it cannot be seen.
+struct TableOptions {
+  char separator = 0;  ///< 0: found
+  std::vector<std::string>
+      missing;          ///< what stands where nothing was read, besides empty cells, NaN, NA and the like
+  std::string channel;  ///< only rows whose column "channel" says this; empty: all
+};
+
+/// The column that a word names: its name, or its number counted from 1 where no name is that. Its index, or
+/// the number of columns where there is none or more than one of the name.
+[[nodiscard]] std::size_t column_index(const Table& table, std::string_view word);
+/// How a column is named in messages and options: its name, or its number where it has none of its own.
+[[nodiscard]] std::string word_of(const Table& table, std::size_t index);
+
+}  // namespace softgrip::sysid

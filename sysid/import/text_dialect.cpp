@@ -1,0 +1,260 @@
+#include "sysid/import/text_dialect.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "sysid/import/cell_value.h"
+#include "sysid/import/units.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::array separators{',', ';', '\t', '|', ' '};
+/// So many lines in the middle and at the end show what separates the columns.
+constexpr std::size_t looked_at = 40;
+/// Above the numbers nobody writes more than this.
+constexpr std::size_t longest_preamble = 1000;
+
+struct Row {
+  std::size_t cells = 0;
+  std::size_t values = 0;   ///< numbers, moments, or nothing
+  std::size_t numbers = 0;  ///< numbers and moments
+};
+
+Row row_of(std::string_view line, char separator, const TableOptions& options, std::vector<Cell>& cells) {
+  Row row;
+  if (!split_line(line, separator, cells)) return row;
+  row.cells = cells.size();
+  for (const Cell& cell : cells) {
+    const CellKind kind = cell_value(cell.text, options.missing).kind;
+    row.values += kind == CellKind::text ? 0 : 1;
+    row.numbers += kind == CellKind::number || kind == CellKind::moment ? 1 : 0;
+  }
+  return row;
+}
+
+/// A row of the table: as wide as the others, a number in it, and mostly values.
+bool is_data(const Row& row, std::size_t width) {
+  return row.cells == width && row.numbers > 0 && 2 * row.values > row.cells;
+}
+
+/// How many values the lines hold that are as wide as most of them; the width.
+struct Fit {
+  std::size_t values = 0;
+  std::size_t width = 0;
+};
+Fit fit_of(char separator, const std::vector<TextLine>& sample, const TableOptions& options) {
+  std::map<std::size_t, Fit> by_width;
+  std::vector<Cell> cells;
+  for (const TextLine& line : sample) {
+    const Row row = row_of(line.text, separator, options, cells);
+    if (row.cells < 2 || !is_data(row, row.cells)) continue;
+    Fit& fit = by_width[row.cells];
+    fit.values += row.values;
+    fit.width = row.cells;
+  }
+  Fit best;
+  for (const auto& [width, fit] : by_width) {
+    if (fit.values > best.values) best = fit;
+  }
+  return best;
+}
+
+std::vector<TextLine> sample_of(const std::vector<TextLine>& content) {
+  std::vector<TextLine> sample;
+  const std::size_t middle = content.size() / 2;
+  for (std::size_t i = middle; i < content.size() && i < middle + looked_at; ++i)
+    sample.push_back(content[i]);
+  const std::size_t tail = std::max(middle + looked_at, content.size() - std::min(content.size(), looked_at));
+  for (std::size_t i = tail; i < content.size(); ++i) sample.push_back(content[i]);
+  return sample;
+}
+
+std::vector<std::string> texts_of(const std::vector<Cell>& cells) {
+  std::vector<std::string> texts;
+  texts.reserve(cells.size());
+  for (const Cell& cell : cells) texts.emplace_back(trimmed(cell_text(cell.text)));
+  return texts;
+}
+
+/// Units in brackets or bare, "-" or nothing where there is none; at least one of them.
+bool are_units(const std::vector<std::string>& texts) {
+  bool any = false;
+  for (const std::string& text : texts) {
+    if (text.empty() || text == "-") continue;
+    std::string_view bare = text;
+    if (bare.size() > 2 && (bare.front() == '[' || bare.front() == '('))
+      bare = bare.substr(1, bare.size() - 2);
+    const bool known = is_raw_unit(bare) || unit_named(bare, Quantity::time) ||
+                       unit_named(bare, Quantity::pressure) || unit_named(bare, Quantity::displacement) ||
+                       unit_named(bare, Quantity::temperature);
+    if (!known && bare.size() == text.size()) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::string unbracketed(const std::string& text) {
+  const bool bracketed = text.size() > 2 && (text.front() == '[' || text.front() == '(');
+  if (bracketed) return text.substr(1, text.size() - 2);
+  return text == "-" ? std::string() : text;
+}
+
+/// Names and units above the first row of numbers.
+class Heading {
+ public:
+  Heading(const std::string& file, const TextLines& lines, Dialect& dialect, document::Problems& problems)
+      : file_(file), lines_(lines), dialect_(dialect), problems_(problems) {}
+
+  bool read() {
+    if (dialect_.first_row == 0) {
+      from_comment();
+      return true;
+    }
+    std::size_t above = dialect_.first_row - 1;
+    std::vector<std::string> texts = split_names(lines_.content[above]);
+    if (texts.size() == 1) {
+      from_comment();
+      return true;
+    }
+    if (above > 0 && texts.size() == dialect_.width && are_units(texts)) {
+      const std::vector<std::string> names = split_names(lines_.content[above - 1]);
+      if (names.size() == dialect_.width && !are_units(names)) {
+        dialect_.units = texts;
+        std::transform(texts.begin(), texts.end(), dialect_.units.begin(), unbracketed);
+        texts = names;
+        --above;
+      }
+    }
+    if (texts.size() != dialect_.width) return refuse(lines_.content[above], texts.size());
+    dialect_.names = std::move(texts);
+    dialect_.names_line = lines_.content[above].number;
+    return true;
+  }
+
+ private:
+  /// Between blanks a name may have blanks of its own: then two of them separate.
+  std::vector<std::string> split_names(const TextLine& line) const {
+    std::vector<Cell> cells;
+    split_line(line.text, dialect_.separator, cells);
+    if (dialect_.separator != ' ' || cells.size() == dialect_.width) return texts_of(cells);
+    std::vector<std::string> texts;
+    std::string_view left = trimmed(line.text);
+    while (!left.empty()) {
+      const std::size_t gap = std::min(left.find("  "), left.find('\t'));
+      texts.emplace_back(trimmed(left.substr(0, gap)));
+      left = gap == std::string_view::npos ? std::string_view{} : trimmed(left.substr(gap));
+    }
+    return texts.size() == dialect_.width ? texts : texts_of(cells);
+  }
+
+  /// "# time, pressure": what numpy.savetxt writes.
+  void from_comment() {
+    const int first = lines_.content[dialect_.first_row].number;
+    const TextLine* last = nullptr;
+    for (const TextLine& comment : lines_.comments) {
+      if (comment.number < first) last = &comment;
+    }
+    if (last == nullptr) return;
+    std::string_view text = trimmed(last->text);
+    while (!text.empty() && (text.front() == '#' || text.front() == '%' || text.front() == '/'))
+      text.remove_prefix(1);
+    std::vector<std::string> names = split_names({last->number, text});
+    const bool fits =
+        names.size() == dialect_.width && std::none_of(names.begin(), names.end(), [](const auto& name) {
+          return name.empty() || cell_value(name, {}).kind == CellKind::number;
+        });
+    if (!fits) return;
+    dialect_.names = std::move(names);
+    dialect_.names_line = last->number;
+  }
+
+  bool refuse(const TextLine& line, std::size_t names) {
+    const bool commas = dialect_.width == 2 * names && dialect_.separator == ',';
+    problems_.add(
+        {file_,
+         {line.number, 1},
+         std::string(line.text.substr(0, 200)),
+         std::to_string(names) + " names above " + std::to_string(dialect_.width) + " columns of numbers",
+         commas
+             ? "decimal commas and commas between the columns cannot be told apart: export the file with ';' "
+               "between them"
+             : ""});
+    return false;
+  }
+
+  const std::string& file_;
+  const TextLines& lines_;
+  Dialect& dialect_;
+  document::Problems& problems_;
+};
+
+}  // namespace
+
+TextLines text_lines(std::string_view text) {
+  TextLines lines;
+  int number = 0;
+  for (const std::string_view line : lines_of(text)) {
+    ++number;
+    const std::string_view said = trimmed(line);
+    if (said.empty()) continue;
+    const bool comment = said.front() == '#' || said.front() == '%' || said.starts_with("//");
+    // "#N/A" is a cell.
+    const bool cell = said.starts_with("#N/A") || said.starts_with("#n/a");
+    (comment && !cell ? lines.comments : lines.content).push_back({number, line});
+  }
+  return lines;
+}
+
+bool split_line(std::string_view line, char separator, std::vector<Cell>& cells) {
+  if (separator != ' ') return split(line, cells, separator);
+  cells.clear();
+  std::size_t at = 0;
+  const auto blank = [&](std::size_t i) { return line[i] == ' ' || line[i] == '\t'; };
+  while (at < line.size()) {
+    while (at < line.size() && blank(at)) ++at;
+    const std::size_t begin = at;
+    bool quoted = false;
+    for (; at < line.size() && (quoted || !blank(at)); ++at) quoted = quoted != (line[at] == '"');
+    if (at > begin) cells.push_back({line.substr(begin, at - begin), static_cast<int>(begin) + 1});
+    if (quoted) return false;
+  }
+  return true;
+}
+
+std::optional<Dialect> dialect_of(const std::string& file, const TextLines& lines,
+                                  const TableOptions& options, document::Problems& problems) {
+  Dialect dialect;
+  Fit best;
+  const std::vector<TextLine> sample = sample_of(lines.content);
+  for (const char separator : separators) {
+    if (options.separator != 0 && separator != options.separator) continue;
+    const Fit fit = fit_of(separator, sample, options);
+    if (fit.values <= best.values) continue;
+    best = fit;
+    dialect.separator = separator;
+  }
+  std::vector<Cell> cells;
+  std::size_t first = 0;
+  const std::size_t end = std::min(lines.content.size(), longest_preamble);
+  while (first < end &&
+         !(best.width > 0 &&
+           is_data(row_of(lines.content[first].text, dialect.separator, options, cells), best.width)))
+    ++first;
+  if (first == end) {
+    const TextLine at = lines.content.empty() ? TextLine{1, {}} : lines.content.front();
+    problems.add({file,
+                  {at.number, 1},
+                  std::string(at.text.substr(0, 200)),
+                  lines.content.empty() ? "the file is empty" : "no rows of numbers in two or more columns",
+                  lines.content.empty() ? "" : "--separator says what stands between the columns"});
+    return std::nullopt;
+  }
+  dialect.width = best.width;
+  dialect.first_row = first;
+  if (!Heading(file, lines, dialect, problems).read()) return std::nullopt;
+  return dialect;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,88 @@
+#include "sysid/import/text_encoding.h"
+
+#include <cstdint>
+
+namespace softgrip::sysid {
+namespace {
+
+void append(std::string& text, std::uint32_t code) {
+  const auto put = [&](std::uint32_t byte) { text.push_back(static_cast<char>(byte)); };
+  if (code < 0x80) {
+    put(code);
+  } else if (code < 0x800) {
+    put(0xc0 | (code >> 6));
+    put(0x80 | (code & 0x3f));
+  } else if (code < 0x10000) {
+    put(0xe0 | (code >> 12));
+    put(0x80 | ((code >> 6) & 0x3f));
+    put(0x80 | (code & 0x3f));
+  } else {
+    put(0xf0 | (code >> 18));
+    put(0x80 | ((code >> 12) & 0x3f));
+    put(0x80 | ((code >> 6) & 0x3f));
+    put(0x80 | (code & 0x3f));
+  }
+}
+
+std::string from_utf16(std::string_view bytes, bool big_endian) {
+  std::string text;
+  const auto unit = [&](std::size_t i) {
+    const auto first = static_cast<std::uint8_t>(bytes[i]);
+    const auto second = static_cast<std::uint8_t>(bytes[i + 1]);
+    return static_cast<std::uint32_t>(big_endian ? first << 8 | second : second << 8 | first);
+  };
+  for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+    std::uint32_t code = unit(i);
+    if (code >= 0xd800 && code < 0xdc00 && i + 3 < bytes.size()) {
+      code = 0x10000 + ((code - 0xd800) << 10) + ((unit(i + 2) - 0xdc00) & 0x3ff);
+      i += 2;
+    }
+    append(text, code);
+  }
+  return text;
+}
+
+/// Continuation bytes that the first byte of a character asks for; -1: it begins none.
+int continuations(std::uint8_t first) {
+  if (first < 0x80) return 0;
+  if (first >= 0xc2 && first < 0xe0) return 1;
+  if (first >= 0xe0 && first < 0xf0) return 2;
+  return first >= 0xf0 && first < 0xf5 ? 3 : -1;
+}
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    int left = continuations(static_cast<std::uint8_t>(text[i++]));
+    if (left < 0) return false;
+    for (; left > 0; --left, ++i) {
+      if (i == text.size() || (static_cast<std::uint8_t>(text[i]) & 0xc0U) != 0x80) return false;
+    }
+  }
+  return true;
+}
+
+/// Old Macs end lines with \r alone.
+void normalise_line_ends(std::string& text) {
+  if (text.find('\n') != std::string::npos) return;
+  for (char& c : text) c = c == '\r' ? '\n' : c;
+}
+
+}  // namespace
+
+tl::expected<std::string, std::string> utf8_of(std::string_view bytes) {
+  std::string text;
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
+    text = from_utf16(bytes, bytes.front() == '\xfe');
+  } else if (bytes.find('\0') != std::string_view::npos) {
+    return tl::unexpected(std::string("this is no text, nor a format that is known"));
+  } else if (is_utf8(bytes)) {
+    if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+    text = bytes;
+  } else {
+    for (const char c : bytes) append(text, static_cast<std::uint8_t>(c));
+  }
+  normalise_line_ends(text);
+  return text;
+}
+
+}  // namespace softgrip::sysid

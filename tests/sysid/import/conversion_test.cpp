@@ -1,0 +1,231 @@
+#include "sysid/import/conversion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/numbers.h"
+#include "sysid/import/doubts.h"
+#include "sysid/import/proposal.h"
+#include "sysid/import/samples.h"
+#include "sysid/import/text_table.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// 200 samples, command up and down twice; `row` writes one.
+template <class Row>
+std::string text_of(const std::string& header, Row row) {
+  std::string text = header + "\n";
+  for (int i = 0; i < 200; ++i) {
+    const double p = 30 - std::abs(i % 100 - 50) * 0.6;
+    text += row(i, p, 0.2 * p + 0.01 * i) + "\n";
+  }
+  return text;
+}
+
+std::string plain(int i, double p, double y) {
+  return shortest(0.01 * i) + "," + shortest(p) + "," + shortest(y);
+}
+
+Table table_of(const std::string& text) {
+  document::Problems problems;
+  auto table = parse_text_table("t.csv", text, {}, problems);
+  EXPECT_TRUE(table) << problems.format();
+  return table ? *table : Table{};
+}
+
+ImportedLog log_of(const std::string& text, const Mapping& given = {}) {
+  const Table table = table_of(text);
+  document::Problems problems;
+  auto result = convert(table, propose(table, given, true).mapping, problems);
+  EXPECT_TRUE(result) << problems.format();
+  return result ? *result : ImportedLog{};
+}
+
+std::string refusal(const std::string& text, const Mapping& mapping) {
+  document::Problems problems;
+  EXPECT_FALSE(convert(table_of(text), mapping, problems));
+  return problems.format();
+}
+
+Mapping mapping_of(const char* time, const char* command, const char* displacement) {
+  Mapping mapping;
+  mapping[Role::time].columns = {time};
+  mapping[Role::command].columns = {command};
+  mapping[Role::displacement].columns = {displacement};
+  return mapping;
+}
+
+TEST(Convert, UnitScaleAndZero) {
+  const std::string text = text_of("t_ms,set_psi,laser_V", [](int i, double p, double y) {
+    return shortest(10.0 * i) + "," + shortest(p) + "," + shortest(2 + y);
+  });
+  Mapping mapping = mapping_of("t_ms", "set_psi", "laser_V");
+  mapping[Role::displacement].scale = -2;
+  mapping[Role::displacement].zero = 2;
+  const Log log = log_of(text, mapping).log;
+  EXPECT_EQ(log.time_s[7], 0.07);
+  EXPECT_NEAR(log.pressure_command_kpa[50], 30 * 6.894757293168361, 1e-9);
+  EXPECT_NEAR(log.displacement_mm[50], -2 * 6.5, 1e-9);
+}
+
+TEST(Convert, ZeroFirstSubtractsTheFirstValue) {
+  const std::string text =
+      text_of("t_s,set_kpa,tip_mm", [](int i, double p, double y) { return plain(i, p, y + 5); });
+  Mapping mapping = mapping_of("t_s", "set_kpa", "tip_mm");
+  mapping[Role::displacement].zero_first = true;
+  const Log log = log_of(text, mapping).log;
+  EXPECT_EQ(log.displacement_mm[0], 0);
+  EXPECT_NEAR(log.displacement_mm[50], 6.5, 1e-9);
+}
+
+TEST(Convert, EpochsLoseNoMoreThanADoubleDoes) {
+  const std::string text = text_of("timestamp,set_kpa,tip_mm", [](int i, double p, double y) {
+    return fixed(1717156800 + 0.01 * i, 3) + "," + shortest(p) + "," + shortest(y);
+  });
+  const Log log = log_of(text).log;
+  for (int i = 0; i < 200; ++i) EXPECT_EQ(log.time_s[static_cast<std::size_t>(i)], i / 100.0);
+}
+
+TEST(Convert, WithoutACommandTheMeasuredPressureStandsForIt) {
+  const ImportedLog result = log_of(text_of("time_s,pressure_kpa,tip_mm", plain));
+  EXPECT_EQ(result.log.pressure_command_kpa, result.log.pressure_kpa);
+  EXPECT_NE(result.notes.back().find("the measured pressure stands for it"), std::string::npos);
+}
+
+TEST(Convert, WhatIsMissingOrWrongIsSaidInTheWordsOfTheOptions) {
+  const std::string text = text_of("time_s,set,laser_V", plain);
+  const std::string said = refusal(text, mapping_of("time_s", "sett", "laser_V"));
+  EXPECT_NE(said.find("command: no column 'sett'"), std::string::npos) << said;
+  EXPECT_NE(said.find("is 'set' meant?"), std::string::npos);
+  EXPECT_NE(said.find("--scale displacement=X, mm per V"), std::string::npos);
+  EXPECT_NE(refusal(text, mapping_of("time_s", "set", "laser_V")).find("--unit command=kPa"),
+            std::string::npos);
+  EXPECT_NE(refusal(text, {}).find("nothing says which column is the time"), std::string::npos);
+  EXPECT_NE(refusal(text_of("a,b,c", plain), {}).find("--rate-hz R"), std::string::npos);
+}
+
+TEST(Convert, WhatNoOtherCommandWouldReadIsRefused) {
+  const std::string still =
+      text_of("time_s,set_kpa,tip_mm", [](int i, double, double y) { return plain(i, 7, y); });
+  EXPECT_NE(refusal(still, mapping_of("time_s", "set_kpa", "tip_mm"))
+                .find("no log comes of it: the command is 7 kPa"),
+            std::string::npos);
+}
+
+TEST(Samples, ATimeThatGoesBackIsAProblemAtItsRow) {
+  Samples samples;
+  samples[Role::time] = {0, 1, 2, 1.5};
+  samples[Role::displacement] = {0, 0, 0, 0};
+  samples.row = {0, 1, 2, 3};
+  std::vector<std::string> notes;
+  const auto problem = order_in_time({}, samples, notes);
+  ASSERT_TRUE(problem);
+  EXPECT_EQ(problem->row, 3U);
+}
+
+TEST(Samples, OfTwoAtOneTimeTheFirstStays) {
+  Samples samples;
+  samples[Role::time] = {10, 10.5, 10.5, std::nan(""), 11};
+  samples[Role::displacement] = {1, 2, 3, 4, 5};
+  samples.row = {0, 1, 2, 3, 4};
+  std::vector<std::string> notes;
+  EXPECT_FALSE(order_in_time({}, samples, notes));
+  EXPECT_EQ(samples[Role::time], (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(samples[Role::displacement], (std::vector<double>{1, 2, 5}));
+  EXPECT_EQ(notes.size(), 3U);
+}
+
+TEST(Samples, AHoleIsOneOnlyWhereTheCommandChanged) {
+  for (const double change : {0.0, 30.0}) {
+    Samples samples;
+    for (int i = 0; i < 200; ++i) {
+      samples[Role::time].push_back(0.01 * i + (i < 80 ? 0 : 2));
+      samples[Role::command].push_back(i < 80 ? 10 : 10 + change);
+      samples.row.push_back(static_cast<std::size_t>(i));
+    }
+    samples[Role::command].front() = 0;
+    std::vector<std::string> notes;
+    cut_at_holes(samples, notes);
+    EXPECT_EQ(samples.size(), change > 0 ? 120U : 200U);
+    EXPECT_EQ(samples.row.front(), change > 0 ? 80U : 0U);
+    EXPECT_EQ(samples[Role::time].front(), 0);
+  }
+}
+
+TEST(Samples, ASlowSensorLeavesOutWhatItDidNotRead) {
+  Samples samples;
+  for (int i = 0; i < 100; ++i) {
+    samples[Role::time].push_back(0.01 * i);
+    samples[Role::command].push_back(i == 50 ? std::nan("") : i);
+    samples[Role::displacement].push_back(i % 10 == 0 ? i : std::nan(""));
+    samples.row.push_back(static_cast<std::size_t>(i));
+  }
+  std::vector<std::string> notes;
+  complete_drive(samples, notes);
+  EXPECT_EQ(samples.size(), 10U);
+  EXPECT_EQ(samples[Role::command][5], 40);
+  EXPECT_EQ(notes.size(), 2U);
+}
+
+TEST(Propose, TakesWhatNamesAndUnitsSay) {
+  const Table table = table_of(
+      text_of("Zeit [ms],supply_bar,p_soll_bar,p_ist_bar,Temp (\xc2\xb0"
+              "C),Weg [mm]",
+              [](int i, double p, double y) {
+                return shortest(10.0 * i) + ",7," + shortest(p) + "," + shortest(p) + ",21," + shortest(y);
+              }));
+  const Proposal proposal = propose(table, {}, true);
+  EXPECT_TRUE(proposal.missing.empty());
+  EXPECT_EQ(proposal.guessed.size(), 6U);
+  EXPECT_EQ(options_of(proposal.mapping),
+            "--time 'Zeit [ms]' --command p_soll_bar --pressure p_ist_bar --displacement 'Weg [mm]' "
+            "--temperature 'Temp (\xc2\xb0"
+            "C)' --supply supply_bar");
+}
+
+TEST(Propose, LeavesWhatIsGivenAlone) {
+  const Table table = table_of(text_of("t_s,p1_kpa,tip_mm", plain));
+  Mapping given;
+  given[Role::pressure].columns = {"p1_kpa"};
+  const Proposal proposal = propose(table, given, true);
+  EXPECT_FALSE(proposal.mapping[Role::command].given());
+  EXPECT_EQ(proposal.guessed, (std::vector<Role>{Role::time, Role::displacement}));
+}
+
+TEST(Doubts, SignScaleAndOrder) {
+  Log log;
+  for (int i = 0; i < 400; ++i) {
+    const double p = 30 - std::abs(i % 100 - 50) * 0.6;
+    log.time_s.push_back(0.01 * i);
+    log.pressure_command_kpa.push_back(p);
+    log.pressure_kpa.push_back(p + 0.01 * (i % 3));
+    log.displacement_mm.push_back(0.2 * p);
+  }
+  EXPECT_TRUE(doubts_about(log).empty());
+  const auto doubted = [&](auto change) {
+    Log other = log;
+    for (std::size_t i = 0; i < other.size(); ++i) change(other, i);
+    const auto doubts = doubts_about(other);
+    return doubts.empty() ? std::string() : doubts.front();
+  };
+  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.displacement_mm[i] *= -1; }).find("the reading falls"),
+            std::string::npos);
+  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.pressure_kpa[i] /= 6.894757; }).find("psi and kPa"),
+            std::string::npos);
+  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.displacement_mm[i] /= 1000; }).find("metres"),
+            std::string::npos);
+  EXPECT_NE(doubted([](Log& l, std::size_t i) {
+              l.pressure_command_kpa[i] += 101;
+              l.pressure_kpa[i] += 101;
+            }).find("absolute"),
+            std::string::npos);
+  EXPECT_NE(doubted([&](Log& l, std::size_t i) {
+              l.pressure_kpa[i] = log.pressure_kpa[std::min<std::size_t>(i + 5, 399)];
+            }).find("swapped"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

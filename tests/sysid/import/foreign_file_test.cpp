@@ -1,0 +1,71 @@
+#include "sysid/import/foreign_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/files.h"
+#include "sysid/import/array_table.h"
+#include "sysid/import/hdf5_table.h"
+#include "sysid/import/mat_table.h"
+
+// Values of MATLAB and HDF5 files are held against the truth by tests/system/test_import.py.
+namespace softgrip::sysid {
+namespace {
+
+TEST(ArrayCollector, MatricesBecomeColumnsWhicheverWayTheyLie) {
+  ArrayCollector arrays("f");
+  arrays.add("stands", "", 3, 2, {1, 2, 3, 4, 5, 6});
+  arrays.add("lies", "", 2, 3, {1, 4, 2, 5, 3, 6});
+  arrays.add("row", "psi", 1, 3, {7, 8, 9});
+  arrays.add("other", "", 1, 5, {0, 0, 0, 0, 0});
+  document::Problems problems;
+  const auto table = arrays.table("test", problems);
+  ASSERT_TRUE(table);
+  ASSERT_EQ(table->columns.size(), 5U);
+  EXPECT_EQ(table->columns[1].name, "stands(:,2)");
+  EXPECT_EQ(table->columns[1].values, (std::vector<double>{4, 5, 6}));
+  EXPECT_EQ(table->columns[2].name, "lies(1,:)");
+  EXPECT_EQ(table->columns[2].values, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(table->columns[4].unit, "psi");
+  EXPECT_EQ(table->notes, std::vector<std::string>{"'other' is passed over: 5 values where others have 3"});
+}
+
+TEST(Gunzipped, IsBoundedAndSaysWhatIsWrong) {
+  // printf 'hello hello' | gzip -n
+  const std::string packed(
+      "\x1f\x8b\x08\x00\x00\x00\x00\x00\x02\x03\xcb\x48\xcd\xc9\xc9\x57\xc8\x00\x91\x00\x40\xa6\x2d\x01\x0b"
+      "\x00\x00\x00",
+      28);
+  const auto text = gunzipped(packed, 100);
+  ASSERT_TRUE(text) << text.error();
+  EXPECT_EQ(*text, "hello hello");
+  EXPECT_FALSE(gunzipped(packed, 5));
+  EXPECT_EQ(gunzipped(packed.substr(0, 15), 100).error(), "the gzip file is cut off");
+  std::string broken = packed;
+  broken[11] = '\x11';
+  EXPECT_FALSE(gunzipped(broken, 100));
+}
+
+TEST(ForeignFile, BrokenBinariesAreRefusedAndMissingOnesUnreadable) {
+  const auto folder = std::filesystem::temp_directory_path() / "softgrip_foreign_file_test";
+  for (const std::string& text :
+       {std::string("MATLAB 5.0 MAT-file"), std::string("\x89HDF\r\n\x1a\n and no more"),
+        std::string("PK\x03\x04"), std::string(40, '\0')}) {
+    const std::string path = (folder / "file").string();
+    ASSERT_TRUE(write_file(path, text));
+    document::Problems problems;
+    bool unreadable = false;
+    EXPECT_FALSE(read_foreign_file(path, {}, problems, unreadable)) << text;
+    EXPECT_EQ(problems.size(), 1U);
+    EXPECT_FALSE(unreadable);
+  }
+  std::filesystem::remove_all(folder);
+  document::Problems problems;
+  bool unreadable = false;
+  EXPECT_FALSE(read_foreign_file((folder / "file").string(), {}, problems, unreadable));
+  EXPECT_TRUE(unreadable);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

@@ -1,0 +1,46 @@
+// Fuzz target of the foreign text tables: any bytes are a table or a refusal, what is proposed for it can be
+// said by options and a mapping file, and what is converted is a log that can be read.
+//
+//   scripts/fuzz.sh import_fuzz 30
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "sysid/import/conversion.h"
+#include "sysid/import/doubts.h"
+#include "sysid/import/mapping_file.h"
+#include "sysid/import/proposal.h"
+#include "sysid/import/text_table.h"
+
+namespace {
+
+using namespace softgrip;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  document::Problems problems;
+  const auto table = sysid::parse_text_table("fuzz.csv", text, {}, problems);
+  require(table.has_value() == problems.empty());
+  (void)problems.format();
+  if (!table) return 0;
+  for (const sysid::TableColumn& column : table->columns) require(column.values.size() == table->rows());
+  const sysid::Proposal proposal = sysid::propose(*table, {}, true);
+  (void)sysid::mapping_table(*table, proposal.mapping);
+  (void)sysid::options_of(proposal.mapping);
+  const auto result = sysid::convert(*table, proposal.mapping, problems);
+  require(result.has_value() == problems.empty());
+  (void)problems.format();
+  if (!result) return 0;
+  require(result->log.size() == result->log.displacement_mm.size() && result->log.time_s.front() == 0);
+  (void)sysid::doubts_about(result->log);
+  return 0;
+}

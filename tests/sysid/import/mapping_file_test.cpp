@@ -1,0 +1,58 @@
+#include "sysid/import/mapping_file.h"
+
+#include <gtest/gtest.h>
+
+namespace softgrip::sysid {
+namespace {
+
+Mapping full() {
+  Mapping mapping;
+  mapping[Role::time] = {{"Time \"s\" \\ \xc2\xb5"}, "ms", {}, {}, false};
+  mapping[Role::command] = {{"p1", "p2"}, "psi", {}, 14.7, false};
+  mapping[Role::displacement] = {{"3"}, "V", -2.5, {}, true};
+  mapping.separator = '\t';
+  mapping.missing = {"-999", "lost"};
+  mapping.channel = "left: 1";
+  mapping.from_s = 1.5;
+  mapping.to_s = 20;
+  return mapping;
+}
+
+TEST(MappingFile, ReadsWhatItWrote) {
+  document::Problems problems;
+  const std::string text =
+      mapping_yaml(full(), {"a\nb.csv", "0123", "CSV"}, "softgrip 1", {"a remark\nof two lines"});
+  const auto read = parse_mapping("m.yaml", text, problems);
+  ASSERT_TRUE(read) << problems.format() << text;
+  EXPECT_EQ(*read, full());
+  EXPECT_NE(text.find("# sha256: 0123\n"), std::string::npos);
+}
+
+TEST(MappingFile, MistakesHaveTheirPlace) {
+  const auto refused = [](const std::string& text) {
+    document::Problems problems;
+    EXPECT_FALSE(parse_mapping("m.yaml", text, problems)) << text;
+    return problems.format();
+  };
+  const std::string good = "schema: 1\nrate_hz: 100\ncommand: {columns: [a]}\n";
+  EXPECT_NE(refused(good).find("the mapping says too little"), std::string::npos);
+  EXPECT_NE(refused(good + "displacment: {columns: [b]}\n").find("m.yaml:4:1"), std::string::npos);
+  EXPECT_NE(refused(good + "displacement: {columns: [], scale: 0}\n").find("m.yaml:4:"), std::string::npos);
+  EXPECT_NE(refused(good + "displacement: {columns: [b], zero: last}\n").find("m.yaml:4:"),
+            std::string::npos);
+  EXPECT_NE(refused(good + "displacement: {columns: [b]}\nseparator: dots\n").find("separates no columns"),
+            std::string::npos);
+}
+
+TEST(Mapping, OptionsAreQuotedForAShell) {
+  EXPECT_EQ(shell_word("a b"), "'a b'");
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word("p=1.5"), "p=1.5");
+  EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(separator_named("tab"), '\t');
+  EXPECT_EQ(separator_named(";"), ';');
+  EXPECT_EQ(separator_named("dots"), 0);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

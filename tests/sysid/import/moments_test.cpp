@@ -1,0 +1,46 @@
+#include "sysid/import/moments.h"
+
+#include <gtest/gtest.h>
+
+namespace softgrip::sysid {
+namespace {
+
+double seconds_of(const char* text) {
+  const auto moment = moment_of(text);
+  return moment ? seconds(moment->time) : -1;
+}
+
+TEST(Moments, AreSecondsSince1970) {
+  // date -u -d 2024-05-31T12:00:00Z +%s
+  EXPECT_DOUBLE_EQ(seconds_of("2024-05-31T12:00:00Z"), 1717156800);
+  EXPECT_DOUBLE_EQ(seconds_of("2024-05-31 12:00:00"), 1717156800);
+  EXPECT_DOUBLE_EQ(seconds_of("2024-05-31T14:00:00+02:00"), 1717156800);
+  EXPECT_DOUBLE_EQ(seconds_of("2024-05-31T07:00:00-0500"), 1717156800);
+  EXPECT_DOUBLE_EQ(seconds_of("31.05.2024 12:00:00"), 1717156800);
+  EXPECT_DOUBLE_EQ(seconds_of("2024/5/31 12:00"), 1717156800);
+  EXPECT_DOUBLE_EQ(seconds_of("2024-05-31T12:00:00.25Z"), 1717156800.25);
+  EXPECT_DOUBLE_EQ(seconds_of("2024-05-31T12:00:00,25"), 1717156800.25);
+}
+
+TEST(Moments, KeepNanoseconds) {
+  const auto moment = moment_of("2024-05-31T12:00:00.123456789Z");
+  ASSERT_TRUE(moment);
+  EXPECT_EQ(moment->time % ns_per_s, 123456789);
+}
+
+TEST(Moments, OfTheDayAloneHaveNoDate) {
+  const auto moment = moment_of("23:59:59.5");
+  ASSERT_TRUE(moment);
+  EXPECT_FALSE(moment->dated);
+  EXPECT_DOUBLE_EQ(seconds(moment->time), 86399.5);
+}
+
+TEST(Moments, AreNotGuessed) {
+  for (const char* text :
+       {"05/31/2024 12:00:00", "2024-02-30 12:00:00", "25:00:00", "12:61", "2024-05-31", "12", "1.5",
+        "2024-05-31T12:00:00Zulu", "12:00:00 pm", "", "T", "::", "2024-13-01T00:00:00"})
+    EXPECT_FALSE(moment_of(text)) << text;
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

@@ -1,0 +1,129 @@
+#include "sysid/import/text_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "sysid/import/cell_value.h"
+#include "sysid/import/text_dialect.h"
+#include "sysid/import/text_encoding.h"
+
+namespace softgrip::sysid {
+namespace {
+
+Table table_of(const std::string& text, const TableOptions& options = {}) {
+  document::Problems problems;
+  auto table = parse_text_table("t.csv", text, options, problems);
+  EXPECT_TRUE(table) << problems.format();
+  return table ? *table : Table{};
+}
+
+std::string refusal(const std::string& text, const TableOptions& options = {}) {
+  document::Problems problems;
+  EXPECT_FALSE(parse_text_table("t.csv", text, options, problems));
+  return problems.format();
+}
+
+TEST(TextTable, SeparatorsAreFound) {
+  for (const char separator : {',', ';', '\t', '|', ' '}) {
+    std::string text = "a,b,c\n1,2.5,3\n4,5.5,6\n";
+    for (char& c : text) c = c == ',' ? separator : c;
+    const Table table = table_of(text);
+    ASSERT_EQ(table.columns.size(), 3U) << separator;
+    EXPECT_EQ(table.columns[1].name, "b");
+    EXPECT_EQ(table.columns[1].values, (std::vector<double>{2.5, 5.5}));
+    EXPECT_EQ(table.line, (std::vector<int>{2, 3}));
+  }
+}
+
+TEST(TextTable, DecimalCommasAreFoundBetweenSemicolonsBlanksAndInQuotes) {
+  for (const char* text : {"a;b\n0,5;1\n1,5;2\n", "a b\n0,5 1\n1,5 2\n", "a,b\n\"0,5\",1\n\"1,5\",2\n"})
+    EXPECT_EQ(table_of(text).columns[0].values, (std::vector<double>{0.5, 1.5})) << text;
+}
+
+TEST(TextTable, PointsAndCommasInOneFileAreRefused) {
+  EXPECT_NE(refusal("a;b\n0,5;1\n1.5;2\n2,5;3\n").find("t.csv:3:1"), std::string::npos);
+  EXPECT_NE(refusal("a,b\n0,5,1,5\n1,5,2,5\n").find("2 names above 4 columns"), std::string::npos);
+}
+
+TEST(TextTable, UnitsStandBelowTheNames) {
+  const Table table = table_of("time;p\n[ms];[psi]\n1;2\n3;4\n");
+  EXPECT_EQ(table.columns[0].unit, "ms");
+  EXPECT_EQ(table.columns[1].unit, "psi");
+  EXPECT_EQ(table.columns[1].name, "p");
+}
+
+TEST(TextTable, CommentsAndLinesAboveTheNamesArePassedOver) {
+  const Table table = table_of("Report\nOperator: me\n# comment\n\nt,x\n0,1\n# more\n1,2\n");
+  EXPECT_EQ(table.columns[1].name, "x");
+  EXPECT_EQ(table.columns[1].values, (std::vector<double>{1, 2}));
+  EXPECT_EQ(table.line, (std::vector<int>{6, 8}));
+  EXPECT_EQ(table.notes, std::vector<std::string>{"2 lines above the columns' names passed over"});
+}
+
+TEST(TextTable, NamesMayStandInACommentOrNowhere) {
+  EXPECT_EQ(table_of("# t x\n0 1\n1 2\n").columns[1].name, "x");
+  const Table nameless = table_of("0,1\n1,2\n");
+  EXPECT_EQ(nameless.columns[1].name, "");
+  EXPECT_EQ(column_index(nameless, "2"), 1U);
+  EXPECT_EQ(word_of(nameless, 1), "2");
+}
+
+TEST(TextTable, WordsThatSayNothingAreNothing) {
+  const Table table = table_of("t,x\n0,NaN\n1,\n2,N/A\n3,-999\n4,inf\n5,7\n", {0, {"-999"}, {}});
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(table.columns[1].values[i])) << i;
+  EXPECT_EQ(table.columns[1].values[5], 7);
+  EXPECT_EQ(table.columns[1].bad_count, 0U);
+}
+
+TEST(TextTable, OtherWordsAreKeptWithTheirPlace) {
+  const Table table = table_of("t,x\n0,1\n1,oops\n2,3\n");
+  ASSERT_EQ(table.columns[1].bad.size(), 1U);
+  EXPECT_EQ(table.columns[1].bad[0].at, (document::Location{3, 3}));
+  EXPECT_EQ(table.columns[1].bad[0].text, "oops");
+}
+
+TEST(TextTable, MidnightIsPassed) {
+  const Table table = table_of("t,x\n23:59:59.5,1\n00:00:00.5,2\n00:00:01.5,3\n");
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(table.columns[0].moments, 3U);
+}
+
+TEST(TextTable, TheLastLineMayBeCutOffOthersMayNot) {
+  EXPECT_EQ(table_of("t,x\n0,1\n1,2\n2").notes.size(), 1U);
+  EXPECT_NE(refusal("t,x\n0,1\n1\n2,3\n3,4\n").find("t.csv:3:1: 1 cells where the rows above have 2"),
+            std::string::npos);
+}
+
+TEST(TextTable, ChannelsAreToldApart) {
+  const std::string text = "t,channel,x\n0,left,1\n0,right,2\n1,left,3\n1,right,4\n";
+  EXPECT_EQ(table_of(text).channels, (std::vector<std::string>{"left", "right"}));
+  EXPECT_EQ(table_of(text, {0, {}, "right"}).columns[2].values, (std::vector<double>{2, 4}));
+}
+
+TEST(TextTable, WhatIsNoTableIsRefused) {
+  EXPECT_NE(refusal("").find("the file is empty"), std::string::npos);
+  EXPECT_NE(refusal("hello\nworld\n").find("no rows of numbers"), std::string::npos);
+  EXPECT_NE(refusal(std::string("a\0b", 3)).find("no text"), std::string::npos);
+}
+
+TEST(CellValue, ThousandsAreNoNumbers) {
+  for (const char* cell : {"1.234,5", "1,234.5", "1,234,567", "1,", ",5x", "0x1p3z"})
+    EXPECT_EQ(cell_value(cell, {}).kind, CellKind::text) << cell;
+  EXPECT_EQ(cell_value(" \"-1,5e3\" ", {}).number, -1500);
+}
+
+TEST(TextEncoding, AllBecomeUtf8) {
+  EXPECT_EQ(utf8_of("\xef\xbb\xbf"
+                    "a"),
+            "a");
+  EXPECT_EQ(utf8_of(std::string_view("\xff\xfe\xb5\0m\0", 6)), "\xc2\xb5m");
+  EXPECT_EQ(utf8_of(std::string_view("\xfe\xff\0\xb5\0m", 6)), "\xc2\xb5m");
+  EXPECT_EQ(utf8_of("\xb5m"), "\xc2\xb5m");
+  EXPECT_EQ(utf8_of("\xc2\xb5m"), "\xc2\xb5m");
+  EXPECT_EQ(utf8_of("1\r2\r"), "1\n2\n");
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

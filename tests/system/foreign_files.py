@@ -1,0 +1,413 @@
+"""Files as other people have them, made by this script in every dialect, and what `softgrip import` makes of each.
+
+    tests/system/foreign_files.py [--page] [--keep FOLDER]
+
+Prints what came of every file; --page writes docs/reference/foreign-files.md. Exit code 6 if one came to anything else
+than what stands here: values equal to the truth, or refused with the reason. Needs a built tree and python3-h5py.
+"""
+
+import argparse
+import csv
+import datetime
+import gzip
+import json
+import math
+import os
+import pathlib
+import shlex
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
+PAGE = ROOT / "docs/reference/foreign-files.md"
+
+# The truth: three seconds at 100 Hz up to 60 kPa and back, a lagging measured pressure, a finger that follows it.
+COUNT = 300
+PSI, BAR = 6.894757293168361, 100.0
+
+
+def truth():
+    time_s = [i / 100 for i in range(COUNT)]
+    command = [round(60 - abs(40 * t - 60), 6) for t in time_s]
+    pressure, now = [], 0.0
+    for value in command:
+        now += 0.2 * (value - now)
+        pressure.append(round(now, 6))
+    displacement = [round(0.2 * p + 0.4 * math.sin(p / 20), 6) for p in pressure]
+    temperature = [round(21 + 0.5 * t, 6) for t in time_s]
+    return {"time_s": time_s, "pressure_command_kpa": command, "pressure_kpa": pressure,
+            "displacement_mm": displacement, "temperature_c": temperature}
+
+
+TRUTH = truth()
+T, COMMAND, PRESSURE, TIP, WARM = TRUTH.values()
+
+
+def table(names, columns, separator=",", decimal=".", above="", units=None, quote=False, end="\n"):
+    """Rows of text; a value that is None is an empty cell."""
+    def cell(value):
+        text = "" if value is None else value if isinstance(value, str) else repr(value)
+        text = text if isinstance(value, str) else text.replace(".", decimal)
+        return f'"{text}"' if quote and text else text
+
+    def name(text):
+        return f'"{text}"' if quote or separator in text else text
+    lines = [separator.join(map(name, names))] if names else []
+    lines += [separator.join(map(name, units))] if units else []
+    lines += [separator.join(map(cell, row)) for row in zip(*columns)]
+    return above + end.join(lines) + end
+
+
+def scaled(values, factor, digits=12):
+    return [round(value / factor, digits) for value in values]
+
+
+def times(start, pattern):
+    begin = datetime.datetime.fromisoformat(start)
+    return [(begin + datetime.timedelta(milliseconds=round(1000 * t))).strftime(pattern)[:-3] for t in T]
+
+
+def changed(text, line, old, new):
+    lines = text.split("\n")
+    assert old in lines[line - 1], lines[line - 1]
+    lines[line - 1] = lines[line - 1].replace(old, new, 1)
+    return "\n".join(lines)
+
+
+def dropped(columns, rows):
+    return [[value for i, value in enumerate(column) if i not in rows] for column in columns]
+
+
+def without(rows):
+    kept = {name: [value for i, value in enumerate(values) if i not in rows] for name, values in TRUTH.items()}
+    first = kept["time_s"][0]
+    return kept | {"time_s": [round(t - first, 9) for t in kept["time_s"]]}
+
+
+# MATLAB 5, written here and not by the library that reads it (MAT-File Format, The MathWorks).
+
+def element(kind, data):
+    return struct.pack("<II", kind, len(data)) + data + b"\0" * (-len(data) % 8)
+
+
+def matrix(name, values):
+    return element(14, element(6, struct.pack("<II", 6, 0)) + element(5, struct.pack("<ii", len(values), 1))
+                   + element(1, name.encode()) + element(9, struct.pack(f"<{len(values)}d", *values)))
+
+
+def structure(name, fields):
+    names = b"".join(field.encode().ljust(32, b"\0") for field in fields)
+    return element(14, element(6, struct.pack("<II", 2, 0)) + element(5, struct.pack("<ii", 1, 1))
+                   + element(1, name.encode()) + struct.pack("<HHi", 5, 4, 32) + element(1, names)
+                   + b"".join(matrix("", values) for values in fields.values()))
+
+
+def matlab_5(*variables):
+    return b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM" + b"".join(variables)
+
+
+def packed(variable):
+    data = zlib.compress(variable)
+    return struct.pack("<II", 15, len(data)) + data
+
+
+def matlab_4(name, values):
+    return struct.pack("<5i", 0, len(values), 1, 0, len(name) + 1) + name.encode() + b"\0" + struct.pack(
+        f"<{len(values)}d", *values)
+
+
+def matlab_73(path):
+    import h5py
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, values in (("t", T), ("p_cmd_kPa", COMMAND), ("p_kPa", PRESSURE), ("tip_mm", TIP)):
+            file.create_dataset(name, data=[values]).attrs.create("MATLAB_class", b"double", dtype="S6")
+    with open(path, "r+b") as file:
+        file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + struct.pack("<H", 0x0200) + b"IM")
+
+
+def hdf5_datasets(path):
+    import h5py
+    with h5py.File(path, "w") as file:
+        for name, unit, values in (("time", "s", T), ("pressure/set", "bar", scaled(COMMAND, BAR)),
+                                   ("pressure/measured", "psi", scaled(PRESSURE, PSI)), ("tip", "mm", TIP)):
+            file.create_dataset("run1/" + name, data=values, compression="gzip").attrs["units"] = unit
+
+
+def hdf5_compound(path):
+    import h5py
+    import numpy
+    rows = numpy.array(list(zip(T, COMMAND, TIP)), dtype=[("time_s", "f8"), ("setpoint_kpa", "f8"), ("x_mm", "f8")])
+    with h5py.File(path, "w") as file:
+        file["log"] = rows
+
+
+def recording(path):
+    path.mkdir()
+    lines = ["time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,state"]
+    for t, command, tip, pressure in zip(T, COMMAND, TIP, PRESSURE):
+        lines += [f"{t!r},left,{command!r},{tip!r},{pressure!r},running", f"{t!r},right,0,{0.1 * tip!r},0,running"]
+    (path / "run.csv").write_text("\n".join(lines) + "\n")
+
+
+class File:
+    """One foreign file: how it is made, what is said to import it, and what must come of it."""
+
+    def __init__(self, name, about, content, options="", *, columns=None, refused="", says="", tolerance=1e-9):
+        self.name, self.about, self.content, self.options = name, about, content, options
+        self.refused, self.says, self.tolerance = refused, says, tolerance
+        self.columns = None if refused else columns or {key: TRUTH[key] for key in BASIC}
+
+    def make(self, folder):
+        path = folder / self.name
+        if callable(self.content):
+            self.content(path)
+        else:
+            path.write_bytes(self.content if isinstance(self.content, bytes) else self.content.encode())
+        return path
+
+
+BASIC = ("time_s", "pressure_command_kpa", "displacement_mm")
+MEASURED = {key: TRUTH[key] for key in (*BASIC, "pressure_kpa")}
+ALONE = {"time_s": T, "pressure_command_kpa": PRESSURE, "pressure_kpa": PRESSURE, "displacement_mm": TIP}
+PLAIN = table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, TIP])
+PREAMBLE = "".join(f"{key}\t{value}\n" for key, value in (
+    ("LabVIEW Measurement", ""), ("Writer_Version", "2"), ("Operator", "M. Muster"), ("Date", "2024/05/31"),
+    ("Channels", "3"), ("***End_of_Header***", "")))
+EPOCH = 1717156800
+
+
+def files():
+    hole = set(range(100, 200))
+    slow = [tip if i % 5 == 0 else None for i, tip in enumerate(TIP)]
+    broken_bar = [None if i == 50 else value for i, value in enumerate(COMMAND)]
+    return [
+        File("names_psi.csv", "other names, psi, units in brackets",
+             table(["Time (s)", "P set [psi]", "P meas [psi]", "Tip [mm]"], [T, scaled(COMMAND, PSI),
+                                                                             scaled(PRESSURE, PSI), TIP]),
+             columns=MEASURED),
+        File("bar_semicolon.csv", "bar, semicolons, cm",
+             table(["t_s", "Sollwert_bar", "Weg_cm"], [T, scaled(COMMAND, BAR), scaled(TIP, 10)], ";")),
+        File("volts.csv", "volts of a laser and a regulator, with scales",
+             table(["time_ms", "valve_V", "laser_V"], [[round(1000 * t) for t in T], scaled(COMMAND, 25),
+                                                       [round(2 + tip / 2.5, 12) for tip in TIP]]),
+             "--scale command=25 --scale displacement=2.5 --zero displacement=2"),
+        File("volts_unsaid.csv", "volts without a scale", table(["time_s", "set_kpa", "laser_V"], [T, COMMAND, TIP]),
+             refused="'V' is no unit of a displacement"),
+        File("unit_unsaid.csv", "a column without a unit", table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]),
+             refused="'tip' says no unit"),
+        File("unit_said.csv", "the same, and the unit as an option",
+             table(["time_s", "set_kpa", "tip"], [T, COMMAND, TIP]), "--unit displacement=mm"),
+        File("milliseconds_tabs.tsv", "milliseconds, tabs",
+             table(["Time ms", "Setpoint kPa", "Position mm"], [[round(1000 * t) for t in T], COMMAND, TIP], "\t")),
+        File("savetxt.txt", "blanks, the names in a comment (numpy.savetxt)",
+             "# bench 3\n# t_s p_cmd_kpa tip_mm\n" + table([], [T, COMMAND, TIP], " ")),
+        File("comments.csv", "comment lines before and within",
+             "% run 7\n// by hand\n" + PLAIN.replace("\n0.5,", "\n# touched the table here\n0.5,")),
+        File("units_row.csv", "a row of units below the names",
+             table(["Time", "Set", "Actual", "Tip"], [[round(1000 * t) for t in T], scaled(COMMAND, 0.1),
+                                                      scaled(PRESSURE, 0.1), scaled(TIP, 1e-3)], ";",
+                   units=["ms", "mbar", "mbar", "µm"]), "--pressure Actual --command Set", columns=MEASURED),
+        File("missing.csv", "NaN, NA, empty cells and -999 where nothing was read",
+             table(["time_s", "set_kpa", "tip_mm"],
+                   [T, COMMAND, [{7: "NaN", 8: "NA", 9: None, 10: "-999"}.get(i, tip) for i, tip in enumerate(TIP)]]),
+             "--missing -999",
+             columns={key: TRUTH[key] for key in BASIC} | {
+                 "displacement_mm": [math.nan if i in (7, 8, 9, 10) else tip for i, tip in enumerate(TIP)]}),
+        File("epoch.csv", "seconds since 1970", table(["timestamp", "cmd_kpa", "x_mm"],
+                                                      [[f"{EPOCH + t:.2f}" for t in T], COMMAND, TIP])),
+        File("epoch_ms.csv", "milliseconds since 1970, no unit",
+             table(["timestamp", "cmd_kpa", "x_mm"], [[1000 * EPOCH + round(1000 * t) for t in T], COMMAND, TIP])),
+        File("dates.csv", "dates with time of day (ISO 8601)",
+             table(["date", "cmd_kpa", "x_mm"], [times("2024-05-31T11:59:59", "%Y-%m-%dT%H:%M:%S.%f"), COMMAND, TIP])),
+        File("midnight.csv", "times of day across midnight",
+             table(["Uhrzeit", "Soll (kPa)", "Weg (mm)"], [times("2024-05-31T23:59:58", "%H:%M:%S.%f"), COMMAND, TIP],
+                   ";")),
+        File("decimal_comma.csv", "decimal commas between semicolons",
+             table(["Zeit [s]", "Soll [bar]", "Weg [mm]"], [T, scaled(COMMAND, BAR), TIP], ";", ",")),
+        File("quoted_comma.csv", "decimal commas in quotes between commas",
+             table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, TIP], ",", ",", quote=True)),
+        File("bare_comma.csv", "decimal commas between commas, not quoted",
+             "time_s,set_kpa,tip_mm\n" + "".join(f"{t:.2f},{c:.3f},{y:.4f}\n".replace(".", ",")
+                                                 for t, c, y in zip(T, COMMAND, TIP)),
+             refused="3 names above 6 columns"),
+        File("mixed_decimals.csv", "decimal points and decimal commas in one file",
+             changed(table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, TIP], ";"), 90, ".", ","),
+             refused="decimal comma and numbers with a decimal point"),
+        File("bom_crlf.csv", "byte order mark, quotes, Windows line ends",
+             "\ufeff" + table(["Time, s", "Command, kPa", "Tip, mm"], [T, COMMAND, TIP], quote=True, end="\r\n")),
+        File("utf16.txt", "UTF-16 with tabs (Excel's \"Unicode text\")",
+             table(["Time (s)", "Set (kPa)", "Tip (mm)"], [T, COMMAND, TIP], "\t", end="\r\n").encode("utf-16")),
+        File("latin1.csv", "Latin-1: µm, °C",
+             table(["t (s)", "p_set (kPa)", "tip (µm)", "temp (°C)"], [T, COMMAND, scaled(TIP, 1e-3), WARM],
+                   ";").encode("latin-1"),
+             columns={key: TRUTH[key] for key in (*BASIC, "temperature_c")}),
+        File("preamble.lvm", "lines above the names (LabVIEW)",
+             PREAMBLE + table(["X_Value (s)", "Set (psi)", "Tip (in)"],
+                              [T, scaled(COMMAND, PSI), scaled(TIP, 25.4)], "\t"),
+             "--time 'X_Value (s)' --command 'Set (psi)' --displacement 'Tip (in)'"),
+        File("fixed_width.txt", "columns between blanks, names with blanks",
+             "Time s      Set kPa     Tip mm\n" + "".join(f"{t:<12.2f}{c:<12.6f}{y:.6f}\n"
+                                                      for t, c, y in zip(T, COMMAND, TIP))),
+        File("no_names.csv", "no names: columns by number", table([], [T, COMMAND, TIP]),
+             "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
+        File("no_time.csv", "no times: a rate", table(["set_kpa", "tip_mm"], [COMMAND, TIP]), "--rate-hz 100"),
+        File("no_displacement.csv", "nothing that a finger did", table(["time_s", "set_kpa"], [T, COMMAND]),
+             refused="no column looks like a displacement"),
+        File("pressure_alone.csv", "measured pressure alone", table(["time_s", "pressure_kpa", "tip_mm"],
+                                                                    [T, PRESSURE, TIP]),
+             columns=ALONE, says="the measured pressure stands for it"),
+        File("two_chambers.csv", "two chambers, averaged",
+             table(["time_s", "pd1_psi", "pd2_psi", "tip_mm"],
+                   [T, scaled(COMMAND, PSI / 0.9), scaled(COMMAND, PSI / 1.1), TIP]),
+             "--command pd1_psi --command pd2_psi"),
+        File("slow_sensor.csv", "a sensor five times slower than the log",
+             table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, slow]),
+             columns={key: TRUTH[key][::5] for key in BASIC}, says="have no displacement and are left out"),
+        File("command_gap.csv", "a command that is missing once",
+             table(["time_s", "set_kpa", "tip_mm"], [T, broken_bar, TIP]),
+             columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
+                 COMMAND[49] if i == 50 else value for i, value in enumerate(COMMAND)]},
+             says="keep the one before"),
+        File("duplicates.csv", "rows that stand twice",
+             PLAIN.replace("\n1.5,", "\n1.49,61,99\n1.5,"), says="1 sample at the time of the one before left out"),
+        File("hole.csv", "a hole in which the command changed unseen",
+             table(["time_s", "set_kpa", "tip_mm"], dropped([T, COMMAND, TIP], set(range(80, 150)))),
+             columns={key: without(set(range(150)))[key] for key in BASIC}, says="the longest piece is kept"),
+        File("stretch.csv", "a stretch of the file", PLAIN, "--from-s 1 --to-s 1.99",
+             columns={key: without(set(range(100)) | set(range(200, 300)))[key] for key in BASIC}),
+        File("two_runs.csv", "two runs in one file", PLAIN + table([], [T, COMMAND, TIP]), refused="the time goes back"),
+        File("cut_off.csv", "the last line is cut off", PLAIN[:-12],
+             columns={key: TRUTH[key][:-1] for key in BASIC}, says="the last line is cut off and left out"),
+        File("ragged.csv", "a row with a cell too many", changed(PLAIN, 120, ",", ",,"),
+             refused="4 cells where the rows above have 3"),
+        File("word.csv", "a word among the numbers", changed(PLAIN, 77, "0.75,", "0.75x,"),
+             refused="'0.75x' is no number"),
+        File("upside_down.csv", "a sensor that looks the other way", table(["time_s", "set_kpa", "tip_mm"],
+                                                                            [T, COMMAND, [-y for y in TIP]]),
+             columns={key: TRUTH[key] for key in BASIC} | {"displacement_mm": [-y for y in TIP]},
+             says="the reading falls when the pressure rises"),
+        File("wrong_unit.csv", "a measured pressure in psi that claims kPa",
+             table(["time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"], [T, COMMAND, scaled(PRESSURE, PSI), TIP]),
+             columns=MEASURED | {"pressure_kpa": scaled(PRESSURE, PSI)}, says="as psi and kPa are"),
+        File("packed.csv.gz", "gzip", gzip.compress(PLAIN.encode(), mtime=0)),
+        File("packed_cut.csv.gz", "gzip, cut off", gzip.compress(PLAIN.encode(), mtime=0)[:-300],
+             refused="the gzip file is cut off"),
+        File("vectors.mat", "MATLAB 5: vectors",
+             matlab_5(matrix("time_s", T), matrix("p_cmd_psi", scaled(COMMAND, PSI)), matrix("tip_mm", TIP))),
+        File("structure.mat", "MATLAB 7: a structure, packed",
+             matlab_5(packed(structure("run", {"t_ms": [1000 * t for t in T], "p_set_kPa": COMMAND,
+                                               "p_meas_kPa": PRESSURE, "tip_mm": TIP}))), columns=MEASURED),
+        File("old.mat", "MATLAB 4", matlab_4("time_s", T) + matlab_4("set_bar", scaled(COMMAND, BAR))
+             + matlab_4("tip_mm", TIP)),
+        File("v73.mat", "MATLAB 7.3", matlab_73, "--unit time=s", columns=MEASURED),
+        File("cut_off.mat", "MATLAB 5, cut off", matlab_5(matrix("time_s", T))[:-900],
+             refused="no two arrays of numbers"),
+        File("groups.h5", "HDF5: groups, packed, units as attributes", hdf5_datasets, columns=MEASURED),
+        File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
+        File("recording", "a recording of softgripd, one of its channels", recording, "--channel left",
+             columns=MEASURED),
+        File("recording_both", "the same without saying which", recording, refused="2 channels"),
+        File("book.xlsx", "a spreadsheet", b"PK\x03\x04" + bytes(200), refused="this is a spreadsheet"),
+        File("noise.bin", "random bytes", bytes((i * i * 31 + 7 * i) % 251 for i in range(3000)),
+             refused="no text, nor a format that is known"),
+    ]
+
+
+def read_csv(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    names = [name for name in (rows[0] if rows else {}) if name in TRUTH]
+    return {name: [float(row[name]) if row[name] else math.nan for row in rows] for name in names}
+
+
+def furthest(got, wanted):
+    """The largest difference, relative to the column's size; why there is none."""
+    if set(got) != set(wanted):
+        return math.inf, f"columns {sorted(got)} instead of {sorted(wanted)}"
+    worst = 0.0
+    for name, values in wanted.items():
+        if len(got[name]) != len(values):
+            return math.inf, f"{name}: {len(got[name])} values instead of {len(values)}"
+        size = max(1.0, max(abs(v) for v in values if not math.isnan(v)))
+        for a, b in zip(got[name], values):
+            if math.isnan(a) != math.isnan(b):
+                return math.inf, f"{name}: a value where there is none, or none where there is one"
+            if not math.isnan(a):
+                worst = max(worst, abs(a - b) / size)
+    return worst, ""
+
+
+def outcome(file, folder):
+    """What came of one file: (wrong, what, rest); wrong is empty where it is as it must be."""
+    path = file.make(folder)
+    out = folder / "out" / (file.name + ".csv")
+    done = subprocess.run([BUILD / "tools/softgrip", "import", path, *shlex.split(file.options), "--yes", "--json",
+                           "--out", out], capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL)
+    said = done.stderr.replace(f"{folder}/", "")
+    if file.refused:
+        reason = next((line for line in said.splitlines() if file.refused in line), "")
+        wrong = "" if done.returncode == 3 and reason and not out.exists() else f"not refused so: {said or 'written'}"
+        return wrong, "refused", reason
+    if done.returncode != 0:
+        return f"exit code {done.returncode}: {said}", "refused", ""
+    told = json.loads(done.stdout)["logs"][0]
+    worst, why = furthest(read_csv(out), file.columns)
+    remarks = "; ".join(told["notes"] + ["doubt: " + doubt for doubt in told["doubts"]])
+    if why or worst > file.tolerance:
+        return why or f"off by {worst:.2g}", "values", remarks
+    if file.says and file.says not in remarks:
+        return f"does not say '{file.says}': {remarks}", "values", remarks
+    return "", f"{told['samples']} samples as they are", remarks
+
+
+HEAD = """# Foreign files
+
+What `softgrip import` makes of files as other people have them. Made by
+
+```
+$ tests/system/foreign_files.py --page
+```
+
+which writes every file, imports it, and compares each value with what it was made from: 1e-9 of a column's size at most,
+or refused with the reason and nothing written. A test holds this page against what comes of it
+(`system.test_import`). Where no options stand, the columns were proposed by their names and units and agreed to (`--yes`).
+[How to import](../how-to/import.md) has the rules.
+
+| file | what is in it | options | what comes of it | what is said |
+|---|---|---|---|---|
+"""
+
+
+def page(results):
+    rows = []
+    for file, (wrong, what, rest) in results:
+        cells = [f"`{file.name}`", file.about, f"`{file.options}`" if file.options else "",
+                 f"**WRONG** {wrong.splitlines()[0][:80]}" if wrong else what, rest.replace("|", "\\|")]
+        rows.append("| " + " | ".join(cells) + " |")
+    refused = sum(what == "refused" for _, (_, what, _) in results)
+    return (HEAD + "\n".join(rows)
+            + f"\n\n{len(results)} files: {len(results) - refused} imported, {refused} refused with the reason.\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)}")
+    parser.add_argument("--keep", type=pathlib.Path, help="make the files here and leave them")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = (options.keep or pathlib.Path(temporary)).resolve()
+        folder.mkdir(parents=True, exist_ok=True)
+        results = [(file, outcome(file, folder)) for file in files()]
+    for file, (wrong, what, rest) in results:
+        print(f"{file.name:24} {'WRONG ' + wrong if wrong else what + ('' if not rest else ': ' + rest)}")
+    if options.page:
+        PAGE.write_text(page(results))
+    return 6 if any(wrong for _, (wrong, _, _) in results) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,124 @@
+"""softgrip import as a user meets it: the matrix of foreign files, and what is asked, kept and refused."""
+
+import json
+import os
+import pty
+import subprocess
+
+import bench
+import foreign_files
+
+
+class Matrix(bench.BenchTest):
+
+    def test_every_file_is_imported_or_refused_as_the_page_says(self):
+        results = [(file, foreign_files.outcome(file, self.folder)) for file in foreign_files.files()]
+        self.assertEqual([f"{file.name}: {wrong}" for file, (wrong, _, _) in results if wrong], [])
+        self.assertGreaterEqual(len(results), 30)
+        self.assertEqual(foreign_files.PAGE.read_text(), foreign_files.page(results),
+                         "docs/reference/foreign-files.md is old: tests/system/foreign_files.py --page")
+
+
+class Import(bench.BenchTest):
+
+    def foreign(self, name):
+        return next(file for file in foreign_files.files() if file.name == name).make(self.folder)
+
+    def imported(self, *arguments, expect=0):
+        return self.softgrip("import", *arguments, expect=expect)
+
+    def test_without_a_terminal_the_options_are_said_and_nothing_is_written(self):
+        path = self.foreign("names_psi.csv")
+        done = self.imported(path, "--out", "log.csv", expect=2)
+        self.assertIn("--time 'Time (s)' --command 'P set [psi]' --pressure 'P meas [psi]' --displacement 'Tip [mm]'",
+                      done.stderr)
+        self.assertFalse((self.folder / "log.csv").exists())
+        line = next(line for line in done.stderr.splitlines() if line.startswith("  that is: softgrip "))
+        subprocess.run(f"{bench.SOFTGRIP} {line.split('softgrip ', 1)[1]}", shell=True, cwd=self.folder, check=True,
+                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        self.assertTrue((self.folder / "log.csv").exists())
+
+    def answered(self, answer, *arguments):
+        master, slave = pty.openpty()
+        self.addCleanup(os.close, master)
+        with subprocess.Popen([bench.SOFTGRIP, "import", *map(str, arguments)], stdin=slave, cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as child:
+            os.close(slave)
+            os.write(master, answer)
+            output = child.communicate(timeout=bench.PATIENCE_S)[0]
+        return child.returncode, output
+
+    def test_on_a_terminal_it_asks(self):
+        path = self.foreign("names_psi.csv")
+        code, output = self.answered(b"n\n", path, "--out", "log.csv")
+        self.assertEqual(code, 2, output)
+        self.assertFalse((self.folder / "log.csv").exists())
+        code, output = self.answered(b"y\n", path, "--out", "log.csv")
+        self.assertEqual(code, 0, output)
+        self.assertIn("Write log.csv so?", output)
+        self.assertTrue((self.folder / "log.csv").exists())
+
+    def test_the_mapping_that_is_kept_gives_the_same_bytes(self):
+        path = self.foreign("volts.csv")
+        self.imported(path, "--out", "a.csv", "--yes", "--scale", "command=25", "--scale", "displacement=-2.5", "--zero",
+                      "displacement=first", "--from-s", "0.5")
+        kept = (self.folder / "a.import.yaml").read_text()
+        self.assertIn("doubt: the reading falls", kept)
+        self.imported(path, "--out", "b.csv", "--map", "a.import.yaml")
+        self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
+        (self.folder / "a.import.yaml").write_text(kept.replace("unit", "units"))
+        (self.folder / "c.yaml").write_text(kept.replace("scale:", "skale:"))
+        self.assertIn("c.yaml:", self.imported(path, "--out", "c.csv", "--map", "c.yaml", expect=3).stderr)
+
+    def test_several_files_go_into_a_folder_or_none_is_written(self):
+        good, also, broken = (self.foreign(name) for name in ("names_psi.csv", "packed.csv.gz", "word.csv"))
+        self.imported(good, also, "--out", "log.csv", "--yes", expect=2)
+        self.imported(good, broken, "--out", "logs/", "--yes", expect=3)
+        self.assertFalse((self.folder / "logs").exists())
+        self.imported(good, also, "--out", "logs/", "--yes")
+        self.assertEqual(sorted(path.name for path in (self.folder / "logs").iterdir()),
+                         ["names_psi.csv", "names_psi.import.yaml", "packed.csv", "packed.import.yaml"])
+
+    def test_what_is_refused_on_the_command_line(self):
+        path = self.foreign("names_psi.csv")
+        for arguments in (("--unit", "pressure"), ("--scale", "colour=2"), ("--scale", "pressure=0"),
+                          ("--zero", "pressure=last"), ("--separator", "dots"), ("--rate-hz", "nan"),
+                          ("--time", "1", "--rate-hz", "100")):
+            self.imported(path, "--out", "log.csv", "--yes", *arguments, expect=2)
+        self.imported("absent.csv", "--out", "log.csv", expect=4)
+        self.imported(path, "--map", "absent.yaml", "--out", "log.csv", expect=4)
+        done = self.imported(path, "--out", path, "--yes", expect=2)
+        self.assertIn("not written over", done.stderr)
+        done = self.imported(path, "--out", "log.csv", "--time", "Zeit", "--yes", expect=3)
+        self.assertIn("no column 'Zeit'", done.stderr)
+        self.assertEqual(list(self.folder.glob("log*")), [])
+
+    def test_other_commands_say_which_import_would_do(self):
+        path = self.foreign("names_psi.csv")
+        for command in (("identify", "--out", "o", "--data", path), ("simulate", "--model", "config/models/bench_twin.yaml",
+                        "--out", "o.csv", "--input", path), ("plot", path, "--out", "o.svg")):
+            done = self.softgrip(*command, expect=3)
+            hint = next(line for line in done.stderr.splitlines() if "as a log: softgrip import" in line)
+            self.assertIn("--out names_psi_log.csv", hint)
+        subprocess.run(f"{bench.SOFTGRIP} {hint.split(': softgrip ', 1)[1]}", shell=True, cwd=self.folder, check=True,
+                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        self.softgrip("plot", "names_psi_log.csv", "--out", "o.svg")
+
+    def test_what_was_imported_can_be_identified(self):
+        self.softgrip("simulate", "--model", "config/models/bench_twin.yaml", "--input", "tp1", "--out", "own.csv",
+                      "--rate-hz", "50")
+        rows = (self.folder / "own.csv").read_text().splitlines()
+        foreign = ["t_ms;p_bar;Weg_cm"] + [
+            ";".join(repr(float(cell) * factor).replace(".", ",") for cell, factor in zip(row.split(","), (1000, 0.01, 0.1)))
+            for row in rows[1:]]
+        self.write("theirs.csv", "\n".join(foreign) + "\n")
+        self.imported("theirs.csv", "--out", "log.csv", "--command", "p_bar", "--yes")
+        results = []
+        for name in ("own.csv", "log.csv"):
+            done = self.softgrip("validate", "--model", "config/models/bench_twin.yaml", "--data", name, "--json")
+            results += json.loads(done.stdout)["rmse_mm"].values()
+        self.assertAlmostEqual(results[0], results[1], places=6)
+
+
+if __name__ == "__main__":
+    bench.main()

@@ -1,0 +1,43 @@
+#include "tools/importing/import_run.h"
+
+#include <gtest/gtest.h>
+
+namespace softgrip::tools {
+namespace {
+
+using sysid::Role;
+
+TEST(ImportOptions, AreAMappingUponTheOneThatWasBegun) {
+  sysid::Mapping begun;
+  begun[Role::command].columns = {"p"};
+  begun[Role::command].unit = "bar";
+  begun[Role::displacement].columns = {"x"};
+  ImportOptions options;
+  options.columns[static_cast<std::size_t>(Role::displacement)] = {"y", "z"};
+  options.units = {"command=psi"};
+  options.scales = {"displacement=-2.5"};
+  options.zeros = {"displacement=first", "command=14.7"};
+  options.missing = {"LOST"};
+  options.separator = "tab";
+  const auto mapping = mapping_of(options, begun);
+  ASSERT_TRUE(mapping) << mapping.error();
+  EXPECT_EQ((*mapping)[Role::command].columns, std::vector<std::string>{"p"});
+  EXPECT_EQ((*mapping)[Role::command].unit, "psi");
+  EXPECT_EQ((*mapping)[Role::command].zero, 14.7);
+  EXPECT_EQ((*mapping)[Role::displacement].columns, (std::vector<std::string>{"y", "z"}));
+  EXPECT_EQ((*mapping)[Role::displacement].scale, -2.5);
+  EXPECT_TRUE((*mapping)[Role::displacement].zero_first);
+  EXPECT_EQ(mapping->separator, '\t');
+  EXPECT_EQ(mapping->missing, std::vector<std::string>{"lost"});
+}
+
+TEST(ImportTargets, OneFileIsALogSeveralAreAFolder) {
+  EXPECT_EQ(*import_targets({"a/day.csv"}, "log.csv"), std::vector<std::string>{"log.csv"});
+  EXPECT_EQ(*import_targets({"a/day.csv.gz", "b/run.mat"}, "logs/"),
+            (std::vector<std::string>{"logs/day.csv", "logs/run.csv"}));
+  EXPECT_FALSE(import_targets({"a.csv", "b.csv"}, "log.csv"));
+  EXPECT_FALSE(import_targets({"a/day.csv", "b/day.mat"}, "logs/"));
+}
+
+}  // namespace
+}  // namespace softgrip::tools

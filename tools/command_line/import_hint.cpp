@@ -1,0 +1,27 @@
+#include "tools/command_line/import_hint.h"
+
+#include <filesystem>
+
+#include "sysid/import/conversion.h"
+#include "sysid/import/foreign_file.h"
+#include "sysid/import/proposal.h"
+
+namespace softgrip::tools {
+
+std::string import_hint(const std::string& path) {
+  document::Problems problems;
+  bool unreadable = false;
+  const auto table = sysid::read_foreign_file(path, {}, problems, unreadable);
+  if (!table) return {};
+  const sysid::Proposal proposal = sysid::propose(*table, {}, true);
+  const std::filesystem::path file(path);
+  const std::string begin = "softgrip import " + sysid::shell_word(path) + " ";
+  const std::string end = "--out " + sysid::shell_word(file.stem().stem().string() + "_log.csv");
+  if (proposal.missing.empty() && sysid::convert(*table, proposal.mapping, problems))
+    return path + " as a log: " + begin + sysid::options_of(proposal.mapping) + " " + end + "\n";
+  // A log of our own that import cannot mend either has been told what is wrong.
+  const bool own = sysid::column_index(*table, "pressure_command_kpa") < table->columns.size();
+  return own ? std::string() : "the columns of " + path + ": " + begin + end + "\n";
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,12 @@
+#pragma once
+// What would make a log of a file that is refused as one.
+
+#include <string>
+
+namespace softgrip::tools {
+
+/// The command line of `softgrip import` that would, as a sentence that ends with a line break; where it
+/// would have to be told more, the one that shows the columns; empty where import would refuse the file, too.
+[[nodiscard]] std::string import_hint(const std::string& path);
+
+}  // namespace softgrip::tools

@@ -1,0 +1,118 @@
+// What the options of `softgrip import` say: mapping_of() and import_targets() of
+// tools/importing/import_run.h.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "base/numbers.h"
+#include "tools/importing/import_run.h"
+
+namespace softgrip::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using Taken = std::function<bool(sysid::ColumnMapping&, const std::string&)>;
+
+/// Applies "ROLE=VALUE" words; the error names the one that is none.
+tl::expected<void, std::string> apply(const std::vector<std::string>& words, const char* option,
+                                      sysid::Mapping& mapping, const Taken& take) {
+  for (const std::string& word : words) {
+    const std::size_t equals = word.find('=');
+    const std::string role = word.substr(0, equals);
+    const auto spec = std::find_if(sysid::roles.begin(), sysid::roles.end(),
+                                   [&](const sysid::RoleSpec& s) { return s.word == role; });
+    const bool good = equals != std::string::npos && equals + 1 < word.size() && spec != sysid::roles.end() &&
+                      take(mapping[spec->role], word.substr(equals + 1));
+    if (!good)
+      return tl::unexpected(
+          std::string(option) + " " + word +
+          ": ROLE=VALUE is meant; roles are time, command, pressure, displacement, temperature, supply");
+  }
+  return {};
+}
+
+bool take_scale(sysid::ColumnMapping& column, const std::string& text) {
+  const auto value = to_number(text);
+  if (!value || !std::isfinite(*value) || *value == 0) return false;
+  column.scale = *value;
+  return true;
+}
+
+bool take_zero(sysid::ColumnMapping& column, const std::string& text) {
+  const auto value = to_number(text);
+  column.zero_first = text == "first";
+  if (column.zero_first) {
+    column.zero.reset();
+    return true;
+  }
+  if (!value || !std::isfinite(*value)) return false;
+  column.zero = *value;
+  return true;
+}
+
+/// "day1.csv.gz" and the folder "day1" become day1.csv.
+std::string log_name(const std::string& file) {
+  fs::path path = fs::path(file).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  if (path.extension() == ".gz") path = path.stem();
+  std::error_code error;
+  return (fs::is_directory(file, error) ? path.filename() : path.stem()).string() + ".csv";
+}
+
+}  // namespace
+
+tl::expected<std::vector<std::string>, std::string> import_targets(const std::vector<std::string>& files,
+                                                                   const std::string& out) {
+  std::error_code error;
+  const bool folder = out.ends_with('/') || fs::is_directory(out, error);
+  if (files.size() > 1 && !folder)
+    return tl::unexpected("of " + std::to_string(files.size()) + " files " + out +
+                          " must be a folder: end it with a '/'");
+  std::vector<std::string> targets;
+  std::set<std::string> seen;
+  for (const std::string& file : files) {
+    targets.push_back(folder ? (fs::path(out) / log_name(file)).string() : out);
+    if (!seen.insert(targets.back()).second)
+      return tl::unexpected("two files would become " + targets.back());
+    if (fs::equivalent(file, targets.back(), error))
+      return tl::unexpected(targets.back() + " is the file that is imported: it is not written over");
+  }
+  return targets;
+}
+
+tl::expected<sysid::Mapping, std::string> mapping_of(const ImportOptions& options, sysid::Mapping begun) {
+  sysid::Mapping mapping = std::move(begun);
+  for (std::size_t i = 0; i < sysid::role_count; ++i) {
+    if (!options.columns[i].empty()) mapping.columns[i].columns = options.columns[i];
+  }
+  const auto take_unit = [](sysid::ColumnMapping& column, const std::string& text) {
+    column.unit = text;
+    return true;
+  };
+  if (auto done = apply(options.units, "--unit", mapping, take_unit); !done)
+    return tl::unexpected(done.error());
+  if (auto done = apply(options.scales, "--scale", mapping, take_scale); !done)
+    return tl::unexpected(done.error());
+  if (auto done = apply(options.zeros, "--zero", mapping, take_zero); !done)
+    return tl::unexpected(done.error());
+  if (options.rate_hz) mapping.rate_hz = options.rate_hz;
+  if (mapping.rate_hz && mapping[sysid::Role::time].given())
+    return tl::unexpected(std::string("--time and --rate-hz: a file with times needs no rate"));
+  if (!options.missing.empty()) mapping.missing = options.missing;
+  for (std::string& word : mapping.missing) word = sysid::lower_case(word);
+  if (!options.separator.empty()) {
+    mapping.separator = sysid::separator_named(options.separator);
+    if (mapping.separator == 0)
+      return tl::unexpected("--separator " + options.separator + ": comma, semicolon, tab, space or bar");
+  }
+  if (!options.channel.empty()) mapping.channel = options.channel;
+  if (options.from_s) mapping.from_s = *options.from_s;
+  if (options.to_s) mapping.to_s = *options.to_s;
+  return mapping;
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,221 @@
+#include "tools/importing/import_run.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/files.h"
+#include "base/numbers.h"
+#include "base/version.h"
+#include "document/problem.h"
+#include "sysid/import/conversion.h"
+#include "sysid/import/doubts.h"
+#include "sysid/import/foreign_file.h"
+#include "sysid/import/mapping_file.h"
+#include "sysid/import/proposal.h"
+#include "sysid/logs/log.h"
+#include "tools/command_line/command.h"
+#include "tools/command_line/output.h"
+
+namespace softgrip::tools {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t longest_log = std::size_t{512} << 20U;
+
+/// One file on its way.
+struct Job {
+  std::string file;
+  std::string out;
+  sysid::Table table;
+  sysid::Mapping mapping;
+  std::vector<sysid::Role> guessed;
+  bool is_log = false;  ///< already, to the letter
+  sysid::ImportedLog result;
+  std::vector<std::string> doubts;
+};
+
+/// A log of our own stays as it is, columns that the contract does not name included.
+bool take_as_it_is(Job& job) {
+  namespace fs = std::filesystem;
+  if (sysid::column_index(job.table, "pressure_command_kpa") == job.table.columns.size()) return false;
+  std::error_code error;
+  const std::string path =
+      fs::is_directory(job.file, error) ? (fs::path(job.file) / "run.csv").string() : job.file;
+  const auto text = read_file(path, longest_log);
+  document::Problems problems;
+  sysid::LogOptions options;
+  options.channel = job.mapping.channel;
+  auto log = text ? sysid::parse_log(path, *text, problems, options) : std::nullopt;
+  if (!log) return false;
+  job.result.log = std::move(*log);
+  job.result.notes.emplace_back("this is a log already: taken as it is");
+  job.is_log = true;
+  return true;
+}
+
+bool says_columns(const sysid::Mapping& mapping) {
+  for (const sysid::ColumnMapping& column : mapping.columns) {
+    if (column != sysid::ColumnMapping{}) return true;
+  }
+  return mapping.rate_hz.has_value() || mapping.from_s > 0 || std::isfinite(mapping.to_s);
+}
+
+/// Reads a file and completes its mapping; false where that is refused, which has then been said.
+bool prepare(Job& job, const sysid::Mapping& given, document::Problems& problems, bool& unreadable) {
+  job.mapping = given;
+  auto table = sysid::read_foreign_file(job.file, {given.separator, given.missing, given.channel}, problems,
+                                        unreadable);
+  if (!table) return false;
+  job.table = std::move(*table);
+  if (!says_columns(given) && take_as_it_is(job)) return true;
+  sysid::Proposal proposal = sysid::propose(job.table, given, !given.complete());
+  job.mapping = std::move(proposal.mapping);
+  job.guessed = std::move(proposal.guessed);
+  if (proposal.missing.empty()) return true;
+  std::fprintf(stderr, "%s: %s\n%s", job.file.c_str(), job.table.format.c_str(),
+               sysid::mapping_table(job.table, job.mapping).c_str());
+  for (const std::string& missing : proposal.missing)
+    problems.add({job.table.file, {1, 1}, {}, "no column looks like " + missing, {}});
+  return false;
+}
+
+std::string command_line(const Job& job, const ImportOptions& options) {
+  return "softgrip import " + sysid::shell_word(job.file) + " " + sysid::options_of(job.mapping) + " --out " +
+         sysid::shell_word(options.out);
+}
+
+/// True if what was guessed may be used.
+bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
+  bool guessed = false;
+  for (const Job& job : jobs) {
+    if (job.guessed.empty()) continue;
+    guessed = true;
+    std::fprintf(stderr, "%s: %s\n%s  that is: %s\n", job.file.c_str(), job.table.format.c_str(),
+                 sysid::mapping_table(job.table, job.mapping).c_str(), command_line(job, options).c_str());
+  }
+  if (!guessed || options.yes) return true;
+  if (::isatty(STDIN_FILENO) == 0) {
+    std::fputs("not written: nobody is here to agree. Give these options, or --yes\n", stderr);
+    return false;
+  }
+  std::fprintf(stderr, "Write %s so? [y/N] ", options.out.c_str());
+  std::string answer;
+  std::getline(std::cin, answer);
+  if (answer == "y" || answer == "Y" || answer == "yes") return true;
+  std::fputs("not written; the options above say it otherwise\n", stderr);
+  return false;
+}
+
+bool finish(Job& job, document::Problems& problems) {
+  if (!job.is_log) {
+    auto result = sysid::convert(job.table, job.mapping, problems);
+    if (!result) return false;
+    job.result = std::move(*result);
+  }
+  job.doubts = sysid::doubts_about(job.result.log);
+  return true;
+}
+
+std::vector<std::string> notes_of(const Job& job) {
+  std::vector<std::string> notes = job.table.notes;
+  notes.insert(notes.end(), job.result.notes.begin(), job.result.notes.end());
+  for (const sysid::LogNote& note : job.result.log.notes) notes.push_back(note.text);
+  return notes;
+}
+
+std::string mapping_path(const std::string& out) {
+  return std::filesystem::path(out).replace_extension(".import.yaml").string();
+}
+
+tl::expected<void, std::string> write(const Job& job) {
+  if (auto written = write_output(job.out, sysid::format_log(job.result.log)); !written) return written;
+  if (job.out == "-" || job.is_log) return {};
+  std::vector<std::string> remarks = notes_of(job);
+  for (const std::string& doubt : job.doubts) remarks.push_back("doubt: " + doubt);
+  return write_file(mapping_path(job.out),
+                    sysid::mapping_yaml(job.mapping, {job.file, job.table.sha256, job.table.format},
+                                        "softgrip " + std::string(software_version()), remarks));
+}
+
+ordered_json json_of(const Job& job) {
+  const sysid::Log& log = job.result.log;
+  ordered_json columns = ordered_json::object();
+  for (const sysid::RoleSpec& spec : sysid::roles) {
+    const sysid::ColumnMapping& column = job.mapping[spec.role];
+    if (!column.given()) continue;
+    columns[std::string(spec.word)] = {{"columns", column.columns},
+                                       {"unit", sysid::unit_text(job.table, column, spec.quantity)}};
+  }
+  return {{"file", job.file},           {"format", job.table.format},
+          {"sha256", job.table.sha256}, {"out", job.out},
+          {"samples", log.size()},      {"duration_s", log.time_s.back()},
+          {"columns", columns},         {"options", sysid::options_of(job.mapping)},
+          {"notes", notes_of(job)},     {"doubts", job.doubts}};
+}
+
+void report(const std::vector<Job>& jobs, const ImportOptions& options) {
+  std::FILE* const stream = report_stream(options.out);
+  ordered_json logs = ordered_json::array();
+  for (const Job& job : jobs) {
+    for (const std::string& doubt : job.doubts)
+      std::fprintf(stderr, "%s: doubt: %s\n", job.file.c_str(), doubt.c_str());
+    logs.push_back(json_of(job));
+    if (options.json) continue;
+    for (const std::string& note : notes_of(job))
+      std::fprintf(stream, "%s: %s\n", job.file.c_str(), note.c_str());
+    std::fprintf(stream, "%s (%s): %zu samples, %s s -> %s\n", job.file.c_str(), job.table.format.c_str(),
+                 job.result.log.size(), significant(job.result.log.time_s.back(), 6).c_str(),
+                 job.out.c_str());
+  }
+  if (options.json) {
+    const ordered_json all{{"schema", 1}, {"logs", logs}};
+    std::fprintf(stream, "%s\n", all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  }
+}
+
+}  // namespace
+
+ExitCode run_import(const ImportOptions& options) {
+  document::Problems problems;
+  sysid::Mapping begun;
+  if (!options.map.empty()) {
+    if (const auto code = unreadable(options.map)) return *code;
+    const auto read = sysid::read_mapping(options.map, problems);
+    if (!read) return refuse(problems);
+    begun = *read;
+  }
+  const auto mapping = mapping_of(options, std::move(begun));
+  if (!mapping) return fail(ExitCode::usage, mapping.error());
+  const auto targets = import_targets(options.files, options.out);
+  if (!targets) return fail(ExitCode::usage, targets.error());
+
+  std::vector<Job> jobs(options.files.size());
+  bool unreadable_file = false;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    jobs[i].file = options.files[i];
+    jobs[i].out = (*targets)[i];
+    (void)prepare(jobs[i], *mapping, problems, unreadable_file);
+  }
+  if (problems.empty() && !agreed(jobs, options)) return ExitCode::usage;
+  for (Job& job : jobs) {
+    if (problems.empty()) (void)finish(job, problems);
+  }
+  if (!problems.empty()) {
+    const ExitCode refused = refuse(problems);
+    return unreadable_file ? ExitCode::io : refused;
+  }
+  for (const Job& job : jobs) {
+    if (const auto written = write(job); !written) return fail(ExitCode::io, written.error());
+  }
+  report(jobs, options);
+  return ExitCode::done;
+}
+
+}  // namespace softgrip::tools
