@@ -42,7 +42,8 @@ void ArrayCollector::pass_over(const std::string& name, const std::string& what)
   notes_.push_back("'" + document::shown(name) + "' is passed over: " + what);
 }
 
-std::optional<Table> ArrayCollector::table(const std::string& format, document::Problems& problems) const {
+std::optional<ForeignTable> ArrayCollector::table(const std::string& format,
+                                                  document::Problems& problems) const {
   std::map<std::size_t, std::size_t> count_by_length;
   for (const TableColumn& column : columns_) ++count_by_length[column.values.size()];
   std::size_t length = 0;
@@ -52,7 +53,7 @@ std::optional<Table> ArrayCollector::table(const std::string& format, document::
     most = count;
     length = candidate;
   }
-  Table table;
+  ForeignTable table;
   table.file = file_;
   table.format = format;
   table.notes = notes_;

@@ -30,7 +30,8 @@ class ArrayCollector {
   [[nodiscard]] bool full() const { return values_ > most_values; }
 
   /// The table, or a problem where there is none.
-  [[nodiscard]] std::optional<Table> table(const std::string& format, document::Problems& problems) const;
+  [[nodiscard]] std::optional<ForeignTable> table(const std::string& format,
+                                                  document::Problems& problems) const;
 
  private:
   std::string file_;

@@ -23,7 +23,7 @@ struct Source {
 
 class Converter {
  public:
-  Converter(const Table& table, const Mapping& mapping, document::Problems& problems)
+  Converter(const ForeignTable& table, const Mapping& mapping, document::Problems& problems)
       : table_(table), mapping_(mapping), problems_(problems) {}
 
   std::optional<ImportedLog> run() {
@@ -32,7 +32,7 @@ class Converter {
     for (const RoleSpec& spec : roles) resolve(spec);
     if (problems_.size() != before) return std::nullopt;
     ImportedLog result;
-    Samples samples = samples_of_table();
+    ForeignSamples samples = samples_of_table();
     if (const auto problem = order_in_time(mapping_, samples, result.notes)) {
       refuse_row(*problem);
       return std::nullopt;
@@ -151,8 +151,8 @@ class Converter {
     return source.factor * (sum / static_cast<double>(source.columns.size())) + source.offset;
   }
 
-  [[nodiscard]] Samples samples_of_table() const {
-    Samples samples;
+  [[nodiscard]] ForeignSamples samples_of_table() const {
+    ForeignSamples samples;
     const std::size_t rows = table_.rows();
     for (std::size_t i = 0; i < rows; ++i) samples.row.push_back(i);
     for (const RoleSpec& spec : roles) {
@@ -167,7 +167,7 @@ class Converter {
     return samples;
   }
 
-  void subtract_first(Samples& samples) const {
+  void subtract_first(ForeignSamples& samples) const {
     for (const RoleSpec& spec : roles) {
       if (!mapping_[spec.role].zero_first || spec.role == Role::time) continue;
       std::vector<double>& values = samples[spec.role];
@@ -178,7 +178,7 @@ class Converter {
     }
   }
 
-  void check_any_value(const Samples& samples) {
+  void check_any_value(const ForeignSamples& samples) {
     for (const RoleSpec& spec : roles) {
       const std::vector<double>& values = samples[spec.role];
       const bool none = !values.empty() &&
@@ -189,13 +189,13 @@ class Converter {
     }
   }
 
-  static Log log_of(Samples samples) {
+  static Log log_of(ForeignSamples samples) {
     Log log;
     for (const RoleSpec& spec : roles) log.*spec.values = std::move(samples[spec.role]);
     return log;
   }
 
-  const Table& table_;
+  const ForeignTable& table_;
   const Mapping& mapping_;
   document::Problems& problems_;
   std::array<Source, role_count> sources_;
@@ -203,7 +203,8 @@ class Converter {
 
 }  // namespace
 
-std::optional<ImportedLog> convert(const Table& table, const Mapping& mapping, document::Problems& problems) {
+std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
+                                   document::Problems& problems) {
   auto result = Converter(table, mapping, problems).run();
   if (!result) return std::nullopt;
   result->log.path = table.file;

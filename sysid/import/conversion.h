@@ -19,7 +19,7 @@ struct ImportedLog {
 
 /// The log, by the rules of samples.h; what the log contract refuses is refused here too. All problems are
 /// added to `problems`, in the words of `softgrip import`'s options.
-[[nodiscard]] std::optional<ImportedLog> convert(const Table& table, const Mapping& mapping,
+[[nodiscard]] std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                                  document::Problems& problems);
 
 }  // namespace softgrip::sysid

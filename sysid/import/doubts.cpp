@@ -79,7 +79,8 @@ std::string units_apart(double factor) {
   return {};
 }
 
-/// Samples by which the increments of `later` follow those of `earlier` best; negative: it comes first.
+/// ForeignSamples by which the increments of `later` follow those of `earlier` best; negative: it comes
+/// first.
 int best_lag(const std::vector<double>& earlier, const std::vector<double>& later) {
   constexpr int farthest = 20;
   const auto increments = [](const std::vector<double>& values) {

@@ -54,8 +54,8 @@ std::string_view known_but_unread(std::string_view bytes) {
   return {};
 }
 
-std::optional<Table> read_bytes(const std::string& path, std::string_view bytes, const TableOptions& options,
-                                document::Problems& problems) {
+std::optional<ForeignTable> read_bytes(const std::string& path, std::string_view bytes,
+                                       const TableOptions& options, document::Problems& problems) {
   if (bytes.starts_with("MATLAB 5.0")) return read_mat_table(path, problems);
   if (is_hdf5(bytes)) return read_hdf5_table(path, bytes.starts_with("MATLAB 7.3"), problems);
   if (is_matlab_4(bytes)) return read_mat_table(path, problems);
@@ -94,8 +94,8 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
   return text;
 }
 
-std::optional<Table> read_foreign_file(const std::string& given, const TableOptions& options,
-                                       document::Problems& problems, bool& unreadable) {
+std::optional<ForeignTable> read_foreign_file(const std::string& given, const TableOptions& options,
+                                              document::Problems& problems, bool& unreadable) {
   namespace fs = std::filesystem;
   std::error_code error;
   const std::string path = fs::is_directory(given, error) ? (fs::path(given) / "run.csv").string() : given;
@@ -105,7 +105,7 @@ std::optional<Table> read_foreign_file(const std::string& given, const TableOpti
     problems.add({path, {1, 1}, {}, bytes.error(), {}});
     return std::nullopt;
   }
-  std::optional<Table> table;
+  std::optional<ForeignTable> table;
   if (bytes->starts_with("\x1f\x8b")) {
     const auto text = gunzipped(*bytes, most_bytes);
     if (!text) {

@@ -158,7 +158,8 @@ herr_t visit(hid_t group, const char* name, const H5L_info_t* /*info*/, void* da
 
 }  // namespace
 
-std::optional<Table> read_hdf5_table(const std::string& path, bool matlab, document::Problems& problems) {
+std::optional<ForeignTable> read_hdf5_table(const std::string& path, bool matlab,
+                                            document::Problems& problems) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what it says goes into our own message
   const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) {

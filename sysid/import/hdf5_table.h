@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 /// compounds
 /// ("table.pressure"). An attribute `units` or `unit` is the unit. Everything else is passed over and said.
 /// Of a file of MATLAB's (`matlab`) names are "run.pressure", and texts, cells and objects are passed over.
-[[nodiscard]] std::optional<Table> read_hdf5_table(const std::string& path, bool matlab,
-                                                   document::Problems& problems);
+[[nodiscard]] std::optional<ForeignTable> read_hdf5_table(const std::string& path, bool matlab,
+                                                          document::Problems& problems);
 
 }  // namespace softgrip::sysid

@@ -104,7 +104,7 @@ void collect(const matvar_t& variable, const std::string& name, int depth, Array
 
 }  // namespace
 
-std::optional<Table> read_mat_table(const std::string& path, document::Problems& problems) {
+std::optional<ForeignTable> read_mat_table(const std::string& path, document::Problems& problems) {
   Mat_LogInitFunc("softgrip", say_nothing);
   const MatFile file{Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {

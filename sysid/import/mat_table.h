@@ -12,6 +12,7 @@ namespace softgrip::sysid {
 /// Variables of real numbers, and fields of single structures as "name.field". Objects (timetable,
 /// timeseries, table, duration), cells and complex numbers are passed over and said: MATLAB alone can read
 /// them.
-[[nodiscard]] std::optional<Table> read_mat_table(const std::string& path, document::Problems& problems);
+[[nodiscard]] std::optional<ForeignTable> read_mat_table(const std::string& path,
+                                                         document::Problems& problems);
 
 }  // namespace softgrip::sysid

@@ -90,7 +90,7 @@ int fitness(const TableColumn& column, const RoleSpec& spec) {
   return of_quantity && by_unit_alone ? 2 : 0;
 }
 
-bool taken(const Mapping& mapping, const Table& table, std::size_t index) {
+bool taken(const Mapping& mapping, const ForeignTable& table, std::size_t index) {
   return std::any_of(mapping.columns.begin(), mapping.columns.end(), [&](const ColumnMapping& column) {
     return std::any_of(column.columns.begin(), column.columns.end(),
                        [&](const std::string& word) { return column_index(table, word) == index; });
@@ -112,7 +112,7 @@ std::string epoch_unit(const TableColumn& column) {
   return {};
 }
 
-void choose(const Table& table, const RoleSpec& spec, Proposal& proposal) {
+void choose(const ForeignTable& table, const RoleSpec& spec, Proposal& proposal) {
   int best = 0;
   std::size_t chosen = table.columns.size();
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -150,7 +150,7 @@ std::string glimpse(const TableColumn& column) {
 
 }  // namespace
 
-std::string unit_text(const Table& table, const ColumnMapping& column, Quantity quantity) {
+std::string unit_text(const ForeignTable& table, const ColumnMapping& column, Quantity quantity) {
   if (!column.unit.empty()) return column.unit;
   for (const std::string& word : column.columns) {
     const std::size_t index = column_index(table, word);
@@ -162,7 +162,7 @@ std::string unit_text(const Table& table, const ColumnMapping& column, Quantity 
   return {};
 }
 
-Proposal propose(const Table& table, const Mapping& given, bool optional_too) {
+Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_too) {
   Proposal proposal{given, {}, {}};
   const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
   // What is asked for before what is measured, which any column of a pressure could be.
@@ -183,7 +183,7 @@ Proposal propose(const Table& table, const Mapping& given, bool optional_too) {
   return proposal;
 }
 
-std::string mapping_table(const Table& table, const Mapping& mapping) {
+std::string mapping_table(const ForeignTable& table, const Mapping& mapping) {
   std::string text;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const TableColumn& column = table.columns[i];

@@ -20,12 +20,13 @@ struct Proposal {
 /// Completes `given` by what the columns are called, what their units are and, where two would do, which
 /// comes first. Roles that a log may do without are added only where `optional_too`. A column that is given
 /// to one role is offered to no other.
-[[nodiscard]] Proposal propose(const Table& table, const Mapping& given, bool optional_too);
+[[nodiscard]] Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_too);
 
 /// The unit of a mapped column: the mapping's, the row of units', or its name's; as written, empty: none.
-[[nodiscard]] std::string unit_text(const Table& table, const ColumnMapping& column, Quantity quantity);
+[[nodiscard]] std::string unit_text(const ForeignTable& table, const ColumnMapping& column,
+                                    Quantity quantity);
 
 /// One line per column: its number, its name, its unit, its values, and what it is taken for.
-[[nodiscard]] std::string mapping_table(const Table& table, const Mapping& mapping);
+[[nodiscard]] std::string mapping_table(const ForeignTable& table, const Mapping& mapping);
 
 }  // namespace softgrip::sysid

@@ -22,7 +22,7 @@ std::string counted(std::size_t count, const char* what) {
 }
 
 /// Keeps the samples with these indices, in this order.
-void keep(Samples& samples, const std::vector<std::size_t>& kept) {
+void keep(ForeignSamples& samples, const std::vector<std::size_t>& kept) {
   if (kept.size() == samples.size()) return;
   const auto of = [&](const auto& all) {
     std::decay_t<decltype(all)> chosen;
@@ -36,7 +36,7 @@ void keep(Samples& samples, const std::vector<std::size_t>& kept) {
   samples.row = of(samples.row);
 }
 
-void keep_range(Samples& samples, std::size_t first, std::size_t last) {
+void keep_range(ForeignSamples& samples, std::size_t first, std::size_t last) {
   std::vector<std::size_t> kept;
   for (std::size_t i = first; i < last; ++i) kept.push_back(i);
   keep(samples, kept);
@@ -76,7 +76,7 @@ double usual_interval_s(const std::vector<double>& time_s) {
 }
 
 /// A sensor that is slower than the log.
-void leave_out_unread(Samples& samples, std::vector<std::string>& notes) {
+void leave_out_unread(ForeignSamples& samples, std::vector<std::string>& notes) {
   const std::vector<double>& readings = samples[Role::displacement];
   std::vector<std::size_t> read;
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -92,7 +92,7 @@ void leave_out_unread(Samples& samples, std::vector<std::string>& notes) {
 
 }  // namespace
 
-std::optional<SampleProblem> order_in_time(const Mapping& mapping, Samples& samples,
+std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
                                            std::vector<std::string>& notes) {
   std::vector<std::size_t> timed;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -128,7 +128,7 @@ std::optional<SampleProblem> order_in_time(const Mapping& mapping, Samples& samp
   return std::nullopt;
 }
 
-void complete_drive(Samples& samples, std::vector<std::string>& notes) {
+void complete_drive(ForeignSamples& samples, std::vector<std::string>& notes) {
   leave_out_unread(samples, notes);
   if (samples[Role::command].empty()) {
     samples[Role::command] = samples[Role::pressure];
@@ -154,7 +154,7 @@ void complete_drive(Samples& samples, std::vector<std::string>& notes) {
   if (carried > 0) notes.push_back(counted(carried, "without a command keep the one before"));
 }
 
-void cut_at_holes(Samples& samples, std::vector<std::string>& notes) {
+void cut_at_holes(ForeignSamples& samples, std::vector<std::string>& notes) {
   const std::vector<double>& time_s = samples[Role::time];
   const std::vector<double>& command = samples[Role::command];
   const double long_s = std::max(hole_s, hole_intervals * usual_interval_s(time_s));

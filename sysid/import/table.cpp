@@ -5,7 +5,7 @@
 
 namespace softgrip::sysid {
 
-std::size_t column_index(const Table& table, std::string_view word) {
+std::size_t column_index(const ForeignTable& table, std::string_view word) {
   const auto named = [&](const TableColumn& column) { return column.name == word && !word.empty(); };
   const auto count = std::count_if(table.columns.begin(), table.columns.end(), named);
   if (count == 1) {
@@ -19,7 +19,7 @@ std::size_t column_index(const Table& table, std::string_view word) {
   return number - 1;
 }
 
-std::string word_of(const Table& table, std::size_t index) {
+std::string word_of(const ForeignTable& table, std::size_t index) {
   const std::string& name = table.columns[index].name;
   return column_index(table, name) == index ? name : std::to_string(index + 1);
 }

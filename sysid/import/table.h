@@ -29,7 +29,7 @@ struct TableColumn {
 };
 
 /// All columns are equally long.
-struct Table {
+struct ForeignTable {
   std::string file;    ///< as the user named it
   std::string format;  ///< in words: "CSV, ';' between columns, decimal comma"
   std::string sha256;  ///< of the file's bytes
@@ -53,8 +53,8 @@ struct TableOptions {
 
 /// The column that a word names: its name, or its number counted from 1 where no name is that. Its index, or
 /// the number of columns where there is none or more than one of the name.
-[[nodiscard]] std::size_t column_index(const Table& table, std::string_view word);
+[[nodiscard]] std::size_t column_index(const ForeignTable& table, std::string_view word);
 /// How a column is named in messages and options: its name, or its number where it has none of its own.
-[[nodiscard]] std::string word_of(const Table& table, std::size_t index);
+[[nodiscard]] std::string word_of(const ForeignTable& table, std::size_t index);
 
 }  // namespace softgrip::sysid

@@ -26,7 +26,7 @@ std::string name_of_separator(char separator) {
 /// The rows of numbers, read into columns.
 class RowReader {
  public:
-  RowReader(const Dialect& dialect, const TableOptions& options, Table& table, LogReporter& report)
+  RowReader(const Dialect& dialect, const TableOptions& options, ForeignTable& table, LogReporter& report)
       : dialect_(dialect), options_(options), table_(table), report_(report), moments_(dialect.width) {
     table_.columns.resize(dialect.width);
     for (std::size_t i = 0; i < dialect.width; ++i) {
@@ -117,7 +117,7 @@ class RowReader {
 
   const Dialect& dialect_;
   const TableOptions& options_;
-  Table& table_;
+  ForeignTable& table_;
   LogReporter& report_;
   std::vector<Clock> moments_;
   std::vector<Cell> cells_;
@@ -128,8 +128,8 @@ class RowReader {
 
 }  // namespace
 
-std::optional<Table> parse_text_table(const std::string& file, std::string_view bytes,
-                                      const TableOptions& options, document::Problems& problems) {
+std::optional<ForeignTable> parse_text_table(const std::string& file, std::string_view bytes,
+                                             const TableOptions& options, document::Problems& problems) {
   const auto text = utf8_of(bytes);
   if (!text) {
     problems.add({file, {1, 1}, {}, text.error(), "export it as CSV"});
@@ -138,7 +138,7 @@ std::optional<Table> parse_text_table(const std::string& file, std::string_view 
   const TextLines lines = text_lines(*text);
   const auto dialect = dialect_of(file, lines, options, problems);
   if (!dialect) return std::nullopt;
-  Table table;
+  ForeignTable table;
   table.file = file;
   LogReporter report(file, problems);
   RowReader rows(*dialect, options, table, report);

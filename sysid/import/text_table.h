@@ -14,8 +14,8 @@ namespace softgrip::sysid {
 /// names, a row of units and empty lines are passed over; decimal points and commas are found, but not both
 /// in one file; a last line that is cut off is left out and said. Other rows of another width are problems.
 /// `file` names it in messages.
-[[nodiscard]] std::optional<Table> parse_text_table(const std::string& file, std::string_view text,
-                                                    const TableOptions& options,
-                                                    document::Problems& problems);
+[[nodiscard]] std::optional<ForeignTable> parse_text_table(const std::string& file, std::string_view text,
+                                                           const TableOptions& options,
+                                                           document::Problems& problems);
 
 }  // namespace softgrip::sysid

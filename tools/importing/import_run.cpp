@@ -33,7 +33,7 @@ constexpr std::size_t longest_log = std::size_t{512} << 20U;
 struct Job {
   std::string file;
   std::string out;
-  sysid::Table table;
+  sysid::ForeignTable table;
   sysid::Mapping mapping;
   std::vector<sysid::Role> guessed;
   bool is_log = false;  ///< already, to the letter

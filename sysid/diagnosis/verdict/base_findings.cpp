@@ -137,6 +137,40 @@ std::optional<StructureChoice> better_structure(const std::vector<Record>& recor
   return choice;
 }
 
+/// What a cause is confounded with may have been the base's answer to it.
+bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) {
+  return std::any_of(causes.begin(), causes.end(), [&](const Cause& cause) {
+    return std::find(cause.confounded_with.begin(), cause.confounded_with.end(), finding.cause.id) !=
+           cause.confounded_with.end();
+  });
+}
+
+void take_back_confounded(BaseFindings& found, const SearchData& data, const BaseQuestion& question) {
+  constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
+  std::erase_if(found.named, [&](const NamedCause& finding) {
+    if (!is_confounded(finding, found.fit.causes)) return false;
+    FitPoint rest = found.fit.point;
+    rest.model = model::without_block(std::move(rest.model), finding.block_type);
+    StructureFit fit = fit_structure(data.records, found.fit.causes, rest, finish);
+    BlockLosses losses = linear_held_out_losses(data.records, question.division, fit);
+    const Spread gain = mean_difference(losses, found.losses, question.seed);
+    if (gain.lower > 0 && gain.value > 0.01 * question.noise_mm * question.noise_mm) return false;
+    found.fit = std::move(fit);
+    found.losses = std::move(losses);
+    return true;
+  });
+}
+
+/// The numbers of all names as they are beside each other.
+void renumber(BaseFindings& found, const SearchData& data) {
+  const FitSpace space = structure_space(data.records, found.fit.point.model, found.fit.causes);
+  const UncertainPoint at = uncertain_point(data.records, found.fit.point, space);
+  for (NamedCause& named : found.named) {
+    if (model::position_of(found.fit.point.model, named.block_type))
+      named.parameters = block_numbers(at, named.block_type);
+  }
+}
+
 }  // namespace
 
 std::optional<BaseFindings> find_base(const SearchData& data, const Selection& plain,
@@ -206,6 +240,8 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   found.description = description_of(base.structure);
   found.fit = std::move(selection.extended);
   found.losses = std::move(selection.extended_losses);
+  take_back_confounded(found, data, question);
+  renumber(found, data);
 }
 
 }  // namespace softgrip::sysid

@@ -28,15 +28,15 @@ std::string plain(int i, double p, double y) {
   return shortest(0.01 * i) + "," + shortest(p) + "," + shortest(y);
 }
 
-Table table_of(const std::string& text) {
+ForeignTable table_of(const std::string& text) {
   document::Problems problems;
   auto table = parse_text_table("t.csv", text, {}, problems);
   EXPECT_TRUE(table) << problems.format();
-  return table ? *table : Table{};
+  return table ? *table : ForeignTable{};
 }
 
 ImportedLog log_of(const std::string& text, const Mapping& given = {}) {
-  const Table table = table_of(text);
+  const ForeignTable table = table_of(text);
   document::Problems problems;
   auto result = convert(table, propose(table, given, true).mapping, problems);
   EXPECT_TRUE(result) << problems.format();
@@ -114,8 +114,8 @@ TEST(Convert, WhatNoOtherCommandWouldReadIsRefused) {
             std::string::npos);
 }
 
-TEST(Samples, ATimeThatGoesBackIsAProblemAtItsRow) {
-  Samples samples;
+TEST(ForeignSamples, ATimeThatGoesBackIsAProblemAtItsRow) {
+  ForeignSamples samples;
   samples[Role::time] = {0, 1, 2, 1.5};
   samples[Role::displacement] = {0, 0, 0, 0};
   samples.row = {0, 1, 2, 3};
@@ -125,8 +125,8 @@ TEST(Samples, ATimeThatGoesBackIsAProblemAtItsRow) {
   EXPECT_EQ(problem->row, 3U);
 }
 
-TEST(Samples, OfTwoAtOneTimeTheFirstStays) {
-  Samples samples;
+TEST(ForeignSamples, OfTwoAtOneTimeTheFirstStays) {
+  ForeignSamples samples;
   samples[Role::time] = {10, 10.5, 10.5, std::nan(""), 11};
   samples[Role::displacement] = {1, 2, 3, 4, 5};
   samples.row = {0, 1, 2, 3, 4};
@@ -137,9 +137,9 @@ TEST(Samples, OfTwoAtOneTimeTheFirstStays) {
   EXPECT_EQ(notes.size(), 3U);
 }
 
-TEST(Samples, AHoleIsOneOnlyWhereTheCommandChanged) {
+TEST(ForeignSamples, AHoleIsOneOnlyWhereTheCommandChanged) {
   for (const double change : {0.0, 30.0}) {
-    Samples samples;
+    ForeignSamples samples;
     for (int i = 0; i < 200; ++i) {
       samples[Role::time].push_back(0.01 * i + (i < 80 ? 0 : 2));
       samples[Role::command].push_back(i < 80 ? 10 : 10 + change);
@@ -154,8 +154,8 @@ TEST(Samples, AHoleIsOneOnlyWhereTheCommandChanged) {
   }
 }
 
-TEST(Samples, ASlowSensorLeavesOutWhatItDidNotRead) {
-  Samples samples;
+TEST(ForeignSamples, ASlowSensorLeavesOutWhatItDidNotRead) {
+  ForeignSamples samples;
   for (int i = 0; i < 100; ++i) {
     samples[Role::time].push_back(0.01 * i);
     samples[Role::command].push_back(i == 50 ? std::nan("") : i);
@@ -170,7 +170,7 @@ TEST(Samples, ASlowSensorLeavesOutWhatItDidNotRead) {
 }
 
 TEST(Propose, TakesWhatNamesAndUnitsSay) {
-  const Table table = table_of(
+  const ForeignTable table = table_of(
       text_of("Zeit [ms],supply_bar,p_soll_bar,p_ist_bar,Temp (\xc2\xb0"
               "C),Weg [mm]",
               [](int i, double p, double y) {
@@ -186,7 +186,7 @@ TEST(Propose, TakesWhatNamesAndUnitsSay) {
 }
 
 TEST(Propose, LeavesWhatIsGivenAlone) {
-  const Table table = table_of(text_of("t_s,p1_kpa,tip_mm", plain));
+  const ForeignTable table = table_of(text_of("t_s,p1_kpa,tip_mm", plain));
   Mapping given;
   given[Role::pressure].columns = {"p1_kpa"};
   const Proposal proposal = propose(table, given, true);

@@ -12,11 +12,11 @@
 namespace softgrip::sysid {
 namespace {
 
-Table table_of(const std::string& text, const TableOptions& options = {}) {
+ForeignTable table_of(const std::string& text, const TableOptions& options = {}) {
   document::Problems problems;
   auto table = parse_text_table("t.csv", text, options, problems);
   EXPECT_TRUE(table) << problems.format();
-  return table ? *table : Table{};
+  return table ? *table : ForeignTable{};
 }
 
 std::string refusal(const std::string& text, const TableOptions& options = {}) {
@@ -29,7 +29,7 @@ TEST(TextTable, SeparatorsAreFound) {
   for (const char separator : {',', ';', '\t', '|', ' '}) {
     std::string text = "a,b,c\n1,2.5,3\n4,5.5,6\n";
     for (char& c : text) c = c == ',' ? separator : c;
-    const Table table = table_of(text);
+    const ForeignTable table = table_of(text);
     ASSERT_EQ(table.columns.size(), 3U) << separator;
     EXPECT_EQ(table.columns[1].name, "b");
     EXPECT_EQ(table.columns[1].values, (std::vector<double>{2.5, 5.5}));
@@ -48,14 +48,14 @@ TEST(TextTable, PointsAndCommasInOneFileAreRefused) {
 }
 
 TEST(TextTable, UnitsStandBelowTheNames) {
-  const Table table = table_of("time;p\n[ms];[psi]\n1;2\n3;4\n");
+  const ForeignTable table = table_of("time;p\n[ms];[psi]\n1;2\n3;4\n");
   EXPECT_EQ(table.columns[0].unit, "ms");
   EXPECT_EQ(table.columns[1].unit, "psi");
   EXPECT_EQ(table.columns[1].name, "p");
 }
 
 TEST(TextTable, CommentsAndLinesAboveTheNamesArePassedOver) {
-  const Table table = table_of("Report\nOperator: me\n# comment\n\nt,x\n0,1\n# more\n1,2\n");
+  const ForeignTable table = table_of("Report\nOperator: me\n# comment\n\nt,x\n0,1\n# more\n1,2\n");
   EXPECT_EQ(table.columns[1].name, "x");
   EXPECT_EQ(table.columns[1].values, (std::vector<double>{1, 2}));
   EXPECT_EQ(table.line, (std::vector<int>{6, 8}));
@@ -64,28 +64,28 @@ TEST(TextTable, CommentsAndLinesAboveTheNamesArePassedOver) {
 
 TEST(TextTable, NamesMayStandInACommentOrNowhere) {
   EXPECT_EQ(table_of("# t x\n0 1\n1 2\n").columns[1].name, "x");
-  const Table nameless = table_of("0,1\n1,2\n");
+  const ForeignTable nameless = table_of("0,1\n1,2\n");
   EXPECT_EQ(nameless.columns[1].name, "");
   EXPECT_EQ(column_index(nameless, "2"), 1U);
   EXPECT_EQ(word_of(nameless, 1), "2");
 }
 
 TEST(TextTable, WordsThatSayNothingAreNothing) {
-  const Table table = table_of("t,x\n0,NaN\n1,\n2,N/A\n3,-999\n4,inf\n5,7\n", {0, {"-999"}, {}});
+  const ForeignTable table = table_of("t,x\n0,NaN\n1,\n2,N/A\n3,-999\n4,inf\n5,7\n", {0, {"-999"}, {}});
   for (std::size_t i = 0; i < 5; ++i) EXPECT_TRUE(std::isnan(table.columns[1].values[i])) << i;
   EXPECT_EQ(table.columns[1].values[5], 7);
   EXPECT_EQ(table.columns[1].bad_count, 0U);
 }
 
 TEST(TextTable, OtherWordsAreKeptWithTheirPlace) {
-  const Table table = table_of("t,x\n0,1\n1,oops\n2,3\n");
+  const ForeignTable table = table_of("t,x\n0,1\n1,oops\n2,3\n");
   ASSERT_EQ(table.columns[1].bad.size(), 1U);
   EXPECT_EQ(table.columns[1].bad[0].at, (document::Location{3, 3}));
   EXPECT_EQ(table.columns[1].bad[0].text, "oops");
 }
 
 TEST(TextTable, MidnightIsPassed) {
-  const Table table = table_of("t,x\n23:59:59.5,1\n00:00:00.5,2\n00:00:01.5,3\n");
+  const ForeignTable table = table_of("t,x\n23:59:59.5,1\n00:00:00.5,2\n00:00:01.5,3\n");
   EXPECT_EQ(table.columns[0].values, (std::vector<double>{0, 1, 2}));
   EXPECT_EQ(table.columns[0].moments, 3U);
 }

@@ -25,7 +25,7 @@ TEST_P(Units, ComeToTheUnitOfALog) {
 
 // Values by NIST SP 811, appendix B.
 INSTANTIATE_TEST_SUITE_P(
-    Table, Units,
+    ForeignTable, Units,
     testing::Values(
         Case{"s", Quantity::time, 1.5, 1.5}, Case{"msec", Quantity::time, 20, 0.02},
         Case{"\xc2\xb5s", Quantity::time, 5, 5e-6}, Case{"ns", Quantity::time, 3, 3e-9},
