@@ -134,6 +134,19 @@ KeyHint hint_for_key(std::string_view key, const Node& value, const std::vector<
   return {near, "did you mean `" + near + "`?"};
 }
 
+std::string_view unit_at_end(std::string_view key) {
+  constexpr std::array<std::string_view, 7> own{"kpa", "mm", "s", "hz", "v", "ma", "c"};
+  const auto words = words_of(key);
+  const auto is_unit = [&](std::size_t i) {
+    return std::find(own.begin(), own.end(), words[i]) != own.end();
+  };
+  const std::size_t last = words.size() - 1;
+  if (last == 0 || !is_unit(last)) return {};
+  std::size_t size = words[last].size();
+  if (last > 2 && words[last - 1] == "per" && is_unit(last - 2)) size += words[last - 2].size() + 5;
+  return key.substr(key.size() - size);
+}
+
 std::string hint_for_range(std::string_view key, double value, double lower, double upper) {
   const Unit* const wanted = unit_named(words_of(key).back());
   if (wanted == nullptr || key.find("_per_") != std::string_view::npos || value == 0) return {};

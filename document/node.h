@@ -25,6 +25,7 @@ struct Node {
   Location at;
   std::string scalar;          ///< the text of a scalar, unquoted
   bool quoted = false;         ///< the scalar stood in quotes: a string, never a number
+  std::string stands_for;      ///< `$name` where the file has that, and the scalar is its number; or empty
   bool refused = false;        ///< already reported or cut short: present, not to be judged again
   std::vector<Node> items;     ///< of a sequence
   std::vector<Entry> entries;  ///< of a map, in the order of the text, keys unique

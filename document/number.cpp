@@ -145,7 +145,20 @@ std::string found(const Node& node) {
     case Node::Kind::scalar:
       break;
   }
-  return node.scalar.empty() ? "an empty text" : "`" + shown(node.scalar) + "`";
+  if (node.scalar.empty()) return "an empty text";
+  return "`" + shown(node.scalar) + "`" +
+         (node.stands_for.empty() ? "" : " (`" + shown(node.stands_for) + "`)");
+}
+
+std::string hint_for_comma(const Node& before, Location after, std::string_view text_after) {
+  const auto decimal =
+      before.kind == Node::Kind::scalar && !before.quoted ? split(before.scalar) : std::nullopt;
+  const bool whole = decimal && !decimal->fraction && !decimal->exponent;
+  const bool digits = !text_after.empty() && count_digits(text_after) == text_after.size();
+  const bool glued = before.at.line == after.line &&
+                     after.column == before.at.column + static_cast<int>(before.scalar.size()) + 1;
+  if (!whole || !digits || !glued) return {};
+  return "the decimal mark is a point: " + before.scalar + "." + std::string(text_after);
 }
 
 Parsed<double> parse_number(const Node& node) {

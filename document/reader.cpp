@@ -100,7 +100,8 @@ double MapReader::checked(std::string_view key, const Node* value, Range range) 
     return harmless(range);
   }
   if (*number.value < range.lower || *number.value > range.upper) {
-    refuse(*value, key, "is " + written(*number.value) + ", allowed is " + allowed(range),
+    const std::string whose = value->stands_for.empty() ? "" : " (" + quoted(value->stands_for) + ")";
+    refuse(*value, key, "is " + written(*number.value) + whose + ", allowed is " + allowed(range),
            hint_for_range(key, *number.value, range.lower, range.upper));
   }
   return std::clamp(*number.value, range.lower, range.upper);
@@ -166,7 +167,7 @@ std::optional<bool> MapReader::optional_boolean(std::string_view key) {
 
 std::string MapReader::checked_text(std::string_view key, const Node* value) {
   if (value == nullptr || value->refused) return {};
-  if (value->kind != Node::Kind::scalar || value->scalar.empty()) {
+  if (value->kind != Node::Kind::scalar || value->scalar.empty() || !value->stands_for.empty()) {
     refuse(*value, key, "must be a text, found " + found(*value), "");
     return {};
   }
@@ -241,7 +242,12 @@ std::vector<double> MapReader::checked_numbers(std::string_view key, const Node*
     return result;
   }
   if (value->items.size() != count) {
-    refuse(*value, key, wanted + std::to_string(value->items.size()), "");
+    std::string hint;
+    for (std::size_t i = 1; i < value->items.size() && hint.empty(); ++i) {
+      const Node& item = value->items[i];
+      hint = hint_for_comma(value->items[i - 1], item.at, item.scalar);
+    }
+    refuse(*value, key, wanted + std::to_string(value->items.size()), std::move(hint));
   }
   for (std::size_t i = 0; i < std::min(count, value->items.size()); ++i) {
     result[i] = checked(key, &value->items[i], range);
@@ -307,6 +313,10 @@ void MapReader::report_unknown(const Node::Entry& entry) {
     }
   }
   KeyHint hint = hint_for_key(entry.key, entry.value, candidates);
+  if (&entry != node_.entries.data()) {
+    std::string comma = hint_for_comma((&entry - 1)->value, entry.key_at, entry.key);
+    if (!comma.empty()) hint = {"", std::move(comma)};
+  }
   // The unknown key explains the missing one: one mistake, one problem.
   std::erase(missing_, hint.key);
   if (hint.hint.empty() && !known_.empty() && known_.size() <= 12)

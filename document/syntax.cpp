@@ -5,6 +5,8 @@
 #include <cctype>
 #include <optional>
 
+#include "document/brackets.h"
+
 namespace softgrip::document {
 
 namespace {
@@ -51,6 +53,21 @@ std::optional<SyntaxMessage> misaligned(const Document& document, const Node* op
                        "keys of one level start in the same column"};
 }
 
+std::string place(Location at) {
+  return std::to_string(at.line) + ":" + std::to_string(at.column);
+}
+
+/// Of a bracket that closes another kind, or that stands behind everything.
+SyntaxMessage wrong_end(const Document& document, Location at) {
+  const std::vector<Bracket> open = open_brackets(document.text, at);
+  if (open.empty()) return {"a closing bracket stands here without an opening one", ""};
+  const Bracket& bracket = open.back();
+  const std::string opener(1, bracket.character);
+  const std::string closer = bracket.character == '[' ? "]" : "}";
+  return {"the `" + opener + "` at " + place(bracket.at) + " is not closed: expected `" + closer + "` here",
+          "`" + closer + "` is missing where the " + (opener == "[" ? "list" : "map") + " ends"};
+}
+
 struct Translation {
   std::string_view said;
   std::string_view message;
@@ -63,7 +80,6 @@ constexpr std::array translations{
     Translation{"illegal map key", "a key cannot stand here", "the key goes on a line of its own"},
     Translation{"illegal block entry", "a list item `- ` cannot stand here",
                 "an item of a list goes on a line of its own, below its key"},
-    Translation{"illegal flow end", "a closing bracket stands here without an opening one", ""},
     Translation{"illegal EOF in scalar", "a quote is opened but never closed", ""},
     Translation{"illegal document indicator in scalar", "a quote is not closed before the document ends", ""},
     Translation{"unknown escape character", "an unknown escape stands in a text in double quotes",
@@ -96,9 +112,8 @@ constexpr std::array translations{
     Translation{"bad file", "the document is nested too deeply", ""},
 };
 
-}  // namespace
-
-SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open, Location at) {
+SyntaxMessage translated(const Document& document, std::string_view said, const Node* open, Location at) {
+  if (said == "illegal flow end") return wrong_end(document, at);
   if (said == "end of map not found") return misplaced(document, open, at, "map");
   if (said == "end of sequence not found") return misplaced(document, open, at, "list");
   if (said == "end of map flow not found") {
@@ -121,6 +136,19 @@ SyntaxMessage syntax_message(const Document& document, std::string_view said, co
     }
   }
   return {"this is not YAML: " + shown(said), ""};
+}
+
+}  // namespace
+
+SyntaxMessage syntax_message(const Document& document, std::string_view said, const Node* open, Location at) {
+  SyntaxMessage result = translated(document, said, open, at);
+  // A bracket that was forgotten shows itself lines below, as something else.
+  const std::vector<Bracket> brackets = open_brackets(document.text, at);
+  if (!result.hint.empty() || brackets.empty()) return result;
+  if (result.message.find(" is not closed") != std::string::npos) return result;
+  result.hint = std::string("the `") + brackets.back().character + "` at " + place(brackets.back().at) +
+                " is not closed before this";
+  return result;
 }
 
 std::string_view line_of(std::string_view text, int line) {
