@@ -47,6 +47,18 @@ std::vector<int> read_cpus(Context& context, MapReader& reader) {
   return cpus;
 }
 
+/// Permissions as ls writes them: `rw-rw----`.
+std::optional<unsigned> in_letters(std::string_view text) {
+  constexpr std::string_view letters = "rwxrwxrwx";
+  if (text.size() != letters.size()) return std::nullopt;
+  unsigned mode = 0;
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    if (text[i] != letters[i] && text[i] != '-') return std::nullopt;
+    mode = mode << 1U | (text[i] == '-' ? 0U : 1U);
+  }
+  return mode;
+}
+
 /// Permissions as chmod writes them: three octal digits, perhaps after a 0.
 std::optional<unsigned> octal(std::string_view text) {
   if (text.size() == 4 && text[0] == '0') text.remove_prefix(1);
@@ -61,20 +73,21 @@ std::optional<unsigned> octal(std::string_view text) {
 void read_socket_mode(MapReader& reader, SocketSettings& socket) {
   const std::string text = reader.text("mode");
   if (text.empty()) return;
-  const auto mode = octal(text);
+  const auto letters = in_letters(text);
+  const auto mode = letters ? letters : octal(text);
   if (!mode) {
-    reader.report("mode", "`mode` must be permissions in octal, found `" + document::shown(text) + "`",
-                  "\"0660\": the owner and the group may connect");
+    reader.report("mode", "`mode` must be permissions, found `" + document::shown(text) + "`",
+                  "rw-rw----, or \"0660\" in octal: the owner and the group may connect");
     return;
   }
   socket.mode = *mode;
   if ((*mode & 0111U) != 0) {
     reader.report("mode", "`mode` gives the right to execute, which a socket does not have",
-                  "\"0660\": the owner and the group may connect");
+                  "rw-rw----: the owner and the group may connect");
   }
   if ((*mode & 0006U) != 0) {
     reader.warn("mode", "everyone on this machine may move the gripper",
-                "\"0660\": the owner and the group may connect");
+                "rw-rw----: the owner and the group may connect");
   }
 }
 

@@ -221,7 +221,8 @@ void RigController::tell_limits(std::size_t index, double time_s) noexcept {
 void RigController::tell_changes(std::size_t index) noexcept {
   const ChannelOutput& seen = output_.channels[index];
   const bool valid = seen.validity == model::Validity::valid;
-  if (valid != channels_[index].valid_before) {
+  // Before the board's first answer there is nothing to be told of a reading.
+  if (seen.validity != model::Validity::none_yet && valid != channels_[index].valid_before) {
     output_.events.add_of_channel(index, valid ? Event::Kind::reading_valid : Event::Kind::reading_invalid,
                                   seen.validity, 0, seen.age_s);
     channels_[index].valid_before = valid;

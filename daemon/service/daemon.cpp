@@ -162,6 +162,11 @@ void DaemonParts::tell(const char* kind, Severity severity, std::string text) {
   events.add(std::move(entry));
 }
 
+bool reached_the_board(Ending ending) noexcept {
+  return ending != Ending::socket_failed && ending != Ending::board_taken && ending != Ending::gpio_refused &&
+         ending != Ending::gpio_failed;
+}
+
 ExitCode exit_code_of(const Outcome& outcome) noexcept {
   const ExitCode done = !outcome.left_safely              ? ExitCode::failed
                         : outcome.recording_error.empty() ? ExitCode::done

@@ -26,6 +26,7 @@
 namespace softgrip::daemon {
 
 struct DaemonOptions {
+  std::string program = "softgripd";  ///< what it calls itself
   /// No sleeping and no clock: as fast as the processor, and the same bytes from the same seed. Only with a
   /// simulated board; nothing listens on the socket.
   bool virtual_time = false;
@@ -72,6 +73,9 @@ struct Outcome {
   std::uint64_t slips = 0;
   double wall_s = 0;  ///< how long it took
 };
+
+/// False where run() ended before the board was opened: then nothing is to be said of its outputs.
+[[nodiscard]] bool reached_the_board(Ending ending) noexcept;
 
 /// 0, 1, 3, 4, 5 or 6: see the exit codes of the manual.
 [[nodiscard]] ExitCode exit_code_of(const Outcome& outcome) noexcept;

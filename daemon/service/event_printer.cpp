@@ -126,9 +126,7 @@ void EventPrinter::print_end(const Outcome& outcome) {
     logger_->info("{}: {}", outcome.channel_names[i], control::title_of(outcome.last.channels[i].result));
   }
   logger_->info("{} ticks, {} slips, {:.3f} s", outcome.ticks, outcome.slips, outcome.wall_s);
-  const bool never_began = outcome.ending == Ending::socket_failed || outcome.ending == Ending::board_taken ||
-                           outcome.ending == Ending::gpio_refused || outcome.ending == Ending::gpio_failed;
-  if (never_began) return;
+  if (!reached_the_board(outcome.ending)) return;
   if (!outcome.recording_error.empty())
     logger_->error("the recording is not whole: {}", outcome.recording_error);
   if (outcome.left_safely) {

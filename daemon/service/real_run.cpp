@@ -239,7 +239,8 @@ void RealRun::guarded(const std::function<void()>& action) {
 void RealRun::start() {
   guarded([this] { start_threads(); });
   guarded([this] {
-    if (parts_.options.on_start) parts_.options.on_start(startup_report(parts_.rig, *parts_.board, &report_));
+    if (parts_.options.on_start)
+      parts_.options.on_start(startup_report(parts_.rig, *parts_.board, &report_, parts_.options.program));
   });
   if (parts_.rig.real_time.required && report_.degraded()) {
     outcome_.ending = Ending::real_time_refused;

@@ -93,7 +93,8 @@ ExitCode check(const Arguments& arguments) {
   const auto rig = rig::load_rig(arguments.config, ignored);
   if (!rig) return ExitCode::input_refused;
   const MonotonicClock clock;
-  fmt::print("{}{}: fit to run\n", daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr),
+  fmt::print("{}{}: fit to run\n",
+             daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr, "softgripd"),
              arguments.config);
   return ExitCode::done;
 }

@@ -27,16 +27,16 @@ std::string bus_lines(const rig::RigFile& rig, const drivers::Board& board) {
   return text;
 }
 
-std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board) {
+std::string watchdog_line(const rig::RigFile& rig, const drivers::Board& board, std::string_view program) {
   if (board.has_watchdog()) {
     const double time_s = seconds(board.watchdog_time().count());
     std::string text = fmt::format(
-        "watchdog: the board sets safe outputs by itself {:g} s after softgripd fell silent\n", time_s);
+        "watchdog: the board sets safe outputs by itself {:g} s after {} fell silent\n", time_s, program);
     const auto& actions = rig.settings.safety.safe_action;
     if (rig.settings.safety.board_vents_when_silent &&
         std::find(actions.begin(), actions.end(), control::SafeAction::hold) != actions.end())
       text += fmt::format(
-          "hold: lasts as long as softgripd runs; {:g} s after its end the watchdog vents what it held\n",
+          "hold: lasts as long as {} runs; {:g} s after its end the watchdog vents what it held\n", program,
           time_s);
     return text;
   }
@@ -78,12 +78,12 @@ std::string gpio_lines(const rig::RigFile& rig) {
 }  // namespace
 
 std::string startup_report(const rig::RigFile& rig, const drivers::Board& board,
-                           const RealTimeReport* real_time) {
+                           const RealTimeReport* real_time, std::string_view program) {
   std::string text =
-      fmt::format("softgripd {}\nrig: {} ({}), {} channels at {:g} Hz\nboard: {}\n", software_version(),
+      fmt::format("{} {}\nrig: {} ({}), {} channels at {:g} Hz\nboard: {}\n", program, software_version(),
                   rig.name, rig.path, rig.settings.channels.size(), rig.settings.rate_hz, board.describe());
   text += bus_lines(rig, board);
-  text += watchdog_line(rig, board);
+  text += watchdog_line(rig, board, program);
   text += "safe action:";
   for (std::size_t i = 0; i < control::phase_count; ++i) {
     text += fmt::format("{} {} {}", i == 0 ? "" : ",", control::name_of(static_cast<control::Phase>(i)),

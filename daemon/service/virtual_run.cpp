@@ -29,7 +29,8 @@ void look(DaemonParts& parts, Nanoseconds now) {
 
 Outcome run_in_virtual_time(DaemonParts& parts) {
   Signals signals;
-  if (parts.options.on_start) parts.options.on_start(startup_report(parts.rig, *parts.board, nullptr));
+  if (parts.options.on_start)
+    parts.options.on_start(startup_report(parts.rig, *parts.board, nullptr, parts.options.program));
   const Nanoseconds began = parts.system_clock.now();
   const Nanoseconds period = parts.period();
   const Nanoseconds end =

@@ -17,6 +17,7 @@
 
 #include "base/clock.h"
 #include "base/grid.h"
+#include "base/numbers.h"
 #include "daemon/loop/histogram.h"
 #include "daemon/loop/real_time.h"
 #include "rig/rig_file.h"
@@ -31,6 +32,7 @@ constexpr double probe_s = 1;
 /// Bytes of a row of run.csv and its line break, as the shipped rigs write them.
 constexpr double bytes_per_row = 125;
 constexpr double s_per_hour = 3600;
+constexpr double h_per_day = 24;
 constexpr double least_hours = 1;
 constexpr double good_hours = 24;
 
@@ -169,6 +171,16 @@ void examine_clock(Findings& findings) {
   }
 }
 
+namespace {
+
+/// "12.5 h" up to two days, then whole days.
+std::string in_hours_or_days(double hours) {
+  if (hours < 2 * h_per_day) return significant(hours, 3) + " h";
+  return fixed(hours / h_per_day, 0) + " days";
+}
+
+}  // namespace
+
 void examine_disk(const rig::RigFile& rig, Findings& findings) {
   const rig::RecorderSettings& recorder = rig.recorder;
   if (recorder.mode == rig::RecorderSettings::Mode::off) {
@@ -196,8 +208,8 @@ void examine_disk(const rig::RigFile& rig, Findings& findings) {
   const double rows_per_s = rig.settings.rate_hz * static_cast<double>(rig.settings.channels.size()) /
                             static_cast<double>(std::max<std::uint32_t>(recorder.decimation, 1));
   const double hours = free_bytes / (rows_per_s * bytes_per_row) / s_per_hour;
-  const std::string text = fmt::format("{}: {:.3g} GB free, about {:.3g} h of recording", recorder.directory,
-                                       free_bytes * 1e-9, hours);
+  const std::string text = fmt::format("{}: {} GB free, about {} of recording", recorder.directory,
+                                       significant(free_bytes * 1e-9, 3), in_hours_or_days(hours));
   if (hours < least_hours) {
     findings.fail("disk", text, "free space, or move recorder: directory, or raise recorder: decimation");
   } else if (hours < good_hours) {
