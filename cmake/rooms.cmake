@@ -94,7 +94,7 @@ softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_
 softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/import sysid/diagnosis/gauge
   LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
-softgrip_room(tools/client USES base document tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line

@@ -29,7 +29,7 @@ const std::array<Signature, 4>& signatures() {
                 {"address_base", "word_order", "inputs", "outputs", "fc23", "readable_gap", "input_status",
                  "read_back", "watchdog", "setup"}},
       Signature{FileKind::model, {"valve", "actuator", "load", "sensor"}},
-      Signature{FileKind::sequence, {"steps", "about", "interlock", "channels"}},
+      Signature{FileKind::sequence, {"steps", "about", "interlock", "channels", "parameters"}},
   };
   return all;
 }
@@ -61,8 +61,8 @@ struct Read {
   std::vector<control::Sequence> sequences;
 };
 
-void read_as(const document::Document& document, CheckedFile& file, document::Problems& problems,
-             Read& read) {
+void read_as(const document::Document& document, std::span<const control::Argument> arguments,
+             CheckedFile& file, document::Problems& problems, Read& read) {
   const auto keep_name = [&](const auto& value) {
     if (value) file.name = value->name;
   };
@@ -80,7 +80,7 @@ void read_as(const document::Document& document, CheckedFile& file, document::Pr
       keep_name(model::read_model(document, problems));
       break;
     case FileKind::sequence: {
-      auto sequence = control::read_sequence(document, problems);
+      auto sequence = control::read_sequence(document, problems, arguments);
       keep_name(sequence);
       if (sequence) read.sequences.push_back(std::move(*sequence));
       break;
@@ -94,6 +94,7 @@ void fit_sequences(const Read& read, document::Problems& problems) {
   for (const control::Sequence& sequence : read.sequences) {
     for (const RigFile& rig : read.rigs) {
       static_cast<void>(control::prepare(sequence, rig.settings, problems));
+      control::check_ranges(sequence, rig.settings, problems);
     }
   }
 }
@@ -125,7 +126,7 @@ FileKind kind_of(const document::Document& document, document::Problems& problem
   return best;
 }
 
-CheckReport check_files(std::span<const std::string> paths) {
+CheckReport check_files(std::span<const std::string> paths, std::span<const control::Argument> arguments) {
   CheckReport report;
   document::Problems problems;
   Read read;
@@ -136,7 +137,7 @@ CheckReport check_files(std::span<const std::string> paths) {
     file.path = path;
     const document::Document document = document::parse_file(path, problems);
     file.kind = kind_of(document, problems);
-    read_as(document, file, problems, read);
+    read_as(document, arguments, file, problems, read);
   }
   fit_sequences(read, problems);
   // A model that two rigs name, or that is checked itself too, was read more than once.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "control/tick/parameter.h"
 #include "document/node.h"
 
 namespace softgrip::rig {
@@ -39,7 +40,9 @@ struct CheckReport {
 };
 
 /// Reads every file as what it is. When rigs and sequences are among them, each sequence is also fitted to
-/// each rig: names of channels, targets within limits.
-[[nodiscard]] CheckReport check_files(std::span<const std::string> paths);
+/// each rig: names of channels, targets within limits, with its parameters at their defaults and at the ends
+/// of their ranges. `arguments` take the place of defaults in every sequence; each sequence must have them.
+[[nodiscard]] CheckReport check_files(std::span<const std::string> paths,
+                                      std::span<const control::Argument> arguments = {});
 
 }  // namespace softgrip::rig

@@ -8,6 +8,8 @@
 
 #include "base/numbers.h"
 #include "control/feedforward/free_curve.h"
+#include "control/sequences/blame.h"
+#include "control/sequences/sequence_file.h"
 #include "control/sequences/sequence_plans.h"
 #include "document/node.h"
 
@@ -39,6 +41,9 @@ class Fitting {
     result.name = sequence_.name;
     result.interlock = sequence_.interlock;
     result.rig = rig_key(settings_);
+    for (const Parameter& parameter : sequence_.parameters) {
+      result.parameters.push_back({parameter.name, parameter.value});
+    }
     const std::uint32_t all = mask_of(sequence_.channels, {}, (1U << settings_.channels.size()) - 1);
     for (const Step& step : sequence_.steps) {
       PreparedStep prepared{step, mask_of(step.channels, step.at, all), 0, 0, {}};
@@ -296,16 +301,59 @@ class Fitting {
   std::vector<double> follows_mm_ = std::vector<double>(settings_.channels.size(), unknown);
 };
 
+/// A sequence with other values of its parameters, fitted to a rig without planning.
+class Variation {
+ public:
+  Variation(const Sequence& sequence, const RigSettings& settings) : settings_(settings) {
+    Problems told;  // it was read before
+    document_ = document::parse(sequence.file, sequence.text, told);
+  }
+
+  [[nodiscard]] const document::Document& document() const { return document_; }
+  [[nodiscard]] Judge judge() const {
+    return [this](const std::vector<Parameter>& parameters) {
+      Problems found;
+      const auto sequence = read_with(document_, parameters, found);
+      if (sequence) static_cast<void>(Fitting(*sequence, settings_, found).run());
+      return found;
+    };
+  }
+
+ private:
+  const RigSettings& settings_;
+  document::Document document_;
+};
+
+void report_misfits(const Sequence& sequence, const RigSettings& settings, const Problems& found,
+                    Problems& problems) {
+  if (sequence.parameters.empty()) {
+    for (const document::Problem& problem : found.list()) problems.add(problem);
+    return;
+  }
+  const Variation variation(sequence, settings);
+  blame_values(variation.document(), sequence.parameters, variation.judge(), problems);
+}
+
 }  // namespace
 
 std::optional<PreparedSequence> prepare(const Sequence& sequence, const RigSettings& settings,
                                         document::Problems& problems, const std::stop_token& stop) {
   const std::size_t before = problems.size();
-  Fitting fitting(sequence, settings, problems);
-  PreparedSequence result = fitting.run();
-  if (problems.size() == before) fitting.plan(result, stop);
+  Problems found;
+  PreparedSequence result = Fitting(sequence, settings, found).run();
+  if (!found.empty()) {
+    report_misfits(sequence, settings, found, problems);
+    return std::nullopt;
+  }
+  Fitting(sequence, settings, problems).plan(result, stop);
   if (problems.size() != before) return std::nullopt;
   return result;
+}
+
+void check_ranges(const Sequence& sequence, const RigSettings& settings, document::Problems& problems) {
+  if (sequence.parameters.empty()) return;
+  const Variation variation(sequence, settings);
+  blame_ends(variation.document(), sequence.parameters, variation.judge(), problems);
 }
 
 }  // namespace softgrip::control

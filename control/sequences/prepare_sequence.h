@@ -17,4 +17,8 @@ namespace softgrip::control {
                                                       document::Problems& problems,
                                                       const std::stop_token& stop = {});
 
+/// Adds what does not fit the rig at the ends of the ranges of the sequence's parameters, one parameter after
+/// the other, each at the parameter. Nothing is planned.
+void check_ranges(const Sequence& sequence, const RigSettings& settings, document::Problems& problems);
+
 }  // namespace softgrip::control

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "control/sequences/blame.h"
+#include "control/sequences/parameters.h"
 #include "document/reader.h"
 
 namespace softgrip::control {
@@ -52,6 +54,7 @@ class FileReader {
     if (const auto choice = map.optional_choice("interlock", {"start", "always"})) {
       result.interlock = *choice == 0 ? Interlock::start : Interlock::always;
     }
+    static_cast<void>(map.child("parameters", false));  // read_parameters() has read them
     const auto items = map.sequence("steps", true);
     if (items.size() > most_steps) {
       map.report("steps", "more than " + std::to_string(most_steps) + " steps");
@@ -345,18 +348,41 @@ bool refused(const Document& document, const Problems& problems) {
 
 }  // namespace
 
-std::optional<Sequence> read_sequence(const document::Document& document, document::Problems& problems) {
+std::optional<Sequence> read_with(const document::Document& document,
+                                  const std::vector<Parameter>& parameters, document::Problems& problems) {
   const std::size_t before = problems.size();
-  Sequence sequence = FileReader(document, problems).sequence();
-  if (problems.size() != before || refused(document, problems)) return std::nullopt;
+  const document::Document bound = with_values(document, parameters, problems);
+  Sequence sequence = FileReader(bound, problems).sequence();
+  if (problems.size() != before) return std::nullopt;
+  sequence.parameters = parameters;
   return sequence;
 }
 
-std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems) {
+std::optional<Sequence> read_sequence(const document::Document& document, document::Problems& problems,
+                                      std::span<const Argument> arguments) {
+  const std::size_t before = problems.size();
+  std::vector<Parameter> parameters = read_parameters(document, problems);
+  auto sequence = read_with(document, parameters, problems);
+  if (problems.size() != before || refused(document, problems)) return std::nullopt;
+  const Judge judge = [&document](const std::vector<Parameter>& values) {
+    Problems found;
+    static_cast<void>(read_with(document, values, found));
+    return found;
+  };
+  blame_ends(document, parameters, judge, problems);
+  set_values(arguments, document, parameters, problems);
+  if (problems.size() != before) return std::nullopt;
+  if (arguments.empty()) return sequence;
+  blame_values(document, parameters, judge, problems);
+  return problems.size() == before ? read_with(document, parameters, problems) : std::nullopt;
+}
+
+std::optional<Sequence> load_sequence(const std::string& path, document::Problems& problems,
+                                      std::span<const Argument> arguments) {
   const std::size_t before = problems.size();
   const document::Document document = document::parse_file(path, problems);
   if (document.root.kind == document::Node::Kind::null) return std::nullopt;
-  auto sequence = read_sequence(document, problems);
+  auto sequence = read_sequence(document, problems, arguments);
   return problems.size() == before ? std::move(sequence) : std::nullopt;
 }
 

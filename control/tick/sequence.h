@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "control/feedforward/pressure_plan.h"
+#include "control/tick/parameter.h"
 #include "control/tick/settings.h"
 #include "document/problem.h"
 #include "model/signals.h"
@@ -155,6 +156,7 @@ struct Sequence {
   std::string about;  ///< one line, may be empty
   Interlock interlock = Interlock::start;
   std::vector<std::string> channels;  ///< empty: all of the rig
+  std::vector<Parameter> parameters;  ///< with the values that stand in the steps
   std::vector<Step> steps;
   std::string file;  ///< as the user named it
   std::string text;  ///< the file's text, for messages and for the recording's provenance
@@ -182,6 +184,7 @@ struct PreparedSequence {
   std::uint32_t needs_detection =
       0;                  ///< those that are verified by detection: their free model must agree at rest
   std::uint64_t rig = 0;  ///< rig_key() of the settings it was prepared for
+  std::vector<Argument> parameters;  ///< the values of its parameters, for who tells of it
   std::vector<PreparedStep> steps;
   double planned_s = 0;  ///< how much motion the plans are for; the channel with the most of it
 };

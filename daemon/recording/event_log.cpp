@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "control/elements/model_health.h"
 #include "control/elements/refusal_text.h"
 #include "control/tick/sequence.h"
@@ -164,7 +165,15 @@ std::string quoted_name(const Sequence* sequence) {
 
 void describe_start(const Event&, const Sequence* sequence, EventEntry& entry) {
   entry.code = sequence != nullptr ? sequence->name : "";
-  entry.text = fmt::format("The sequence{} begins.", quoted_name(sequence));
+  std::string values;
+  if (sequence != nullptr) {
+    entry.parameters = sequence->parameters;
+    for (const control::Argument& parameter : sequence->parameters) {
+      values +=
+          fmt::format("{} {} {}", values.empty() ? " with" : ",", parameter.name, written(parameter.value));
+    }
+  }
+  entry.text = fmt::format("The sequence{} begins{}.", quoted_name(sequence), values);
 }
 
 void describe_end(const Event& event, const Sequence* sequence, EventEntry& entry) {

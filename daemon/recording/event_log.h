@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "control/tick/parameter.h"
 #include "daemon/loop/wires.h"
 
 namespace softgrip::daemon {
@@ -27,6 +28,7 @@ struct EventEntry {
   std::string text;           ///< one sentence
   std::uint32_t request = 0;  ///< the request it answers, or 0
   double value = 0;           ///< a number that goes with it, or 0
+  std::vector<control::Argument> parameters;  ///< of sequence_started: what the sequence runs with
 };
 
 /// Describes an event of the controller. `time_s` and `id` are left to the caller. `sequence` is the one that

@@ -19,6 +19,7 @@ Json json_of(const EventEntry& event) {
   if (!event.code.empty()) json["code"] = event.code;
   if (event.request != 0) json["request"] = event.request;
   if (event.value != 0) json["value"] = event.value;
+  if (!event.parameters.empty()) json["parameters"] = parameters_json(event.parameters);
   json["text"] = event.text;
   return json;
 }
@@ -28,10 +29,17 @@ Json json_of(const LoadedSequence& sequence, std::uint32_t request) {
           {"file", sequence.written.file},
           {"sha256", sequence.sha256},
           {"request", request},
+          {"parameters", parameters_json(sequence.prepared.parameters)},
           {"text", sequence.written.text}};
 }
 
 }  // namespace
+
+Json parameters_json(const std::vector<control::Argument>& parameters) {
+  Json json = Json::object();
+  for (const control::Argument& parameter : parameters) json[parameter.name] = parameter.value;
+  return json;
+}
 
 std::string run_json(const Provenance& provenance, const RunStory& story) {
   Json json;

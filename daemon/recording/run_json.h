@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include "control/tick/parameter.h"
 #include "daemon/recording/event_log.h"
 #include "daemon/recording/provenance.h"
 #include "daemon/recording/sequence_shelf.h"
@@ -26,6 +29,9 @@ struct RunStory {
   std::uint64_t events_left_out = 0;  ///< beyond what one file holds
   std::string error;                  ///< of the disk
 };
+
+/// What a sequence runs with, as an object: {"squeeze_kpa": 4}.
+[[nodiscard]] nlohmann::ordered_json parameters_json(const std::vector<control::Argument>& parameters);
 
 [[nodiscard]] std::string run_json(const Provenance& provenance, const RunStory& story);
 

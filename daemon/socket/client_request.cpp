@@ -17,7 +17,7 @@ using Command = ClientRequest::Command;
 
 constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // what every JSON reader keeps exactly
 
-constexpr std::array<std::pair<std::string_view, Command>, 10> commands{{
+constexpr std::array<std::pair<std::string_view, Command>, 11> commands{{
     {"status", Command::status},
     {"watch", Command::watch},
     {"unwatch", Command::unwatch},
@@ -28,20 +28,27 @@ constexpr std::array<std::pair<std::string_view, Command>, 10> commands{{
     {"acknowledge", Command::acknowledge},
     {"events", Command::events},
     {"statistics", Command::statistics},
+    {"sequences", Command::sequences},
 }};
+
+/// The one key under which an object may stand.
+constexpr std::string_view nested_key = "parameters";
+constexpr std::size_t most_parameters = 64;
 
 /// Parses a flat JSON object; what is wrong with it as a JSON object is left in `problem`.
 json parse_object(std::string_view line, std::string& problem) {
-  std::vector<std::string> keys;
+  std::array<std::vector<std::string>, 2> keys;  // of the object, and of the one within it
   const auto look = [&](int depth, json::parse_event_t event, json& parsed) {
-    const bool nested =
-        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
-    if (nested && depth > 0) problem = "a request is one flat JSON object";
-    if (event == json::parse_event_t::key && depth == 1) {
+    const bool object = event == json::parse_event_t::object_start;
+    const bool nested = object || event == json::parse_event_t::array_start;
+    const bool expected = object && depth == 1 && !keys[0].empty() && keys[0].back() == nested_key;
+    if (nested && depth > 0 && !expected) problem = "a request is one flat JSON object";
+    if (event == json::parse_event_t::key && (depth == 1 || depth == 2)) {
+      std::vector<std::string>& seen = keys[depth == 1 ? 0 : 1];
       const auto key = parsed.get<std::string>();
-      if (std::find(keys.begin(), keys.end(), key) != keys.end())
+      if (std::find(seen.begin(), seen.end(), key) != seen.end())
         problem = "the key '" + key + "' stands twice";
-      keys.push_back(key);
+      seen.push_back(key);
     }
     return problem.empty();
   };
@@ -92,6 +99,21 @@ class Reader {
     }
     value = given.get<bool>();
   }
+  void parameters(const char* key, std::vector<control::Argument>& values) {
+    const json given = take(key);
+    if (given.is_null()) return;
+    if (!given.is_object() || given.size() > most_parameters) {
+      fail(fmt::format("'{}' is an object of at most {} numbers", key, most_parameters));
+      return;
+    }
+    for (const auto& [name, value] : given.items()) {
+      if (value.is_number()) {
+        values.push_back({name, value.get<double>()});
+      } else {
+        fail(fmt::format("the parameter '{}' is a number", name));
+      }
+    }
+  }
   void fail(std::string problem) {
     if (problem_.empty()) problem_ = std::move(problem);
   }
@@ -126,6 +148,7 @@ void read_arguments(Reader& reader, ClientRequest& request) {
     case Command::start:
       reader.text("sequence", request.sequence);
       reader.text("sequence_text", request.sequence_text);
+      reader.parameters("parameters", request.parameters);
       if (request.sequence.empty()) reader.fail("'start' needs the key 'sequence'");
       break;
     case Command::events:
@@ -141,6 +164,7 @@ void read_arguments(Reader& reader, ClientRequest& request) {
     case Command::vent:
     case Command::release:
     case Command::acknowledge:
+    case Command::sequences:
       break;
   }
 }

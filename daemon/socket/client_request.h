@@ -7,8 +7,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tl/expected.hpp>
+
+#include "control/tick/parameter.h"
 
 namespace softgrip::daemon {
 
@@ -24,6 +27,7 @@ struct ClientRequest {
     acknowledge,
     events,
     statistics,
+    sequences,
   };
 
   std::optional<std::uint64_t> id;  ///< the client's own, echoed in every reply
@@ -31,9 +35,10 @@ struct ClientRequest {
   double rate_hz = 10;        ///< of watch: [0.1, 50]
   std::string sequence;       ///< of start: a file in the daemon's sequence directory, or ...
   std::string sequence_text;  ///< ... the sequence itself; then `sequence` is its name in messages
-  std::uint64_t since = 0;    ///< of events: only those with a larger id
-  std::uint64_t limit = 100;  ///< of events: [1, 1000]
-  bool histograms = false;    ///< of statistics: with the bins
+  std::vector<control::Argument> parameters;  ///< of start: values in the place of defaults
+  std::uint64_t since = 0;                    ///< of events: only those with a larger id
+  std::uint64_t limit = 100;                  ///< of events: [1, 1000]
+  bool histograms = false;                    ///< of statistics: with the bins
 };
 
 /// Why a line was refused.

@@ -1,11 +1,14 @@
 #include "daemon/socket/sequence_loader.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/sha256.h"
 #include "control/sequences/prepare_sequence.h"
@@ -26,18 +29,30 @@ bool is_plain_name(const std::string& name) {
          name.find('\0') == std::string::npos;
 }
 
+constexpr std::string_view ending = ".yaml";
+
+/// What was meant, or which there are.
+std::string hint_of(const std::string& name, const std::string& directory,
+                    const std::vector<std::string>& names) {
+  if (names.empty()) return fmt::format("there is none in {}", directory);
+  const std::string near = document::nearest(name, names);
+  return fmt::format("{}in {}: {}", near.empty() ? "" : fmt::format("did you mean '{}'? ", near), directory,
+                     fmt::join(names, ", "));
+}
+
 }  // namespace
 
 SequenceLoader::SequenceLoader(control::RigSettings rig, std::string directory)
     : rig_(std::move(rig)), directory_(std::move(directory)) {}
 
-SequenceLoader::Result SequenceLoader::load_file(const std::string& path, const std::stop_token& stop) const {
+SequenceLoader::Result SequenceLoader::load_file(const std::string& path, Arguments arguments,
+                                                 const std::stop_token& stop) const {
   document::Problems problems;
-  auto sequence = control::load_sequence(path, problems);
+  auto sequence = control::load_sequence(path, problems, arguments);
   return fit(std::move(sequence), std::move(problems), stop);
 }
 
-SequenceLoader::Result SequenceLoader::load_named(const std::string& name,
+SequenceLoader::Result SequenceLoader::load_named(const std::string& name, Arguments arguments,
                                                   const std::stop_token& stop) const {
   const auto refused = [](const std::string& file, std::string message, std::string hint) {
     document::Problems problems;
@@ -51,19 +66,50 @@ SequenceLoader::Result SequenceLoader::load_named(const std::string& name,
   std::string path = directory_ + "/" + name;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) path += ".yaml";
+  if (!std::filesystem::exists(path, ignored)) {
+    return refused(path, fmt::format("there is no sequence '{}'", name), hint_of(name, directory_, names()));
+  }
   // A pipe would be waited for.
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+  if (!std::filesystem::is_regular_file(path, ignored)) {
     return refused(path, "this is no regular file", "a YAML file");
   }
-  return load_file(path, stop);
+  return load_file(path, arguments, stop);
 }
 
 SequenceLoader::Result SequenceLoader::load_text(const std::string& name, const std::string& text,
-                                                 const std::stop_token& stop) const {
+                                                 Arguments arguments, const std::stop_token& stop) const {
   document::Problems problems;
   const document::Document document = document::parse(name, text, problems);
-  auto sequence = control::read_sequence(document, problems);
+  auto sequence = control::read_sequence(document, problems, arguments);
   return fit(std::move(sequence), std::move(problems), stop);
+}
+
+std::vector<std::string> SequenceLoader::names() const {
+  std::vector<std::string> names;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(directory_, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code ignored;
+    if (!is_plain_name(name) || !name.ends_with(ending) || !entry->is_regular_file(ignored)) continue;
+    names.push_back(name.substr(0, name.size() - ending.size()));
+  }
+  std::sort(names.begin(), names.end());
+  if (names.size() > most_listed) names.resize(most_listed);
+  return names;
+}
+
+std::vector<SequenceLoader::Listed> SequenceLoader::list() const {
+  std::vector<Listed> list;
+  for (const std::string& name : names()) {
+    Listed& listed = list.emplace_back();
+    listed.name = name;
+    auto sequence = control::load_sequence(directory_ + "/" + name + std::string(ending), listed.problems);
+    if (!sequence) continue;
+    listed.about = std::move(sequence->about);
+    listed.parameters = std::move(sequence->parameters);
+  }
+  return list;
 }
 
 SequenceLoader::Result SequenceLoader::fit(std::optional<control::Sequence> sequence,

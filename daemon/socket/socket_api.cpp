@@ -32,15 +32,37 @@ Json error_json(std::string_view code, std::string_view message) {
   return {{"code", code}, {"message", message}};
 }
 
+Json json_of(const document::Problem& problem) {
+  return {{"file", problem.file},           {"line", problem.at.line},    {"column", problem.at.column},
+          {"line_text", problem.line_text}, {"message", problem.message}, {"hint", problem.hint}};
+}
+
 Json json_of(const std::vector<document::Problem>& problems) {
   Json list = Json::array();
   for (const document::Problem& problem : problems) {
-    list.push_back({{"file", problem.file},
-                    {"line", problem.at.line},
-                    {"column", problem.at.column},
-                    {"line_text", problem.line_text},
-                    {"message", problem.message},
-                    {"hint", problem.hint}});
+    list.push_back(json_of(problem));
+  }
+  return list;
+}
+
+Json json_of(const control::Parameter& parameter) {
+  return {{"name", parameter.name},
+          {"unit", parameter.unit},
+          {"lower", parameter.lower},
+          {"upper", parameter.upper},
+          {"default", parameter.default_value},
+          {"about", parameter.about}};
+}
+
+Json json_of(const std::vector<SequenceLoader::Listed>& sequences) {
+  Json list = Json::array();
+  for (const SequenceLoader::Listed& listed : sequences) {
+    Json parameters = Json::array();
+    for (const control::Parameter& parameter : listed.parameters) parameters.push_back(json_of(parameter));
+    list.push_back({{"name", listed.name},
+                    {"about", listed.about},
+                    {"parameters", std::move(parameters)},
+                    {"problems", json_of(listed.problems.list())}});
   }
   return list;
 }
@@ -96,6 +118,9 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
     case Command::statistics:
       ok(client, request->id, statistics_json(sources_, request->histograms));
       break;
+    case Command::sequences:
+      list_sequences(client, request->id);
+      break;
   }
 }
 
@@ -107,10 +132,13 @@ void SocketApi::on_closed(ClientId client) {
     return true;
   });
   if (planned_ && planned_->client == client) abandon_planned();
+  if (listing_)
+    std::erase_if(listing_->waiting, [client](const auto& waiting) { return waiting.first == client; });
 }
 
 Nanoseconds SocketApi::on_time(Nanoseconds now) {
   take_planned(now);
+  take_listing();
   for (auto entry = asked_.begin(); entry != asked_.end();) {
     const std::uint32_t request = entry->first;
     const auto end = asked_.upper_bound(request);
@@ -143,11 +171,33 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
   }
   const std::stop_source stop;
   std::packaged_task<SequenceLoader::Result()> load(
-      [loader = loader_, name = request.sequence, text = request.sequence_text, token = stop.get_token()] {
-        return text.empty() ? loader->load_named(name, token) : loader->load_text(name, text, token);
+      [loader = loader_, name = request.sequence, text = request.sequence_text,
+       parameters = request.parameters, token = stop.get_token()] {
+        return text.empty() ? loader->load_named(name, parameters, token)
+                            : loader->load_text(name, text, parameters, token);
       });
   planned_ = Planned{client, request.id, load.get_future(), stop};
   std::thread(std::move(load)).detach();
+}
+
+/// Nobody who asks for a vent waits for a disk, and a directory that hangs costs one thread, however often it
+/// is asked for.
+void SocketApi::list_sequences(ClientId client, std::optional<std::uint64_t> id) {
+  if (!listing_) {
+    std::packaged_task<std::vector<SequenceLoader::Listed>()> read(
+        [loader = loader_] { return loader->list(); });
+    listing_ = Listing{read.get_future(), {}};
+    std::thread(std::move(read)).detach();
+  }
+  listing_->waiting.emplace_back(client, id);
+}
+
+void SocketApi::take_listing() {
+  if (!listing_ || listing_->read.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  Listing listing = std::move(*listing_);
+  listing_.reset();
+  const Json result{{"sequences", json_of(listing.read.get())}};
+  for (const auto& [client, id] : listing.waiting) ok(client, id, result);
 }
 
 void SocketApi::abandon_planned() noexcept {

@@ -10,6 +10,7 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "daemon/socket/client_request.h"
@@ -64,6 +65,11 @@ class SocketApi {
     bool abandoned = false;  ///< nobody waits for it any more
   };
 
+  struct Listing {  // of the sequence directory, being read by a thread of its own
+    std::future<std::vector<SequenceLoader::Listed>> read;
+    std::vector<std::pair<ClientId, std::optional<std::uint64_t>>> waiting;
+  };
+
   void start(ClientId client, const ClientRequest& request, Nanoseconds now);
   void loaded(ClientId client, std::optional<std::uint64_t> id, SequenceLoader::Result sequence,
               Nanoseconds now);
@@ -74,6 +80,8 @@ class SocketApi {
            std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
   void answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer);
   void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
+  void list_sequences(ClientId client, std::optional<std::uint64_t> id);
+  void take_listing();
   void tell_events(ClientId client, const ClientRequest& request, Nanoseconds now);
   void ok(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& result);
   void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
@@ -85,6 +93,7 @@ class SocketApi {
   std::multimap<std::uint32_t, Asked> asked_;  // by the request's id in the loop
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
+  std::optional<Listing> listing_;
 };
 
 /// The line that refuses a client before it could say anything, or for what cannot be parsed.

@@ -111,6 +111,7 @@ Json json_of_sequence(const Service& service, const Snapshot& snapshot) {
   const auto& steps = sequence->prepared.steps;
   Json json{{"name", sequence->prepared.name},
             {"request", service.sequence_request()},
+            {"parameters", parameters_json(sequence->prepared.parameters)},
             {"step", step},
             {"step_name", step < steps.size() ? steps[step].step.name : ""},
             {"steps", steps.size()}};
@@ -236,6 +237,7 @@ Json event_json(const EventEntry& event) {
   if (!event.code.empty()) json["code"] = event.code;
   if (event.request != 0) json["request"] = event.request;
   if (event.value != 0) json["value"] = number(event.value);
+  if (!event.parameters.empty()) json["parameters"] = parameters_json(event.parameters);
   json["text"] = event.text;
   return json;
 }

@@ -34,7 +34,8 @@ class Pauses(bench.BenchTest):
     def reach(self, daemon, emulator, phase):
         pick = (self.folder / "config/sequences/pick_stone.yaml").read_text()
         hold_s = 0.5 if phase == "releasing" else 20
-        (self.folder / "config/sequences/paused.yaml").write_text(pick.replace("hold_s: 5", f"hold_s: {hold_s}"))
+        (self.folder / "config/sequences/paused.yaml").write_text(pick.replace(
+            "hold_s: {default: 5", f"hold_s: {{default: {hold_s}"))
         daemon.wait_for_state("idle")
         daemon.start("paused")
         if phase == "closing":

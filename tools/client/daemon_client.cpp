@@ -41,8 +41,13 @@ ClientFailure cannot_connect(const std::string& path, int error) {
 std::string listed(const Json& problems) {
   std::string text;
   for (const Json& problem : problems) {
-    text += "\n" + problem.value("file", "") + ":" + std::to_string(problem.value("line", 0)) + ":" +
-            std::to_string(problem.value("column", 0)) + ": " + problem.value("message", "");
+    text += "\n" + problem.value("file", "");
+    // Without a line it is about the file as a whole.
+    if (!problem.value("line_text", "").empty()) {
+      text +=
+          ":" + std::to_string(problem.value("line", 0)) + ":" + std::to_string(problem.value("column", 0));
+    }
+    text += ": " + problem.value("message", "");
     if (const std::string hint = problem.value("hint", ""); !hint.empty()) text += " (" + hint + ")";
   }
   return text;

@@ -7,15 +7,33 @@
 #include <thread>
 
 #include "document/problem.h"
+#include "rig/socket_path.h"
 
 namespace softgrip::tools {
 
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+std::string socket_of(const std::string& rig) {
+  document::Problems problems;
+  if (const auto code = unreadable(rig)) throw CLI::RuntimeError(static_cast<int>(*code));
+  const auto path = rig::socket_path_of(rig, problems);
+  if (!path) throw CLI::RuntimeError(static_cast<int>(refuse(problems)));
+  return *path;
+}
+
+}  // namespace
+
 void add_daemon_options(CLI::App& command, DaemonOptions& options) {
   options.socket = default_socket_path();
-  command.add_option("--socket", options.socket, "The daemon's socket; also $SOFTGRIP_SOCKET")
-      ->capture_default_str();
+  auto* socket = command.add_option("--socket", options.socket, "The daemon's socket; also $SOFTGRIP_SOCKET")
+                     ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--rig", [&options](const std::string& path) { options.socket = socket_of(path); },
+          "The daemon's rig file, which names its socket")
+      ->excludes(socket);
   command.add_flag("--json", options.json, "Output as JSON");
 }
 

@@ -17,7 +17,8 @@ struct DaemonOptions {
   bool json = false;
 };
 
-/// Adds --socket and --json.
+/// Adds --socket, --rig (whose file names the socket) and --json. A rig file that names none ends the
+/// program, with a sentence, by a CLI::RuntimeError.
 void add_daemon_options(CLI::App& command, DaemonOptions& options);
 
 /// Connects, asks once and returns the result; prints what went wrong.

@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "tools/client/set_option.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -17,6 +18,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
+  std::vector<std::string> settings;
   bool json = false;
 };
 
@@ -67,7 +69,9 @@ void print_text(const rig::CheckReport& report) {
 }
 
 ExitCode run(const Options& options) {
-  const rig::CheckReport report = rig::check_files(options.files);
+  const auto arguments = arguments_of(options.settings);
+  if (!arguments) return arguments.error();
+  const rig::CheckReport report = rig::check_files(options.files, *arguments);
   options.json ? print_json(report) : print_text(report);
   const bool all_there = std::all_of(options.files.begin(), options.files.end(), [](const std::string& path) {
     return ::access(path.c_str(), R_OK) == 0;
@@ -86,6 +90,7 @@ void add_check(CLI::App& program, ExitCode& outcome) {
       ->add_option("FILE", options->files,
                    "Files of any of these kinds; sequences are fitted to the rigs among them")
       ->required();
+  add_set_option(*command, options->settings);
   command->add_flag("--json", options->json, "The findings as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }

@@ -20,6 +20,7 @@
   X(study)                   \
   X(status)                  \
   X(watch)                   \
+  X(sequences)               \
   X(start)                   \
   X(stop)                    \
   X(release)                 \

@@ -12,6 +12,7 @@
 #include "daemon/socket/status_json.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/event_text.h"
+#include "tools/client/set_option.h"
 #include "tools/command_line/configuration.h"
 #include "tools/commands/commands.h"
 
@@ -22,6 +23,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string sequence;
+  std::vector<std::string> settings;
   std::string rig;
   std::string record;
   std::optional<std::uint64_t> seed;
@@ -38,11 +40,17 @@ void report(const Options& options, const daemon::Outcome& outcome) {
   const auto title = [&](std::size_t i) {
     return std::string(control::title_of(outcome.last.channels[i].result));
   };
+  const bool began = daemon::reached_the_board(outcome.ending);
   if (options.json) {
-    Json json{{"sequence_end", end},    {"left_safely", outcome.left_safely}, {"ticks", outcome.ticks},
-              {"slips", outcome.slips}, {"wall_s", outcome.wall_s},           {"results", Json::object()}};
+    const Json left_safely = began ? Json(outcome.left_safely) : Json(nullptr);
+    Json json{{"sequence_end", end},    {"left_safely", left_safely}, {"ticks", outcome.ticks},
+              {"slips", outcome.slips}, {"wall_s", outcome.wall_s},   {"results", Json::object()}};
     for (std::size_t i = 0; i < channels.size(); ++i) json["results"][channels[i]] = title(i);
     print_json(json);
+    return;
+  }
+  if (!began) {
+    std::printf("sequence not run; nothing was written to the board\n");
     return;
   }
   for (std::size_t i = 0; i < channels.size(); ++i)
@@ -59,17 +67,20 @@ ExitCode run(const Options& options) {
   for (const std::string& file : {path, options.sequence}) {
     if (const auto code = unreadable(file)) return *code;
   }
+  const auto arguments = arguments_of(options.settings);
+  if (!arguments) return arguments.error();
   document::Problems problems;
   auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
   std::fputs(problems.format().c_str(), stderr);  // warnings
   if (options.seed && !rig::reseed(*rig, *options.seed))
     return fail(ExitCode::usage, "--seed needs a simulated board");
-  auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence);
+  auto sequence = daemon::SequenceLoader(rig->settings, "").load_file(options.sequence, *arguments);
   if (!sequence) return refuse(sequence.error());
   std::fputs((*sequence)->remarks.format().c_str(), stderr);
 
   daemon::DaemonOptions daemon_options;
+  daemon_options.program = "softgrip run";
   daemon_options.virtual_time = options.virtual_time;
   daemon_options.sequence = std::move(*sequence);
   daemon_options.record_folder = options.record;
@@ -101,6 +112,7 @@ void add_run(CLI::App& program, ExitCode& outcome) {
   CLI::App* command =
       program.add_subcommand("run", "One sequence on a rig, in the foreground; no daemon is needed");
   command->add_option("SEQUENCE", options->sequence, "Sequence file")->required();
+  add_set_option(*command, options->settings);
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");
   command->add_option("--record", options->record, "Record into this folder, whatever the rig file says");
   command->add_flag("--virtual-time", options->virtual_time,

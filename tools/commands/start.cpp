@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/event_text.h"
+#include "tools/client/set_option.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -21,6 +22,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   DaemonOptions daemon;
   std::string sequence;
+  std::vector<std::string> settings;
   bool wait = false;
 };
 
@@ -56,7 +58,10 @@ ExitCode follow(DaemonClient& client, const Options& options, std::uint64_t requ
 
 ExitCode run(const Options& options) {
   constexpr std::size_t longest_sequence = 256 * 1024;
+  const auto arguments = arguments_of(options.settings);
+  if (!arguments) return arguments.error();
   Json request{{"command", "start"}, {"sequence", options.sequence}};
+  if (!arguments->empty()) request["parameters"] = json_of(*arguments);
   // A file here goes as a text; other names are the daemon's to find.
   if (::access(options.sequence.c_str(), R_OK) == 0) {
     const auto text = read_file(options.sequence, longest_sequence);
@@ -89,6 +94,7 @@ void add_start(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand("start", "Lets the daemon run a sequence");
   command->add_option("SEQUENCE", options->sequence, "A file, or a name in the daemon's sequence directory")
       ->required();
+  add_set_option(*command, options->settings);
   add_daemon_options(*command, options->daemon);
   command->add_flag("--wait", options->wait, "Follow it to its end; exit code 6 unless every grip went well");
   command->callback([options, &outcome] { outcome = run(*options); });

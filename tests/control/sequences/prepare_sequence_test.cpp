@@ -254,6 +254,35 @@ TEST(Prepare, ReleaseGoesForwardOnly) {
   EXPECT_EQ(pick.steps[3].release_step, 4U) << "nowhere";
 }
 
+TEST(Prepare, WhatAParameterBreaksIsToldAtTheParameter) {
+  const RigSettings settings = two_finger_settings();  // up to 60 kPa
+  const std::string text =
+      "name: x\nparameters:\n  level_kpa: {default: 20, range: [10, 70], about: how hard}\n"
+      "steps:\n  - move: {pressure_kpa: $level_kpa, duration_s: 1}\n";
+  const auto read = [&](const std::vector<Argument>& arguments) {
+    document::Problems problems;
+    return read_sequence(document::parse("seq.yaml", text, problems), problems, arguments);
+  };
+  document::Problems problems;
+  ASSERT_TRUE(read({}));
+  EXPECT_TRUE(prepare(*read({}), settings, problems)) << "what is asked for fits";
+  check_ranges(*read({}), settings, problems);
+  ASSERT_EQ(problems.size(), 2U) << "one per channel";
+  EXPECT_EQ(problems.list()[0].at.line, 3);
+  EXPECT_NE(
+      problems.list()[0].message.find(
+          "with `level_kpa` = 70, the upper end of its range, line 5 is wrong: step 'move': goes to 70 kPa"),
+      std::string::npos)
+      << problems.format();
+
+  document::Problems asked;
+  EXPECT_FALSE(prepare(*read({{"level_kpa", 65}}), settings, asked));
+  ASSERT_EQ(asked.size(), 2U);
+  EXPECT_EQ(asked.list()[0].at.line, 3);
+  EXPECT_NE(asked.list()[0].message.find("with `level_kpa` = 65 line 5 is wrong"), std::string::npos)
+      << asked.format();
+}
+
 TEST(Prepare, TheKeyOfARigChangesWithWhatASequenceDependsOn) {
   const RigSettings one = two_finger_settings();
   RigSettings other = one;

@@ -99,6 +99,32 @@ TEST_F(SocketSession, ASequenceThatCannotRunIsRefusedWithAllItsProblems) {
   EXPECT_EQ(status()["state"], "idle");
 }
 
+TEST_F(SocketSession, TheSequencesAreListedWithTheirParameters) {
+  const json list = ask({{"id", 4}, {"command", "sequences"}});
+  EXPECT_EQ(list["id"], 4);
+  bool seen = false;
+  for (const json& sequence : list["result"]["sequences"]) {
+    EXPECT_EQ(sequence["problems"], json::array());
+    if (sequence["name"] != "pick_stone") continue;
+    seen = true;
+    ASSERT_GE(sequence["parameters"].size(), 1U);
+    EXPECT_EQ(sequence["parameters"][0]["name"], "squeeze_kpa");
+    EXPECT_EQ(sequence["parameters"][0]["unit"], "kpa");
+  }
+  EXPECT_TRUE(seen) << list;
+}
+
+TEST_F(SocketSession, AStartChoosesParameters) {
+  const auto start = [&](const json& parameters) {
+    return ask({{"command", "start"}, {"sequence", "pick_stone"}, {"parameters", parameters}});
+  };
+  const json wrong = start({{"squeeze_kpa", 400}});
+  EXPECT_EQ(wrong["error"]["code"], "sequence_refused");
+  EXPECT_EQ(start({{"nobody", 4}})["error"]["code"], "sequence_refused");
+  ASSERT_EQ(start({{"squeeze_kpa", 4}})["ok"], true);
+  EXPECT_EQ(status()["sequence"]["parameters"]["squeeze_kpa"], 4.0);
+}
+
 TEST_F(SocketSession, ASequenceMayComeAsText) {
   const json reply =
       ask({{"command", "start"},

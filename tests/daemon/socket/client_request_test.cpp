@@ -35,6 +35,7 @@ TEST(ClientRequest, ReadsEveryCommand) {
       {R"({"command":"acknowledge"})", Command::acknowledge},
       {R"({"command":"events","since":5,"limit":10})", Command::events},
       {R"({"command":"statistics","histograms":true})", Command::statistics},
+      {R"({"command":"sequences"})", Command::sequences},
   };
   for (const auto& [line, command] : lines) {
     const auto request = parse_client_request(line);
@@ -54,6 +55,10 @@ TEST(ClientRequest, ReadsArguments) {
   ASSERT_TRUE(start);
   EXPECT_EQ(start->sequence, "s");
   EXPECT_EQ(start->sequence_text, "name: x\n");
+  const auto asked = parse_client_request(
+      R"({"command":"start","sequence":"s","parameters":{"squeeze_kpa":4,"hold_s":0.5}})");
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->parameters, (std::vector<control::Argument>{{"hold_s", 0.5}, {"squeeze_kpa", 4}}));
   const auto events = parse_client_request(R"({"id":9007199254740992,"command":"events","since":12})");
   ASSERT_TRUE(events);
   EXPECT_EQ(events->id, 9007199254740992U);
@@ -89,6 +94,13 @@ TEST(ClientRequest, SaysWhatIsWrong) {
       {R"({"id":18446744073709551615,"command":"status"})", "'id' is a whole number"},
       {R"({"command":"events","limit":0})", "'limit' is a whole number"},
       {R"({"command":"events","limit":1001})", "'limit' is a whole number"},
+      {R"({"command":"start","sequence":"s","parameters":{"a":"4"}})", "the parameter 'a' is a number"},
+      {R"({"command":"start","sequence":"s","parameters":{"a":4,"a":5}})", "stands twice"},
+      {R"({"command":"start","sequence":"s","parameters":{"a":{"b":5}}})", "flat"},
+      {R"({"command":"start","sequence":"s","parameters":{"parameters":{"b":5}}})", "flat"},
+      {R"({"command":"start","sequence":"s","parameters":[4]})", "flat"},
+      {R"({"command":"start","sequence":"s","parameters":4})", "'parameters' is an object"},
+      {R"({"command":"stop","parameters":{}})", "knows no key 'parameters'"},
       {R"({"command":"statistics","histograms":1})", "'histograms' is true or false"},
   };
   for (const auto& [line, part] : lines) {

@@ -1,0 +1,227 @@
+#include "control/sequences/parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include "base/numbers.h"
+#include "document/key_hint.h"
+#include "document/reader.h"
+
+namespace softgrip::control {
+
+namespace {
+
+using document::Document;
+using document::MapReader;
+using document::Node;
+using document::Problems;
+
+constexpr std::size_t most_parameters = 16;
+/// No number of a sequence is larger.
+constexpr double largest = 1e6;
+constexpr std::array<std::string_view, 6> units{"kpa", "mm", "s", "hz", "kpa_per_s", "mm_per_s"};
+constexpr const char* unit_hint =
+    "end the name in _kpa, _mm, _s, _hz, _kpa_per_s or _mm_per_s, or give `unit: none` for a plain number";
+
+std::string quoted(std::string_view word) {
+  return "`" + document::shown(word) + "`";
+}
+
+const Node::Entry* entry_of(const Node& map, std::string_view key) {
+  const auto found = std::find_if(map.entries.begin(), map.entries.end(),
+                                  [key](const Node::Entry& entry) { return entry.key == key; });
+  return found == map.entries.end() ? nullptr : &*found;
+}
+
+/// "did you mean `squeeze_kpa`?", or which there are.
+std::string hint_of(const std::string& name, const std::vector<Parameter>& parameters) {
+  if (parameters.empty()) return "this sequence has no `parameters`";
+  std::vector<std::string> names;
+  std::string all;
+  for (const Parameter& parameter : parameters) {
+    names.push_back(parameter.name);
+    all += (all.empty() ? "" : ", ") + quoted(parameter.name);
+  }
+  const std::string near = document::nearest(name, names);
+  if (!near.empty()) return "did you mean " + quoted(near) + "?";
+  for (const Parameter& parameter : parameters) {
+    if (parameter.name.starts_with(name + "_")) return "did you mean " + quoted(parameter.name) + "?";
+  }
+  return "there are " + all;
+}
+
+bool is_name(std::string_view name) {
+  const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  return !name.empty() && name.size() <= 40 && name[0] >= 'a' && name[0] <= 'z' &&
+         std::all_of(name.begin(), name.end(), allowed);
+}
+
+/// The unit that the name ends in or that `unit:` gives; both may say the same.
+std::string unit_of(MapReader& map, const std::string& name) {
+  const std::string_view own = document::unit_at_end(name);
+  const bool known = std::find(units.begin(), units.end(), own) != units.end();
+  std::vector<std::string> choices(units.begin(), units.end());
+  choices.emplace_back("none");
+  const auto choice = map.optional_choice("unit", choices);
+  if (choice && known && choices[*choice] != own) {
+    map.report("unit", "the name " + quoted(name) + " says another unit, " + quoted(own));
+  }
+  if (!choice && !known && !map.has("unit")) {
+    map.report("unit", "nothing says the unit of " + quoted(name), unit_hint);
+  }
+  if (choice && choices[*choice] == "none") return {};
+  return choice ? choices[*choice] : std::string(known ? own : "");
+}
+
+Parameter read_parameter(const Document& document, const Node::Entry& entry, Problems& problems) {
+  Parameter parameter;
+  parameter.name = entry.key;
+  parameter.at = entry.key_at;
+  if (!is_name(entry.key)) {
+    problems.add(document.problem(entry.key_at, quoted(entry.key) + " is no name for a parameter",
+                                  "lower-case letters, digits and underscores, as in `squeeze_kpa`"));
+  }
+  MapReader map(document, entry.value, problems, "parameter " + quoted(entry.key));
+  parameter.unit = unit_of(map, parameter.name);
+  parameter.about = map.text("about");
+  const std::vector<double> range = map.numbers("range", 2, {-largest, largest});
+  parameter.lower = range[0];
+  parameter.upper = range[1];
+  parameter.default_value = map.number("default", {-largest, largest});
+  parameter.value = parameter.default_value;
+  if (map.good("range") && parameter.lower >= parameter.upper) {
+    map.report("range", "the range must go from a lower to a higher number");
+  } else if (map.good("range") && map.good("default") &&
+             (parameter.default_value < parameter.lower || parameter.default_value > parameter.upper)) {
+    map.report("default", "`default` is " + written(parameter.default_value) + ", the range is " +
+                              written(parameter.lower) + " to " + written(parameter.upper));
+  }
+  map.finish();
+  return parameter;
+}
+
+/// Walks through the steps of a copy of a document.
+class Binder {
+ public:
+  Binder(const Document& document, const std::vector<Parameter>& parameters, Problems& problems)
+      : document_(document), parameters_(parameters), problems_(problems), used_(parameters.size(), false) {}
+
+  void bind(Node& node, std::string_view key) {
+    for (Node& item : node.items) bind(item, {});
+    for (Node::Entry& entry : node.entries) bind(entry.value, entry.key);
+    if (node.kind == Node::Kind::scalar && !node.quoted && node.scalar.starts_with('$')) replace(node, key);
+  }
+
+  void report_unused() {
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+      if (used_[i]) continue;
+      problems_.add(document_.problem(parameters_[i].at,
+                                      "no step uses the parameter " + quoted(parameters_[i].name),
+                                      "write $" + parameters_[i].name + " where its number belongs"));
+    }
+  }
+
+ private:
+  void replace(Node& node, std::string_view key) {
+    const std::string name = node.scalar.substr(1);
+    const auto found = std::find_if(parameters_.begin(), parameters_.end(),
+                                    [&](const Parameter& parameter) { return parameter.name == name; });
+    if (found == parameters_.end()) {
+      refuse(node, "there is no parameter " + quoted(name),
+             name.find_first_of(" +-*/()") == std::string::npos
+                 ? hint_of(name, parameters_)
+                 : "a parameter stands alone: nothing is computed");
+      return;
+    }
+    used_[static_cast<std::size_t>(found - parameters_.begin())] = true;
+    if (key.empty()) {
+      refuse(node, "a parameter is the number of a key, not an item of a list", "");
+    } else if (const std::string_view unit = document::unit_at_end(key); unit != found->unit) {
+      const auto in_words = [](std::string_view text) {
+        return text.empty() ? "a plain number" : quoted(text);
+      };
+      refuse(node,
+             quoted(key) + " is " + in_words(unit) + ", the parameter " + quoted(name) + " is " +
+                 in_words(found->unit),
+             "");
+    } else {
+      node.stands_for = std::exchange(node.scalar, written(found->value));
+    }
+  }
+
+  void refuse(Node& node, std::string message, std::string hint) {
+    problems_.add(document_.problem(node.at, std::move(message), std::move(hint)));
+    node.refused = true;
+  }
+
+  const Document& document_;
+  const std::vector<Parameter>& parameters_;
+  Problems& problems_;
+  std::vector<bool> used_;
+};
+
+}  // namespace
+
+std::vector<Parameter> read_parameters(const Document& document, Problems& problems) {
+  std::vector<Parameter> parameters;
+  const Node::Entry* const declared = entry_of(document.root, "parameters");
+  if (declared == nullptr) return parameters;
+  const Node& map = declared->value;
+  if (map.kind != Node::Kind::map) {
+    if (!map.refused) {
+      problems.add(document.problem(map.at, "`parameters` must be a map of names",
+                                    "squeeze_kpa: {default: 5, range: [3, 10], about: what it is}"));
+    }
+    return parameters;
+  }
+  if (map.entries.size() > most_parameters) {
+    problems.add(
+        document.problem(declared->key_at, "more than " + std::to_string(most_parameters) + " parameters"));
+  }
+  for (std::size_t i = 0; i < std::min(map.entries.size(), most_parameters); ++i) {
+    parameters.push_back(read_parameter(document, map.entries[i], problems));
+  }
+  return parameters;
+}
+
+void set_values(std::span<const Argument> arguments, const Document& document,
+                std::vector<Parameter>& parameters, Problems& problems) {
+  std::vector<std::string> set;
+  for (const Argument& argument : arguments) {
+    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& parameter) {
+      return parameter.name == argument.name;
+    });
+    if (found == parameters.end()) {
+      const Node::Entry* const declared = entry_of(document.root, "parameters");
+      problems.add(document.problem(declared == nullptr ? document.root.at : declared->key_at,
+                                    "the sequence has no parameter " + quoted(argument.name),
+                                    hint_of(argument.name, parameters)));
+    } else if (std::find(set.begin(), set.end(), argument.name) != set.end()) {
+      problems.add(document.problem(found->at, "the parameter " + quoted(argument.name) + " is set twice"));
+    } else if (!(argument.value >= found->lower && argument.value <= found->upper)) {
+      problems.add(document.problem(
+          found->at,
+          quoted(argument.name) + " is set to " + written(argument.value) + ", its range is " +
+              written(found->lower) + " to " + written(found->upper),
+          document::hint_for_range(argument.name, argument.value, found->lower, found->upper)));
+    } else {
+      found->value = argument.value;
+    }
+    set.push_back(argument.name);
+  }
+}
+
+Document with_values(const Document& document, const std::vector<Parameter>& parameters, Problems& problems) {
+  Document bound = document;
+  Binder binder(document, parameters, problems);
+  for (Node::Entry& entry : bound.root.entries) {
+    if (entry.key == "steps") binder.bind(entry.value, {});
+  }
+  // What could not be read may have used it.
+  if (document.complete) binder.report_unused();
+  return bound;
+}
+
+}  // namespace softgrip::control

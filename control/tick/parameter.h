@@ -1,0 +1,29 @@
+#pragma once
+// The parameters of a recipe: numbers in it that a start may choose.
+
+#include <string>
+
+#include "document/problem.h"
+
+namespace softgrip::control {
+
+/// A number that a sequence file declares under `parameters` and uses as `$name`.
+struct Parameter {
+  std::string name;
+  std::string unit;  ///< as at the end of keys: "kpa", "mm_per_s"; empty for a plain number
+  double lower = 0;  ///< both ends are allowed
+  double upper = 0;
+  double default_value = 0;
+  std::string about;      ///< one sentence
+  document::Location at;  ///< of its name in the file
+  double value = 0;       ///< with which the sequence was read
+};
+
+/// What a start asks for: a parameter by its name and the value, in the parameter's unit.
+struct Argument {
+  std::string name;
+  double value = 0;
+  bool operator==(const Argument&) const = default;
+};
+
+}  // namespace softgrip::control

@@ -1,0 +1,47 @@
+#include "daemon/recording/event_log.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/recording/run_json.h"
+
+namespace softgrip::daemon {
+namespace {
+
+control::Event started() {
+  control::Event event;
+  event.kind = control::Event::Kind::sequence_started;
+  event.request = 7;
+  return event;
+}
+
+TEST(EventLog, AStartIsToldWithWhatItWasAskedFor) {
+  control::PreparedSequence sequence;
+  sequence.name = "pick_stone";
+  EXPECT_EQ(describe(started(), {}, &sequence).text, "The sequence 'pick_stone' begins.");
+  EXPECT_TRUE(describe(started(), {}, &sequence).parameters.empty());
+  sequence.parameters = {{"squeeze_kpa", 4}, {"hold_s", 0.5}};
+  const EventEntry entry = describe(started(), {}, &sequence);
+  EXPECT_EQ(entry.text, "The sequence 'pick_stone' begins with squeeze_kpa 4, hold_s 0.5.");
+  EXPECT_EQ(entry.parameters, sequence.parameters);
+  EXPECT_EQ(entry.request, 7U);
+}
+
+TEST(RunJson, HoldsWhatTheSequenceRanWith) {
+  auto loaded = std::make_shared<LoadedSequence>();
+  loaded->prepared.name = "pick_stone";
+  loaded->prepared.parameters = {{"squeeze_kpa", 4}};
+  RunStory story;
+  story.sequence = loaded;
+  story.events.push_back(describe(started(), {}, &loaded->prepared));
+  const auto json = nlohmann::json::parse(run_json({}, story));
+  EXPECT_EQ(json["sequence"]["parameters"], nlohmann::json({{"squeeze_kpa", 4.0}}));
+  EXPECT_EQ(json["events"][0]["parameters"], nlohmann::json({{"squeeze_kpa", 4.0}}));
+}
+
+}  // namespace
+}  // namespace softgrip::daemon

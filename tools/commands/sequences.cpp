@@ -1,0 +1,46 @@
+// softgrip sequences: what the daemon can start, and with which parameters.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/client/daemon_command.h"
+#include "tools/client/sequence_view.h"
+#include "tools/commands/commands.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  DaemonOptions daemon;
+  bool names = false;
+};
+
+ExitCode run(const Options& options) {
+  const auto result = ask_daemon(options.daemon, {{"command", "sequences"}});
+  if (!result) return result.error();
+  if (options.daemon.json) {
+    print_json(*result);
+    return ExitCode::done;
+  }
+  const auto sequences = result->value("sequences", nlohmann::ordered_json::array());
+  for (const std::string& line : options.names ? names_of_sequences(sequences) : view_of_sequences(sequences))
+    std::printf("%s\n", line.c_str());
+  if (sequences.empty()) std::fprintf(stderr, "the daemon's sequence directory has none\n");
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_sequences(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("sequences", "Which sequences the daemon can start, with their parameters");
+  add_daemon_options(*command, options->daemon);
+  command->add_flag("--names", options->names, "Only their names");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
