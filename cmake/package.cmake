@@ -46,6 +46,24 @@ else()
   message(STATUS "pandoc is missing: no man pages")
 endif()
 
+# Completion for shells, out of the program that it completes.
+set(completions "")
+# completion(SHELL FILE FOLDER)
+function(completion shell file folder)
+  set(script ${packaged}/completion/${file})
+  add_custom_command(OUTPUT ${script}
+    COMMAND softgrip completion ${shell} >${script}
+    DEPENDS softgrip
+    VERBATIM)
+  install(FILES ${script} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder})
+  set(completions ${completions} ${script} PARENT_SCOPE)
+endfunction()
+file(MAKE_DIRECTORY ${packaged}/completion)
+completion(bash softgrip bash-completion/completions)
+completion(zsh _softgrip zsh/vendor-completions)
+completion(fish softgrip.fish fish/vendor_completions.d)
+add_custom_target(completions ALL DEPENDS ${completions})
+
 # What only the package has.
 set(SOFTGRIP_PACKAGE_RELEASE 1 CACHE STRING "Debian revision of the package")
 string(TIMESTAMP SOFTGRIP_PACKAGE_DATE "%a, %d %b %Y %H:%M:%S +0000" UTC)

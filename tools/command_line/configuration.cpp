@@ -1,12 +1,24 @@
 #include "tools/command_line/configuration.h"
 
-#include <filesystem>
+#include <algorithm>
+#include <system_error>
 
 namespace softgrip::tools {
 
 std::string configuration_path(const std::string& name) {
   std::string here = "config/" + name;
   return std::filesystem::exists(here) ? here : SOFTGRIP_CONFIG_DIR "/" + name;
+}
+
+std::vector<std::string> document_names(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    if (entry->path().extension() == ".yaml") names.push_back(entry->path().stem());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 }  // namespace softgrip::tools

@@ -27,6 +27,7 @@
   X(vent)                    \
   X(acknowledge)             \
   X(events)                  \
+  X(completion)              \
   // end of the list
 // clang-format on
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/version.h"
+#include "tools/command_line/usage.h"
 #include "tools/commands/commands.h"
 
 namespace {
@@ -26,7 +27,7 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? 0 : static_cast<int>(softgrip::ExitCode::usage);
+    return softgrip::tools::end_of(program, error, argc, argv);
   }
   return static_cast<int>(outcome);
 }

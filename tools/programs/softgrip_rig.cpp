@@ -19,6 +19,7 @@
 #include "simulation/emulator/truth_log.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/usage.h"
 #include "tools/programs/softgrip_rig_options.h"
 
 namespace softgrip::tools {
@@ -193,7 +194,7 @@ int main(int argc, char** argv) {
     try {
       program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-      return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+      return end_of(program, error, argc, argv);
     }
     return static_cast<int>(run(options));
   } catch (const std::exception& error) {

@@ -1,5 +1,7 @@
 #include "tools/programs/softgrip_rig_options.h"
 
+#include <filesystem>
+
 #include "drivers/modbus/serial_port.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
@@ -19,7 +21,25 @@ constexpr std::uint64_t seed_step = 0x9e3779b97f4a7c15;
 /// A board file as the user named it: a path, or a name in config/boards.
 std::string board_path(const std::string& board) {
   const bool is_path = board.find('/') != std::string::npos || board.ends_with(".yaml");
-  return is_path ? board : configuration_path("boards/" + board + ".yaml");
+  return is_path ? board : configuration_path("boards") + "/" + board + ".yaml";
+}
+
+/// Says that a board map is not there, and which one was meant.
+ExitCode no_such_board(const std::string& board, const std::string& path) {
+  const std::vector<std::string> names = document_names(std::filesystem::path(path).parent_path());
+  const std::string stem = std::filesystem::path(path).stem();
+  const std::string near = document::nearest(stem, names);
+  std::string message = "there is no board map " + path;
+  if (!near.empty()) {
+    message +=
+        "; did you mean " +
+        (board == stem ? near : (std::filesystem::path(path).parent_path() / (near + ".yaml")).string()) +
+        "?";
+  } else if (!names.empty()) {
+    message += "; there are";
+    for (const std::string& name : names) message += (&name == names.data() ? " " : ", ") + name;
+  }
+  return fail(ExitCode::io, message);
 }
 
 std::vector<simulation::PlantSettings> make_plants(const Options& options, std::size_t channels,
@@ -97,6 +117,7 @@ tl::expected<Setup, ExitCode> setup_of_boards(const Options& options) {
   std::vector<drivers::BoardMap> maps;
   for (const std::string& board : options.boards) {
     const std::string path = board_path(board);
+    if (!std::filesystem::exists(path)) return tl::unexpected{no_such_board(board, path)};
     if (const auto code = unreadable(path)) return tl::unexpected{*code};
     document::Problems problems;
     auto map = rig::load_board_map(path, problems);

@@ -1,0 +1,62 @@
+#include "tools/command_line/usage.h"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace softgrip::tools {
+namespace {
+
+struct Said {
+  int code = 0;
+  std::string text;
+};
+
+Said said_of(std::vector<std::string> words) {
+  CLI::App program{"A tool", "tool"};
+  program.require_subcommand(1);
+  bool flag = false;
+  program.add_subcommand("status", "Now")->add_flag("--json", flag, "As JSON");
+  program.add_subcommand("start", "Go");
+  words.insert(words.begin(), "tool");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  const int count = static_cast<int>(arguments.size());
+  Said said;
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  try {
+    program.parse(count, arguments.data());
+  } catch (const CLI::ParseError& error) {
+    said.code = end_of(program, error, count, arguments.data());
+  }
+  said.text = ::testing::internal::GetCapturedStderr() + ::testing::internal::GetCapturedStdout();
+  return said;
+}
+
+TEST(Usage, AMistypedCommandIsNamedWithTheNearest) {
+  const Said said = said_of({"statsu"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_NE(said.text.find("there is no command `statsu`; did you mean `status`?"), std::string::npos)
+      << said.text;
+  EXPECT_EQ(said_of({"fly"}).text.find("did you mean"), std::string::npos);
+  EXPECT_NE(said_of({"statsu", "--json"}).text.find("did you mean `status`?"), std::string::npos);
+}
+
+TEST(Usage, AMistypedOptionIsNamedWithTheNearestOfItsCommand) {
+  const Said said = said_of({"status", "--jsno"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_NE(said.text.find("--jsno: did you mean `--json`?"), std::string::npos) << said.text;
+  EXPECT_EQ(said_of({"start", "--jsno"}).text.find("--json"), std::string::npos) << "start has none";
+}
+
+TEST(Usage, HelpIsNoError) {
+  EXPECT_EQ(said_of({"--help"}).code, 0);
+  EXPECT_EQ(said_of({"status", "--help"}).code, 0);
+  EXPECT_EQ(said_of({}).code, 2);
+}
+
+}  // namespace
+}  // namespace softgrip::tools
