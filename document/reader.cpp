@@ -332,7 +332,7 @@ void MapReader::finish() {
     if (problems_.full()) return;
     if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) report_unknown(entry);
   }
-  if (!document_.complete) return;
+  if (!document_.complete || node_.refused) return;
   for (const std::string& key : missing_) {
     problems_.add(document_.problem(node_.at, what_ + " lacks the key " + quoted(key)));
   }

@@ -73,9 +73,31 @@ void read_board_and_channels(Context& context, MapReader& top) {
     }
   }
   if (kind != nullptr) context.board_key = kind->key;
-  if (kind != nullptr && !kind->after_channels) kind->read(context, *node);
+  const auto read_board = [&] {
+    if (kind == nullptr) return;
+    const std::size_t before = context.problems.size();
+    kind->read(context, *node);
+    context.sound.board = top.good("board") && context.problems.size() == before;
+  };
+  if (kind != nullptr && !kind->after_channels) read_board();
+  const std::size_t before = context.problems.size();
   read_channels(context, top);
-  if (kind != nullptr && kind->after_channels) kind->read(context, *node);
+  context.sound.channels = top.good("channels") && context.problems.size() == before;
+  if (kind != nullptr && kind->after_channels) read_board();
+}
+
+/// Reads a map of the file; says whether it is there and without an error.
+bool reads_well(Context& context, MapReader& top, std::string_view key,
+                void (*read)(Context& context, MapReader& top)) {
+  const std::size_t before = context.problems.size();
+  read(context, top);
+  return top.good(key) && context.problems.size() == before;
+}
+
+/// All channels have names by which a sequence can call them.
+bool all_named(const Context& context) {
+  const auto& channels = context.rig.settings.channels;
+  return !channels.empty() && context.names.size() == channels.size();
 }
 
 }  // namespace
@@ -142,30 +164,41 @@ void report_repeated(MapReader& reader, std::string_view key, const std::string&
   reader.report(key, what + " is already used at " + place(first));
 }
 
-std::optional<RigFile> read_rig(const document::Document& document, document::Problems& problems) {
+RigReading read_rig_so_far(const document::Document& document, document::Problems& problems) {
   const std::size_t before = problems.size();
-  RigFile rig;
+  RigReading reading;
+  RigFile& rig = reading.rig;
   rig.path = document.file;
   rig.inputs.push_back({InputFile::Role::rig, document.file, document.text});
-  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}};
+  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}, false, {}, {}};
+  Context::Sound& sound = context.sound;
   MapReader top(document, document.root, problems, "the rig");
   rig.name = read_name(top, "name");
   rig.settings.rate_hz = top.number("rate_hz", {1, 10'000});
   context.rate_known = top.good("rate_hz");
-  read_loop(context, top);
-  read_faults(context, top);
+  sound.loop = reads_well(context, top, "loop", read_loop) || !top.has("loop");
+  sound.faults = reads_well(context, top, "faults", read_faults);
   read_board_and_channels(context, top);
-  read_safety(context, top);
-  read_detection(context, top);
-  read_rest(context, top);
+  sound.safety = reads_well(context, top, "safety", read_safety);
+  sound.detection = reads_well(context, top, "detection", read_detection);
+  sound.rest = reads_well(context, top, "rest", read_rest);
   read_real_time(context, top);
   read_recorder(context, top);
   read_socket(context, top);
   read_gpio(context, top);
   top.finish();
-  if (problems.size() == before && document.complete) check_whole(context, top);
-  if (problems.size() != before || !document.complete) return std::nullopt;
-  return rig;
+  if (document.complete) check_whole(context, top);
+  reading.accepted = problems.size() == before && document.complete;
+  reading.fits_sequences =
+      document.complete && context.rate_known && sound.detection && sound.rest && all_named(context);
+  reading.motion_known = context.motion_known;
+  return reading;
+}
+
+std::optional<RigFile> read_rig(const document::Document& document, document::Problems& problems) {
+  RigReading reading = read_rig_so_far(document, problems);
+  if (!reading.accepted) return std::nullopt;
+  return std::move(reading.rig);
 }
 
 std::optional<RigFile> load_rig(const std::string& path, document::Problems& problems) {

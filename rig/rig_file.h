@@ -74,6 +74,19 @@ inline constexpr std::string_view no_watchdog_words =
 [[nodiscard]] std::optional<RigFile> read_rig(const document::Document& document,
                                               document::Problems& problems);
 
+/// A rig file as far as it could be read, for those who judge what goes with it although it has errors
+/// itself.
+struct RigReading {
+  RigFile rig;
+  bool accepted = false;  ///< no error: `rig` is what read_rig() returns
+  /// Names of all channels, rate, detection and rest are known: sequences can be fitted to `rig.settings`,
+  /// apart from the channels whose motion is not known.
+  bool fits_sequences = false;
+  std::vector<bool> motion_known;  ///< one per channel: model, feedforward, gains and limits are known
+};
+/// read_rig(), but with what is known of a rig that is refused.
+[[nodiscard]] RigReading read_rig_so_far(const document::Document& document, document::Problems& problems);
+
 /// parse_file() and read_rig().
 [[nodiscard]] std::optional<RigFile> load_rig(const std::string& path, document::Problems& problems);
 

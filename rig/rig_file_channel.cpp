@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "control/feedforward/invertibility.h"
-#include "rig/rig_file_reader.h"
+#include "rig/channel_defaults.h"
 
 namespace softgrip::rig {
 
@@ -139,10 +139,11 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
                 plannable ? "`planned` needs no inverse: sequences are planned before they start" : "");
 }
 
-void read_channel(Context& context, const Node& node, const Shared& shared) {
+void read_channel(Context& context, const Node& node, const Shared& shared, ChannelDefaults& defaults) {
   const std::size_t before = context.problems.size();
   const std::string number = "channel " + std::to_string(context.rig.settings.channels.size() + 1);
-  MapReader reader(context.document, node, context.problems, number);
+  const Node whole = defaults.completed(node);
+  MapReader reader(context.document, whole, context.problems, number);
   control::ChannelSettings channel;
   channel.name = read_channel_name(context, reader);
   const std::string who = channel.name.empty() ? number : "channel `" + channel.name + "`";
@@ -151,12 +152,16 @@ void read_channel(Context& context, const Node& node, const Shared& shared) {
   read_feedforward(context, reader, channel);
   if (const Node* pid = reader.child("pid", true)) channel.pid = read_pid(context, *pid, who);
   if (const Node* limits = reader.child("limits", true)) channel.limits = read_limits(context, *limits, who);
+  const bool motion_known = model && context.problems.size() == before && context.rate_known &&
+                            reader.good("feedforward") && reader.good("pid") && reader.good("limits");
   read_wiring(context, reader, who, channel);
   read_own_or_shared(context, reader, who, shared, channel);
   reader.finish();
-  if (model && context.problems.size() == before && context.document.complete) {
+  if (model && context.problems.size() == before && !defaults.spoiled() && context.document.complete) {
     check_feedforward_exists(context, reader, channel);
   }
+  context.motion_known.push_back(motion_known && !defaults.spoiled());
+  defaults.settle(before);
   context.rig.settings.channels.push_back(std::move(channel));
 }
 
@@ -170,6 +175,7 @@ void read_channels(Context& context, MapReader& top) {
   if (const Node* node = top.child("model_health", false)) {
     shared.health = read_model_health(context, *node);
   }
+  ChannelDefaults defaults(context, top);
   const std::vector<const Node*> channels = top.sequence("channels", true);
   if (top.has("channels") && channels.empty() && context.document.complete) {
     top.report("channels", "a rig has at least one channel");
@@ -179,7 +185,7 @@ void read_channels(Context& context, MapReader& top) {
                                " channels, found " + std::to_string(channels.size()));
   }
   for (std::size_t i = 0; i < std::min(channels.size(), control::max_channels); ++i) {
-    read_channel(context, *channels[i], shared);
+    read_channel(context, *channels[i], shared, defaults);
   }
 }
 

@@ -89,18 +89,8 @@ void check_budget(Context& context, MapReader& top) {
           context.board_key + "`");
 }
 
-}  // namespace
-
-bool board_vents_when_silent(const Context& context) {
-  if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board)) {
-    return simulated->watchdog_timeout_s > 0;
-  }
-  const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board);
-  return modbus != nullptr && vents(context, *modbus);
-}
-
-void check_whole(Context& context, MapReader& top) {
-  context.rig.wiring = context.wiring;
+/// True if the board can be made as it is wired.
+bool check_wiring(Context& context, MapReader& top) {
   const std::size_t before = context.problems.size();
   if (auto* const modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board)) {
     modbus->wiring = context.wiring;
@@ -115,13 +105,33 @@ void check_whole(Context& context, MapReader& top) {
       top.report("channels", std::move(sentence));
     }
   }
-  if (context.problems.size() != before) return;
-  check_watchdog(context, top);
-  check_watchdog_time(context, top);
-  for (std::string& sentence : control::settings_problems(context.rig.settings)) {
-    top.report("channels", std::move(sentence));
+  return context.problems.size() == before;
+}
+
+}  // namespace
+
+bool board_vents_when_silent(const Context& context) {
+  if (const auto* simulated = std::get_if<simulation::SimulatedBoardSettings>(&context.rig.board)) {
+    return simulated->watchdog_timeout_s > 0;
   }
-  check_budget(context, top);
+  const auto* modbus = std::get_if<drivers::ModbusSettings>(&context.rig.board);
+  return modbus != nullptr && vents(context, *modbus);
+}
+
+void check_whole(Context& context, MapReader& top) {
+  context.rig.wiring = context.wiring;
+  const Context::Sound& sound = context.sound;
+  if (!sound.board || !sound.channels || !check_wiring(context, top)) return;
+  if (sound.safety) check_watchdog(context, top);
+  if (sound.faults && context.rate_known) check_watchdog_time(context, top);
+  const bool settings_known =
+      context.rate_known && sound.faults && sound.safety && sound.detection && sound.rest;
+  if (settings_known) {
+    for (std::string& sentence : control::settings_problems(context.rig.settings)) {
+      top.report("channels", std::move(sentence));
+    }
+  }
+  if (context.rate_known && sound.loop) check_budget(context, top);
 }
 
 }  // namespace softgrip::rig

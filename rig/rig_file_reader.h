@@ -37,6 +37,21 @@ struct Context {
 
   bool rate_known = false;  ///< rate_hz was good: what is compared with a cycle can be
 
+  /// Which parts of the file are there and without an error: what compares several is done where all of them
+  /// are.
+  struct Sound {
+    bool loop = false;
+    bool faults = false;
+    bool board = false;
+    bool channels = false;
+    bool safety = false;
+    bool detection = false;
+    bool rest = false;
+  };
+  Sound sound;
+  /// One per channel: model, feedforward, gains and limits are known.
+  std::vector<bool> motion_known;
+
   [[nodiscard]] double period_s() const { return 1 / rig.settings.rate_hz; }
 };
 
@@ -88,8 +103,8 @@ void read_gpio(Context& context, MapReader& top);
 [[nodiscard]] drivers::InputWiring read_pressure_monitor(Context& context, const document::Node& node,
                                                          const std::string& who);
 
-/// What only the whole rig shows: the bus budget, the watchdog, what control makes of the settings. Called
-/// when everything could be read.
+/// What only several parts of a rig show: the wiring, the watchdog, what control makes of the settings, the
+/// bus budget; each as soon as the parts that it takes are sound.
 void check_whole(Context& context, MapReader& top);
 /// Whether the board puts every channel to its lowest pressure by itself.
 [[nodiscard]] bool board_vents_when_silent(const Context& context);

@@ -111,8 +111,8 @@ def recipe(trial):
 def rig(trial, finger_model, folder):
     text = (ROOT / "config/rig.yaml").read_text()
     text = text.replace("models/", f"{ROOT}/config/models/").replace("seed: 1", f"seed: {trial.seed}", 1)
-    plants, channels = text.split("\nchannels:", 1)
-    text = re.sub(r"model: \S+", f"model: {finger_model}", plants) + "\nchannels:" + channels
+    plants, channels = text.split("\nchannel_defaults:", 1)
+    text = re.sub(r"model: \S+", f"model: {finger_model}", plants) + "\nchannel_defaults:" + channels
     text = text.replace("pressure_noise_kpa: 0.1", "pressure_noise_kpa: 0")  # the judge's own reading
     text = re.sub(r"directory: \S+}", f"directory: {folder}/runs}}", text)
     text = re.sub(r"path: /\S+,", f"path: {folder}/softgrip.sock,", text)

@@ -51,7 +51,9 @@ class Recording:
                 continue
             data = path.read_bytes()
             if hashlib.sha256(data).hexdigest() == file["sha256"]:
-                return {c["name"]: c["limits"] for c in yaml.safe_load(data)["channels"]}
+                rig = yaml.safe_load(data)
+                shared = rig.get("channel_defaults", {}).get("limits", {})
+                return {c["name"]: {**shared, **c.get("limits", {})} for c in rig["channels"]}
         return {}
 
     def says(self, row, sentence):
