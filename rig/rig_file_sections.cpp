@@ -142,6 +142,7 @@ void read_faults(Context& context, MapReader& top) {
   read_pressure_fault(context, reader);
   faults.slipped_cycles = cycles(reader, "slipped_cycles", 0);
   faults.model_unfit_is_fault = reader.boolean("model_unfit_is_fault");
+  faults.unsteady_is_fault = reader.optional_boolean("unsteady_is_fault").value_or(false);
 }
 
 void read_detection(Context& context, MapReader& top) {
@@ -246,6 +247,10 @@ control::PlausibilitySettings read_plausibility(Context& context, const Node& no
   settings.frozen_after_s = reader.number("frozen_after_s", {0.001, 3600});
   settings.frozen_band_mm = reader.number("frozen_band_mm", {0, 1000});
   settings.frozen_command_kpa = reader.number("frozen_command_kpa", {0.001, 10'000});
+  settings.jump_mm = reader.optional_number("jump_mm", {0.001, 1000}).value_or(settings.jump_mm);
+  if (const auto jumps = reader.optional_integer("unsteady_jumps", 2, control::most_unsteady_jumps)) {
+    settings.unsteady_jumps = static_cast<std::uint32_t>(*jumps);
+  }
   if (context.rate_known && reader.good("max_age_s") && settings.max_age_s <= context.period_s()) {
     reader.report("max_age_s",
                   "`max_age_s` must be longer than a cycle, which is " + written(context.period_s()) + " s",

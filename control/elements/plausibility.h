@@ -1,12 +1,16 @@
 #pragma once
 // Judges readings that are electrically sound: fresh, not frozen, not faster than the finger can be.
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
 #include "model/reading.h"
 
 namespace softgrip::control {
+
+/// Most of PlausibilitySettings::unsteady_jumps.
+inline constexpr std::size_t most_unsteady_jumps = 32;
 
 struct PlausibilitySettings {
   double max_age_s = 0.05;          ///< > 0; an older reading is stale
@@ -18,6 +22,11 @@ struct PlausibilitySettings {
   double frozen_command_kpa = 10;  ///< > 0; the command must have travelled this far in that time
   /// > 0; or the free finger this far, where the sensor is known to be lively (Plausibility::stands_still()).
   double frozen_expected_mm = 2;
+  /// > 0; from one reading to the next, beyond what the model explains, is a jump
+  /// (control/elements/jump_watch.h).
+  double jump_mm = 2;
+  /// 2 to most_unsteady_jumps; so many jumps there and back within a second: the sensor is unsteady.
+  std::uint32_t unsteady_jumps = 4;
 };
 
 /// The judge of one channel.

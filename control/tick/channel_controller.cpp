@@ -48,6 +48,7 @@ ChannelController::ChannelController(const ChannelSettings& settings, double tic
       feedforward_(settings.model, accepted(settings, tick_s), settings.limits, tick_s),
       pid_(settings.pid, tick_s),
       plausibility_(settings.plausibility),
+      jumps_(settings.plausibility),
       health_(settings.health, tick_s) {}
 
 void ChannelController::start(double command_kpa, ChannelOutput& channel) noexcept {
@@ -57,6 +58,7 @@ void ChannelController::start(double command_kpa, ChannelOutput& channel) noexce
   channel.displacement_mm = channel.pressure_kpa = not_known;  // what was never read is not 0
   running_.reset(channel.command_kpa);
   plausibility_.reset();
+  jumps_.reset();
   health_.reset();
   loop_ = Loop::stopped;
   sequence_ = 0;
@@ -70,6 +72,7 @@ void ChannelController::tick(const ChannelInput& input, ChannelOutput& channel) 
   sequence_ = input.reading.sequence;
   const bool sighted = displacement_used_ && channel.validity == model::Validity::valid;
   const double predicted_mm = take_reading(input, channel);
+  if (is_new && displacement_used_) watch_jumps(input.reading, predicted_mm, channel);
   follow_finger(input.resynchronise, predicted_mm, channel);
   watch_model(input, predicted_mm, is_new, channel);
   channel.deficit_mm = sighted ? -channel.residual_mm : not_known;
@@ -148,6 +151,16 @@ double ChannelController::take_reading(const ChannelInput& input, ChannelOutput&
   channel.displacement_beyond =
       displacement_used_ && valid && displacement_beyond(limits_, channel.displacement_mm);
   return predicted_mm;
+}
+
+/// What plausibility makes of a reading does not count: a jump that it refuses is one.
+void ChannelController::watch_jumps(const model::Reading& reading, double predicted_mm,
+                                    ChannelOutput& channel) noexcept {
+  if (reading.validity == model::Validity::valid && std::isfinite(reading.displacement_mm)) {
+    jumps_.observe(reading.sampled_at, reading.displacement_mm, predicted_mm);
+  }
+  channel.unsteady = jumps_.unsteady();
+  channel.jump_mm = jumps_.last_jump_mm();
 }
 
 void ChannelController::follow_finger(bool wanted, double predicted_mm, ChannelOutput& channel) noexcept {

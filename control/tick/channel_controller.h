@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "control/elements/jump_watch.h"
 #include "control/elements/model_health.h"
 #include "control/elements/pid.h"
 #include "control/elements/plausibility.h"
@@ -61,6 +62,7 @@ class ChannelController {
 
   [[nodiscard]] std::int64_t advance(Nanoseconds now, double command_kpa) noexcept;
   double take_reading(const ChannelInput& input, ChannelOutput& channel) noexcept;
+  void watch_jumps(const model::Reading& reading, double predicted_mm, ChannelOutput& channel) noexcept;
   void follow_finger(bool wanted, double predicted_mm, ChannelOutput& channel) noexcept;
   void watch_model(const ChannelInput& input, double predicted_mm, bool is_new,
                    ChannelOutput& channel) noexcept;
@@ -79,6 +81,7 @@ class ChannelController {
   Feedforward feedforward_;
   Pid pid_;
   Plausibility plausibility_;
+  JumpWatch jumps_;
   ModelHealth health_;
 
   Loop loop_ = Loop::stopped;

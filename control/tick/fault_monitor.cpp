@@ -103,16 +103,20 @@ Fault FaultMonitor::channel(std::size_t index, const TickInput& input, const Cha
   const bool readback_off = bus_good() && std::isfinite(readback) &&
                             off(channel, readback, readback_window_, settings_.readback_tolerance_kpa);
   channel.readback_cycles = readback_off ? channel.readback_cycles + 1 : 0;
+  const bool unsteady = settings_.unsteady_is_fault && seen.unsteady;
   const bool pressure_off = pressure_due(channel, input.readings[index].pressure_kpa, starting);
   const Fault of_pressure{FaultCode::pressure_not_followed, number, input.readings[index].pressure_kpa};
   const Fault of_readback{FaultCode::readback_mismatch, number, readback};
+  const Fault of_jumps{FaultCode::reading_jumped, number, seen.jump_mm};
   if (channel.invalid_cycles > 0) note_cause({code_of(seen.validity), number, seen.age_s});
   if (channel.beyond_cycles > 0) {
     note_cause({FaultCode::displacement_beyond_limits, number, seen.displacement_mm});
   }
   if (readback_off) note_cause(of_readback);
   if (channel.pressure_cycles > 0) note_cause(of_pressure);
+  if (unsteady) note_cause(of_jumps);
   if (of_reading.code != FaultCode::none) return of_reading;
+  if (unsteady) return of_jumps;
   if (readback_off && channel.readback_cycles >= settings_.readback_cycles) return of_readback;
   if (pressure_off) return of_pressure;
   if (settings_.model_unfit_is_fault && seen.health_changed && seen.health == HealthState::unfit) {

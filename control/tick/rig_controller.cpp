@@ -227,6 +227,12 @@ void RigController::tell_changes(std::size_t index) noexcept {
                                   seen.validity, 0, seen.age_s);
     channels_[index].valid_before = valid;
   }
+  if (seen.unsteady != channels_[index].unsteady_before) {
+    channels_[index].unsteady_before = seen.unsteady;
+    output_.events.add_of_channel(index,
+                                  seen.unsteady ? Event::Kind::reading_unsteady : Event::Kind::reading_steady,
+                                  0, 0, seen.jump_mm);
+  }
   if (seen.health_changed) {
     output_.events.add_of_channel(index, Event::Kind::model_health_changed, seen.health, 0,
                                   seen.health_rms_mm);

@@ -48,6 +48,7 @@ class RigController {
     Nanoseconds longest_age;  ///< of a reading
     bool sighted;             ///< it uses its displacement
     bool valid_before = true;
+    bool unsteady_before = false;
     bool resynchronise = false;
   };
 

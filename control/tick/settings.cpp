@@ -46,6 +46,9 @@ void check_pid(const PidSettings& pid, const std::string& who, Texts& problems) 
 
 void check_plausibility(const PlausibilitySettings& plausibility, const std::string& who, Texts& problems) {
   require(positive(plausibility.max_age_s), problems, who + ": max_age_s must be above 0");
+  require(positive(plausibility.jump_mm) && plausibility.unsteady_jumps >= 2 &&
+              plausibility.unsteady_jumps <= most_unsteady_jumps,
+          problems, who + ": jump_mm must be above 0, unsteady_jumps 2 to 32");
   require(positive(plausibility.max_speed_mm_per_s), problems, who + ": max_speed_mm_per_s must be above 0");
   require(positive(plausibility.frozen_after_s) && positive(plausibility.frozen_command_kpa), problems,
           who + ": frozen_after_s and frozen_command_kpa must be above 0");

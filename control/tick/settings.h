@@ -67,6 +67,7 @@ struct FaultSettings {
   double pressure_tolerance_kpa = 5;  ///< off: farther than this from every command of the window
   double pressure_delay_s = 0.5;      ///< how far back that window of past commands reaches
   bool model_unfit_is_fault = false;  ///< false: model health is only reported
+  bool unsteady_is_fault = false;     ///< a sensor that jumps there and back; false: it is only reported
   std::uint32_t slipped_cycles = 0;   ///< so many cycles lost at once are a fault; 0: only counted
 };
 

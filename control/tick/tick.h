@@ -106,6 +106,8 @@ struct ChannelOutput {
   bool reference_clamped = false;              ///< the reference was outside the displacement range
   bool out_of_reach = false;         ///< the feedforward cannot reach the reference within the limits
   bool stands_still = false;         ///< the reading repeats itself as this sensor never does
+  bool unsteady = false;             ///< the reading jumps there and back, again and again
+  double jump_mm = 0;                ///< how far it jumped last
   bool displacement_beyond = false;  ///< the reading is beyond the displacement range and its margin
   bool synchronised = false;         ///< resynchronising was asked and residual_mm has settled
 };
@@ -134,10 +136,12 @@ struct Event {
     model_health_changed,
     reading_invalid,
     reading_valid,
-    contact,        ///< a finger has touched something in a motion
-    limit_binds,    ///< a limit has kept a command from what is wanted for longer than a moment
-    limit_free,     ///< it does not any more
-    release_asked,  ///< on with the release step
+    contact,           ///< a finger has touched something in a motion
+    limit_binds,       ///< a limit has kept a command from what is wanted for longer than a moment
+    limit_free,        ///< it does not any more
+    release_asked,     ///< on with the release step
+    reading_unsteady,  ///< the reading jumps there and back, again and again
+    reading_steady,    ///< it has been calm for a while
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -191,6 +192,15 @@ void describe_reading(const Event& event, const Sequence*, EventEntry& entry) {
   entry.severity = Severity::warning;
 }
 
+void describe_unsteady(const Event& event, const Sequence*, EventEntry& entry) {
+  if (event.kind == Kind::reading_steady) {
+    entry.text = "The reading is steady again.";
+    return;
+  }
+  entry.text = fmt::format("The reading jumps there and back, by {:.1f} mm at last.", std::abs(event.value));
+  entry.severity = Severity::warning;
+}
+
 void describe_release(const Event&, const Sequence*, EventEntry& entry) {
   entry.text = "A release was asked for.";
 }
@@ -200,7 +210,7 @@ struct Telling {
   void (*describe)(const Event& event, const Sequence* sequence, EventEntry& entry);
 };
 /// In the order of control::Event::Kind.
-constexpr std::array<Telling, 15> tellings{{
+constexpr std::array<Telling, 17> tellings{{
     {"state_changed", describe_state},
     {"fault_latched", describe_fault},
     {"fault_acknowledged", describe_acknowledged},
@@ -216,8 +226,10 @@ constexpr std::array<Telling, 15> tellings{{
     {"limit_binds", describe_limit},
     {"limit_free", describe_limit},
     {"release_asked", describe_release},
+    {"reading_unsteady", describe_unsteady},
+    {"reading_steady", describe_unsteady},
 }};
-static_assert(static_cast<std::size_t>(Kind::release_asked) + 1 == tellings.size());
+static_assert(static_cast<std::size_t>(Kind::reading_steady) + 1 == tellings.size());
 
 }  // namespace
 

@@ -1,10 +1,13 @@
 """Faults of sensors, lines and outputs while a finger moves."""
 
+import time
+
 import bench
 
 FAULTS = """faults:
   - {name: stuck, kind: sensor_stuck, channel: left}
   - {name: jumping, kind: sensor_jumping, by_mm: 15, interval_s: 1, channel: right}
+  - {name: unsteady, kind: sensor_jumping, by_mm: 5, interval_s: 0.1, channel: right}
   - {name: blind, kind: sensor_out_of_range, channel: right}
   - {name: ignored, kind: ignored_write}
   - {name: leak, kind: line_leaking, share: 0.5, channel: left}
@@ -41,6 +44,34 @@ class PlantFaults(bench.BenchTest):
         # 15 mm at 100 mm/s: for 15 cycles no finger could have got there.
         self.check_latches("jumping", ("F204",), "right", ((r"max_speed_mm_per_s: \d+", "max_speed_mm_per_s: 100"),
                                                            (r"invalid_reading_cycles: \d+", "invalid_reading_cycles: 10")))
+
+    def test_a_sensor_that_jumps_ten_times_a_second(self):
+        # 5 mm are within what max_speed_mm_per_s allows a finger: no single reading is refused.
+        self.check_latches("unsteady", ("F204",), "right")
+
+    def test_where_that_is_no_fault_it_is_told(self):
+        daemon = self.tracking(((r"unsteady_is_fault: true", "unsteady_is_fault: false"),
+                                (r"displacement_margin_mm: 2", "displacement_margin_mm: 20")))
+        self.emulated.ask("fault unsteady")
+        told = daemon.wait_for_event("reading_unsteady")
+        self.assertEqual((told["channel"], told["severity"]), ("right", "warning"))
+        self.emulated.ask("clear unsteady")
+        daemon.wait_for_event("reading_steady", channel="right")
+
+    def test_a_part_that_slips_is_no_unsteady_sensor(self):
+        emulated = self.emulator("--object", "stone")
+        daemon = self.daemon(self.rig(emulated.port))
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        daemon.wait_for_event("grip_result", code="HOLDING")
+        for place in ("13:0.1", "14:0.1", "12:0.1"):
+            emulated.ask(f"object {place}")
+            time.sleep(0.3)
+        emulated.ask("object out")
+        daemon.wait_for_event("sequence_finished")
+        kinds = {event["kind"] for event in daemon.events()}
+        self.assertNotIn("reading_unsteady", kinds)
+        self.assertNotIn("fault_latched", kinds)
 
     def test_a_blind_sensor(self):
         self.check_latches("blind", ("F202", "F203"), "right")

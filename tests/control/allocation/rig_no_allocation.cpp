@@ -37,6 +37,11 @@ TEST(TickAllocation, NoneInAnyState) {
   rig.run(1);
   EXPECT_EQ(rig.output().state, State::idle);
   EXPECT_GT(rig.count(Event::Kind::fault_latched), 0U);
+  for (int i = 0; i < 20; ++i) {
+    rig.fault[0].offset_mm = i % 2 == 0 ? 5 : 0;
+    rig.run(0.1);
+  }
+  EXPECT_EQ(rig.count(Event::Kind::reading_unsteady), 1U);
   EXPECT_EQ(test::allocations(), before);
 }
 

@@ -1,0 +1,96 @@
+// A sensor that jumps there and back is told, and is a fault where the rig file says so; a part that slips is
+// not.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/control/rig_fixture.h"
+
+namespace softgrip::control {
+namespace {
+
+class UnsteadyTest : public testing::Test {
+ protected:
+  /// The left sensor is 5 mm off in every other tenth of a second.
+  static void jump(SimulatedRig& rig, double seconds) {
+    for (const double end_s = rig.time_s() + seconds; rig.time_s() < end_s;) {
+      rig.fault[0].offset_mm = std::fmod(rig.time_s(), 0.2) < 0.1 ? 5 : 0;
+      rig.tick();
+    }
+    rig.fault[0].offset_mm = 0;
+  }
+  RigSettings settings = two_finger_settings();
+};
+
+TEST_F(UnsteadyTest, IsToldOnceAndSoIsItsEnd) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  jump(rig, 3);
+  EXPECT_EQ(rig.count(Event::Kind::reading_unsteady), 1U);
+  EXPECT_EQ(rig.count(Event::Kind::reading_steady), 0U);
+  EXPECT_TRUE(rig.output().channels[0].unsteady);
+  EXPECT_FALSE(rig.output().channels[1].unsteady);
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U) << "the settings do not make it a fault";
+  rig.run(4);
+  EXPECT_EQ(rig.count(Event::Kind::reading_steady), 1U);
+}
+
+TEST_F(UnsteadyTest, IsAFaultWhereTheSettingsSaySo) {
+  settings.faults.unsteady_is_fault = true;
+  SimulatedRig rig(settings);
+  const PreparedSequence track = example_sequence("track_sine", settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &track);
+  ASSERT_TRUE(rig.run_until_step(1, 20));
+  const double from_s = rig.time_s();
+  jump(rig, 1.5);
+  EXPECT_EQ(rig.output().state, State::faulted);
+  EXPECT_EQ(rig.output().first_fault, FaultCode::reading_jumped);
+  for (const Event& event : rig.events) {
+    if (event.kind != Event::Kind::fault_latched) continue;
+    EXPECT_EQ(event.channel, 0);
+    EXPECT_NEAR(std::abs(event.value), 5, 1);
+  }
+  EXPECT_GT(rig.time_s(), from_s);
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  EXPECT_EQ(rig.answer(Event::Kind::request_refused)->detail,
+            static_cast<std::uint16_t>(RefusalCode::cause_persists));
+  rig.run(3);
+  rig.request(Request::Kind::acknowledge);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::fault_acknowledged).has_value());
+}
+
+TEST_F(UnsteadyTest, PartsThatSlipAndComeBackAreNone) {
+  settings.faults.unsteady_is_fault = true;
+  SimulatedRig rig(settings);
+  const PreparedSequence pick = example_sequence("pick_stone", settings);
+  rig.stone(12);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::start, &pick);
+  ASSERT_TRUE(rig.run_until_step(2, 20));
+  for (const double at_mm : {13.0, 14.0, 12.5, 13.5}) {
+    rig.stone(at_mm);
+    rig.run(0.4);
+  }
+  rig.stone(std::nullopt);
+  rig.run(10);
+  EXPECT_EQ(rig.count(Event::Kind::reading_unsteady), 0U);
+  EXPECT_EQ(rig.count(Event::Kind::fault_latched), 0U);
+}
+
+TEST_F(UnsteadyTest, ASensorThatIsNotUsedDoesNotCount) {
+  settings.faults.unsteady_is_fault = true;
+  settings.channels[0].displacement_used = false;
+  settings.channels[0].pressure_measured = true;
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  jump(rig, 2);
+  EXPECT_EQ(rig.output().state, State::idle);
+  EXPECT_EQ(rig.count(Event::Kind::reading_unsteady), 0U);
+}
+
+}  // namespace
+}  // namespace softgrip::control
