@@ -28,6 +28,7 @@ void ChannelPlayer::reset() noexcept {
   freeze();
   bounds_ = {};
   contact_.reset();
+  follow_.reset();
   touching_since_s_.reset();
   stopped_by_contact_ = false;
   answer(GripResult::none, GripEvidence::none);
@@ -147,10 +148,22 @@ void ChannelPlayer::take(const ChannelOutput& seen) noexcept {
   deficit_mm_ = valid(seen) ? -seen.residual_mm : std::numeric_limits<double>::quiet_NaN();
 }
 
+void ChannelPlayer::feel(const ChannelOutput& seen, bool watched) noexcept {
+  if (!watched) return;
+  contact_.observe(deficit_mm_);
+  follow_.observe(contact_.touching(), seen.displacement_mm, seen.displacement_mm + deficit_mm_);
+}
+
+bool ChannelPlayer::idle(double time_s, const ChannelOutput& seen) noexcept {
+  take(seen);
+  feel(seen, !seen.stands_still);
+  return watch(time_s, seen);
+}
+
 Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept {
   take(seen);
   // A sensor that stands still looks like a finger that does.
-  if (!seen.stands_still || step_->kind == StepKind::release) contact_.observe(deficit_mm_);
+  feel(seen, !seen.stands_still || step_->kind == StepKind::release);
   look_for_contact(time_s, seen);
   Progress progress = advance(time_s, seen);
   if (mode_ == Mode::pressure) {
@@ -279,7 +292,6 @@ void ChannelPlayer::watch_from(double time_s, double interval_s) noexcept {
 }
 
 bool ChannelPlayer::watch(double time_s, const ChannelOutput& seen) noexcept {
-  take(seen);
   if (result_ != GripResult::holding) return false;
   const bool inside = seen.displacement_mm >= held_by_.displacement_min_mm &&
                       seen.displacement_mm <= held_by_.displacement_max_mm;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "control/elements/follow_watch.h"
 #include "control/elements/grip_detector.h"
 #include "control/elements/grip_result.h"
 #include "control/elements/reference.h"
@@ -39,13 +40,15 @@ class ChannelPlayer {
   void back_off(double time_s, const ChannelOutput& seen) noexcept;
   /// One tick of the step, or of backing off (passed: there).
   Progress tick(double time_s, const ChannelOutput& seen) noexcept;
-  /// Outside a sequence: true once when what is held is lost.
-  bool watch(double time_s, const ChannelOutput& seen) noexcept;
+  /// One tick outside a sequence: true once when what is held is lost.
+  bool idle(double time_s, const ChannelOutput& seen) noexcept;
 
   /// Of the last tick; `reference` points into this object.
   [[nodiscard]] ChannelDemand demand(double time_s) const noexcept;
   /// The finger touches something.
   [[nodiscard]] bool touching() const noexcept { return contact_.touching(); }
+  /// It moves less than its model, and not because it has changed: something is in its way.
+  [[nodiscard]] bool held_back() const noexcept { return follow_.held(); }
   /// Once per attempt, when the finger has met something on its way: what it does now.
   [[nodiscard]] std::optional<OnContact> take_contact() noexcept;
   /// It stays with the pressure of its first touch.
@@ -90,6 +93,8 @@ class ChannelPlayer {
   };
 
   void go_to(const Target& target, double value, double time_s, const ChannelOutput& seen) noexcept;
+  void feel(const ChannelOutput& seen, bool watched) noexcept;
+  bool watch(double time_s, const ChannelOutput& seen) noexcept;
   void look_for_contact(double time_s, const ChannelOutput& seen) noexcept;
   [[nodiscard]] OnContact on_contact() const noexcept;
   [[nodiscard]] bool under_way() const noexcept;
@@ -138,6 +143,7 @@ class ChannelPlayer {
   double squeeze_from_kpa_ = 0;  ///< at squeeze_from_s_
   double squeeze_from_s_ = 0;
   Contact contact_;
+  FollowWatch follow_;
   EvidenceWindow window_;
   bool verified_ = false;  ///< in this attempt
   HoldWatch hold_;

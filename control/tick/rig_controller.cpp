@@ -190,7 +190,8 @@ void RigController::play(double time_s) noexcept {
 void RigController::control(std::size_t index, const TickInput& input, double time_s) noexcept {
   Channel& channel = channels_[index];
   const State state = supervisor_.state();
-  const bool free_motion = state != State::faulted && state != State::starting && player_.free_motion(index);
+  const bool free_motion = state != State::faulted && state != State::starting &&
+                           player_.free_motion(index, channel.lowest(output_.channels[index]));
   channel.controller.tick(
       {input.now, input.readings[index], demand(index, time_s), channel.resynchronise, free_motion},
       output_.channels[index]);

@@ -202,7 +202,7 @@ void SequencePlayer::interrupt(SequenceEnd end, std::uint32_t venting, EventList
 void SequencePlayer::idle_tick(double time_s, std::span<const ChannelOutput> seen,
                                EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if (channels_[i].watch(time_s, seen[i])) lose(i, events);
+    if (channels_[i].idle(time_s, seen[i])) lose(i, events);
   }
 }
 
@@ -249,12 +249,14 @@ Phase SequencePlayer::phase() const noexcept {
   return play_ != Play::nothing ? Phase::closing : Phase::idle;
 }
 
-bool SequencePlayer::free_motion(std::size_t channel) const noexcept {
+bool SequencePlayer::free_motion(std::size_t channel, bool lowest) const noexcept {
   const ChannelPlayer& player = channels_[channel];
   if (player.result() == GripResult::holding) return false;
   if (player.stopped_by_contact()) return false;
+  // There nothing is expected in the way; what is, is a blocked line or a finger that has changed.
+  if (plays(StepKind::track) || plays(StepKind::pressure)) return true;
   const bool may_touch = plays(StepKind::grip) || plays(StepKind::hold) || plays(StepKind::release);
-  return !(may_touch && player.touching());
+  return may_touch ? !player.touching() : lowest || !player.held_back();
 }
 
 }  // namespace softgrip::control

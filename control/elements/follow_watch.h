@@ -1,0 +1,41 @@
+#pragma once
+// A finger that moves less than its model: is it held by something, or has it changed?
+
+#include <cmath>
+
+namespace softgrip::control {
+
+/// What holds a finger lets it stay where it met it while the model goes on; a finger that has changed goes
+/// on with its model, only less far. Until the model has gone far enough to tell, a finger counts as held.
+class FollowWatch {
+ public:
+  static constexpr double tells_from_mm = 1;  ///< of the model's motion since the touch
+  static constexpr double least_share = 0.5;  ///< of it that a finger goes which nothing holds
+
+  void reset() noexcept { touching_ = held_ = false; }
+
+  /// One tick: whether it lags the model by more than grip detection's margin, where it is and where the
+  /// model would be [mm]. What is not finite changes nothing.
+  void observe(bool touching, double displacement_mm, double expected_mm) noexcept {
+    if (!touching) return reset();
+    if (!std::isfinite(displacement_mm) || !std::isfinite(expected_mm)) return;
+    if (!touching_) {
+      touching_ = held_ = true;
+      from_mm_ = displacement_mm;
+      expected_from_mm_ = expected_mm;
+    }
+    const double expected = expected_mm - expected_from_mm_;
+    if (std::abs(expected) < tells_from_mm) return;
+    held_ = (displacement_mm - from_mm_) / expected < least_share;
+  }
+
+  [[nodiscard]] bool held() const noexcept { return held_; }
+
+ private:
+  bool touching_ = false;
+  bool held_ = false;
+  double from_mm_ = 0;
+  double expected_from_mm_ = 0;
+};
+
+}  // namespace softgrip::control

@@ -1,0 +1,51 @@
+#include "control/elements/follow_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace softgrip::control {
+namespace {
+
+/// The model goes from 5 mm to 5 + `expected` mm, the finger from 4 to 4 + `share` of that.
+bool held_after(double expected_mm, double share) {
+  FollowWatch watch;
+  for (int i = 0; i <= 100; ++i) {
+    const double way = expected_mm * i / 100;
+    watch.observe(true, 4 + share * way, 5 + way);
+  }
+  return watch.held();
+}
+
+TEST(FollowWatch, WhatStaysIsHeldAndWhatGoesOnHasChanged) {
+  EXPECT_TRUE(held_after(5, 0));
+  EXPECT_TRUE(held_after(5, 0.4)) << "what yields";
+  EXPECT_FALSE(held_after(5, 0.7));
+  EXPECT_FALSE(held_after(-3, 0.7)) << "down as well as up";
+}
+
+TEST(FollowWatch, BeforeTheModelHasMovedNobodyKnows) {
+  EXPECT_TRUE(held_after(0.5, 0.9));
+}
+
+TEST(FollowWatch, WithoutATouchNothingHolds) {
+  FollowWatch watch;
+  EXPECT_FALSE(watch.held());
+  watch.observe(true, 4, 5);
+  EXPECT_TRUE(watch.held());
+  watch.observe(false, 4, 4.1);
+  EXPECT_FALSE(watch.held());
+}
+
+TEST(FollowWatch, WhatIsNotKnownChangesNothing) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  FollowWatch watch;
+  watch.observe(true, unknown, 5);
+  EXPECT_FALSE(watch.held());
+  watch.observe(true, 4, 5);
+  watch.observe(true, unknown, 9);
+  EXPECT_TRUE(watch.held());
+}
+
+}  // namespace
+}  // namespace softgrip::control
