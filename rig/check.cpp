@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
+#include "rig/rig_comparison.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::rig {
@@ -23,8 +27,8 @@ struct Signature {
 const std::array<Signature, 4>& signatures() {
   static const std::array<Signature, 4> all{
       Signature{FileKind::rig,
-                {"board", "channels", "safety", "faults", "rate_hz", "plausibility", "detection", "rest",
-                 "model_health", "real_time", "recorder", "socket", "loop"}},
+                {"board", "channels", "channel_defaults", "safety", "faults", "rate_hz", "plausibility",
+                 "detection", "rest", "model_health", "real_time", "recorder", "socket", "loop"}},
       Signature{FileKind::board_map,
                 {"address_base", "word_order", "inputs", "outputs", "fc23", "readable_gap", "input_status",
                  "read_back", "watchdog", "setup"}},
@@ -55,22 +59,30 @@ void report_unknown(const document::Document& document, document::Problems& prob
       "`steps`"));
 }
 
+/// A rig and the document in which its places are.
+struct ReadRig {
+  document::Document document;
+  RigReading reading;
+};
+
 /// What is kept of the files to be fitted to each other.
 struct Read {
-  std::vector<RigFile> rigs;
+  std::vector<ReadRig> rigs;
   std::vector<control::Sequence> sequences;
 };
 
-void read_as(const document::Document& document, std::span<const control::Argument> arguments,
+/// `parsed`: the document is all that its file says.
+void read_as(const document::Document& document, bool parsed, std::span<const control::Argument> arguments,
              CheckedFile& file, document::Problems& problems, Read& read) {
   const auto keep_name = [&](const auto& value) {
     if (value) file.name = value->name;
   };
   switch (file.kind) {
     case FileKind::rig: {
-      auto rig = read_rig(document, problems);
-      keep_name(rig);
-      if (rig) read.rigs.push_back(std::move(*rig));
+      RigReading reading = read_rig_so_far(document, problems);
+      if (reading.accepted) file.name = reading.rig.name;
+      reading.accepted = reading.accepted && parsed;
+      read.rigs.push_back({document, std::move(reading)});
       break;
     }
     case FileKind::board_map:
@@ -90,13 +102,91 @@ void read_as(const document::Document& document, std::span<const control::Argume
   }
 }
 
+/// In the place of a channel whose motion could not be read: everything fits it.
+control::ChannelSettings anything(const control::ChannelSettings& known) {
+  constexpr double wide = 1e6;
+  control::ChannelSettings channel;
+  channel.name = known.name;
+  channel.pid.kp_kpa_per_mm = 1;
+  channel.limits = {-wide, wide, wide, wide, -wide, wide, wide};
+  channel.feedforward.kind = control::FeedforwardKind::none;
+  channel.pressure_measured = true;
+  return channel;
+}
+
+control::RigSettings known_settings(const RigReading& reading) {
+  control::RigSettings settings = reading.rig.settings;
+  for (std::size_t i = 0; i < settings.channels.size(); ++i) {
+    if (!reading.motion_known[i]) settings.channels[i] = anything(settings.channels[i]);
+  }
+  return settings;
+}
+
 void fit_sequences(const Read& read, document::Problems& problems) {
-  for (const control::Sequence& sequence : read.sequences) {
-    for (const RigFile& rig : read.rigs) {
-      static_cast<void>(control::prepare(sequence, rig.settings, problems));
-      control::check_ranges(sequence, rig.settings, problems);
+  for (const ReadRig& rig : read.rigs) {
+    if (!rig.reading.fits_sequences) continue;
+    const control::RigSettings settings = known_settings(rig.reading);
+    for (const control::Sequence& sequence : read.sequences) {
+      static_cast<void>(control::prepare(sequence, settings, problems));
+      control::check_ranges(sequence, settings, problems);
+      if (rig.reading.accepted) compare_grips(sequence, rig.reading.rig, problems);
     }
   }
+}
+
+void compare(const Read& read, document::Problems& problems) {
+  for (const ReadRig& rig : read.rigs) {
+    if (rig.reading.accepted) compare_limits(rig.document, rig.reading.rig, problems);
+  }
+}
+
+/// A file to be checked.
+struct Candidate {
+  std::string path;
+  bool from_folder = false;
+};
+
+/// The files of a folder and below it, in the order of their names.
+std::vector<Candidate> files_below(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::vector<Candidate> found;
+  std::error_code error;
+  const auto skip = fs::directory_options::skip_permission_denied;
+  for (auto entry = fs::recursive_directory_iterator(folder, skip, error);
+       !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->path().filename().string().front() == '.') {
+      entry.disable_recursion_pending();
+    } else if (const auto ending = entry->path().extension(); ending == ".yaml" || ending == ".yml") {
+      if (entry->is_regular_file(ignored)) found.push_back({entry->path().string(), true});
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Candidate& a, const Candidate& b) { return a.path < b.path; });
+  return found;
+}
+
+/// Each file once.
+std::vector<Candidate> candidates_of(std::span<const std::string> paths, document::Problems& problems) {
+  std::vector<Candidate> all;
+  const auto add = [&](const Candidate& one) {
+    const auto repeated = [&](const Candidate& other) { return other.path == one.path; };
+    if (std::none_of(all.begin(), all.end(), repeated)) all.push_back(one);
+  };
+  for (const std::string& path : paths) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) {
+      add({path, false});
+      continue;
+    }
+    const std::vector<Candidate> found = files_below(path);
+    if (found.empty()) {
+      problems.add(
+          {path, {}, {}, "no file *.yaml or *.yml is in this folder or below it, or it cannot be read", {}});
+    }
+    for (const Candidate& one : found) add(one);
+  }
+  return all;
 }
 
 std::size_t count_of(const std::vector<document::Problem>& list, const std::string& path) {
@@ -130,16 +220,21 @@ CheckReport check_files(std::span<const std::string> paths, std::span<const cont
   CheckReport report;
   document::Problems problems;
   Read read;
-  for (const std::string& path : paths) {
-    const auto repeated = [&](const CheckedFile& file) { return file.path == path; };
-    if (std::any_of(report.files.begin(), report.files.end(), repeated)) continue;
+  for (const Candidate& candidate : candidates_of(paths, problems)) {
     CheckedFile& file = report.files.emplace_back();
-    file.path = path;
-    const document::Document document = document::parse_file(path, problems);
-    file.kind = kind_of(document, problems);
-    read_as(document, arguments, file, problems, read);
+    file.path = candidate.path;
+    document::Problems found;
+    const document::Document document = document::parse_file(file.path, found);
+    const bool parsed = found.empty();
+    file.kind = kind_of(document, found);
+    file.passed_over = candidate.from_folder && parsed && file.kind == FileKind::unknown;
+    if (file.passed_over) continue;
+    for (const document::Problem& problem : found.list()) problems.add(problem);
+    read_as(document, parsed, arguments, file, problems, read);
   }
+  report.has_rig = !read.rigs.empty();
   fit_sequences(read, problems);
+  compare(read, problems);
   // A model that two rigs name, or that is checked itself too, was read more than once.
   report.problems = problems.without_repeats();
   for (CheckedFile& file : report.files) {

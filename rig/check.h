@@ -27,6 +27,7 @@ struct CheckedFile {
   std::string name;        ///< what it calls itself, or empty
   std::size_t errors = 0;  ///< in this file, not in those that it names
   std::size_t warnings = 0;
+  bool passed_over = false;  ///< found in a folder and of no kind
 };
 
 /// What check_files() found.
@@ -34,6 +35,7 @@ struct CheckReport {
   std::vector<CheckedFile> files;
   /// Of all files and of those that they name, each once; format() prints them.
   document::Problems problems;
+  bool has_rig = false;  ///< sequences were fitted to something
 
   /// No errors: exit code 0, else 3.
   [[nodiscard]] bool accepted() const noexcept { return problems.empty(); }
@@ -41,7 +43,10 @@ struct CheckReport {
 
 /// Reads every file as what it is. When rigs and sequences are among them, each sequence is also fitted to
 /// each rig: names of channels, targets within limits, with its parameters at their defaults and at the ends
-/// of their ranges. `arguments` take the place of defaults in every sequence; each sequence must have them.
+/// of their ranges; to a rig with errors as far as it could be read. What is allowed but cannot be meant is
+/// warned of (rig/rig_comparison.h). `arguments` take the place of defaults in every sequence; each sequence
+/// must have them. Of a folder every file *.yaml and *.yml below it is read; those that are of no kind are
+/// left out of the problems. Names that begin with a dot are passed over.
 [[nodiscard]] CheckReport check_files(std::span<const std::string> paths,
                                       std::span<const control::Argument> arguments = {});
 

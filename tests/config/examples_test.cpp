@@ -1,6 +1,7 @@
 // The configurations that are shipped: accepted without a warning, and fit for each other.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -83,6 +84,88 @@ TEST(Check, AMissingFileIsAProblem) {
   const rig::CheckReport report = rig::check_files(std::vector<std::string>{"/nonexistent.yaml"});
   ASSERT_EQ(report.problems.size(), 1U);
   EXPECT_EQ(report.problems.list()[0].message, "the file cannot be read: No such file or directory");
+}
+
+TEST(Check, AFolderIsAllThatIsInItAndBelow) {
+  const std::string config = std::string(SOFTGRIP_SOURCE_DIR) + "/config";
+  const rig::CheckReport report = rig::check_files(std::vector<std::string>{config, config + "/rig.yaml"});
+  EXPECT_TRUE(report.accepted()) << report.problems.format();
+  EXPECT_EQ(report.files.size(), shipped().size()) << "each once";
+  EXPECT_TRUE(report.has_rig);
+}
+
+/// A folder with these files, which goes with it.
+class CheckFolder : public testing::Test {
+ protected:
+  CheckFolder() { std::filesystem::create_directories(folder_ / "sub/.hidden"); }
+  ~CheckFolder() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+  using Changes = std::vector<std::pair<std::string, std::string>>;
+  /// The shipped simulated rig with texts in the place of others.
+  void write_rig(Changes changes) {
+    std::ostringstream read;
+    read << std::ifstream(config_ / "rig.yaml").rdbuf();
+    std::string text = read.str();
+    changes.emplace_back("models/", (config_ / "models/").string());
+    for (const auto& [old, now] : changes) {
+      ASSERT_NE(text.find(old), std::string::npos) << old;
+      for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at + now.size()))
+        text.replace(at, old.size(), now);
+    }
+    write("rig.yaml", text);
+  }
+  rig::CheckReport check() { return rig::check_files(std::vector<std::string>{folder_.string()}); }
+  static bool says(const rig::CheckReport& report, const std::string& words) {
+    return report.problems.format().find(words) != std::string::npos;
+  }
+  std::filesystem::path config_ = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config";
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("softgrip_check_folder_" + std::to_string(::getpid()));
+};
+
+TEST_F(CheckFolder, WhatIsOfNoKindIsPassedOver) {
+  write("sub/model.yaml", "name: m\nsource: s\nactuator: []\n");
+  write("compose.yaml", "version: 3\n");
+  write("notes.txt", "name: [\n");
+  write("sub/.hidden/rig.yaml", "name: [\n");
+  const rig::CheckReport report = check();
+  ASSERT_EQ(report.files.size(), 2U);
+  EXPECT_TRUE(report.files[0].passed_over);
+  EXPECT_FALSE(report.files[1].passed_over);
+  EXPECT_FALSE(says(report, "neither a rig"));
+}
+
+TEST_F(CheckFolder, WithNothingToReadIsAProblem) {
+  EXPECT_TRUE(says(check(), "no file *.yaml"));
+}
+
+TEST_F(CheckFolder, SequencesAreFittedToARigThatHasErrorsElsewhere) {
+  write_rig({{"mode: \"0660\"", "mode: \"9999\""}});
+  write("far.yaml",
+        "name: far\nchannels: [left, middle]\nsteps:\n  - move: {displacement_mm: 90, duration_s: 1}\n");
+  const rig::CheckReport report = check();
+  EXPECT_TRUE(says(report, "`mode` must be permissions in octal")) << report.problems.format();
+  EXPECT_TRUE(says(report, "the rig has no channel 'middle'")) << report.problems.format();
+  EXPECT_TRUE(says(report, "goes to 90 mm")) << report.problems.format();
+}
+
+TEST_F(CheckFolder, AndToTheChannelsOfOneThatCouldBeRead) {
+  write_rig({{"  - name: left\n", "  - name: left\n    limits: {pressure_max_kpa: high}\n"}});
+  write("far.yaml",
+        "name: far\nsteps:\n"
+        "  - move: {channels: [left], displacement_mm: 90, duration_s: 1}\n"
+        "  - move: {channels: [right], displacement_mm: 80, duration_s: 1}\n");
+  const rig::CheckReport report = check();
+  EXPECT_TRUE(says(report, "`pressure_max_kpa` must be a number")) << report.problems.format();
+  EXPECT_FALSE(says(report, "goes to 90 mm")) << "nobody knows what left allows";
+  EXPECT_TRUE(says(report, "goes to 80 mm, channel 'right'")) << report.problems.format();
+}
+
+TEST_F(CheckFolder, WhatComparesSeveralPartsIsToldBesideOtherErrors) {
+  write_rig({{"watchdog_timeout_s: 0.5", "watchdog_timeout_s: 0.02"}, {"mode: \"0660\"", "mode: \"9999\""}});
+  const rig::CheckReport report = check();
+  EXPECT_TRUE(says(report, "`mode` must be permissions in octal")) << report.problems.format();
+  EXPECT_TRUE(says(report, "`bus_down_cycles` are over after")) << report.problems.format();
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ void print_json(const rig::CheckReport& report) {
     entry["name"] = file.name;
     entry["errors"] = file.errors;
     entry["warnings"] = file.warnings;
+    entry["passed_over"] = file.passed_over;
     json["files"].push_back(std::move(entry));
   }
   json["problems"] = nlohmann::ordered_json::array();
@@ -60,10 +61,14 @@ void print_text(const rig::CheckReport& report) {
     std::printf("%s: %s", document::shown(file.path, 400).c_str(),
                 std::string(rig::name_of(file.kind)).c_str());
     if (!file.name.empty()) std::printf(" '%s'", document::shown(file.name).c_str());
-    if (file.errors > 0) {
+    const bool unfitted = file.kind == rig::FileKind::sequence && !report.has_rig;
+    if (file.passed_over) {
+      std::printf(": passed over\n");
+    } else if (file.errors > 0) {
       std::printf(": %zu %s\n", file.errors, file.errors == 1 ? "error" : "errors");
     } else {
-      std::printf(": ok%s\n", file.warnings > 0 ? ", with warnings" : "");
+      std::printf(": ok%s%s\n", file.warnings > 0 ? ", with warnings" : "",
+                  unfitted ? ", by itself: name a rig file beside it" : "");
     }
   }
 }
@@ -87,8 +92,9 @@ void add_check(CLI::App& program, ExitCode& outcome) {
   CLI::App* command =
       program.add_subcommand("check", "What is wrong with rigs, boards, models and sequences");
   command
-      ->add_option("FILE", options->files,
-                   "Files of any of these kinds; sequences are fitted to the rigs among them")
+      ->add_option(
+          "FILE", options->files,
+          "Files of any of these kinds, or folders of them; sequences are fitted to the rigs among them")
       ->required();
   add_set_option(*command, options->settings);
   command->add_flag("--json", options->json, "The findings as JSON");

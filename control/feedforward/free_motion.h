@@ -1,0 +1,19 @@
+#pragma once
+// How far and how fast the free finger of a model goes within its limits: what the limits are compared with.
+
+#include "control/elements/limits.h"
+#include "model/model.h"
+
+namespace softgrip::control {
+
+struct FreeMotion {
+  double lowest_mm = 0;         ///< at rest under the lowest pressure
+  double highest_mm = 0;        ///< three seconds after the highest pressure was reached
+  double fastest_mm_per_s = 0;  ///< on the way up and down, as fast as the slew limits allow
+};
+
+/// Steps the model through the whole pressure range and back, a few thousand steps. What is only noise and
+/// dead times are left out.
+[[nodiscard]] FreeMotion free_motion(const model::Model& model, const LimitSettings& limits);
+
+}  // namespace softgrip::control

@@ -1,0 +1,141 @@
+#include "rig/rig_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "base/numbers.h"
+#include "control/feedforward/free_curve.h"
+#include "control/feedforward/free_motion.h"
+#include "document/edit.h"
+
+namespace softgrip::rig {
+
+namespace {
+
+using document::Location;
+using document::Node;
+
+/// A part squeezed hard needs more pressure than the free finger within its range, but not so much more.
+constexpr double most_times_too_far = 2;
+/// A finger that loses its part springs faster than its valve moves it, but not so much faster.
+constexpr double most_times_too_fast = 10;
+
+const Node* channel_node(const document::Document& document, std::size_t channel) {
+  const Node* const channels = document::below(&document.root, {"channels"});
+  return channels != nullptr && channel < channels->items.size() ? &channels->items[channel] : nullptr;
+}
+
+/// Where a key of a channel stands: in the channel, or in what all channels share.
+Location place_of(const document::Document& document, std::size_t channel, std::string_view map,
+                  std::string_view key) {
+  const Node* const own = channel_node(document, channel);
+  const Node* const shared = document::below(&document.root, {"channel_defaults"});
+  for (const Node* const node : {document::below(own, {map, key}), document::below(shared, {map, key}),
+                                 document::below(&document.root, {map, key})}) {
+    if (node != nullptr) return node->at;
+  }
+  return own != nullptr ? own->at : document.root.at;
+}
+
+/// Two digits are enough of what is only suggested.
+std::string about(double value) {
+  if (value == 0) return "0";
+  const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
+  return significant(std::round(value / unit) * unit, 6);
+}
+
+void compare_reach(const document::Document& document, const control::ChannelSettings& channel,
+                   std::size_t index, const control::FreeMotion& motion, document::Problems& problems) {
+  const control::LimitSettings& limits = channel.limits;
+  const double allowed_mm = limits.displacement_max_mm - motion.lowest_mm;
+  const double travel_mm = motion.highest_mm - motion.lowest_mm;
+  if (!(allowed_mm > 0) || !(travel_mm > most_times_too_far * allowed_mm)) return;
+  const double enough_kpa = control::FreeCurve(channel.model, limits).command_kpa(limits.displacement_max_mm);
+  problems.warn(
+      document.problem(place_of(document, index, "limits", "pressure_max_kpa"),
+                       "at `pressure_max_kpa` the model of channel `" + channel.name + "` goes to " +
+                           about(motion.highest_mm) + " mm, " + about(travel_mm / allowed_mm) +
+                           " times as far as `displacement_max_mm` (" +
+                           significant(limits.displacement_max_mm, 6) + " mm) allows",
+                       "pressure_max_kpa: " + about(enough_kpa) + " is where the model reaches it"));
+}
+
+void compare_speed(const document::Document& document, const control::ChannelSettings& channel,
+                   std::size_t index, const control::FreeMotion& motion, document::Problems& problems) {
+  const double allowed = channel.plausibility.max_speed_mm_per_s;
+  if (!(motion.fastest_mm_per_s > 0) || allowed < most_times_too_fast * motion.fastest_mm_per_s) return;
+  problems.warn(document.problem(place_of(document, index, "plausibility", "max_speed_mm_per_s"),
+                                 "`max_speed_mm_per_s` is " + about(allowed / motion.fastest_mm_per_s) +
+                                     " times what the model of channel `" + channel.name +
+                                     "` can do within its slew limits (" + about(motion.fastest_mm_per_s) +
+                                     " mm/s): jumps of the sensor are taken for motion",
+                                 "max_speed_mm_per_s: " + about(3 * motion.fastest_mm_per_s) +
+                                     " leaves room for a finger that loses its part"));
+}
+
+/// What would make a burst line seen.
+std::string remedy(const RigFile& rig, std::size_t channel) {
+  if (!rig.settings.channels[channel].pressure_measured) {
+    return "wire the valve's monitor output, or a pressure sensor, and give the channel a `pressure_monitor`";
+  }
+  return "under `faults`: pressure_cycles: 20, pressure_tolerance_kpa: 5, pressure_delay_s: 0.5";
+}
+
+void compare_monitor(const document::Document& document, const RigFile& rig, std::size_t index,
+                     document::Problems& problems) {
+  if (sees_burst_line(rig, index)) return;
+  const control::ChannelSettings& channel = rig.settings.channels[index];
+  const Node* const faults = document::below(&document.root, {"faults"});
+  const Node* const own = channel_node(document, index);
+  const Node* const place = channel.pressure_measured ? faults : own;
+  problems.warn(document.problem(
+      place != nullptr ? place->at : document.root.at,
+      channel.pressure_measured
+          ? "the measured pressure of channel `" + channel.name +
+                "` is not compared with its command: nobody would see a burst line"
+          : "channel `" + channel.name + "` has no `pressure_monitor`: nobody would see a burst line",
+      remedy(rig, index)));
+}
+
+}  // namespace
+
+bool sees_burst_line(const RigFile& rig, std::size_t channel) {
+  return rig.settings.channels[channel].pressure_measured && rig.settings.faults.pressure_cycles > 0;
+}
+
+void compare_limits(const document::Document& document, const RigFile& rig, document::Problems& problems) {
+  for (std::size_t i = 0; i < rig.settings.channels.size(); ++i) {
+    const control::ChannelSettings& channel = rig.settings.channels[i];
+    const control::FreeMotion motion = control::free_motion(channel.model, channel.limits);
+    compare_reach(document, channel, i, motion, problems);
+    compare_speed(document, channel, i, motion, problems);
+    compare_monitor(document, rig, i, problems);
+  }
+}
+
+void compare_grips(const control::Sequence& sequence, const RigFile& rig, document::Problems& problems) {
+  document::Document source;
+  source.file = sequence.file;
+  source.text = sequence.text;
+  const auto uses = [](const std::vector<std::string>& names, const std::string& name) {
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  };
+  for (const control::Step& step : sequence.steps) {
+    if (step.kind != control::StepKind::grip || step.verify.by == control::VerifyBy::pressure) continue;
+    for (std::size_t i = 0; i < rig.settings.channels.size(); ++i) {
+      const std::string& name = rig.settings.channels[i].name;
+      if (sees_burst_line(rig, i) || !uses(step.channels.empty() ? sequence.channels : step.channels, name))
+        continue;
+      problems.warn(source.problem(step.at,
+                                   "step '" + step.name +
+                                       "' would answer HOLDING with a burst line, too: on the rig `" +
+                                       rig.name + "` nobody sees one on channel `" + name + "`",
+                                   "in " + rig.path + ": " + remedy(rig, i)));
+      return;
+    }
+  }
+}
+
+}  // namespace softgrip::rig
