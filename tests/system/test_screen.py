@@ -9,7 +9,8 @@ import bench
 class Screen(bench.BenchTest):
     def setUp(self):
         super().setUp()
-        self.emulated = self.emulator("--object", "stone")
+        self.emulated = self.emulator("--object", "stone", "--faults", self.write("faults.yaml", (
+            "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")))
         self.softgripd = self.daemon(self.rig(self.emulated.port))
         self.softgripd.wait_for_state("idle")
 
@@ -33,6 +34,42 @@ class Screen(bench.BenchTest):
         bench.wait_for("the end of it", lambda: self.softgripd.status()["under_pressure"] is None)
         self.assertNotIn("UNDER PRESSURE", self.softgrip("status").stdout)
 
+    def test_a_fault_names_its_finger_and_what_clears_it(self):
+        self.emulated.ask("fault blind")
+        self.softgripd.wait_for_state("faulted")
+        fault = self.softgripd.status()["fault"]
+        self.assertEqual((fault["code"], fault["channel"]), ("F202", "left"))
+        self.assertEqual(fault["present"], {"code": "F202", "name": "reading_out_of_range", "channel": "left"})
+        shown = self.softgrip("status").stdout
+        self.assertIn("fault F202 of left  reading_out_of_range", shown)
+        self.assertIn("Still there: F202 reading_out_of_range of left.", shown)
+        self.assertIn("faulted F202 of left", self.softgrip("watch", "--count", "1").stdout)
+        self.assertIn("left: Fault F202 reading_out_of_range", self.softgrip("events").stdout)
+        refused = self.softgrip("acknowledge", expect=5).stderr
+        self.assertIn("still there: F202 reading_out_of_range of left. Look at the sensor's own display", refused)
+
+        self.emulated.ask("clear blind")
+        bench.wait_for("the cause to go", lambda: self.softgripd.status()["fault"]["present"] is None)
+        self.assertIn("The cause is gone: `softgrip acknowledge` clears the fault", self.softgrip("status").stdout)
+        self.assertEqual(self.softgrip("acknowledge").stdout,
+                         "acknowledged F202 reading_out_of_range of left; nothing moves until the next start\n")
+        self.softgripd.wait_for_state("idle")
+        self.assertIn("left: Fault F202 reading_out_of_range was acknowledged.", self.softgrip("events").stdout)
+
+    def test_a_board_that_was_never_there_says_what_is_tried(self):
+        self.softgripd.end()
+        self.emulated.kill()
+        away = self.daemon(self.rig(self.emulated.port))
+        bench.wait_for("some attempts", lambda: away.status()["bus"]["attempts"] >= 3)
+        status = away.status()
+        self.assertFalse(status["bus"]["answered"])
+        self.assertIn("Connection refused", status["bus"]["failure"])
+        shown = self.softgrip("status").stdout
+        self.assertRegex(" ".join(shown.split()), r"never answered yet: connecting has been tried \d+ times, goes on "
+                                                  r"every [\d.]+ s\. .*Connection refused")
+        self.assertIn("- mm, reference -", shown)
+        self.assertIn("board NOT CONNECTED", self.softgrip("watch", "--count", "1").stdout)
+
     def test_a_refusal_is_a_sentence_with_the_next_command(self):
         refused = self.softgrip("stop", expect=5).stderr
         self.assertIn("refused (R07): No sequence runs.", refused)
@@ -42,6 +79,7 @@ class Screen(bench.BenchTest):
         self.hold()
         self.softgrip("vent")
         self.softgripd.wait_for_state("idle")
+        self.softgripd.wait_for_event("recording_finished")  # the recorder is the last to tell
         every = self.softgrip("events", "--json").stdout.splitlines()
         told = [json.loads(line) for line in every]
         self.assertEqual([event["id"] for event in told], sorted(event["id"] for event in told))

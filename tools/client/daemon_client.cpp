@@ -90,22 +90,28 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
   return DaemonClient{std::move(socket), path};
 }
 
-tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request, std::chrono::milliseconds patience) {
-  std::string line = request.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+void DaemonClient::send(const Json& request) {
+  const std::string line = request.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t count = ::send(socket_.get(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
-    // The reason stands in the answer, if the daemon gave one before it hung up.
-    if (count < 0) break;
+    if (count < 0) return;
     sent += static_cast<std::size_t>(count);
   }
+}
+
+tl::expected<Json, ClientFailure> DaemonClient::result_of(const Json& answer) {
+  if (!answer.value("ok", false)) return tl::unexpected{failure_of(answer.value("error", Json::object()))};
+  return answer.value("result", Json::object());
+}
+
+tl::expected<Json, ClientFailure> DaemonClient::ask(const Json& request, std::chrono::milliseconds patience) {
+  send(request);
   const auto answer = next_line(patience);
   if (!answer) return tl::unexpected{answer.error()};
   if (!*answer)
     return tl::unexpected{ClientFailure{ExitCode::io, "the daemon at " + path_ + " does not answer"}};
-  if (!(*answer)->value("ok", false))
-    return tl::unexpected{failure_of((*answer)->value("error", Json::object()))};
-  return (*answer)->value("result", Json::object());
+  return result_of(**answer);
 }
 
 tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::chrono::milliseconds patience) {

@@ -31,6 +31,13 @@ class DaemonClient {
   /// The failure says what to do when no daemon is there.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
 
+  /// Sends a request and waits for nothing. What cannot be sent shows itself in next_line(): the reason
+  /// stands in what the daemon says last, if it gave one before it hung up.
+  void send(const nlohmann::ordered_json& request);
+  /// The `result` of an answer that next_line() brought; a refusal as a failure, as of ask().
+  [[nodiscard]] static tl::expected<nlohmann::ordered_json, ClientFailure> result_of(
+      const nlohmann::ordered_json& answer);
+
   /// Sends a request and returns the `result` of its answer. Refusals of the daemon are failures with
   /// ExitCode::state_refused, refused sequences with ExitCode::input_refused.
   [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> ask(

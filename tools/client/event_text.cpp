@@ -1,5 +1,6 @@
 #include "tools/client/event_text.h"
 
+#include <algorithm>
 #include <array>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,8 @@
 
 namespace softgrip::tools {
 namespace {
+
+constexpr std::size_t longest_text = 1000;
 
 /// "2026-11-21T08:32:05.123Z" in local time; empty of what is no such time.
 std::string local_time(const std::string& utc) {
@@ -30,7 +33,6 @@ std::string local_time(const std::string& utc) {
 std::string line_of_event(const nlohmann::ordered_json& event) {
   constexpr std::size_t time_columns = 11;
   constexpr std::size_t severity_columns = 13;
-  constexpr std::size_t longest_text = 1000;
   std::string severity = event.value("severity", "");
   severity.resize(severity_columns, ' ');
   const std::string text = severity + document::shown(event.value("text", ""), longest_text);
@@ -38,6 +40,43 @@ std::string line_of_event(const nlohmann::ordered_json& event) {
   std::string time = fixed(event.value("time_s", 0.0), 3);
   if (time.size() < time_columns) time.insert(0, time_columns - time.size(), ' ');
   return time + " s  " + text;
+}
+
+std::string shown_lines(std::string_view text) {
+  constexpr std::size_t longest_line = 300;
+  std::string shown;
+  while (!text.empty()) {
+    const std::size_t length = std::min(text.find('\n'), text.size());
+    if (!shown.empty()) shown += '\n';
+    shown += document::shown(text.substr(0, length), longest_line);
+    text.remove_prefix(std::min(length + 1, text.size()));
+  }
+  return shown;
+}
+
+std::string sentence_of_acknowledged(const nlohmann::ordered_json& result) {
+  constexpr std::size_t longest_name = 100;
+  const auto fault = result.find("acknowledged");
+  if (fault == result.end() || !fault->is_object()) return "acknowledged: the grip results are cleared";
+  const auto text = [&](const char* key) {
+    const auto found = fault->find(key);
+    const bool is_text = found != fault->end() && found->is_string();
+    return is_text ? document::shown(found->get<std::string>(), longest_name) : std::string();
+  };
+  const std::string channel = text("channel");
+  return "acknowledged " + text("code") + " " + text("name") + (channel.empty() ? "" : " of " + channel) +
+         "; nothing moves until the next start";
+}
+
+std::string brief_line_of_event(const nlohmann::ordered_json& event) {
+  constexpr std::size_t date_columns = 11;
+  constexpr std::size_t clock_columns = 8;
+  const std::string at = local_time(event.value("at", ""));
+  const std::string time =
+      at.empty() ? fixed(event.value("time_s", 0.0), 1) + " s" : at.substr(date_columns, clock_columns);
+  const std::string severity = event.value("severity", "");
+  const char* const mark = severity == "error" ? " !! " : severity == "warning" ? " !  " : "    ";
+  return time + mark + document::shown(event.value("text", ""), longest_text);
 }
 
 }  // namespace softgrip::tools

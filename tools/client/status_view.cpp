@@ -13,62 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum class Tone { plain, strong, good, doubtful, bad, faint };
-
-const char* escape_of(Tone tone) {
-  switch (tone) {
-    case Tone::strong:
-      return "\x1b[1m";
-    case Tone::good:
-      return "\x1b[32m";
-    case Tone::doubtful:
-      return "\x1b[33m";
-    case Tone::bad:
-      return "\x1b[1;31m";
-    case Tone::faint:
-      return "\x1b[2m";
-    case Tone::plain:
-      break;
-  }
-  return "";
-}
-
-/// A line that knows how wide it is, whatever escapes and multi-byte characters it holds.
-class Line {
- public:
-  explicit Line(const ViewStyle& style) : style_(style) {}
-
-  /// Adds ASCII text, cut where the line ends.
-  Line& add(std::string_view text, Tone tone = Tone::plain) {
-    const std::string_view visible = text.substr(0, left());
-    if (visible.empty()) return *this;
-    columns_ += visible.size();
-    const char* escape = style_.colour ? escape_of(tone) : "";
-    text_ += escape;
-    text_ += visible;
-    if (*escape != '\0') text_ += "\x1b[0m";
-    return *this;
-  }
-  /// Adds one character that is one column wide.
-  void add_glyph(std::string_view glyph) {
-    if (left() == 0) return;
-    text_ += glyph;
-    ++columns_;
-  }
-  Line& to_column(std::size_t column) {
-    if (columns_ < column) add(std::string(column - columns_, ' '));
-    return *this;
-  }
-  [[nodiscard]] std::size_t left() const { return style_.columns - std::min(columns_, style_.columns); }
-  [[nodiscard]] const ViewStyle& style() const { return style_; }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  const ViewStyle& style_;
-  std::string text_;
-  std::size_t columns_ = 0;
-};
-
 std::string text_at(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_string() ? document::shown(found->get<std::string>(), 200) : "-";
@@ -139,166 +83,257 @@ void add_bar(Line& line, const Bar& bar, std::size_t cells) {
 constexpr std::size_t label_columns = 16;
 constexpr std::size_t numbers_columns = 46;
 constexpr std::size_t shortest_bar = 10;
+/// Where a trend stands beside its numbers, and from which width on it does.
+constexpr std::size_t trend_column = 56;
+constexpr std::size_t columns_beside = 72;
 
-/// "  pressure       [######|   ]  32.10 kPa  command 32.40"
-std::string bar_line(const ViewStyle& style, std::string_view label, const Bar& bar,
-                     const std::string& numbers) {
+/// "  pressure       [######|   ]  32.10 kPa, command 32.40"; the numbers below where they do not fit.
+void add_bar_lines(std::vector<std::string>& lines, const ViewStyle& style, std::string_view label,
+                   const Bar& bar, const std::string& numbers) {
   Line line(style);
   line.add("  ").add(label).to_column(label_columns);
-  const std::size_t cells =
-      std::max(shortest_bar, style.columns - std::min(style.columns, label_columns + numbers_columns));
-  add_bar(line, bar, cells);
-  line.add("  ").add(numbers);
-  return line.text();
+  const std::size_t wide = style.columns - std::min(style.columns, label_columns + numbers_columns);
+  const bool fits = label_columns + std::max(shortest_bar, wide) + 4 + numbers.size() <= style.columns;
+  const std::size_t alone = style.columns - std::min(style.columns, label_columns + 2);
+  add_bar(line, bar, fits ? std::max(shortest_bar, wide) : std::max(shortest_bar, alone));
+  if (fits) line.add("  ").add(numbers);
+  lines.push_back(line.text());
+  if (!fits) lines.push_back(Line(style).to_column(label_columns).add(numbers).text());
 }
 
-/// What has kept the pressure below what is wanted for longer than a moment.
-void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
-  const std::string limit = text_at(channel, "limit");
-  if (limit == "-") return;
-  const char* key = limit == "rig_pressure"    ? "pressure_max_kpa of the rig"
-                    : limit == "step_pressure" ? "pressure_max_kpa of the step"
-                                               : "squeeze_max_kpa of the step";
+void add_glyphs(Line& line, const Trend& trend, std::size_t cells, double least_span) {
+  for (const std::string& glyph : trend.glyphs(cells, least_span, line.style().unicode))
+    line.add_glyph(glyph);
+}
+
+/// "  pressure      32.10 kPa, command 32.40         ▁▂▃▅▇"; without the trend where it would be too short.
+void add_trend_line(std::vector<std::string>& lines, const ViewStyle& style, std::string_view label,
+                    const std::string& numbers, const Trend& trend, double least_span) {
   Line line(style);
-  line.to_column(label_columns).add(std::string(key) + " keeps the pressure down", Tone::doubtful);
+  line.add("  ").add(label).to_column(label_columns).add(numbers);
+  if (style.columns >= columns_beside) {
+    line.add(" ").to_column(trend_column);
+    add_glyphs(line, trend, style.columns - std::min(style.columns, line.columns()), least_span);
+  }
   lines.push_back(line.text());
 }
 
-void add_channel(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
+/// "                ▁▂▃▅▇ kPa  ▁▂▃▅▇ mm": both below, on a narrow screen.
+void add_trends_below(std::vector<std::string>& lines, const ViewStyle& style, const ChannelTrends& trends,
+                      double least_kpa, double least_mm) {
+  constexpr std::size_t units_columns = 9;
+  const std::size_t cells = (style.columns - std::min(style.columns, label_columns + units_columns)) / 2;
+  Line line(style);
+  line.to_column(label_columns);
+  add_glyphs(line, trends.pressure_kpa, cells, least_kpa);
+  line.add(" kPa  ");
+  add_glyphs(line, trends.displacement_mm, cells, least_mm);
+  line.add(" mm");
+  lines.push_back(line.text());
+}
+
+/// What has kept the pressure from what is wanted for longer than a moment.
+void add_limit(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
+  const std::string words = text_at(channel, "limit_text");
+  if (words == "-") return;
+  const std::string text = std::string(label_columns, ' ') + words;
+  for (const std::string& line : broken(style, text, Tone::doubtful, label_columns)) lines.push_back(line);
+}
+
+void add_channel_head(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style) {
   const std::string result = text_at(channel, "result");
   const std::string validity = text_at(channel, "validity");
   const std::string health = text_at(channel, "health");
-  Line head(style);
-  head.add(text_at(channel, "name"), Tone::strong).to_column(label_columns);
-  head.add(result, tone_of_result(result));
-  if (const std::string evidence = text_at(channel, "evidence"); evidence != "none" && evidence != "-") {
-    head.add(" by " + evidence);
-  }
-  head.add("   reading ").add(validity, validity == "valid" ? Tone::plain : Tone::bad);
-  if (const auto age = number_at(channel, "age_s")) head.add(", " + fixed(1000 * *age, 1) + " ms old");
-  head.add("   model ").add(health, health == "unfit" ? Tone::bad : Tone::plain);
-  if (channel.value("saturated", false)) head.add("   saturated", Tone::doubtful);
-  if (channel.value("slewing", false)) head.add("   slewing", Tone::doubtful);
-  lines.push_back(head.text());
+  std::string name = text_at(channel, "name");
+  if (name.size() < label_columns) name.resize(label_columns, ' ');
+  std::string by = text_at(channel, "evidence");
+  by = by == "none" || by == "-" ? "" : " by " + by;
+  std::string reading = validity;
+  if (const auto age = number_at(channel, "age_s")) reading += ", " + fixed(1000 * *age, 0) + " ms old";
+  std::vector<Span> spans{{name, Tone::strong},
+                          {result, tone_of_result(result)},
+                          {by, Tone::plain},
+                          {"  reading " + reading, validity == "valid" ? Tone::plain : Tone::bad},
+                          {"  model " + health, health == "unfit" ? Tone::bad : Tone::plain}};
+  if (channel.value("saturated", false)) spans.push_back({"  saturated", Tone::doubtful});
+  if (channel.value("slewing", false)) spans.push_back({"  slewing", Tone::doubtful});
+  for (const std::string& line : flowed(style, spans, label_columns)) lines.push_back(line);
+}
 
+/// The least span of a trend, as a share of what the limits allow: noise is no motion.
+constexpr double least_share = 0.1;
+
+void add_channel(std::vector<std::string>& lines, const Json& channel, const ViewStyle& style,
+                 const ChannelTrends* trends) {
+  add_channel_head(lines, channel, style);
   const Json& limits = object_at(channel, "limits");
   const auto pressure = number_at(channel, "pressure_kpa");
   const auto command = number_at(channel, "command_kpa");
   const Bar pressures{number_at(limits, "pressure_min_kpa").value_or(0),
                       number_at(limits, "pressure_max_kpa").value_or(100), pressure ? pressure : command,
                       command};
-  std::string pressure_numbers = with_decimals(pressure, 2) + " kPa, command " + with_decimals(command, 2);
-  if (const auto squeeze = number_at(channel, "squeeze_kpa"))
-    pressure_numbers += ", squeeze " + fixed(*squeeze, 1);
-  lines.push_back(bar_line(style, "pressure", pressures, pressure_numbers));
+  std::string numbers = with_decimals(pressure, 2) + " kPa, command " + with_decimals(command, 2);
+  if (const auto squeeze = number_at(channel, "squeeze_kpa")) numbers += ", squeeze " + fixed(*squeeze, 1);
+  const auto least_span = [](const Bar& bar) { return least_share * (bar.upper - bar.lower); };
+  const auto add = [&](std::string_view label, const Bar& bar, const Trend* trend) {
+    if (trend == nullptr) return add_bar_lines(lines, style, label, bar, numbers);
+    add_trend_line(lines, style, label, numbers, *trend, least_span(bar));
+  };
+  add("pressure", pressures, trends != nullptr ? &trends->pressure_kpa : nullptr);
   add_limit(lines, channel, style);
   const auto displacement = number_at(channel, "displacement_mm");
   const auto reference = number_at(channel, "reference_mm");
   const Bar displacements{number_at(limits, "displacement_min_mm").value_or(0),
                           number_at(limits, "displacement_max_mm").value_or(50), displacement, reference};
-  std::string numbers = with_decimals(displacement, 2) + " mm, reference " + with_decimals(reference, 2);
+  numbers = with_decimals(displacement, 2) + " mm, reference " + with_decimals(reference, 2);
   if (displacement && reference) numbers += ", error " + fixed(*reference - *displacement, 2);
-  lines.push_back(bar_line(style, "displacement", displacements, numbers));
+  add("displacement", displacements, trends != nullptr ? &trends->displacement_mm : nullptr);
+  if (trends != nullptr && style.columns < columns_beside) {
+    add_trends_below(lines, style, *trends, least_span(pressures), least_span(displacements));
+  }
 }
 
-std::string head_line(const Json& status, const ViewStyle& style) {
+void add_head(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const std::string state = text_at(status, "state");
-  Line line(style);
-  line.add("softgrip ", Tone::faint).add(text_at(status, "rig"), Tone::strong).add("  ");
-  line.add(state, tone_of_state(state));
-  if (!object_at(status, "under_pressure").empty()) line.add(", UNDER PRESSURE", Tone::bad);
+  std::vector<Span> spans{{"softgrip ", Tone::faint},
+                          {text_at(status, "rig"), Tone::strong},
+                          {"  " + state, tone_of_state(state)}};
+  if (!object_at(status, "under_pressure").empty()) spans.push_back({", UNDER PRESSURE", Tone::bad});
   const Json& sequence = object_at(status, "sequence");
   if (!sequence.empty()) {
-    line.add("  " + text_at(sequence, "name"));
+    const std::string name = "  " + text_at(sequence, "name") + ": ";
     if (sequence.contains("ended") && sequence["ended"].is_string()) {
-      line.add(": " + text_at(sequence, "ended"));
+      spans.push_back({name + text_at(sequence, "ended"), Tone::plain});
     } else {
-      line.add(": step " + std::to_string(sequence.value("step", 0) + 1) + "/" +
-               std::to_string(sequence.value("steps", 0)) + " " + text_at(sequence, "step_name"));
+      spans.push_back({name + "step " + std::to_string(sequence.value("step", 0) + 1) + "/" +
+                           std::to_string(sequence.value("steps", 0)) + " " + text_at(sequence, "step_name"),
+                       Tone::plain});
     }
   }
-  line.add("  " + with_decimals(number_at(status, "time_s"), 1) + " s", Tone::faint);
-  return line.text();
+  spans.push_back({"  " + with_decimals(number_at(status, "time_s"), 1) + " s", Tone::faint});
+  for (const std::string& line : flowed(style, spans, 2)) lines.push_back(line);
+}
+
+/// "F202 of left"
+std::string fault_title(const Json& fault) {
+  const std::string channel = text_at(fault, "channel");
+  return text_at(fault, "code") + (channel == "-" ? "" : " of " + channel);
 }
 
 void add_fault(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const Json& fault = object_at(status, "fault");
   if (fault.empty()) return;
-  lines.push_back(Line(style)
-                      .add("fault " + text_at(fault, "code") + " ", Tone::bad)
-                      .add(text_at(fault, "name") + ": " + text_at(fault, "meaning"))
-                      .text());
-  lines.push_back(Line(style).add("  usually: " + text_at(fault, "cause")).text());
-  lines.push_back(Line(style).add("  do: " + text_at(fault, "remedy")).text());
-}
-
-/// Loud, with the command that ends it; as many lines as it takes.
-void add_pressure(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
-  std::string text = text_at(object_at(status, "under_pressure"), "text");
-  if (text == "-") return;
-  while (!text.empty()) {
-    std::size_t length = text.size();
-    if (length > style.columns) {
-      const std::size_t space = text.rfind(' ', style.columns);
-      length = space == std::string::npos || space == 0 ? style.columns : space;
-    }
-    lines.push_back(Line(style).add(text.substr(0, length), Tone::bad).text());
-    text.erase(0, length);
-    if (text.starts_with(' ')) text.erase(0, 1);
+  const auto add = [&](const std::string& text, Tone tone) {
+    for (const std::string& line : broken(style, text, tone, 2)) lines.push_back(line);
+  };
+  add("fault " + fault_title(fault) + "  " + text_at(fault, "name") + ": " + text_at(fault, "meaning"),
+      Tone::bad);
+  add("  usually: " + text_at(fault, "cause"), Tone::plain);
+  add("  do: " + text_at(fault, "remedy"), Tone::plain);
+  if (const std::string next = text_at(fault, "next"); next != "-") {
+    add("  " + next, object_at(fault, "present").empty() ? Tone::good : Tone::doubtful);
   }
 }
 
-void add_machinery(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
+/// Loud, with the command that ends it.
+void add_pressure(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
+  const std::string text = text_at(object_at(status, "under_pressure"), "text");
+  if (text == "-") return;
+  for (const std::string& line : broken(style, text, Tone::bad, 0)) lines.push_back(line);
+}
+
+/// What is being tried of a board that does not answer, how often, and what it says.
+void add_silence(std::vector<std::string>& lines, const Json& bus, const ViewStyle& style) {
+  const auto attempts = number_at(bus, "attempts");
+  const auto retry_s = number_at(bus, "retry_s");
+  const bool answered = bus.value("answered", false);
+  std::string text(label_columns, ' ');
+  text += answered ? "lost" : "never answered yet";
+  if (attempts && *attempts > 0) {
+    text += ": connecting has been tried " + fixed(*attempts, 0) + (*attempts == 1 ? " time" : " times");
+    if (retry_s && *retry_s > 0) text += ", goes on every " + significant(*retry_s, 2) + " s";
+  }
+  text += ".";
+  if (const std::string failure = text_at(bus, "failure"); failure != "-") text += " " + failure;
+  for (const std::string& line : broken(style, text, Tone::bad, label_columns)) lines.push_back(line);
+}
+
+void add_labelled(std::vector<std::string>& lines, const ViewStyle& style, std::string label,
+                  std::vector<Span> spans) {
+  label.resize(label_columns, ' ');
+  spans.insert(spans.begin(), Span{label, Tone::plain});
+  for (const std::string& line : flowed(style, spans, label_columns)) lines.push_back(line);
+}
+
+void add_board(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const Json& bus = object_at(status, "bus");
   const bool connected = bus.value("connected", false);
-  Line board(style);
-  board.add("board").to_column(label_columns).add(text_at(bus, "board") + "  ");
-  board.add(connected ? "connected" : "NOT CONNECTED", connected ? Tone::good : Tone::bad);
-  lines.push_back(board.text());
+  add_labelled(lines, style, "board",
+               {{text_at(bus, "board"), Tone::plain},
+                {connected ? "  connected" : "  NOT CONNECTED", connected ? Tone::good : Tone::bad}});
+  if (!connected) add_silence(lines, bus, style);
+}
 
+void add_machinery(std::vector<std::string>& lines, const Json& status, const ViewStyle& style) {
   const Json& loop = object_at(status, "loop");
   const auto slips = number_at(loop, "slips");
-  Line timing(style);
-  timing.add("loop").to_column(label_columns);
-  timing.add(with_decimals(number_at(status, "rate_hz"), 0) + " Hz, " +
-             with_decimals(number_at(loop, "ticks"), 0) + " ticks, ");
-  timing.add(with_decimals(slips, 0) + " slips", slips.value_or(0) > 0 ? Tone::doubtful : Tone::plain);
-  timing.add(", wake-up p99 " + with_decimals(number_at(loop, "wake_up_p99_us"), 0) + " us, max " +
-             with_decimals(number_at(loop, "wake_up_max_us"), 0) + " us");
+  std::vector<Span> timing{
+      {with_decimals(number_at(status, "rate_hz"), 0) + " Hz, ", Tone::plain},
+      {with_decimals(number_at(loop, "ticks"), 0) + " ticks, ", Tone::plain},
+      {with_decimals(slips, 0) + " slips, ", slips.value_or(0) > 0 ? Tone::doubtful : Tone::plain},
+      {"wake-up p99 " + with_decimals(number_at(loop, "wake_up_p99_us"), 0) + " us, ", Tone::plain},
+      {"max " + with_decimals(number_at(loop, "wake_up_max_us"), 0) + " us", Tone::plain}};
   if (object_at(status, "real_time").value("degraded", false))
-    timing.add("  real time degraded", Tone::doubtful);
-  lines.push_back(timing.text());
+    timing.push_back({"  real time degraded", Tone::doubtful});
+  add_labelled(lines, style, "loop", timing);
 
   const Json& recording = object_at(status, "recording");
-  Line rows(style);
-  rows.add("recording").to_column(label_columns);
-  rows.add(recording.value("active", false) ? "on   " : "off  ").add(text_at(recording, "folder"));
-  if (const std::string error = text_at(recording, "error"); error != "-") rows.add("  " + error, Tone::bad);
-  lines.push_back(rows.text());
+  std::vector<Span> rows{{recording.value("active", false) ? "on   " : "off  ", Tone::plain},
+                         {text_at(recording, "folder"), Tone::plain}};
+  if (const std::string error = text_at(recording, "error"); error != "-")
+    rows.push_back({"  " + error, Tone::bad});
+  add_labelled(lines, style, "recording", rows);
 }
 
 }  // namespace
 
-std::vector<std::string> view_of(const Json& status, const ViewStyle& style) {
-  std::vector<std::string> lines{head_line(status, style)};
-  add_pressure(lines, status, style);
-  add_fault(lines, status, style);
+StatusParts parts_of(const Json& status, const ViewStyle& style, const std::vector<ChannelTrends>* trends) {
+  StatusParts parts;
+  add_head(parts.head, status, style);
+  add_pressure(parts.head, status, style);
+  add_fault(parts.head, status, style);
   const auto channels = status.find("channels");
   if (channels != status.end() && channels->is_array()) {
-    for (const Json& channel : *channels) {
-      lines.emplace_back();
-      add_channel(lines, channel, style);
+    for (std::size_t i = 0; i < channels->size(); ++i) {
+      if (!(*channels)[i].is_object()) continue;
+      const bool known = trends != nullptr && i < trends->size();
+      add_channel(parts.channels.emplace_back(), (*channels)[i], style, known ? &(*trends)[i] : nullptr);
     }
   }
+  add_board(parts.board, status, style);
+  add_machinery(parts.machinery, status, style);
+  return parts;
+}
+
+std::vector<std::string> view_of(const Json& status, const ViewStyle& style) {
+  StatusParts parts = parts_of(status, style);
+  std::vector<std::string> lines = std::move(parts.head);
+  for (const std::vector<std::string>& channel : parts.channels) {
+    lines.emplace_back();
+    lines.insert(lines.end(), channel.begin(), channel.end());
+  }
   lines.emplace_back();
-  add_machinery(lines, status, style);
+  lines.insert(lines.end(), parts.board.begin(), parts.board.end());
+  lines.insert(lines.end(), parts.machinery.begin(), parts.machinery.end());
   return lines;
 }
 
 std::string line_of_status(const Json& status) {
   std::string line = with_decimals(number_at(status, "time_s"), 2) + " s  " + text_at(status, "state");
   if (!object_at(status, "under_pressure").empty()) line += ", UNDER PRESSURE";
-  if (const Json& fault = object_at(status, "fault"); !fault.empty()) line += " " + text_at(fault, "code");
+  if (const Json& fault = object_at(status, "fault"); !fault.empty()) line += " " + fault_title(fault);
+  const Json& bus = object_at(status, "bus");
+  if (!bus.empty() && !bus.value("connected", false)) line += ", board NOT CONNECTED";
   const auto channels = status.find("channels");
   if (channels == status.end() || !channels->is_array()) return line;
   for (const Json& channel : *channels) {

@@ -3,9 +3,11 @@
 #include <langinfo.h>
 #include <sys/ioctl.h>
 #include <sys/signalfd.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <clocale>
 #include <csignal>
@@ -31,6 +33,20 @@ void put(std::string_view text) {
   }
 }
 
+constexpr std::string_view enter_screen = "\x1b[?1049h\x1b[?25l";  // the other screen, no cursor
+constexpr std::string_view leave_screen = "\x1b[?25h\x1b[?1049l";
+
+constexpr std::array<int, 6> crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS};
+std::array<struct sigaction, crashes.size()> before_crashes;
+termios keyboard_before;
+volatile std::sig_atomic_t keyboard_to_restore = 0;
+
+extern "C" void softgrip_restore_terminal(int signal) {
+  put(leave_screen);
+  if (keyboard_to_restore != 0) ::tcsetattr(STDIN_FILENO, TCSANOW, &keyboard_before);
+  ::raise(signal);  // SA_RESETHAND has restored the usual ending
+}
+
 }  // namespace
 
 bool on_terminal() {
@@ -54,34 +70,54 @@ std::size_t terminal_columns() {
   return window().ws_col;
 }
 
+std::size_t terminal_rows() {
+  return std::max<std::size_t>(window().ws_row, 1);
+}
+
 Descriptor take_ending_signals() {
   sigset_t set;
   sigemptyset(&set);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGWINCH}) sigaddset(&set, signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP, SIGWINCH}) sigaddset(&set, signal);
   sigprocmask(SIG_BLOCK, &set, nullptr);
   return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
 }
 
+int next_signal(const Descriptor& signals) {
+  signalfd_siginfo info{};
+  const bool came = ::read(signals.get(), &info, sizeof info) == static_cast<ssize_t>(sizeof info);
+  return came ? static_cast<int>(info.ssi_signo) : 0;
+}
+
 Screen::Screen() {
-  if (::isatty(STDIN_FILENO) == 1 && ::tcgetattr(STDIN_FILENO, &before_) == 0) {
-    termios raw = before_;
+  if (::isatty(STDIN_FILENO) == 1 && ::tcgetattr(STDIN_FILENO, &keyboard_before) == 0) {
+    termios raw = keyboard_before;
     raw.c_lflag &= static_cast<tcflag_t>(~(ICANON | ECHO));
     keyboard_changed_ = ::tcsetattr(STDIN_FILENO, TCSANOW, &raw) == 0;
+    keyboard_to_restore = keyboard_changed_ ? 1 : 0;
   }
-  put("\x1b[?1049h\x1b[?25l");  // the other screen, no cursor
+  struct sigaction action {};
+  action.sa_handler = softgrip_restore_terminal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_NODEFER);
+  sigemptyset(&action.sa_mask);
+  for (std::size_t i = 0; i < crashes.size(); ++i) ::sigaction(crashes[i], &action, &before_crashes[i]);
+  put(enter_screen);
 }
 
 Screen::~Screen() {
-  put("\x1b[?25h\x1b[?1049l");
-  if (keyboard_changed_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  put(leave_screen);
+  if (keyboard_changed_) ::tcsetattr(STDIN_FILENO, TCSANOW, &keyboard_before);
+  keyboard_to_restore = 0;
+  for (std::size_t i = 0; i < crashes.size(); ++i) ::sigaction(crashes[i], &before_crashes[i], nullptr);
 }
 
 void Screen::draw(const std::vector<std::string>& lines) {
-  // One write, each line cleared to its end: no flicker.
+  // One write: no flicker. A line is cleared before it is written: behind one that fills the last column the
+  // cursor stands on its last character.
   std::string frame = "\x1b[H";
   const std::size_t rows = std::min<std::size_t>(lines.size(), window().ws_row);
-  for (std::size_t i = 0; i < rows; ++i) frame += lines[i] + "\x1b[K" + (i + 1 < rows ? "\r\n" : "");
-  put(frame + "\x1b[J");
+  for (std::size_t i = 0; i < rows; ++i) frame += (i > 0 ? "\r\n\x1b[2K" : "\x1b[2K") + lines[i];
+  if (rows < window().ws_row) frame += "\r\n\x1b[J";
+  put(frame);
 }
 
 }  // namespace softgrip::tools

@@ -1,8 +1,6 @@
 #pragma once
 // The terminal that a live view owns for a while, and gives back as it was.
 
-#include <termios.h>
-
 #include <chrono>
 #include <cstddef>
 #include <string>
@@ -18,13 +16,19 @@ namespace softgrip::tools {
 [[nodiscard]] bool wants_colour();
 /// True if the locale's character encoding is UTF-8.
 [[nodiscard]] bool has_unicode();
-/// Columns of the standard output, or 80.
+/// Columns and rows of the standard output, or 80 and 24.
 [[nodiscard]] std::size_t terminal_columns();
+[[nodiscard]] std::size_t terminal_rows();
 
-/// Takes SIGINT, SIGTERM, SIGHUP and SIGWINCH as a descriptor in place of their usual effect.
+/// Takes SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP and SIGWINCH as a descriptor in place of their usual
+/// effect.
 [[nodiscard]] Descriptor take_ending_signals();
 
-/// Full-screen drawing. The screen, the cursor and the keyboard are restored when it is destroyed.
+/// The signal that waits in that descriptor, or 0.
+[[nodiscard]] int next_signal(const Descriptor& signals);
+
+/// Full-screen drawing. The screen, the cursor and the keyboard are restored when it is destroyed, and by the
+/// signals of a crash. At most one lives at a time.
 class Screen {
  public:
   Screen();
@@ -38,7 +42,6 @@ class Screen {
   void draw(const std::vector<std::string>& lines);
 
  private:
-  termios before_{};
   bool keyboard_changed_ = false;
 };
 

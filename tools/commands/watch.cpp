@@ -1,17 +1,24 @@
 // softgrip watch: the daemon's state, live.
 
 #include <poll.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "tools/client/daemon_command.h"
+#include "tools/client/event_text.h"
+#include "tools/client/key_dialogue.h"
+#include "tools/client/live_view.h"
 #include "tools/client/status_view.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/terminal.h"
@@ -22,66 +29,230 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::chrono::milliseconds whole_line{1000};
+
 struct Options {
   DaemonOptions daemon;
   double rate_hz = 10;
   std::uint64_t count = 0;  ///< 0: until interrupted
 };
 
-/// True when the user wants to leave: q, or a signal that ends programs.
-bool leaving(const std::array<pollfd, 3>& watched, const Descriptor& signals) {
-  constexpr char end_of_transmission = 4;
-  if (watched[1].revents != 0) {
-    char key = 0;
-    if (::read(STDIN_FILENO, &key, 1) == 1 && (key == 'q' || key == 'Q' || key == end_of_transmission))
-      return true;
-  }
-  signalfd_siginfo info{};
-  return watched[2].revents != 0 && ::read(signals.get(), &info, sizeof info) > 0 &&
-         info.ssi_signo != SIGWINCH;
-}
-
-void show(const Json& status, const Options& options, std::optional<Screen>& screen) {
-  if (options.daemon.json) {
+void print(const Json& status, bool json) {
+  if (json) {
     print_json(status);
-  } else if (screen) {
-    const ViewStyle style{terminal_columns(), wants_colour(), has_unicode()};
-    auto lines = view_of(status, style);
-    lines.insert(lines.end(), {"", "q leaves"});
-    screen->draw(lines);
-  } else {
-    std::printf("%s\n", line_of_status(status).c_str());
-    std::fflush(stdout);
+    return;
   }
+  std::printf("%s\n", line_of_status(status).c_str());
+  std::fflush(stdout);
 }
 
-ExitCode watch(DaemonClient& client, const Options& options) {
-  constexpr std::chrono::milliseconds whole_line{1000};
+/// A line per update, until a signal ends it.
+ExitCode print_updates(DaemonClient& client, const Options& options) {
   const Descriptor signals = take_ending_signals();
-  const bool live = on_terminal() && !options.daemon.json;
-  std::optional<Screen> screen;
-  if (live) screen.emplace();
-  const int keyboard = live && ::isatty(STDIN_FILENO) == 1 ? STDIN_FILENO : -1;
-  Json shown;
   for (std::uint64_t lines = 0; options.count == 0 || lines < options.count;) {
-    std::array<pollfd, 3> watched{
-        {{client.descriptor(), POLLIN, 0}, {keyboard, POLLIN, 0}, {signals.get(), POLLIN, 0}}};
+    std::array<pollfd, 2> watched{{{client.descriptor(), POLLIN, 0}, {signals.get(), POLLIN, 0}}};
     if (::poll(watched.data(), watched.size(), -1) < 0) continue;
-    if (leaving(watched, signals)) return ExitCode::done;
-    if (watched[2].revents != 0 && !shown.is_null()) show(shown, options, screen);  // resized
+    if (watched[1].revents != 0) {
+      const int signal = next_signal(signals);
+      if (signal == SIGTSTP) ::raise(SIGSTOP);
+      if (signal != 0 && signal != SIGTSTP && signal != SIGWINCH) return ExitCode::done;
+    }
     if (watched[0].revents == 0) continue;
     // Everything that came, or poll() would not tell of what is already buffered here.
     auto line = client.next_line(whole_line);
     for (; line && *line; line = client.next_line(std::chrono::milliseconds{0})) {
-      if (!(*line)->contains("watch")) continue;
-      shown = (**line)["watch"];
-      show(shown, options, screen);
+      if (!(*line)->contains("watch") || (options.count > 0 && lines == options.count)) continue;
+      print((**line)["watch"], options.daemon.json);
       ++lines;
     }
-    if (!line) {
-      screen.reset();
-      return fail(line.error().code, line.error().message);
+    if (!line) return fail(line.error().code, line.error().message);
+  }
+  return ExitCode::done;
+}
+
+/// Between two looks for new events, and how long nothing is looked at at most.
+constexpr double event_pause_s = 0.5;
+constexpr int look_pause_ms = 250;
+constexpr std::uint64_t event_page = 200;
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// "stopping", "started pick_stone", "acknowledged F202 reading_out_of_range of left": once the daemon has
+/// accepted.
+std::string done_of(const Json& request, const Json& result) {
+  const std::string command = request.value("command", "");
+  if (command == "start") return "started " + request.value("sequence", "");
+  if (command == "stop") return "stopping";
+  if (command == "vent") return "venting";
+  if (command == "release") return "releasing";
+  return sentence_of_acknowledged(result);
+}
+
+/// The screen and the keys, until somebody leaves: by `q`, by a signal that ends programs, when the daemon is
+/// gone, or after `count` updates (0: never). The terminal is restored in each case, and while Ctrl-Z has
+/// stopped the program.
+class LiveWatch {
+ public:
+  explicit LiveWatch(DaemonClient& client)
+      : client_(client), signals_(take_ending_signals()), keyboard_(::isatty(STDIN_FILENO) == 1) {
+    screen_.emplace();
+  }
+
+  ExitCode run(std::uint64_t count);
+
+ private:
+  /// False when it is time to leave.
+  bool hear_signals();
+  bool hear_keys();
+  [[nodiscard]] std::optional<ClientFailure> hear_daemon();
+  void take_line(const Json& line);
+  void take_answer(const Json& request, const Json& line);
+  void take_events(const Json& result);
+  void ask(Json request);
+  void ask_for_events();
+  void draw();
+  [[nodiscard]] std::string ran() const;
+
+  DaemonClient& client_;
+  Descriptor signals_;
+  std::optional<Screen> screen_;
+  bool keyboard_;
+  LiveState state_;
+  KeyDialogue dialogue_;
+  std::map<std::uint64_t, Json> asked_;  ///< requests without an answer yet, by their id
+  std::uint64_t last_id_ = 0;
+  std::uint64_t newest_event_ = 0;
+  bool events_known_ = false;  ///< where the newest ones begin
+  bool events_asked_ = false;
+  double events_due_s_ = 0;
+  std::uint64_t updates_ = 0;
+  std::string started_;  ///< the sequence that was started here last
+};
+
+void LiveWatch::ask(Json request) {
+  if (request.value("command", "") == "start") started_ = request.value("sequence", "");
+  request["id"] = ++last_id_;
+  client_.send(request);
+  asked_.emplace(last_id_, std::move(request));
+}
+
+void LiveWatch::ask_for_events() {
+  if (events_asked_ || now_s() < events_due_s_) return;
+  events_asked_ = true;
+  events_due_s_ = now_s() + event_pause_s;
+  // The first look only asks how many there are: the old ones are not wanted.
+  ask({{"command", "events"}, {"since", newest_event_}, {"limit", events_known_ ? event_page : 1}});
+}
+
+void LiveWatch::take_events(const Json& result) {
+  const auto newest = result.value("newest", newest_event_);
+  if (!std::exchange(events_known_, true)) {
+    newest_event_ = newest > events_shown ? newest - events_shown : 0;
+    events_due_s_ = 0;
+    return;
+  }
+  for (const Json& event : result.value("events", Json::array())) {
+    newest_event_ = event.value("id", newest_event_);
+    take_event(state_, event);
+  }
+  if (newest_event_ < newest) events_due_s_ = 0;
+}
+
+void LiveWatch::take_answer(const Json& request, const Json& line) {
+  const auto result = DaemonClient::result_of(line);
+  if (request.value("command", "") == "events") {
+    events_asked_ = false;
+    if (result) take_events(*result);
+    return;
+  }
+  state_.said = result ? Span{done_of(request, *result), Tone::good}
+                       : Span{shown_lines(result.error().message), Tone::bad};
+  events_due_s_ = 0;
+}
+
+void LiveWatch::take_line(const Json& line) {
+  if (line.contains("watch")) {
+    take_status(state_, line["watch"]);
+    ++updates_;
+    return;
+  }
+  const auto id = line.find("id");
+  if (id == line.end() || !id->is_number_unsigned()) return;
+  const auto found = asked_.find(id->get<std::uint64_t>());
+  if (found == asked_.end()) return;
+  const Json request = std::move(found->second);
+  asked_.erase(found);
+  take_answer(request, line);
+}
+
+/// Everything that came, or poll() would not tell of what is already buffered here.
+std::optional<ClientFailure> LiveWatch::hear_daemon() {
+  auto line = client_.next_line(whole_line);
+  for (; line && *line; line = client_.next_line(std::chrono::milliseconds{0})) take_line(**line);
+  if (!line) return line.error();
+  return std::nullopt;
+}
+
+bool LiveWatch::hear_signals() {
+  const int signal = next_signal(signals_);
+  if (signal == SIGTSTP) {
+    screen_.reset();
+    ::raise(SIGSTOP);
+    screen_.emplace();
+  }
+  return signal == 0 || signal == SIGTSTP || signal == SIGWINCH;
+}
+
+bool LiveWatch::hear_keys() {
+  std::array<char, 256> typed{};
+  const ssize_t count = ::read(STDIN_FILENO, typed.data(), typed.size());
+  if (count <= 0) {
+    keyboard_ = false;  // it is gone; the screen stays
+    return true;
+  }
+  const std::string_view keys(typed.data(), static_cast<std::size_t>(count));
+  KeyDialogue::Outcome outcome = dialogue_.take(keys, now_s(), ran());
+  if (outcome.leave) return false;
+  state_.said = {};
+  if (outcome.request) {
+    state_.said = {outcome.request->value("command", "") + " is asked for", Tone::faint};
+    ask(std::move(*outcome.request));
+  }
+  return true;
+}
+
+std::string LiveWatch::ran() const {
+  if (!started_.empty()) return started_;
+  const Json sequence = state_.status.is_object() ? state_.status.value("sequence", Json()) : Json();
+  return sequence.is_object() ? sequence.value("name", "") : "";
+}
+
+void LiveWatch::draw() {
+  if (state_.status.is_null()) return;
+  state_.question = dialogue_.question();
+  const ViewStyle style{terminal_columns(), wants_colour(), has_unicode()};
+  screen_->draw(screen_of(state_, style, terminal_rows()));
+}
+
+ExitCode LiveWatch::run(std::uint64_t count) {
+  while (count == 0 || updates_ < count) {
+    std::array<pollfd, 3> watched{{{client_.descriptor(), POLLIN, 0},
+                                   {keyboard_ ? STDIN_FILENO : -1, POLLIN, 0},
+                                   {signals_.get(), POLLIN, 0}}};
+    ask_for_events();
+    if (::poll(watched.data(), watched.size(), look_pause_ms) < 0) continue;
+    if (watched[2].revents != 0 && !hear_signals()) break;
+    if (watched[1].revents != 0 && !hear_keys()) break;
+    if (watched[0].revents != 0) {
+      if (const auto failure = hear_daemon()) {
+        screen_.reset();
+        return fail(failure->code, failure->message);
+      }
     }
+    if (dialogue_.lapse(now_s())) state_.said = {"nobody answered: nothing was asked for", Tone::doubtful};
+    draw();
   }
   return ExitCode::done;
 }
@@ -91,15 +262,18 @@ ExitCode run(const Options& options) {
   if (!client) return fail(client.error().code, client.error().message);
   const auto accepted = client->ask({{"command", "watch"}, {"rate_hz", options.rate_hz}});
   if (!accepted) return fail(accepted.error().code, accepted.error().message);
-  return watch(*client, options);
+  if (on_terminal() && !options.daemon.json) return LiveWatch(*client).run(options.count);
+  return print_updates(*client, options);
 }
 
 }  // namespace
 
 void add_watch(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "watch", "The daemon's state, live; a line per update where there is no terminal");
+  CLI::App* command = program.add_subcommand("watch",
+                                             "The daemon's state, live, with trends, events and keys that "
+                                             "stop, vent, release, acknowledge and start; a "
+                                             "line per update where there is no terminal");
   add_daemon_options(*command, options->daemon);
   command->add_option("--rate-hz", options->rate_hz, "Updates per second")
       ->capture_default_str()

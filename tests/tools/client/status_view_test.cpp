@@ -47,8 +47,9 @@ TEST(StatusView, PressureThatStaysOnIsSaidFirstAndCompletely) {
   EXPECT_EQ(wide[0], "softgrip bench  idle, UNDER PRESSURE  pick_stone: step 3/4 hold  12.3 s");
   EXPECT_EQ(wide[1], "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip release` lets it down.");
   const auto narrow = view_of(pressed, {60, false, false});
-  EXPECT_EQ(narrow[1], "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip");
-  EXPECT_EQ(narrow[2], "release` lets it down.");
+  EXPECT_EQ(narrow[1], "  pick_stone: step 3/4 hold  12.3 s");
+  EXPECT_EQ(narrow[2], "Pressure stays on: left 33.1 kPa, right 36.0 kPa. `softgrip");
+  EXPECT_EQ(narrow[3], "release` lets it down.");
   EXPECT_NE(line_of_status(pressed).find("idle, UNDER PRESSURE"), std::string::npos);
 }
 
@@ -60,12 +61,13 @@ TEST(StatusView, AReadingThatWasNeverThereIsNotZero) {
   blind["channels"][0]["validity"] = "none_yet";
   const std::string text = joined(view_of(blind, {100, false, false}));
   EXPECT_NE(text.find("- mm, reference -\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("reading none_yet   model"), std::string::npos) << text;
+  EXPECT_NE(text.find("reading none_yet  model"), std::string::npos) << text;
 }
 
 TEST(StatusView, ALimitThatBindsIsALine) {
   Json bound = status();
   bound["channels"][0]["limit"] = "rig_pressure";
+  bound["channels"][0]["limit_text"] = "pressure_max_kpa of the rig keeps the pressure down";
   bound["channels"][0]["squeeze_kpa"] = 5.04;
   const std::string text = joined(view_of(bound, {100, false, false}));
   EXPECT_NE(text.find("29.50 kPa, command 30.00, squeeze 5.0\n"), std::string::npos) << text;
@@ -91,11 +93,11 @@ TEST(StatusView, IsGoldenInPlainText) {
   EXPECT_EQ(joined(view_of(status(), {100, false, false})),
             R"(softgrip bench  running  pick_stone: step 3/4 hold  12.3 s
 
-left            HOLDING by displacement   reading valid, 3.1 ms old   model healthy   slewing
+left            HOLDING by displacement  reading valid, 3 ms old  model healthy  slewing
   pressure      [###################|                  ]  29.50 kPa, command 30.00
   displacement  [###################|                  ]  12.25 mm, reference 12.50, error 0.25
 
-right           HOLDING by displacement   reading valid, 3.1 ms old   model healthy   slewing
+right           HOLDING by displacement  reading valid, 3 ms old  model healthy  slewing
   pressure      [###################|                  ]  29.50 kPa, command 30.00
   displacement  [###################|                  ]  12.25 mm, reference 12.50, error 0.25
 
@@ -133,6 +135,88 @@ TEST(StatusView, AFaultComesWithItsRemedy) {
   EXPECT_NE(text.find("usually: A cable."), std::string::npos);
   EXPECT_NE(text.find("do: Look."), std::string::npos);
   EXPECT_NE(line_of_status(faulted).find("faulted F101"), std::string::npos);
+}
+
+TEST(StatusView, AFaultNamesItsFingerAndSaysWhatClearsIt) {
+  Json faulted = status();
+  faulted["state"] = "faulted";
+  faulted["fault"] = {{"code", "F202"},
+                      {"name", "reading_out_of_range"},
+                      {"meaning", "The signal was outside."},
+                      {"cause", "A wire."},
+                      {"remedy", "Look."},
+                      {"channel", "left"},
+                      {"present", nullptr},
+                      {"next", "The cause is gone: `softgrip acknowledge` clears the fault."}};
+  const std::string text = joined(view_of(faulted, {100, false, false}));
+  EXPECT_NE(text.find("fault F202 of left  reading_out_of_range: The signal was outside.\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("  The cause is gone: `softgrip acknowledge` clears the fault.\n"), std::string::npos)
+      << text;
+  EXPECT_NE(line_of_status(faulted).find("faulted F202 of left"), std::string::npos);
+}
+
+TEST(StatusView, ABoardThatNeverAnsweredSaysWhatIsTriedAndHowOften) {
+  Json away = status();
+  away["bus"] = {{"board", "ADAM-6024 at 127.0.0.1:1502 unit 1"},
+                 {"connected", false},
+                 {"answered", false},
+                 {"attempts", 14},
+                 {"retry_s", 2.0},
+                 {"failure", "The exchange with the board failed: disconnected: Connection refused."}};
+  const std::string text = joined(view_of(away, {200, false, false}));
+  EXPECT_NE(
+      text.find(
+          "never answered yet: connecting has been tried 14 times, goes on every 2 s. The exchange with "
+          "the board failed: disconnected: Connection refused.\n"),
+      std::string::npos)
+      << text;
+  away["bus"]["answered"] = true;
+  EXPECT_NE(joined(view_of(away, {200, false, false})).find("                lost: connecting"),
+            std::string::npos);
+  EXPECT_NE(line_of_status(away).find("board NOT CONNECTED"), std::string::npos);
+}
+
+/// What stands on lines of so many columns, with blanks made one.
+std::string words_at(std::size_t columns, const Json& shown) {
+  std::string text;
+  for (const char c : joined(view_of(shown, {columns, false, false}))) {
+    const bool blank = c == ' ' || c == '\n';
+    if (!blank || (!text.empty() && text.back() != ' ')) text += blank ? ' ' : c;
+  }
+  return text;
+}
+
+TEST(StatusView, NothingIsLostAtSixtyColumns) {
+  Json full = status();
+  for (Json& each : full["channels"]) {
+    each["squeeze_kpa"] = 5.0;
+    each["limit_text"] = "slew_down_kpa_per_s of the rig keeps the pressure behind what is asked for";
+    each["saturated"] = true;
+  }
+  for (const char* phrase : {"29.50 kPa, command 30.00, squeeze 5.0", "12.25 mm, reference 12.50, error 0.25",
+                             "slewing", "saturated", "keeps the pressure behind what is asked for",
+                             "real time degraded", "12.3 s", "connected"}) {
+    EXPECT_NE(words_at(60, full).find(phrase), std::string::npos) << phrase << "\n" << words_at(60, full);
+  }
+}
+
+TEST(StatusView, AnOrdinaryFingerTakesThreeLinesOfEightyColumns) {
+  Json holding = status();
+  holding["channels"][0]["slewing"] = false;
+  const std::vector<ChannelTrends> trends(2);
+  EXPECT_EQ(parts_of(holding, {80, false, false}, &trends).channels[0].size(), 3U);
+}
+
+TEST(StatusView, WhatCannotBeBrokenIsCutWithASign) {
+  Json deep = status();
+  deep["recording"]["folder"] = std::string(80, 'x');
+  for (const std::string& line : view_of(deep, {60, false, false})) {
+    if (line.find("xx") == std::string::npos) continue;
+    EXPECT_EQ(line, std::string(16, ' ') + std::string(43, 'x') + ">");
+  }
+  EXPECT_NE(joined(view_of(deep, {60, false, true})).find("x…\n"), std::string::npos);
 }
 
 TEST(StatusView, WhatIsUnknownIsADash) {

@@ -1,0 +1,140 @@
+"""softgrip watch on a terminal: what it shows, what its keys do, and that it gives the terminal back."""
+
+import os
+import signal
+
+import bench
+import terminal
+
+
+class Watch(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        self.emulated = self.emulator("--object", "stone", "--faults", self.write("faults.yaml", (
+            "faults:\n"
+            "  - {name: blind, kind: sensor_out_of_range, channel: left}\n")))
+        self.softgripd = self.daemon(self.rig(self.emulated.port))
+        self.softgripd.wait_for_state("idle")
+
+    def watch(self, *arguments, columns=80, rows=24):
+        program = [bench.SOFTGRIP, "watch", "--socket", self.softgripd.socket_path, *arguments]
+        watched = terminal.Terminal(program, self.folder, columns, rows)
+        self.addCleanup(watched.close)
+        watched.wait_for("q leave")
+        return watched
+
+    def test_a_grip_from_its_start_to_its_release_by_keys(self):
+        watched = self.watch()
+        watched.wait_for("idle")
+        watched.type("g")
+        watched.wait_for("start which sequence")
+        watched.type("hand_over\r")
+        watched.wait_for("Start hand_over? The fingers will move.")
+        self.assertEqual(self.softgripd.status()["state"], "idle", "nothing moves before the answer")
+        watched.type("n")
+        watched.wait_for(lambda text: "Start hand_over?" not in text)
+        self.assertEqual(self.softgripd.status()["state"], "idle")
+        watched.type("g")
+        watched.wait_for("start which sequence")
+        watched.type("hand_over\r")
+        watched.wait_for("Start hand_over?")
+        watched.type("y")
+        watched.wait_for("started hand_over")
+        watched.wait_for("HOLDING by")
+        screen = watched.wait_for("left: The grip's result is HOLDING.")
+        self.assertIn("▁", screen, "a trend")
+        watched.type("s")
+        screen = watched.wait_for("UNDER PRESSURE")
+        self.assertIn("`softgrip release`", screen)
+        watched.type("r")
+        watched.wait_for("what is held drops")
+        self.assertGreater(min(self.emulated.commands_kpa()), 1)
+        watched.type("y")
+        watched.wait_for("releasing")
+        watched.wait_for(lambda text: "UNDER PRESSURE" not in text)
+        watched.type("q")
+        self.assertEqual(watched.wait(), 0)
+        self.assertTrue(watched.restored())
+
+    def test_a_vent_is_not_asked_back(self):
+        self.softgripd.start("hand_over")
+        bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
+        watched = self.watch()
+        watched.type("v")
+        watched.wait_for("venting")
+        bench.wait_for("vented valves", lambda: max(self.emulated.commands_kpa()) < 0.1)
+
+    def test_a_fault_is_acknowledged_when_its_cause_is_gone(self):
+        watched = self.watch(rows=30)
+        self.emulated.ask("fault blind")
+        watched.wait_for("fault F202 of left")
+        watched.wait_for("Still there: F202 reading_out_of_range of left.")
+        watched.type("a")
+        watched.wait_for("refused (R09)")
+        self.emulated.ask("clear blind")
+        watched.wait_for("The cause is gone: `softgrip acknowledge`")
+        watched.type("a")
+        watched.wait_for("acknowledged F202 reading_out_of_range of left")
+        self.softgripd.wait_for_state("idle")
+
+    def test_nothing_is_cut_off_at_60_columns_without_a_sign(self):
+        watched = self.watch(columns=60)
+        self.emulated.ask("fault blind")
+        watched.wait_for("fault F202 of left")
+        self.emulated.ask("clear blind")
+        screen = watched.wait_for("The cause is gone")
+        # What was too long for its line goes on in the next one: the remedy's last word is there, too.
+        self.assertIn("measure the signal.", " ".join(screen.split()))
+        self.assertIn("s stop  v vent  r release  a acknowledge  g start  q leave", screen)
+
+    def test_it_follows_the_size_of_its_window(self):
+        watched = self.watch(columns=100, rows=30)
+        watched.resize(60, 20)
+        watched.wait_for(lambda text: text.split("\n")[19].startswith("s stop"))
+        watched.resize(80, 6)
+        watched.wait_for("lines more in a higher window")
+        watched.resize(100, 40)
+        watched.wait_for("recording")
+
+    def test_the_terminal_is_given_back_however_it_ends(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGSEGV,
+                       signal.SIGABRT):
+            with self.subTest(signal=number):
+                watched = self.watch()
+                watched.child.send_signal(number)
+                crashed = number in (signal.SIGSEGV, signal.SIGABRT)
+                self.assertEqual(watched.wait(), -number if crashed else 0)
+                self.assertTrue(watched.restored())
+        watched = self.watch("--count", "3")
+        self.assertEqual(watched.wait(), 0)
+        self.assertTrue(watched.restored())
+
+    def test_ctrl_z_gives_the_terminal_back_and_the_screen_returns(self):
+        watched = self.watch()
+        watched.type("\x1a")
+        _, status = os.waitpid(watched.child.pid, os.WUNTRACED)
+        self.assertTrue(os.WIFSTOPPED(status))
+        self.assertTrue(watched.restored())
+        watched.child.send_signal(signal.SIGCONT)
+        watched.wait_for(lambda text: not watched.restored())
+        watched.wait_for("q leave")
+        watched.type("q")
+        self.assertEqual(watched.wait(), 0)
+        self.assertTrue(watched.restored())
+
+    def test_a_daemon_that_ends_is_said_on_the_terminal_that_was_given_back(self):
+        watched = self.watch()
+        self.softgripd.end()
+        self.assertEqual(watched.wait(), 4)
+        self.assertTrue(watched.restored())
+        self.assertIn("closed the connection", watched.raw.decode(errors="replace").split("\x1b[?1049l")[-1])
+
+    def test_without_a_terminal_it_prints_lines_and_takes_no_keys(self):
+        printed = self.softgrip("watch", "--count", "2").stdout
+        self.assertNotIn("\x1b", printed)
+        self.assertEqual(len(printed.splitlines()), 2)
+        self.assertRegex(printed.splitlines()[0], r"^[\d.]+ s  idle  left ")
+
+
+if __name__ == "__main__":
+    bench.main()

@@ -1,0 +1,97 @@
+#include "tools/client/key_dialogue.h"
+
+#include <gtest/gtest.h>
+
+namespace softgrip::tools {
+namespace {
+
+/// What goes to the daemon, or "" / "leave".
+std::string asked(const KeyDialogue::Outcome& outcome) {
+  if (outcome.leave) return "leave";
+  return outcome.request ? outcome.request->dump() : "";
+}
+
+class KeyDialogueTest : public ::testing::Test {
+ protected:
+  std::string type(std::string_view keys) { return asked(dialogue_.take(keys, time_s_, ran_)); }
+
+  KeyDialogue dialogue_;
+  double time_s_ = 100;
+  std::string ran_ = "pick_stone";
+};
+
+TEST_F(KeyDialogueTest, TheWaysOutAskNothingBack) {
+  EXPECT_EQ(type("s"), R"({"command":"stop"})");
+  EXPECT_EQ(type("v"), R"({"command":"vent"})");
+  EXPECT_EQ(type("a"), R"({"command":"acknowledge"})") << "it moves nothing";
+  EXPECT_EQ(type("q"), "leave");
+  EXPECT_EQ(type("\x04"), "leave");
+  EXPECT_EQ(type("x"), "");
+}
+
+TEST_F(KeyDialogueTest, WhatMovesIsAskedBack) {
+  EXPECT_EQ(type("r"), "");
+  EXPECT_NE(dialogue_.question().find("what is held drops"), std::string::npos);
+  EXPECT_EQ(type("n"), "");
+  EXPECT_TRUE(dialogue_.question().empty());
+  EXPECT_EQ(type("y"), "") << "the question is over";
+  type("r");
+  EXPECT_EQ(type("y"), R"({"command":"release"})");
+}
+
+TEST_F(KeyDialogueTest, AStartOffersWhatRanAndTakesAnotherName) {
+  EXPECT_EQ(type("g"), "");
+  EXPECT_EQ(dialogue_.question(), "start which sequence [pick_stone]? _");
+  EXPECT_EQ(type("\r"), "");
+  EXPECT_EQ(dialogue_.question(), "Start pick_stone? The fingers will move. y: yes, any other key: no");
+  EXPECT_EQ(type("y"), R"({"command":"start","sequence":"pick_stone"})");
+  type("g");
+  type("hand_ovr");
+  type("\x7f");
+  type("er");
+  EXPECT_EQ(dialogue_.question(), "start which sequence [pick_stone]? hand_over_") << "with the backspace";
+  type("\x15");
+  type("empty_grip\n");
+  EXPECT_EQ(type("y"), R"({"command":"start","sequence":"empty_grip"})");
+  ran_.clear();
+  type("g");
+  EXPECT_EQ(type("\r"), "") << "no name, no start";
+  EXPECT_TRUE(dialogue_.question().empty());
+}
+
+TEST_F(KeyDialogueTest, APasteDoesNotAnswerItsOwnQuestion) {
+  EXPECT_EQ(type("gpick_stone\ryyyy"), "");
+  EXPECT_NE(dialogue_.question().find("Start pick_stone?"), std::string::npos);
+  EXPECT_EQ(type("n"), "");
+  EXPECT_EQ(type("ry"), "");
+  EXPECT_FALSE(dialogue_.question().empty());
+}
+
+TEST_F(KeyDialogueTest, AQuestionThatNobodyAnswersLapses) {
+  type("r");
+  time_s_ += KeyDialogue::patience_s + 0.1;
+  EXPECT_EQ(type("y"), "");
+  type("r");
+  EXPECT_FALSE(dialogue_.lapse(time_s_ + 1));
+  EXPECT_TRUE(dialogue_.lapse(time_s_ + 11));
+  EXPECT_TRUE(dialogue_.question().empty());
+}
+
+TEST_F(KeyDialogueTest, AStopIsHeardInThePlaceOfAnAnswer) {
+  type("r");
+  EXPECT_EQ(type("s"), R"({"command":"stop"})");
+  EXPECT_TRUE(dialogue_.question().empty());
+  type("g");
+  EXPECT_EQ(type("s"), "") << "a letter of a name";
+  EXPECT_EQ(type("\x1b"), "") << "Escape ends it";
+  EXPECT_TRUE(dialogue_.question().empty());
+}
+
+TEST_F(KeyDialogueTest, ArrowKeysAreNoLetters) {
+  EXPECT_EQ(type("\x1b[A"), "");
+  EXPECT_EQ(type("\x1bOs"), "");
+  EXPECT_LE(KeyDialogue::help().size(), 60U);
+}
+
+}  // namespace
+}  // namespace softgrip::tools

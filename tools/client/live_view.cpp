@@ -1,0 +1,139 @@
+#include "tools/client/live_view.h"
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "tools/client/event_text.h"
+#include "tools/client/key_dialogue.h"
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Lines = std::vector<std::string>;
+
+constexpr std::string_view trend_legend = "  trends: 1 column 1 s";
+constexpr std::size_t event_indent = 12;
+/// A screen goes without other things before it has room for fewer.
+constexpr std::size_t fewest_event_rows = 3;
+
+void append(Lines& lines, const Lines& more) {
+  lines.insert(lines.end(), more.begin(), more.end());
+}
+
+std::optional<double> number_at(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_number()) return std::nullopt;
+  return found->get<double>();
+}
+
+Lines footer_of(const LiveState& state, const ViewStyle& style) {
+  Lines lines;
+  if (!state.question.empty()) {
+    append(lines, broken(style, state.question, Tone::strong, 2));
+  } else if (!state.said.text.empty()) {
+    append(lines, broken(style, state.said.text, state.said.tone, 2));
+  }
+  const std::string_view help = KeyDialogue::help();
+  Line keys(style);
+  keys.add(help, Tone::faint);
+  if (help.size() + trend_legend.size() <= style.columns) keys.add(trend_legend, Tone::faint);
+  lines.push_back(keys.text());
+  return lines;
+}
+
+Lines lines_of_event(const Json& event, const ViewStyle& style) {
+  const std::string severity = event.value("severity", "");
+  const Tone tone = severity == "error" ? Tone::bad : severity == "warning" ? Tone::doubtful : Tone::plain;
+  return broken(style, brief_line_of_event(event), tone, event_indent);
+}
+
+/// The newest events that fit into so many lines, the newest last; one that does not fit whole is left out.
+Lines lines_of_events(const LiveState& state, const ViewStyle& style, std::size_t rows) {
+  Lines lines;
+  for (auto event = state.events.rbegin(); event != state.events.rend(); ++event) {
+    const Lines more = lines_of_event(*event, style);
+    if (lines.size() + more.size() > rows) break;
+    lines.insert(lines.begin(), more.begin(), more.end());
+  }
+  return lines;
+}
+
+/// What a low screen goes without.
+struct Arrangement {
+  bool blanks = true;     ///< lines between the parts
+  bool machinery = true;  ///< loop and recording
+};
+
+/// Everything but events and footer.
+Lines body_of(const StatusParts& parts, const ViewStyle& style, const Arrangement& arrangement) {
+  Lines lines = parts.head;
+  const auto add = [&](const Lines& more) {
+    if (arrangement.blanks) lines.emplace_back();
+    append(lines, more);
+  };
+  for (const Lines& channel : parts.channels) add(channel);
+  add(parts.board);
+  if (arrangement.machinery) {
+    append(lines, parts.machinery);
+  } else {
+    lines.push_back(Line(style).add("... loop and recording in a higher window", Tone::faint).text());
+  }
+  return lines;
+}
+
+}  // namespace
+
+void take_status(LiveState& state, Json status) {
+  const double time_s = number_at(status, "time_s").value_or(0);
+  const auto list = status.find("channels");
+  const Json channels = list != status.end() && list->is_array() ? *list : Json::array();
+  state.trends.resize(channels.size());
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const Json& channel = channels[i];
+    // What was read last before a cable came out is no reading of now.
+    const bool valid = channel.is_object() && channel.value("validity", "") == "valid";
+    const auto pressure = channel.is_object() ? number_at(channel, "pressure_kpa") : std::nullopt;
+    const auto command = channel.is_object() ? number_at(channel, "command_kpa") : std::nullopt;
+    state.trends[i].pressure_kpa.add(time_s, pressure ? pressure : command);
+    state.trends[i].displacement_mm.add(time_s, valid ? number_at(channel, "displacement_mm") : std::nullopt);
+  }
+  state.status = std::move(status);
+}
+
+void take_event(LiveState& state, Json event) {
+  state.events.push_back(std::move(event));
+  if (state.events.size() > events_shown) state.events.pop_front();
+}
+
+Lines screen_of(const LiveState& state, const ViewStyle& style, std::size_t rows) {
+  Lines footer = footer_of(state, style);
+  if (footer.size() > rows) footer.erase(footer.begin(), footer.end() - static_cast<std::ptrdiff_t>(rows));
+  const std::size_t room = rows - footer.size();
+  const StatusParts parts = parts_of(state.status, style, &state.trends);
+  Lines lines;
+  for (const Arrangement& arrangement :
+       {Arrangement{true, true}, Arrangement{false, true}, Arrangement{false, false}}) {
+    lines = body_of(parts, style, arrangement);
+    if (lines.size() + 1 + fewest_event_rows <= room) break;
+  }
+  if (lines.size() > room && room > 0) {
+    const std::size_t hidden = lines.size() - room + 1;
+    lines.resize(room - 1);
+    lines.push_back(
+        Line(style)
+            .add("... " + std::to_string(hidden) + " lines more in a higher window", Tone::doubtful)
+            .text());
+  } else if (lines.size() + 1 < room) {
+    const Lines events = lines_of_events(state, style, room - lines.size() - 1);
+    lines.emplace_back();
+    append(lines, events);
+  }
+  lines.resize(room);  // the keys stay at the bottom
+  append(lines, footer);
+  return lines;
+}
+
+}  // namespace softgrip::tools
