@@ -52,7 +52,7 @@ set(completions "")
 function(completion shell file folder)
   set(script ${packaged}/completion/${file})
   add_custom_command(OUTPUT ${script}
-    COMMAND softgrip completion ${shell} >${script}
+    COMMAND softgrip completion ${shell} > ${script}
     DEPENDS softgrip
     VERBATIM)
   install(FILES ${script} DESTINATION ${CMAKE_INSTALL_DATADIR}/${folder})

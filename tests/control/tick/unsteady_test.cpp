@@ -46,7 +46,7 @@ TEST_F(UnsteadyTest, IsAFaultWhereTheSettingsSaySo) {
   const double from_s = rig.time_s();
   jump(rig, 1.5);
   EXPECT_EQ(rig.output().state, State::faulted);
-  EXPECT_EQ(rig.output().first_fault, FaultCode::reading_jumped);
+  EXPECT_EQ(rig.output().first_fault.code, FaultCode::reading_jumped);
   for (const Event& event : rig.events) {
     if (event.kind != Event::Kind::fault_latched) continue;
     EXPECT_EQ(event.channel, 0);
