@@ -20,9 +20,9 @@ TEST(SequenceView, SaysWhatAStartMayChoose) {
   EXPECT_EQ(view_of_sequences(sequences),
             (std::vector<std::string>{"pick: closes", "  squeeze_kpa  3 to 10 kPa, default 5: how hard",
                                       "  rounds       1 to 20, default 1: how often",
-                                      "  rise         0.5 to 2 kPa/s, default 1: how fast", "bad\\x1B",
+                                      "  rise         0.5 to 2 kPa/s, default 1: how fast", "bad\\x1b",
                                       "  cannot be started:\nbad.yaml:2:1: wrong (right)"}));
-  EXPECT_EQ(names_of_sequences(sequences), (std::vector<std::string>{"pick", "bad\\x1B"}));
+  EXPECT_EQ(names_of_sequences(sequences), (std::vector<std::string>{"pick", "bad\\x1b"}));
 }
 
 }  // namespace
