@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import resource
 import signal
 import subprocess
 
@@ -240,6 +241,68 @@ class Calibrate(bench.BenchTest):
         self.softgrip("calibrate", "--rig", rig, "--channel", "left", "--valve", expect=2)
         self.softgrip("calibrate", "--rig", rig, expect=2)  # which channel?
         self.assertEqual(max(emulator.commands_kpa()), 0)
+
+    QUICK = ("--channel", "left", "--sensor", "--move", "--settle-s", "0.5", "--average-s", "0.3")
+
+    def test_the_result_is_written_into_the_rig_file(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        before = rig.read_text()
+        done = self.softgrip("calibrate", "--rig", rig, *self.QUICK, "--gauge-mm", "3.6", "19", "--write")
+        after = rig.read_text()
+        backup = [path for path in rig.parent.iterdir() if path.name.startswith("test_rig.yaml.")]
+        self.assertEqual([path.read_text() for path in backup], [before])
+        self.assertIn(backup[0].name, done.stderr)
+        old, new = before.splitlines(), after.splitlines()
+        self.assertEqual([line for line in new if line not in old],
+                         [line for line in new if "softgrip calibrate" in line or "sensor: {input: 0, at_v" in line])
+        self.assertEqual(len(new), len(old) + 1)
+        line = next(line for line in new if "sensor: {input: 0" in line)
+        numbers = [float(number) for number in re.findall(r"-?[\d.]+", line)]
+        for volts, reading_mm in zip(numbers[1:3], numbers[3:5]):
+            self.assertAlmostEqual(reading_mm, self.true_mm(volts), delta=1.5)
+        self.softgrip("check", rig)
+
+    def test_what_is_far_off_is_doubted_and_needs_a_yes(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        before = rig.read_bytes()
+        wrong = ("--gauge-mm", "4.8", "118.9", "--write")
+        done = self.softgrip("calibrate", "--rig", rig, *self.QUICK, *wrong, expect=6)
+        self.assertIn("doubtful: sensor: where the rig file's line says", done.stderr)
+        self.assertIn("doubtful: sensor: between", done.stderr)
+        self.assertIn("is what it was", done.stderr)
+        self.assertEqual(rig.read_bytes(), before)
+        self.assertEqual(len(list(rig.parent.glob("test_rig.yaml.*"))), 0)
+        child = self.start(rig, *self.QUICK[2:], *wrong)
+        child.communicate(b"perhaps\nno\n", timeout=bench.PATIENCE_S)
+        self.assertEqual(child.returncode, 6)
+        self.assertEqual(rig.read_bytes(), before)
+        child = self.start(rig, *self.QUICK[2:], *wrong)
+        _, said = child.communicate(b"yes\n", timeout=bench.PATIENCE_S)
+        self.assertEqual(child.returncode, 0, said)
+        self.assertNotEqual(rig.read_bytes(), before)
+
+    def test_a_mistyped_answer_is_asked_again(self):
+        emulator = self.emulator()
+        child = self.start(self.rig(emulator.port), *self.QUICK[2:])
+        _, said = child.communicate(b"4,8mm\n4,8\nabout 19\n18.9\n", timeout=bench.PATIENCE_S)
+        self.assertEqual(child.returncode, 0, said)
+        self.assertIn(b"`4,8mm` is no number: once more", said)
+        self.assertIn(b"`about 19` is no number: once more", said)
+
+    def test_a_full_disk_leaves_the_rig_file(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        before = rig.read_bytes()
+        # No file may grow beyond this; restore_signals would bring back the signal that kills.
+        done = subprocess.run([bench.SOFTGRIP, "calibrate", "--rig", rig, *self.QUICK, "--gauge-mm", "3.6", "19", "--write",
+                               "--out", "-"], cwd=self.folder, capture_output=True, text=True, restore_signals=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("not written", done.stderr)
+        self.assertEqual(rig.read_bytes(), before)
+        self.assertEqual(len(list(rig.parent.glob("test_rig.yaml.*"))), 0)
 
     def test_ctrl_c_vents(self):
         emulator = self.emulator()

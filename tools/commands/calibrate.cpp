@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include <tl/expected.hpp>
+
 #include "base/clock.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
@@ -18,7 +20,9 @@
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
+#include "tools/commissioning/doubts.h"
 #include "tools/commissioning/procedure.h"
+#include "tools/commissioning/rig_update.h"
 #include "tools/commissioning/snippet.h"
 #include "tools/commissioning/terminal_operator.h"
 
@@ -43,6 +47,8 @@ struct Options {
   std::size_t repeats = 1;
   std::string date;
   std::string out = "-";
+  bool write = false;
+  bool yes = false;
 };
 
 std::string today() {
@@ -121,20 +127,126 @@ calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const O
     auto sensor = calibrate::calibrate_sensor(rig, drive, terminal, settings);
     if (!sensor) return tl::unexpected(sensor.error());
     results.sensor = std::move(*sensor);
+    if (settings.may_move) {
+      results.motion =
+          calibrate::Motion{settings.low_kpa, settings.high_kpa, settings.settle_s + settings.average_s / 2,
+                            calibrate::ramp_speed_kpa_per_s(rig, settings.channel)};
+    }
   }
   return results;
+}
+
+/// Yes or no, asked until it is one of them.
+bool confirmed(calibrate::TerminalOperator& terminal, Pace& pace, const std::string& question) {
+  constexpr Nanoseconds look_ns = 50'000'000;
+  for (;;) {
+    terminal.ask(question + " [yes/no]");
+    std::optional<std::string> answer;
+    while (!(answer = terminal.answer()) && !terminal.gone() && !pace.stopped()) {
+      pace.sleep_until(pace.now() + look_ns);
+    }
+    if (!answer) return false;
+    if (*answer == "yes" || *answer == "y") return true;
+    if (*answer == "no" || *answer == "n") return false;
+    terminal.tell("`" + *answer + "` is neither");
+  }
+}
+
+/// What is odd about the results; true if they may be written all the same.
+bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const Options& options,
+              calibrate::TerminalOperator& terminal, Pace& pace) {
+  const std::vector<std::string> odd = calibrate::doubts(rig, results);
+  for (const std::string& sentence : odd) std::fprintf(stderr, "doubtful: %s\n", sentence.c_str());
+  if (odd.empty() || !options.write || options.yes) return true;
+  return confirmed(terminal, pace, "write it into " + rig.path + " all the same?");
+}
+
+ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& results) {
+  const std::string& channel = rig.settings.channels[results.channel].name;
+  const auto changed = calibrate::updated_rig(rig.inputs.front().text, rig, results);
+  if (!changed) return fail(ExitCode::not_acceptable, "not written: " + changed.error());
+  const auto backup = calibrate::write_rig(rig, *changed);
+  if (!backup) return fail(ExitCode::io, "not written: " + backup.error());
+  std::fprintf(stderr, "%s: channel `%s` has the new points; as it was: %s\n", rig.path.c_str(),
+               channel.c_str(), backup->c_str());
+  return ExitCode::done;
 }
 
 ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& results, const Options& options) {
   const std::string text = calibrate::snippet(rig, results);
   if (const auto written = write_output(options.out, text); !written)
     return fail(ExitCode::io, written.error());
-  if (options.out != "-") {
+  if (options.out != "-" && !options.write) {
     std::fprintf(report_stream(options.out),
                  "%s: put its lines into channel `%s` of %s, then softgrip check\n", options.out.c_str(),
                  rig.settings.channels[results.channel].name.c_str(), rig.path.c_str());
   }
   return ExitCode::done;
+}
+
+/// What can be said before anything moves: exit code, or the settings.
+tl::expected<calibrate::Settings, ExitCode> prepare(Options& options, const rig::RigFile& rig) {
+  const auto channel = channel_of(rig, options.channel);
+  if (!channel) {
+    return tl::unexpected(
+        fail(ExitCode::usage, "name a channel of the rig with --channel: " + names_of(rig)));
+  }
+  if (!options.sensor && !options.valve && !options.dead_zone) {
+    options.sensor = true;
+    options.valve = options.dead_zone = options.move;
+  }
+  if ((options.valve || options.dead_zone) && !options.move) {
+    return tl::unexpected(
+        fail(ExitCode::usage, "valve and dead zone are found by moving: allow it with --move"));
+  }
+  for (const auto* const answers : {&options.gauge_mm, &options.manometer_kpa}) {
+    for (const std::string& answer : *answers) {
+      if (!calibrate::typed_number(answer)) {
+        return tl::unexpected(fail(ExitCode::input_refused, "`" + answer + "` is no number"));
+      }
+    }
+  }
+  calibrate::Settings settings;
+  settings.channel = *channel;
+  settings.may_move = options.move;
+  settings.settle_s = options.settle_s;
+  settings.average_s = options.average_s;
+  settings.ramp_s = options.ramp_s;
+  settings.repeats = options.repeats;
+  if (const auto code = set_pressures(options, rig.settings.channels[*channel].limits, settings)) {
+    return tl::unexpected(*code);
+  }
+  for (const std::string& path : {options.out, options.write ? rig.path : std::string("-")}) {
+    if (const auto ready = prepare_parent(path); !ready)
+      return tl::unexpected(fail(ExitCode::io, ready.error()));
+  }
+  return settings;
+}
+
+/// Connected, measured, left at the lowest pressures.
+ExitCode carry_out(const rig::RigFile& rig, const Options& options, const calibrate::Settings& settings) {
+  const auto lock = daemon::BoardLock::take(rig);
+  if (!lock) return fail(ExitCode::state_refused, lock.error());
+  const MonotonicClock clock;
+  const auto board = daemon::make_board(rig, clock);
+  RealPace pace;
+  HandDrive drive(rig, *board, pace);
+  if (const auto connected = drive.connect(); !connected) return fail(ExitCode::io, connected.error().text);
+  std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),
+               rig.settings.channels[settings.channel].name.c_str());
+  calibrate::TerminalOperator terminal;
+  const auto results = measure(rig, options, settings, drive, terminal);
+  const bool safe = drive.leave();
+  if (!safe)
+    std::fprintf(stderr, "the board did NOT confirm the lowest pressures: look before you reach in\n");
+  if (!results) return fail(results.error().code, results.error().text);
+  ExitCode code = write_results(rig, *results, options);
+  if (!accepted(rig, *results, options, terminal, pace)) {
+    return fail(ExitCode::not_acceptable,
+                "not written: " + rig.path + " is what it was; --yes writes without asking");
+  }
+  if (code == ExitCode::done && options.write) code = write_into_rig(rig, *results);
+  return code == ExitCode::done && !safe ? ExitCode::io : code;
 }
 
 ExitCode run(Options options) {
@@ -144,44 +256,10 @@ ExitCode run(Options options) {
   const auto rig = rig::load_rig(path, problems);
   if (!rig) return refuse(problems);
   std::fputs(problems.format().c_str(), stderr);  // warnings
-  const auto channel = channel_of(*rig, options.channel);
-  if (!channel) return fail(ExitCode::usage, "name a channel of the rig with --channel: " + names_of(*rig));
-  if (!options.sensor && !options.valve && !options.dead_zone) {
-    options.sensor = true;
-    options.valve = options.dead_zone = options.move;
-  }
-  if ((options.valve || options.dead_zone) && !options.move) {
-    return fail(ExitCode::usage, "valve and dead zone are found by moving: allow it with --move");
-  }
-  calibrate::Settings settings;
-  settings.channel = *channel;
-  settings.may_move = options.move;
-  settings.settle_s = options.settle_s;
-  settings.average_s = options.average_s;
-  settings.ramp_s = options.ramp_s;
-  settings.repeats = options.repeats;
-  if (const auto code = set_pressures(options, rig->settings.channels[*channel].limits, settings))
-    return *code;
-  if (const auto ready = prepare_parent(options.out); !ready) return fail(ExitCode::io, ready.error());
+  const auto settings = prepare(options, *rig);
+  if (!settings) return settings.error();
   if (const auto code = refuse_beside_daemon(options, *rig)) return *code;
-
-  const auto lock = daemon::BoardLock::take(*rig);
-  if (!lock) return fail(ExitCode::state_refused, lock.error());
-  const MonotonicClock clock;
-  const auto board = daemon::make_board(*rig, clock);
-  RealPace pace;
-  HandDrive drive(*rig, *board, pace);
-  if (const auto connected = drive.connect(); !connected) return fail(ExitCode::io, connected.error().text);
-  std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),
-               rig->settings.channels[*channel].name.c_str());
-  calibrate::TerminalOperator terminal;
-  const auto results = measure(*rig, options, settings, drive, terminal);
-  const bool safe = drive.leave();
-  if (!safe)
-    std::fprintf(stderr, "the board did NOT confirm the lowest pressures: look before you reach in\n");
-  if (!results) return fail(results.error().code, results.error().text);
-  const ExitCode code = write_results(*rig, *results, options);
-  return code == ExitCode::done && !safe ? ExitCode::io : code;
+  return carry_out(*rig, options, *settings);
 }
 
 void add_measuring_options(CLI::App& command, Options& options) {
@@ -233,6 +311,9 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--socket", options->socket, "Of a daemon that must not run [the rig file's]");
   command->add_option("--out", options->out, "Where the lines go; - is the standard output")
       ->capture_default_str();
+  command->add_flag("--write", options->write,
+                    "Write the points into the rig file, in place, with the old file kept beside it");
+  command->add_flag("--yes", options->yes, "Write what is doubtful without asking");
   command->footer(
       "Questions go to the standard error, answers come line by line from the standard input.\nExit codes: 0 "
       "done, 1 "

@@ -15,6 +15,7 @@ namespace {
 /// Of the span that the limits allow: closer points make a line that says little about the rest.
 constexpr double least_share_of_span = 0.1;
 constexpr double least_share_of_signal = 0.02;
+/// Of a script, which may go on with the next answer and one that is missing at the end.
 constexpr int questions_at_most = 5;
 /// From one end of the valid electrical range: a signal that stands there has hit its end.
 constexpr double share_of_end = 0.002;
@@ -39,19 +40,6 @@ Refusal refusal_of(const DriveFailure& failure) {
   return {};
 }
 
-std::optional<double> number_in(std::string text) {
-  std::replace(text.begin(), text.end(), ',', '.');
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return std::nullopt;
-  const auto last = text.find_last_not_of(" \t\r");
-  const char* const begin = text.data() + first + (text[first] == '+' ? 1 : 0);
-  const char* const end = text.data() + last + 1;
-  double value = 0;
-  const auto result = std::from_chars(begin, end, value);
-  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 /// Asks; meanwhile the board is talked to, or its watchdog would trip.
 Expected<std::string> ask(HandDrive& drive, Operator& person, const std::string& question) {
   person.ask(question);
@@ -64,42 +52,36 @@ Expected<std::string> ask(HandDrive& drive, Operator& person, const std::string&
 
 /// Asks until a number comes.
 Expected<double> ask_number(HandDrive& drive, Operator& person, const std::string& question) {
-  for (int i = 0; i < questions_at_most; ++i) {
+  for (int i = 0; person.patient() || i < questions_at_most; ++i) {
     const auto answer = ask(drive, person, question);
     if (!answer) return tl::unexpected(answer.error());
-    if (const auto value = number_in(*answer)) return *value;
-    if (!person.patient()) {
-      return tl::unexpected(Refusal{ExitCode::input_refused, "`" + *answer + "` is no number: " + question});
-    }
-    person.tell("A number, please, like 12.34");
+    if (const auto value = typed_number(*answer)) return *value;
+    person.tell("`" + *answer + "` is no number: once more, please, like 12.34");
   }
-  return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given"});
+  return tl::unexpected(Refusal{ExitCode::input_refused, "no number was given: " + question});
 }
 
 /// Enter says that the target is where it was asked for, a number where it is instead, `-` leaves it out.
 Expected<std::optional<double>> ask_position(HandDrive& drive, Operator& person, const std::string& question,
                                              double asked_mm) {
-  for (int i = 0; i < questions_at_most; ++i) {
+  for (int i = 0; person.patient() || i < questions_at_most; ++i) {
     const auto answer = ask(drive, person, question);
     if (!answer) return tl::unexpected(answer.error());
     const auto first = answer->find_first_not_of(" \t\r");
     if (first == std::string::npos) return std::optional<double>(asked_mm);
     if (answer->substr(first) == "-") return std::optional<double>();
-    if (const auto value = number_in(*answer)) return std::optional<double>(*value);
-    if (!person.patient()) {
-      return tl::unexpected(
-          Refusal{ExitCode::input_refused, "`" + *answer + "` is no position: " + question});
-    }
-    person.tell("Enter if it is there, a number if it is elsewhere (mm), - to leave it out");
+    if (const auto value = typed_number(*answer)) return std::optional<double>(*value);
+    person.tell(
+        "`" + *answer +
+        "` is no position. Enter if it is there, a number if it is elsewhere (mm), - to leave it out");
   }
-  return tl::unexpected(Refusal{ExitCode::input_refused, "no position was given"});
+  return tl::unexpected(Refusal{ExitCode::input_refused, "no position was given: " + question});
 }
 
 Expected<void> move_to(const rig::RigFile& rig, HandDrive& drive, Operator& person, const Settings& settings,
                        double kpa) {
   if (drive.command_kpa(settings.channel) == kpa) return {};  // and it rests there
-  const control::LimitSettings& limits = rig.settings.channels[settings.channel].limits;
-  const double speed = share_per_s * (limits.pressure_max_kpa - limits.pressure_min_kpa);
+  const double speed = ramp_speed_kpa_per_s(rig, settings.channel);
   person.tell(fmt::format("moving `{}` to {:.4g} kPa", rig.settings.channels[settings.channel].name, kpa));
   if (const auto moved = drive.ramp(settings.channel, kpa, speed); !moved) {
     return tl::unexpected(refusal_of(moved.error()));
@@ -239,6 +221,19 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, HandDrive& drive, Oper
 
 }  // namespace
 
+std::optional<double> typed_number(std::string text) {
+  std::replace(text.begin(), text.end(), ',', '.');
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return std::nullopt;
+  const auto last = text.find_last_not_of(" \t\r");
+  const char* const begin = text.data() + first + (text[first] == '+' ? 1 : 0);
+  const char* const end = text.data() + last + 1;
+  double value = 0;
+  const auto result = std::from_chars(begin, end, value);
+  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 Expected<Line> calibrate_sensor(const rig::RigFile& rig, HandDrive& drive, Operator& person,
                                 const Settings& settings) {
   std::vector<Visit> visits;
@@ -347,6 +342,11 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, HandDrive& dr
   if (!result.zone)
     return tl::unexpected(nonsense("dead zone: nothing followed the ramp: supply, line, sensor?"));
   return result;
+}
+
+double ramp_speed_kpa_per_s(const rig::RigFile& rig, std::size_t channel) {
+  const control::LimitSettings& limits = rig.settings.channels[channel].limits;
+  return share_per_s * (limits.pressure_max_kpa - limits.pressure_min_kpa);
 }
 
 double share_of_valve(const rig::RigFile& rig, std::size_t channel) {

@@ -32,7 +32,7 @@ class Operator {
   [[nodiscard]] virtual std::optional<std::string> answer() = 0;
   /// No answer will come any more.
   [[nodiscard]] virtual bool gone() const = 0;
-  /// A nonsensical answer is asked for again.
+  /// A nonsensical answer is asked for again as often as it takes; else some times.
   [[nodiscard]] virtual bool patient() const = 0;
 };
 
@@ -54,6 +54,12 @@ struct Refusal {
 };
 template <class T>
 using Expected = tl::expected<T, Refusal>;
+
+/// The number that somebody typed, decimal comma or point; nothing if it is none.
+[[nodiscard]] std::optional<double> typed_number(std::string text);
+
+/// How fast a finger is moved: so slowly that the line follows.
+[[nodiscard]] double ramp_speed_kpa_per_s(const rig::RigFile& rig, std::size_t channel);
 
 /// The displacement sensor against a gauge: the finger is moved to both places, or, without `may_move`,
 /// somebody puts the target there.

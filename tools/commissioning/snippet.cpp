@@ -11,16 +11,6 @@
 namespace softgrip::tools::calibrate {
 namespace {
 
-/// To so many decimals, without zeros that say nothing.
-std::string rounded(double value, int decimals) {
-  const double scale = std::pow(10, decimals);
-  return written(std::round(value * scale) / scale + 0.0);
-}
-
-std::string suffix(drivers::ElectricalUnit unit) {
-  return unit == drivers::ElectricalUnit::volt ? "v" : "ma";
-}
-
 std::string pair(double first, double second, int decimals) {
   return "[" + rounded(first, decimals) + ", " + rounded(second, decimals) + "]";
 }
@@ -28,13 +18,14 @@ std::string pair(double first, double second, int decimals) {
 /// `at_v: [1.2, 7.8], is_mm: [3, 21]`
 std::string scaling(const drivers::TwoPoints& points, const std::string& electrical,
                     const std::string& unit) {
-  return fmt::format("at_{}: {}, is_{}: {}", electrical, pair(points.x0, points.x1, 5), unit,
-                     pair(points.y0, points.y1, 4));
+  const LineText text = text_of(points);
+  return fmt::format("at_{}: [{}, {}], is_{}: [{}, {}]", electrical, text.at.first, text.at.second, unit,
+                     text.is.first, text.is.second);
 }
 
 std::string error_codes(const drivers::InputWiring& wiring) {
   if (wiring.error_codes.empty()) return {};
-  const std::string electrical = suffix(wiring.unit);
+  const std::string electrical = suffix_of(wiring.unit);
   std::string text = ", error_codes: [";
   for (std::size_t i = 0; i < wiring.error_codes.size(); ++i) {
     text += fmt::format("{}{{at_{}: {}, tolerance_{}: {}}}", i == 0 ? "" : ", ", electrical,
@@ -53,7 +44,7 @@ std::string module_of(const rig::RigFile& rig, std::size_t module) {
 
 std::string input(const rig::RigFile& rig, const std::string& key, const drivers::InputWiring& wiring,
                   const drivers::TwoPoints& points, const std::string& unit) {
-  const std::string electrical = suffix(wiring.unit);
+  const std::string electrical = suffix_of(wiring.unit);
   return fmt::format("{}: {{{}input: {}, {}, valid_{}: {}{}}}\n", key, module_of(rig, wiring.module),
                      wiring.input, scaling(points, electrical, unit), electrical,
                      pair(wiring.valid_min, wiring.valid_max, 5), error_codes(wiring));
@@ -76,7 +67,7 @@ std::string valve_line(const rig::RigFile& rig, std::size_t channel, const drive
   const rig::ValveFacts& facts = rig.valves[channel];
   return fmt::format("valve: {{{}output: {}, {}, range_kpa: {}, on_power_loss: {}}}\n",
                      module_of(rig, wiring.module), wiring.output,
-                     scaling(points, suffix(wiring.unit), "kpa"),
+                     scaling(points, suffix_of(wiring.unit), "kpa"),
                      pair(facts.range_min_kpa, facts.range_max_kpa, 4),
                      facts.on_power_loss == rig::PowerLoss::vents ? "vents" : "holds");
 }
@@ -94,6 +85,27 @@ std::string dead_zone_lines(const DeadZoneResult& result, double lowest_kpa) {
 }
 
 }  // namespace
+
+std::string rounded(double value, int decimals) {
+  const double scale = std::pow(10, decimals);
+  return written(std::round(value * scale) / scale + 0.0);
+}
+
+std::string suffix_of(drivers::ElectricalUnit unit) {
+  switch (unit) {
+    case drivers::ElectricalUnit::volt:
+      return "v";
+    case drivers::ElectricalUnit::milliampere:
+      return "ma";
+    case drivers::ElectricalUnit::kilopascal:
+      return "kpa";
+  }
+  return {};
+}
+
+LineText text_of(const drivers::TwoPoints& points) {
+  return {{rounded(points.x0, 5), rounded(points.x1, 5)}, {rounded(points.y0, 4), rounded(points.y1, 4)}};
+}
 
 std::string snippet(const rig::RigFile& rig, const Results& results) {
   const std::size_t channel = results.channel;

@@ -1,0 +1,173 @@
+// A calibration's points in the rig file itself: nothing else changes.
+
+#include "tools/commissioning/rig_update.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "base/files.h"
+#include "rig/rig_file.h"
+#include "tools/commissioning/doubts.h"
+
+namespace softgrip::tools::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of_file(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+Line line(const drivers::TwoPoints& points) {
+  Line found;
+  found.points = points;
+  found.error = 0.0213;
+  found.noise = 0.03;
+  return found;
+}
+
+class RigUpdateTest : public testing::Test {
+ protected:
+  RigUpdateTest() {
+    fs::create_directories(folder_);
+    std::string text = text_of_file(config_ / "rig.yaml");
+    const std::string models = (config_ / "models/").string();
+    for (std::size_t at = text.find("models/"); at != std::string::npos;
+         at = text.find("models/", at + models.size())) {
+      text.replace(at, 7, models);
+    }
+    save(text);
+  }
+  ~RigUpdateTest() override { fs::remove_all(folder_); }
+  void save(const std::string& text) {
+    std::ofstream(path_) << text;
+    document::Problems problems;
+    const auto read = rig::load_rig(path_.string(), problems);
+    ASSERT_TRUE(read) << problems.format();
+    rig_ = *read;
+    text_ = text;
+  }
+  [[nodiscard]] std::string replaced(const std::string& from, const std::string& to) const {
+    std::string text = text_;
+    EXPECT_NE(text.find(from), std::string::npos) << from;
+    return text.replace(text.find(from), from.size(), to);
+  }
+  [[nodiscard]] Results sensor(const drivers::TwoPoints& points) const {
+    Results results;
+    results.date = "2026-11-20";
+    results.sensor = line(points);
+    return results;
+  }
+  fs::path config_ = fs::path(SOFTGRIP_SOURCE_DIR) / "config";
+  fs::path folder_ = fs::temp_directory_path() / ("softgrip_rig_update_" + std::to_string(::getpid()));
+  fs::path path_ = folder_ / "rig.yaml";
+  std::string text_;
+  rig::RigFile rig_;
+};
+
+constexpr drivers::TwoPoints found{2.03, 5.1, 7.41, 32.25};
+
+TEST_F(RigUpdateTest, AChannelGetsItsOwnPointsBesideWhatAllShare) {
+  const auto changed = updated_rig(text_, rig_, sensor(found));
+  ASSERT_TRUE(changed) << changed.error();
+  EXPECT_EQ(*changed,
+            replaced("    sensor: {input: 0}",
+                     "    # softgrip calibrate 2026-11-20: error 0.0213 mm, noise of a reading 0.03 mm\n"
+                     "    sensor: {input: 0, at_v: [2.03, 7.41], is_mm: [5.1, 32.25]}"));
+}
+
+TEST_F(RigUpdateTest, TheNextTimeTheNumbersAndTheCommentAreReplaced) {
+  save(updated_rig(text_, rig_, sensor(found)).value());
+  Results next = sensor({2, 5, 7.5, 32});
+  next.date = "2027-01-02";
+  const auto changed = updated_rig(text_, rig_, next);
+  ASSERT_TRUE(changed) << changed.error();
+  EXPECT_NE(changed->find("# softgrip calibrate 2027-01-02"), std::string::npos);
+  EXPECT_EQ(changed->find("2026-11-20"), std::string::npos);
+  EXPECT_NE(changed->find("sensor: {input: 0, at_v: [2, 7.5], is_mm: [5, 32]}"), std::string::npos)
+      << *changed;
+}
+
+TEST_F(RigUpdateTest, ValveAndMonitorOfTheOtherChannel) {
+  Results results;
+  results.date = "2026-11-20";
+  results.channel = 1;
+  results.valve = ValveResult{line({1, 9.5, 7, 69}), line({1, 10.5, 7, 70}), false};
+  const auto changed = updated_rig(text_, rig_, results);
+  ASSERT_TRUE(changed) << changed.error();
+  EXPECT_NE(changed->find("    valve: {output: 1, at_v: [1, 7], is_kpa: [9.5, 69]}\n"), std::string::npos)
+      << *changed;
+  EXPECT_NE(changed->find("    pressure_monitor: {input: 5, at_v: [1, 7], is_kpa: [10.5, 70]}\n"),
+            std::string::npos);
+  EXPECT_NE(changed->find("    valve: {output: 0}\n"), std::string::npos) << "the other channel is as it was";
+}
+
+TEST_F(RigUpdateTest, PointsThatTheRigRefusesAreNotWritten) {
+  Results results;
+  results.date = "2026-11-20";
+  results.valve = ValveResult{line({5, 10, 5, 40}), std::nullopt, true};
+  const auto changed = updated_rig(text_, rig_, results);
+  ASSERT_FALSE(changed);
+  EXPECT_NE(changed.error().find("would be refused"), std::string::npos) << changed.error();
+  EXPECT_NE(changed.error().find("rig.yaml:"), std::string::npos);
+}
+
+TEST_F(RigUpdateTest, TheOldFileIsKeptAndTheNewOneIsInItsPlace) {
+  const auto backup = write_rig(rig_, replaced("name: simulated", "name: other"));
+  ASSERT_TRUE(backup) << backup.error();
+  EXPECT_EQ(text_of_file(*backup), text_);
+  EXPECT_EQ(text_of_file(path_), replaced("name: simulated", "name: other"));
+  EXPECT_NE(fs::path(*backup).extension(), ".yaml") << "softgrip check FOLDER does not take it for a rig";
+}
+
+TEST_F(RigUpdateTest, AFileThatSomebodyChangedMeanwhileIsLeftAlone) {
+  std::ofstream(path_, std::ios::app) << "# by hand\n";
+  const auto backup = write_rig(rig_, "name: x\n");
+  ASSERT_FALSE(backup);
+  EXPECT_NE(backup.error().find("changed meanwhile"), std::string::npos);
+  EXPECT_EQ(text_of_file(path_), text_ + "# by hand\n");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(RigUpdateTest, ALineNearTheOldOneIsNotDoubted) {
+  Results results = sensor({2, 5.1, 8, 35.3});
+  results.valve = ValveResult{line({1, 10, 7, 71}), std::nullopt, true};
+  EXPECT_TRUE(doubts(rig_, results).empty());
+}
+
+TEST_F(RigUpdateTest, ALineFarFromTheOldOneIsDoubted) {
+  Results results = sensor({2, 5, 8, 26});
+  results.valve = ValveResult{line({0, 0, 10, 75}), line({0, 0, 10, 130}), false};
+  const auto odd = doubts(rig_, results);
+  ASSERT_EQ(odd.size(), 3U);
+  EXPECT_EQ(odd[0],
+            "valve: where the rig file's line says 60 kPa the new one says 45 kPa, 25 % of the range away");
+  EXPECT_EQ(odd[1].rfind("pressure monitor: ", 0), 0U);
+  EXPECT_EQ(odd[2].rfind("sensor: ", 0), 0U);
+}
+
+TEST_F(RigUpdateTest, AGaugeThatDoesNotGoWithTheModelIsDoubted) {
+  const auto doubted = [&](double travel_mm) {
+    Results results = sensor({2, 5, 2 + travel_mm / 5, 5 + travel_mm});
+    results.motion = Motion{10, 40, 3, 12};
+    return doubts(rig_, results);
+  };
+  ASSERT_FALSE(doubted(3).empty());
+  EXPECT_NE(doubted(3)[0].find("the gauge went 3 mm, the model goes "), std::string::npos) << doubted(3)[0];
+  const std::string sentence = doubted(3)[0];
+  const double model_mm = std::stod(sentence.substr(sentence.find("goes ") + 5));
+  EXPECT_GT(model_mm, 8);
+  EXPECT_TRUE(doubted(model_mm).empty());
+  EXPECT_TRUE(doubted(0.85 * model_mm).empty());
+  EXPECT_FALSE(doubted(1.3 * model_mm).empty());
+}
+
+}  // namespace
+}  // namespace softgrip::tools::calibrate
