@@ -101,8 +101,8 @@ softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/c
   LIBRARIES nlohmann_json::nlohmann_json)
 # What moves a rig by hand: doctor and calibrate.
 softgrip_room(tools/commissioning
-  USES base document control/elements control/feedforward drivers/board rig daemon/loop daemon/recording
-       daemon/service
+  USES base document model model/file control/elements control/feedforward drivers/board rig daemon/loop
+       daemon/recording daemon/service tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig

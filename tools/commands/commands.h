@@ -5,6 +5,7 @@
 
 // clang-format off
 #define SOFTGRIP_COMMANDS(X) \
+  X(init)                    \
   X(check)                   \
   X(doctor)                  \
   X(calibrate)               \

@@ -1,0 +1,126 @@
+"""softgrip init as a newcomer runs it: at a terminal, and by options."""
+
+import os
+import pty
+import re
+import select
+import subprocess
+import time
+
+import bench
+
+
+class Terminal:
+    """softgrip at a pseudo-terminal."""
+
+    def __init__(self, test, *arguments):
+        self.master, slave = pty.openpty()
+        self.child = subprocess.Popen([str(a) for a in (bench.SOFTGRIP, *arguments)], cwd=test.folder, stdin=slave,
+                                      stdout=slave, stderr=slave, close_fds=True)
+        os.close(slave)
+        self.said = ""
+        test.addCleanup(self.end)
+
+    def end(self):
+        self.child.kill()
+        self.child.wait()
+        os.close(self.master)
+
+    def read_until(self, done):
+        end = time.monotonic() + bench.PATIENCE_S
+        while not done():
+            if time.monotonic() > end:
+                raise AssertionError(f"it says no more than:\n{self.said}")
+            ready, _, _ = select.select([self.master], [], [], 0.1)
+            if not ready:
+                continue
+            try:
+                said = os.read(self.master, 4096).decode()
+            except OSError:  # it has ended
+                return
+            self.said += said.replace("\r\n", "\n")
+
+    def answer(self, question, text):
+        """Waits for a question that matches and answers it; returns what was said since the last answer."""
+        self.read_until(lambda: re.search(rf"\? [^\n]*{question}[^\n]*: $", self.said))
+        said, self.said = self.said, ""
+        os.write(self.master, text.encode() + b"\n")
+        return said
+
+    def wait(self):
+        self.read_until(lambda: False if self.child.poll() is None else True)
+        self.child.wait(bench.PATIENCE_S)
+        return self.child.returncode
+
+
+class Init(bench.BenchTest):
+    OPTIONS = ("--board", "adam-6024", "--address", "127.0.0.1:1502")
+
+    def test_at_a_terminal_a_mistyped_answer_is_asked_again(self):
+        asked = Terminal(self, "init", "config/mine.yaml")
+        asked.answer("map", "adam-6042")
+        self.assertIn("did you mean adam-6024?", asked.answer("map", "adam-6024"))
+        asked.answer("address", "localhost")
+        self.assertIn("127.0.0.1", asked.answer("address", "127.0.0.1"))
+        asked.answer("unit id", "")
+        asked.answer("names of the fingers", "thumb, index")
+        asked.answer("model", "")
+        asked.answer("valve's pressures", "0 1oo")
+        self.assertIn("two pressures", asked.answer("valve's pressures", "0 100"))
+        asked.answer("bears", "150")
+        self.assertIn("up to 100", asked.answer("bears", "50"))
+        asked.answer("sensor's displacements", "")
+        asked.answer("measured", "maybe")
+        asked.answer("measured", "yes")
+        self.assertEqual(asked.wait(), 0, asked.said)
+        done = self.softgrip("check", "config/mine.yaml", "config/sequences/pick_stone.yaml", expect=None)
+        self.assertIn("mine.yaml: rig 'mine': ok\n", done.stdout, done.stderr)
+        text = (self.folder / "config/mine.yaml").read_text()
+        self.assertEqual(text.count("slew_up_kpa_per_s"), 1)
+        self.assertIn("pressure_max_kpa: 50", text)
+        self.assertIn("map: boards/adam-6024.yaml", text)
+
+    def test_by_options_without_a_terminal(self):
+        self.softgrip("init", "config/mine.yaml", *self.OPTIONS)
+        done = self.softgrip("check", "config/mine.yaml")
+        self.assertEqual(done.stderr, "")
+
+    def test_what_has_no_usual_value_must_be_given(self):
+        done = self.softgrip("init", "mine.yaml", "--board", "adam-6024", expect=2)
+        self.assertIn("--address is needed", done.stderr)
+        self.assertFalse((self.folder / "mine.yaml").exists())
+
+    def test_a_file_that_is_there_is_never_overwritten(self):
+        before = (self.folder / "config/rig.yaml").read_bytes()
+        done = self.softgrip("init", "config/rig.yaml", *self.OPTIONS, expect=5)
+        self.assertIn("there already", done.stderr)
+        self.assertEqual((self.folder / "config/rig.yaml").read_bytes(), before)
+
+    def test_a_wrong_option_writes_nothing(self):
+        done = self.softgrip("init", "mine.yaml", *self.OPTIONS, "--pressure-max-kpa", "lots", expect=2)
+        self.assertIn("--pressure-max-kpa: `lots`", done.stderr)
+        self.assertFalse((self.folder / "mine.yaml").exists())
+
+    def test_what_it_writes_runs_against_the_emulator(self):
+        self.softgrip("init", "config/mine.yaml", *self.OPTIONS)
+        emulated = self.emulator("--rig", self.folder / "config/mine.yaml", "--object", "stone", board=None)
+        rig = self.folder / "config/mine.yaml"
+        text = rig.read_text()
+        for old, new in (("port: 1502", f"port: {emulated.port}"), ("rate_hz: 200", f"rate_hz: {bench.RATE_HZ}"),
+                         ("exchange_deadline_s: 0.02", "exchange_deadline_s: 0.15"),
+                         ("bus_down_cycles: 5", f"bus_down_cycles: {bench.BUS_DOWN_CYCLES}"),
+                         ("invalid_reading_cycles: 5", "invalid_reading_cycles: 30"),
+                         ("readback_cycles: 10", "readback_cycles: 30"), ("max_missed_commands: 10", "max_missed_commands: 30"),
+                         ("max_age_s: 0.05", "max_age_s: 0.35"), ("/tmp/softgrip-runs", f"{self.folder}/runs"),
+                         ("/tmp/softgrip.sock", f"{self.folder}/softgripd.sock")):
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        rig.write_text(text)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        daemon.wait_for_event("grip_result", channel="left", code="HOLDING")
+
+
+if __name__ == "__main__":
+    bench.main()

@@ -1,0 +1,145 @@
+// softgrip init: a first rig file, from questions or options.
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/kept_file.h"
+#include "tools/command_line/command.h"
+#include "tools/command_line/configuration.h"
+#include "tools/commands/commands.h"
+#include "tools/commissioning/draft_facts.h"
+#include "tools/commissioning/terminal_operator.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::string file = "my_rig.yaml";
+  std::string name;
+  double rate_hz = 0;
+  bool service = false;
+  std::map<std::string, std::vector<std::string>> facts;  ///< words by key
+};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// A line; nothing when the input has ended.
+std::optional<std::string> wait_for_line(calibrate::TerminalOperator& person) {
+  for (;;) {
+    if (auto line = person.answer()) return line;
+    if (person.gone()) return std::nullopt;
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    ::poll(&input, 1, -1);
+  }
+}
+
+/// Asks until the answer is taken; false when the input has ended.
+bool ask(const Fact& fact, const Fact::Question& question, RigDraft& draft,
+         calibrate::TerminalOperator& person) {
+  for (;;) {
+    person.ask(question.text + (question.otherwise.empty() ? "" : " [" + question.otherwise + "]"));
+    auto line = wait_for_line(person);
+    if (!line) return false;
+    const bool blank = line->find_first_not_of(" \t\r") == std::string::npos;
+    const std::string complaint = fact.take(blank ? question.otherwise : *line, draft);
+    if (complaint.empty()) return true;
+    person.tell(complaint);
+  }
+}
+
+/// From the option, an answer, or what is usual; an exit code where none of them will do.
+std::optional<ExitCode> settle(const Fact& fact, const Options& options, RigDraft& draft,
+                               calibrate::TerminalOperator& person) {
+  const auto given = options.facts.find(fact.key);
+  if (given != options.facts.end() && !given->second.empty()) {
+    const std::string complaint = fact.take(joined(given->second), draft);
+    if (complaint.empty()) return std::nullopt;
+    return fail(ExitCode::usage, "--" + fact.key + ": " + complaint);
+  }
+  const auto question = fact.question(draft);
+  if (!question) {
+    if (fact.key == "monitor") draft.monitor = false;
+    return std::nullopt;
+  }
+  if (person.patient()) {
+    if (ask(fact, *question, draft, person)) return std::nullopt;
+    return fail(ExitCode::failed, "stopped: nothing was written");
+  }
+  if (question->otherwise.empty()) {
+    return fail(ExitCode::usage,
+                "there is no terminal to ask at: --" + fact.key + " is needed (" + question->text + ")");
+  }
+  const std::string complaint = fact.take(question->otherwise, draft);
+  if (complaint.empty()) return std::nullopt;
+  return fail(ExitCode::usage, "--" + fact.key + " is needed: " + complaint);
+}
+
+ExitCode run(const Options& options) {
+  std::error_code error;
+  if (std::filesystem::exists(options.file, error)) {
+    return fail(ExitCode::state_refused,
+                options.file + " is there already and stays as it is: name another file");
+  }
+  RigDraft draft;
+  draft.name = options.name.empty() ? std::filesystem::path(options.file).stem().string() : options.name;
+  if (options.rate_hz > 0) draft.rate_hz = options.rate_hz;
+  draft.service = options.service;
+  draft.sequences_path = configuration_path("sequences");
+  calibrate::TerminalOperator person;
+  for (const Fact& fact : draft_facts()) {
+    if (const auto code = settle(fact, options, draft, person)) return *code;
+  }
+  const auto text = draft_text(draft, options.file);
+  if (!text) return refuse(text.error());
+  if (const auto written = create_file(options.file, *text); !written)
+    return fail(ExitCode::io, written.error());
+  std::printf("%s is written; next:\n  softgrip check %s\n  softgrip doctor --rig %s\n", options.file.c_str(),
+              options.file.c_str(), options.file.c_str());
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_init(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("init", "A first rig file, from a few questions or from options");
+  command->add_option("FILE", options->file, "The rig file; one that is there is never overwritten")
+      ->capture_default_str();
+  command->add_option("--name", options->name, "Of the rig [the file's]");
+  command
+      ->add_option("--rate-hz", options->rate_hz,
+                   "Of loop and bus [the highest usual one that the board allows]")
+      ->check(CLI::Range(1.0, 10000.0));
+  command->add_flag("--service", options->service, "Folders of the system service instead of /tmp");
+  for (const Fact& fact : draft_facts()) {
+    CLI::Option* const option = command->add_option("--" + fact.key, options->facts[fact.key], fact.about);
+    if (fact.words > 1) {
+      option->expected(fact.words);
+    } else {
+      option->allow_extra_args(false);
+    }
+  }
+  command->footer(
+      "At a terminal what is not given as an option is asked for; without one the usual is taken, and what "
+      "has no\n"
+      "usual value must be given. Exit codes: 0 written, 1 stopped, 2 usage, 3 the rig file's reader refuses "
+      "it,\n"
+      "4 the file cannot be written, 5 it is there already.");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools
