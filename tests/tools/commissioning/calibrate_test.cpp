@@ -348,7 +348,7 @@ TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
 TEST_F(CalibrateTest, TellsWhenLessThanAFifthOfTheValveIsUsed) {
   rig_.valves[0].range_max_kpa = 500;
   EXPECT_NEAR(share_of_valve(rig_, 0), 0.12, 1e-12);
-  EXPECT_NE(snippet(rig_, {"2026-11-20", 0, {}, {}, {}}).find("less than a fifth"), std::string::npos);
+  EXPECT_NE(snippet(rig_, {"2026-11-20", 0, {}, {}, {}, {}}).find("less than a fifth"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,254 @@
+#!/usr/bin/python3
+"""A morning at the bench, command by command: what the screen says when something is wrong, written as a page.
+
+    scripts/morning.py [--build build/release] [--page docs/how-to/a-morning.md | --check docs/how-to/a-morning.md]
+
+The emulator takes the place of the board; what goes wrong is done to it. Times of day stand as hh:mm:ss, measured numbers
+are rounded. --check plays the morning again and compares the sentences, whatever their numbers.
+"""
+import argparse
+import difflib
+import os
+import pathlib
+import re
+import sys
+import textwrap
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests/system"))
+
+HEAD = """# A morning at the bench
+
+What the screen says when something is wrong, and what to do then. The commands below were carried out by
+`scripts/morning.py`, which writes this page, with `softgrip-rig` in the place of the board; a test plays the morning again
+and compares the sentences. Times stand as hh:mm:ss, measured numbers are rounded, `[...]` stands for lines that are left
+out. `softgrip watch` says the same things live, and takes `s`, `v`, `r`, `a` and `g` as keys
+([commands](../reference/commands.md#with-a-daemon)). At 80 columns, while both fingers hold a part, and at 60, when a sensor was
+lost in such a hold and has come back (`scripts/watch_pictures.py` made the pictures of a terminal that was really drawn
+on):
+
+![watch at 80 columns: both fingers hold a part](../pictures/watch-80.svg)
+
+![watch at 60 columns: a sensor was lost in a hold, pressure stays on](../pictures/watch-60.svg)
+"""
+
+WRONG_RECIPE = """name: pick_nut
+steps:
+  - grip:
+      displacement_mm: 40
+      sqeeze_kpa: 5
+      squeeze_speed_kpa_per_s: 5
+      speed_mm_per_s: 5
+      settle_s: 0.5
+      verify: {by: detection, window_s: 0.3}
+      timeout_s: -20
+      on_fail: release
+  - hold:
+      hold_s: 5 s
+      reverify_every_s: 0.25
+      on_fail: release
+"""
+MENDED = (("sqeeze", "squeeze"), ("5 s", "5"), ("-20", "20"))
+
+
+def rounded(text):
+    """Times of day and ports masked, measured numbers rounded: what differs from one morning to the next."""
+    text = re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{3}", "hh:mm:ss", text)
+    text = re.sub(r"127\.0\.0\.1:\d+", "127.0.0.1:1502", text)
+    text = re.sub(r"\d+ ms old", "fresh", text)
+    text = re.sub(r"(?<![\d.])(?<!every )-?\d+\.\d+(?= (kPa|mm|s|ms)\b)",
+                  lambda found: f"{float(found.group()):.0f}", text)
+    return re.sub(r"-0(?= (kPa|mm))", "0", text)
+
+
+def sentences(page):
+    """What --check compares: numbers are #; where lines break, what is left out, in which part of an exchange a
+    connection broke and how much was seen of a model so far do not count."""
+    text = re.sub(r"-?\d+(\.\d+)?", "#", page.replace("[...]", ""))
+    text = re.sub(r"disconnected:[^.]*", "disconnected", " ".join(text.split()))
+    text = re.sub(r"model (unknown|healthy|suspect)", "model", text)
+    return re.split(r"(?<=[.:]) ", text)
+
+
+def play():
+    """The page's text."""
+    import bench
+
+    class Morning(bench.BenchTest):
+        def setUp(self):
+            super().setUp()
+            self.page = [HEAD]
+
+        def say(self, text):
+            for paragraph in text.split("\n\n"):
+                self.page.append(textwrap.fill(paragraph, 118) + "\n")
+
+        def show(self, *commands, keep=None, drop=None):
+            """Commands and what they say; of the output only the lines that match `keep`, or not `drop`."""
+            shown = []
+            for command in commands:
+                done = self.softgrip(*command, expect=None)
+                lines = (done.stdout + done.stderr).replace(f"{self.folder}/", "").splitlines()
+                shown.append(f"$ softgrip {' '.join(str(one) for one in command)}")
+                left_out = False
+                for line in lines:
+                    wanted = (keep is None or re.search(keep, line)) and not (drop and re.search(drop, line))
+                    if wanted:
+                        shown.append(line.rstrip())
+                    elif not left_out or shown[-1] != "[...]":
+                        shown.append("[...]")
+                        left_out = True
+            self.page.append("```\n" + rounded("\n".join(shown)) + "\n```\n")
+
+        def show_status(self):
+            """Without what a morning does not change: loop, recording, bars."""
+            self.show(("status",), drop=r"^(loop|recording|  (pressure|displacement) .*|$)|real time degraded")
+
+        def show_failures(self, *command):
+            """What failed in the doctor's eyes, and what was not judged because of it; not how punctual a busy
+            machine is."""
+            done = self.softgrip("doctor", *command, expect=6)
+            shown, wanted = [f"$ softgrip doctor {' '.join(command)}".rstrip()], False
+            for line in done.stdout.splitlines():
+                if re.match(r" (ok  |warn|FAIL|--  ) ", line):
+                    wanted = line.startswith((" FAIL", " --")) and not re.match(r" FAIL (timer|bus time|loop) ", line)
+                if wanted and not line.startswith("NOT FIT"):
+                    shown.append(line.rstrip())
+                elif shown[-1] != "[...]":
+                    shown.append("[...]")
+            self.page.append("```\n" + rounded("\n".join(shown)) + "\n```\n")
+
+        def newest(self):
+            return self.softgripd.result("events", limit=1)["newest"]
+
+        def emulate(self, port=0):
+            self.emulated = self.emulator("--object", "stone", "--faults", self.folder / "faults.yaml", port=port,
+                                          name=f"rig{len(self.processes)}")
+            return self.emulated.port
+
+        def no_cable(self):
+            self.say("## The cable is not in\n\nsoftgripd was started before the board had its cable. Nothing is a "
+                     "fault yet; the status says what is being tried and how often.")
+            bench.wait_for("slow attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 4)
+            self.show_status()
+            self.say("The cable is put in:")
+
+        def cable_out(self):
+            self.say("## The cable comes out\n\nIdle, no part held. The fault latches; `acknowledge` is refused as long as "
+                     "its cause is there, and says so.")
+            self.emulated.ask("fault cable")
+            self.softgripd.wait_for_state("faulted")
+            bench.wait_for("attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 2)
+            self.show_status()
+            self.show(("acknowledge",))
+            self.say("One cable is one failure for the doctor; what hangs on it is not judged:")
+            self.show_failures()
+            self.say("The cable is in again:")
+            self.emulated.ask("clear cable")
+            bench.wait_for("the cause to go", lambda: self.softgripd.status()["fault"]["present"] is None)
+            self.show_status()
+            self.show(("acknowledge",))
+            self.softgripd.wait_for_state("idle")
+
+        def sensor_out(self):
+            self.say("## A sensor loses its cable\n\nThe fault names its finger.")
+            self.emulated.ask("fault blind")
+            self.softgripd.wait_for_state("faulted")
+            self.show_status()
+            self.emulated.ask("clear blind")
+            bench.wait_for("the cause to go", lambda: self.softgripd.status()["fault"]["present"] is None)
+            self.say("It is plugged in again:")
+            self.show(("acknowledge",))
+            self.softgripd.wait_for_state("idle")
+
+        def stop_while_holding(self):
+            self.say("## Stopped while holding\n\nThe rig file says `holding: hold`: a stop keeps what is held. Pressure that "
+                     "stays on is loud, with the command that ends it; the ready lamp blinks.")
+            self.softgripd.start("hand_over")
+            bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
+            self.show(("stop",))
+            self.show_status()
+            self.show(("release",))
+            bench.wait_for("no pressure", lambda: self.softgripd.status()["under_pressure"] is None)
+            self.softgripd.wait_for_state("idle")
+
+        def part_lost(self):
+            self.say("## The part is lost\n\nSomebody pulls the part out of a running hold. The recipe says `on_fail: "
+                     "release`; the answer is PART LOST.")
+            since = self.newest()
+            self.softgripd.start("hand_over")
+            bench.wait_for("the hold", lambda: self.softgripd.results() == ["HOLDING", "HOLDING"])
+            self.emulated.ask("object out")
+            self.softgripd.wait_for_event("sequence_finished", since=since)
+            self.softgripd.wait_for_state("idle")
+            self.show(("events", "--since", str(since)), keep=r"left: The grip's result|sequence")
+            self.emulated.ask("object stone")
+
+        def wrong_recipe(self):
+            self.say("## A wrong recipe\n\nA misspelled key, a unit behind a number, a time below zero. All come at once, "
+                     "with their places, and nothing moves.")
+            self.write("pick_nut.yaml", WRONG_RECIPE)
+            self.page.append(f"```yaml\n{WRONG_RECIPE}```\n")
+            self.show(("start", "pick_nut.yaml"))
+            self.say("These are mended. What the rig cannot do is named then:")
+            text = WRONG_RECIPE
+            for wrong, right in MENDED:
+                text = text.replace(wrong, right)
+            self.write("pick_nut.yaml", text)
+            self.show(("start", "pick_nut.yaml"))
+            self.assertEqual(self.softgripd.status()["state"], "idle")
+
+        def crossed_sensors(self):
+            self.say("## Crossed sensors\n\nAfter the cables were tidied up the two displacement sensors are at each other's "
+                     "inputs. `doctor --move` moves one finger after the other and watches all sensors.")
+            self.softgripd.end()
+            swap = ((r"sensor: \{input: 0,", "sensor: {input: 99,"), (r"sensor: \{input: 1,", "sensor: {input: 0,"),
+                    (r"sensor: \{input: 99,", "sensor: {input: 1,"))
+            self.rig(self.emulated.port, swap).rename(self.folder / "rig.yaml")
+            (self.folder / "rig.yaml").write_text(
+                (self.folder / "rig.yaml").read_text().replace("boards/", "config/boards/").replace(
+                    "models/", "config/models/"))
+            self.show_failures("--rig", "rig.yaml", "--move")
+
+        def runTest(self):
+            self.write("faults.yaml", "faults:\n  - {name: cable, kind: disconnect}\n"
+                                      "  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
+            port = self.emulate()
+            rig = self.rig(port)
+            self.emulated.end()
+            self.softgripd = self.daemon(rig)
+            self.no_cable()
+            self.emulate(port)
+            self.softgripd.wait_for_state("idle")
+            self.show(("watch", "--count", "1"))
+            for scene in (self.cable_out, self.sensor_out, self.stop_while_holding, self.part_lost,
+                          self.wrong_recipe, self.crossed_sensors):
+                scene()
+            play.page = "\n".join(self.page)
+
+    if not unittest.TextTestRunner(verbosity=0).run(Morning()).wasSuccessful():
+        sys.exit(1)
+    return play.page.replace(str(ROOT), "")
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    arguments.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    arguments.add_argument("--page", type=pathlib.Path)
+    arguments.add_argument("--check", type=pathlib.Path)
+    given = arguments.parse_args()
+    os.environ["SOFTGRIP_BUILD"] = str(given.build.resolve())
+    page = play()
+    if given.page:
+        given.page.write_text(page)
+    if not given.check:
+        return 0
+    differences = list(difflib.unified_diff(sentences(given.check.read_text()), sentences(page), str(given.check),
+                                            "this morning", lineterm="", n=1))
+    print("\n".join(differences))
+    return 1 if differences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

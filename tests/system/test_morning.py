@@ -1,0 +1,20 @@
+"""docs/how-to/a-morning.md says what the screen says: the morning is played again."""
+
+import subprocess
+import sys
+import unittest
+
+import bench
+
+
+class Morning(unittest.TestCase):
+    def test_the_page_says_what_the_screen_says(self):
+        played = subprocess.run([sys.executable, bench.SOURCE / "scripts/morning.py", "--build", bench.BUILD,
+                                 "--check", bench.SOURCE / "docs/how-to/a-morning.md"],
+                                capture_output=True, text=True, timeout=170)
+        self.assertEqual(played.returncode, 0, f"write it again with scripts/morning.py --page:\n{played.stdout}\n"
+                                               f"{played.stderr}")
+
+
+if __name__ == "__main__":
+    unittest.main()
