@@ -99,6 +99,11 @@ softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/c
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/exporting
+  USES base document model model/file control/elements control/feedforward sysid/logs sysid/import tools/command_line
+       tools/recordings
+  LIBRARIES nlohmann_json::nlohmann_json)
+target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
 # What moves a rig by hand: doctor and calibrate.
 softgrip_room(tools/commissioning
   USES base document model model/file control/elements control/feedforward drivers/board rig daemon/loop
@@ -115,7 +120,7 @@ softgrip_room(tools/studies
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/pages
        sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
-       tools/recordings tools/importing tools/commissioning tools/investigation tools/studies
+       tools/recordings tools/importing tools/exporting tools/commissioning tools/investigation tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)

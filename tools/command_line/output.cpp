@@ -12,22 +12,23 @@
 namespace softgrip::tools {
 namespace {
 
-/// True for what a rename would replace instead of writing into it.
-bool is_stream(const std::string& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
-         !std::filesystem::is_directory(status);
-}
-
 bool put(std::FILE* file, std::string_view text) {
   return std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
 }
 
 }  // namespace
 
+// A rename would replace it instead of writing into it.
+bool is_stream(const std::string& path) {
+  if (path == "-") return true;
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+         !std::filesystem::is_directory(status);
+}
+
 tl::expected<void, std::string> write_output(const std::string& path, std::string_view text) {
-  if (path != "-" && !is_stream(path)) return write_file(path, text);
+  if (!is_stream(path)) return write_file(path, text);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened{
       path == "-" ? nullptr : std::fopen(path.c_str(), "w"),
       [](std::FILE* file) { return std::fclose(file); }};
@@ -49,13 +50,13 @@ tl::expected<void, std::string> prepare_folder(const std::string& folder) {
 }
 
 tl::expected<void, std::string> prepare_parent(const std::string& path) {
-  if (path == "-" || is_stream(path)) return {};
+  if (is_stream(path)) return {};
   const std::string parent = std::filesystem::path(path).parent_path().string();
   return prepare_folder(parent.empty() ? "." : parent);
 }
 
 std::FILE* report_stream(const std::string& path) {
-  return path == "-" || is_stream(path) ? stderr : stdout;
+  return is_stream(path) ? stderr : stdout;
 }
 
 }  // namespace softgrip::tools

@@ -13,6 +13,9 @@ namespace softgrip::tools {
 /// (/dev/stdout, a pipe) is written to as it is. The error is one sentence.
 [[nodiscard]] tl::expected<void, std::string> write_output(const std::string& path, std::string_view text);
 
+/// True for "-" and for what exists and is no regular file: it has no name that could say what goes in.
+[[nodiscard]] bool is_stream(const std::string& path);
+
 /// Creates the folder if it is missing. The error says why nothing can be written into it: to be asked before
 /// what takes minutes, not after.
 [[nodiscard]] tl::expected<void, std::string> prepare_folder(const std::string& folder);

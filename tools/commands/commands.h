@@ -12,6 +12,7 @@
   X(simulate)                \
   X(import)                  \
   X(plot)                    \
+  X(export)                  \
   X(identify)                \
   X(validate)                \
   X(diagnose)                \

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -52,6 +53,8 @@ void report(const Options& options, const Recording& recording) {
 }
 
 ExitCode run(const Options& options) {
+  if (!is_stream(options.out) && std::filesystem::path(options.out).extension() != ".svg")
+    return fail(ExitCode::usage, "plot writes SVG: " + options.out + " does not end in .svg");
   document::Problems problems;
   const auto recording = read_recording(options.recording, problems);
   if (!recording) return problems.empty() ? recording.error() : refuse_logs(problems);

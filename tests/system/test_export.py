@@ -1,0 +1,319 @@
+"""softgrip export, read back by programs of other people, and C held against simulate."""
+
+import csv
+import importlib.util
+import json
+import math
+import shutil
+import struct
+import subprocess
+import unittest
+
+import bench
+import foreign_files
+import mcap_reading
+
+MODEL = "config/models/bench_twin.yaml"
+
+
+def has(module):
+    return importlib.util.find_spec(module) is not None
+
+
+# By the index, and once more from the beginning with every checksum.
+MCAP_READER = """
+const {McapIndexedReader, McapStreamReader} = require("@mcap/core");
+const bytes = require("fs").readFileSync(process.argv[1]);
+const readable = {size: async () => BigInt(bytes.length),
+                  read: async (at, length) => bytes.subarray(Number(at), Number(at + length))};
+(async () => {
+  const left = [];
+  const indexed = await McapIndexedReader.Initialize({readable});
+  for await (const message of indexed.readMessages({topics: ["/left"]}))
+    left.push([Number(message.logTime), JSON.parse(new TextDecoder().decode(message.data))]);
+  const stream = new McapStreamReader({validateCrcs: true});
+  stream.append(bytes);
+  let messages = 0;
+  for (let record; (record = stream.nextRecord());) messages += record.type === "Message" ? 1 : 0;
+  console.log(JSON.stringify({left, messages, done: stream.done()}));
+})();
+"""
+
+
+def has_node_mcap():
+    return shutil.which("node") is not None and subprocess.run(
+        ["node", "-e", 'require("@mcap/core")'], capture_output=True, timeout=60).returncode == 0
+
+
+def columns_of(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: [float(row[name]) if row[name] else math.nan for row in rows] for name in rows[0]}
+
+
+def same(test, got, wanted):
+    test.assertEqual(len(got), len(wanted))
+    for a, b in zip(got, wanted):
+        test.assertTrue(a == b or (math.isnan(a) and math.isnan(b)), (a, b))
+
+
+class Signals(bench.BenchTest):
+    """A recording of two fingers, one of which has no reading once and a text besides."""
+
+    def setUp(self):
+        super().setUp()
+        foreign_files.recording(self.folder / "run")
+        path = self.folder / "run/run.csv"
+        lines = path.read_text().split("\n")
+        lines[1] = "0.0,left,0.0,,0.0,\"idle, at rest\""
+        path.write_text("\n".join(lines))
+
+    def export(self, out, *arguments, expect=0, source="run"):
+        return self.softgrip("export", source, "--out", out, *arguments, expect=expect)
+
+    def test_wide_csv_has_a_column_per_signal_and_finger(self):
+        self.export("wide.csv")
+        with open(self.folder / "wide.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(list(rows[0]), ["time_s", *(f"{finger}_{name}" for finger in ("left", "right") for name in (
+            "pressure_command_kpa", "displacement_mm", "pressure_kpa", "state"))])
+        self.assertEqual(len(rows), foreign_files.COUNT)
+        self.assertEqual(rows[0]["left_state"], "idle, at rest")
+        self.assertEqual(rows[0]["left_displacement_mm"], "")
+        self.assertEqual([float(row["left_pressure_command_kpa"]) for row in rows], foreign_files.COMMAND)
+        self.assertEqual([float(row["right_displacement_mm"]) for row in rows],
+                         [float(repr(0.1 * tip)) for tip in foreign_files.TIP])
+
+    @unittest.skipUnless(has("pandas"), "python3-pandas is not installed")
+    def test_wide_csv_is_read_by_pandas(self):
+        import pandas
+        self.export("wide.csv")
+        frame = pandas.read_csv(self.folder / "wide.csv")
+        self.assertEqual(frame["left_pressure_command_kpa"].tolist(), foreign_files.COMMAND)
+        self.assertTrue(math.isnan(frame["left_displacement_mm"][0]))
+        self.assertEqual(frame["left_displacement_mm"][1:].tolist(), foreign_files.TIP[1:])
+
+    @unittest.skipUnless(has("numpy"), "python3-numpy is not installed")
+    def test_wide_csv_is_read_by_numpy(self):
+        import numpy
+        self.export("wide.csv")
+        table = numpy.genfromtxt(self.folder / "wide.csv", delimiter=",", names=True, usecols=(0, 1))
+        self.assertEqual(table["left_pressure_command_kpa"].tolist(), foreign_files.COMMAND)
+
+    @unittest.skipUnless(has("scipy"), "python3-scipy is not installed")
+    def test_mat_is_read_by_scipy(self):
+        import scipy.io
+        done = self.export("run.mat", "--json")
+        self.assertEqual(json.loads(done.stdout)["left_out"], ["left_state", "right_state"])
+        mat = scipy.io.loadmat(self.folder / "run.mat", squeeze_me=True)
+        self.assertEqual(mat["time_s"].tolist(), foreign_files.T)
+        self.assertEqual(mat["left_pressure_kpa"].tolist(), foreign_files.PRESSURE)
+        self.assertTrue(math.isnan(mat["left_displacement_mm"][0]))
+        self.assertEqual(mat["left_displacement_mm"][1:].tolist(), foreign_files.TIP[1:])
+        self.export("again.mat")
+        self.assertEqual((self.folder / "run.mat").read_bytes(), (self.folder / "again.mat").read_bytes())
+
+    @unittest.skipUnless(shutil.which("octave-cli"), "octave is not installed")
+    def test_mat_is_read_by_octave(self):
+        self.export("run.mat")
+        done = subprocess.run(["octave-cli", "--eval", "load run.mat; printf('%.17g\\n', left_pressure_kpa)"],
+                              cwd=self.folder, capture_output=True, text=True, check=True, timeout=120)
+        self.assertEqual([float(line) for line in done.stdout.split()], foreign_files.PRESSURE)
+
+    def test_mat_is_imported_again(self):
+        self.export("run.mat")
+        self.softgrip("import", "run.mat", "--out", "log.csv", "--time", "time_s", "--command",
+                      "left_pressure_command_kpa", "--displacement", "left_displacement_mm")
+        same(self, columns_of(self.folder / "log.csv")["displacement_mm"], [math.nan, *foreign_files.TIP[1:]])
+
+    def test_mcap_is_as_the_specification_has_it(self):
+        self.export("run.mcap")
+        topics = mcap_reading.read(self.folder / "run.mcap")
+        self.assertEqual(sorted(topics), ["/left", "/right"])
+        times, left = zip(*topics["/left"])
+        self.assertEqual(list(times), [round(1e9 * t) for t in foreign_files.T])
+        self.assertEqual([message["pressure_command_kpa"] for message in left], foreign_files.COMMAND)
+        self.assertNotIn("displacement_mm", left[0])
+        self.assertEqual(left[0]["state"], "idle, at rest")
+        self.assertEqual([message["displacement_mm"] for message in left[1:]], foreign_files.TIP[1:])
+
+    def test_a_broken_mcap_is_noticed_by_the_reading(self):
+        self.export("run.mcap")
+        path = self.folder / "run.mcap"
+        whole = bytearray(path.read_bytes())
+        for at in (500, len(whole) // 2, len(whole) - 60):
+            broken = bytearray(whole)
+            broken[at] ^= 1
+            path.write_bytes(broken)
+            with self.assertRaises((AssertionError, struct.error, KeyError, UnicodeDecodeError, ValueError)):
+                mcap_reading.read(path)
+
+    @unittest.skipUnless(has_node_mcap(), "node does not find @mcap/core (npm i @mcap/core; NODE_PATH)")
+    def test_mcap_is_read_by_its_own_reader(self):
+        self.export("run.mcap")
+        done = subprocess.run(["node", "-e", MCAP_READER, str(self.folder / "run.mcap")], capture_output=True, text=True,
+                              check=True, timeout=120)
+        told = json.loads(done.stdout)
+        self.assertTrue(told["done"])
+        self.assertEqual(told["messages"], 2 * foreign_files.COUNT)
+        self.assertEqual([time_ns for time_ns, _ in told["left"]], [round(1e9 * t) for t in foreign_files.T])
+        self.assertEqual([message["pressure_command_kpa"] for _, message in told["left"]], foreign_files.COMMAND)
+
+    def test_formats_are_the_endings_or_refused(self):
+        for arguments in (("run.xlsx",), ("run",), ("run.csv2",), ("-", "--format", "mat"), ("x.csv", "--format", "tdms")):
+            self.export(*arguments, expect=2)
+        self.export("absent.csv", source="absent", expect=4)
+        self.write("nothing.csv", "a,b\n1,2\n2,3\n")
+        self.assertIn("neither a log nor a series", self.export("x.csv", source="nothing.csv", expect=3).stderr)
+        self.assertFalse((self.folder / "x.csv").exists())
+        self.assertTrue(self.export("-", "--format", "csv").stdout.startswith("time_s,left_"))
+
+    def test_plot_obeys_the_ending_or_refuses(self):
+        for name in ("picture.png", "picture.pdf", "picture"):
+            self.assertIn("does not end in .svg", self.softgrip("plot", "run", "--out", name, expect=2).stderr)
+            self.assertFalse((self.folder / name).exists())
+        self.assertTrue(self.softgrip("plot", "run", "--out", "-").stdout.startswith("<svg"))
+
+
+DRIVER = """
+#include <stdio.h>
+#include "model.c"
+int main(void) {
+  static NAME_state s;
+  double command;
+  int first = 1;
+  while (scanf("%lf", &command) == 1) {
+    printf("%.17g\\n", first ? NAME_reset(&s, command) : NAME_step(&s, command));
+    first = 0;
+  }
+  return 0;
+}
+"""
+INVERSE_DRIVER = """
+#include <stdio.h>
+#include "model.c"
+int main(void) {
+  static NAME_inverse_state s;
+  double wanted;
+  NAME_inverse_reset(&s, 0.0);
+  while (scanf("%lf", &wanted) == 1) {
+    const double command = NAME_inverse_step(&s, wanted, 0.0, 200.0);
+    printf("%.17g %.17g\\n", command, s.pressure_kpa);
+  }
+  return 0;
+}
+"""
+# Every block that has C, with numbers that make it matter.
+EVERYTHING = """name: every thing
+source: "a test"
+valve:
+  - transport_delay: {delay_s: 0.0372}
+  - valve_lag: {time_constant_s: 0.02}
+  - asymmetric_valve_lag: {filling_time_constant_s: 0.03, venting_time_constant_s: 0.06}
+  - chamber_lag: {filling_time_constant_s: 0.01, venting_time_constant_s: 0.02}
+actuator:
+  - bouc_wen: {alpha_mm_per_kpa: 0.2, beta_mm_per_kpa: 0.1, gamma_per_kpa: 0.02, eta_per_kpa: 0.03, exponent: 1}
+  - prandtl_ishlinskii: {r1_kpa: 0, w1_mm_per_kpa: 0.05, r2_kpa: 4.5, w2_mm_per_kpa: 0.07, r3_kpa: 11, w3_mm_per_kpa: 0.03}
+  - kelvin_voigt: {k0_kpa_per_mm: 300, k1_kpa_per_mm: 20, c1_kpa_s_per_mm: 100, k2_kpa_per_mm: 0, c2_kpa_s_per_mm: 900}
+  - pressure_dependent_creep: {hinge1_kpa: 15, compliance1_mm_per_kpa: 0.04, time_constant1_s: 2}
+  - characteristic: {curvature: 0.6, span_mm: 25}
+"""
+RATE_HZ, SECONDS = 1000, 60
+
+
+def wave_kpa(t):
+    """Sines of two frequencies, ramps, a jump and holds."""
+    if t < 10:
+        return 20 * (1 - math.cos(2 * math.pi * 0.4 * t))
+    if t < 25:
+        return 25 + 15 * math.sin(2 * math.pi * 0.9 * t) + 8 * math.sin(2 * math.pi * 3.1 * t)
+    if t < 35:
+        return 55.0 if t < 30 else 12.0
+    if t < 50:
+        return abs((t - 35) % 6 - 3) * 18
+    return 0.0 if t > 55 else 30.0
+
+
+class CModel(bench.BenchTest):
+
+    def compiled(self, driver, model, *arguments):
+        """The program of an exported model: no warning, whatever the compiler is asked for."""
+        done = self.softgrip("export", model, "--out", "model.c", "--rate-hz", RATE_HZ, "--json", *arguments)
+        told = json.loads(done.stdout)
+        self.write("driver.c", driver.replace("NAME", told["function"].removesuffix("_step")))
+        warnings = ["-Wall", "-Wextra", "-pedantic", "-Werror", *(["-Wno-unused-function"] if told["inverse"] else [])]
+        subprocess.run(["cc", "-std=c99", "-O1", "-ffp-contract=off", *warnings, "driver.c", "-o", "driver", "-lm"],
+                       cwd=self.folder, check=True, timeout=100)
+        return told
+
+    def run_driver(self, numbers):
+        done = subprocess.run([self.folder / "driver"], input="\n".join(map(repr, numbers)), capture_output=True,
+                              text=True, check=True, timeout=100)
+        return [list(map(float, line.split())) for line in done.stdout.splitlines()]
+
+    def simulated(self, model, commands):
+        rows = ["time_s,pressure_command_kpa"] + [f"{i / RATE_HZ!r},{c!r}" for i, c in enumerate(commands)]
+        self.write("command.csv", "\n".join(rows) + "\n")
+        self.softgrip("simulate", "--model", model, "--input", "command.csv", "--out", "simulated.csv", timeout_s=100)
+        return columns_of(self.folder / "simulated.csv")["displacement_mm"]
+
+    def compare(self, model):
+        commands = [wave_kpa(i / RATE_HZ) for i in range(RATE_HZ * SECONDS + 1)]
+        told = self.compiled(DRIVER, model)
+        ours = self.simulated(model, commands)
+        theirs = [row[0] for row in self.run_driver(commands)]
+        self.assertEqual(len(ours), len(theirs))
+        self.assertGreater(max(ours) - min(ours), 5)
+        self.assertLess(max(abs(a - b) for a, b in zip(ours, theirs)), 1e-9)
+        return told
+
+    def test_the_bench_twin_is_simulate_to_a_picometre(self):
+        self.assertTrue(self.compare(MODEL)["inverse"])
+
+    def test_the_published_model_has_no_inverse_and_says_why(self):
+        told = self.compare("config/models/zhang2025.yaml")
+        self.assertFalse(told["inverse"])
+        self.assertIn("beta", told["no_inverse"])
+        self.assertNotIn("inverse_step", (self.folder / "model.c").read_text())
+
+    def test_play_operators_and_a_bent_characteristic(self):
+        self.compare("config/models/soft_arm_play.yaml")
+
+    def test_every_block_that_has_c(self):
+        self.compare(self.write("every.yaml", EVERYTHING))
+
+    @staticmethod
+    def wanted():
+        """Out in two seconds, then to and fro within what creep lets be reached above 0 kPa."""
+        return [min(2.5 * t, 5.0) + (2 * (1 - math.cos(2 * math.pi * 0.3 * (t - 2))) if t > 2 else 0.0)
+                for t in (i / RATE_HZ for i in range(1, 20 * RATE_HZ))]
+
+    def test_the_inverse_undoes_the_body_exactly(self):
+        for text in ((self.folder / MODEL).read_text(), EVERYTHING):
+            body = self.write("body.yaml", text[:text.index("valve:")] + text[text.index("actuator:"):])
+            self.assertTrue(self.compiled(INVERSE_DRIVER, body)["inverse"])
+            wanted = self.wanted()
+            commands = [row[0] for row in self.run_driver(wanted)]
+            reached = self.simulated(body, [0.0, *commands])
+            self.assertLess(max(abs(a - b) for a, b in zip(reached[1:], wanted)), 1e-9)
+
+    def test_the_inverse_leads_the_lag_and_leaves_the_delay(self):
+        self.assertTrue(self.compiled(INVERSE_DRIVER, MODEL)["inverse"])
+        wanted = self.wanted()
+        reached = self.simulated(MODEL, [0.0, *(row[0] for row in self.run_driver(wanted))])
+        late = round(0.13 * RATE_HZ)
+        self.assertLess(max(abs(a - b) for a, b in zip(reached[1 + late:], wanted)), 0.02)
+        self.assertGreater(max(abs(a - b) for a, b in zip(reached[1:], wanted)), 0.2)
+
+    def test_what_has_no_c_is_named(self):
+        text = (self.folder / MODEL).read_text().replace("exponent: 1", "exponent: 2")
+        path = self.write("sharp.yaml", text + "sensor:\n  - sensor_lag: {time_constant_s: 0.01}\n")
+        done = self.softgrip("export", path, "--out", "x.c", "--rate-hz", "100", expect=3)
+        self.assertIn("no C is written yet for bouc_wen of an exponent above 1, sensor_lag", done.stderr)
+        self.assertFalse((self.folder / "x.c").exists())
+        self.softgrip("export", MODEL, "--out", "x.c", expect=2)
+        self.softgrip("export", MODEL, "--out", "x.c", "--rate-hz", "nan", expect=2)
+
+
+if __name__ == "__main__":
+    bench.main()

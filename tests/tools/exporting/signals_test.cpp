@@ -1,0 +1,51 @@
+#include "tools/exporting/signals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tools/exporting/mat_file.h"
+#include "tools/exporting/mcap_file.h"
+
+// What other people's programs read of them: tests/system/test_export.py.
+namespace softgrip::tools {
+namespace {
+
+std::vector<SignalGroup> two_fingers() {
+  return {
+      {"left", {0, 0.01, 0.02}, {{"p_kpa", {1, std::nan(""), 3}, {}}, {"state", {}, {"idle", "a,b", ""}}}},
+      {"right", {0.01, 0.03}, {{"p_kpa", {5, 6}, {}}}}};
+}
+
+TEST(Signals, OfAllFingersStandOnOneAxis) {
+  EXPECT_EQ(wide_csv(wide(two_fingers())),
+            "time_s,left_p_kpa,left_state,right_p_kpa\n"
+            "0,1,idle,\n"
+            "0.01,,\"a,b\",5\n"
+            "0.02,3,,\n"
+            "0.03,,,6\n");
+}
+
+TEST(Signals, WithoutChannelsKeepTheirNames) {
+  const SignalGroup all = wide({{"", {0}, {{"measured_mm", {1}, {}}}}});
+  EXPECT_EQ(all.signals.front().name, "measured_mm");
+}
+
+TEST(MatFile, NamesAreMatlabs) {
+  EXPECT_EQ(matlab_name("left displacement.mm"), "left_displacement_mm");
+  EXPECT_EQ(matlab_name("2nd_mm"), "x_2nd_mm");
+  EXPECT_EQ(matlab_name(""), "x_");
+  EXPECT_EQ(matlab_name(std::string(80, 'a')).size(), 63U);
+}
+
+TEST(McapFile, IsTheSameForTheSameSignalsAndFramedByItsMagic) {
+  const std::string bytes = mcap_bytes(two_fingers(), "test");
+  EXPECT_TRUE(bytes.starts_with("\x89MCAP0\r\n"));
+  EXPECT_TRUE(bytes.ends_with("\x89MCAP0\r\n"));
+  EXPECT_EQ(bytes, mcap_bytes(two_fingers(), "test"));
+  EXPECT_NE(bytes.find("{\"time_s\":0.01,\"state\":\"a,b\"}"), std::string::npos);
+  EXPECT_NE(mcap_bytes({}, "test").size(), 0U);
+}
+
+}  // namespace
+}  // namespace softgrip::tools

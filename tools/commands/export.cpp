@@ -1,0 +1,145 @@
+// softgrip export: recordings, logs and series for other programs.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/numbers.h"
+#include "base/version.h"
+#include "tools/command_line/model_input.h"
+#include "tools/command_line/option_check.h"
+#include "tools/command_line/output.h"
+#include "tools/commands/commands.h"
+#include "tools/exporting/c_source.h"
+#include "tools/exporting/mat_file.h"
+#include "tools/exporting/mcap_file.h"
+#include "tools/exporting/signals.h"
+
+namespace softgrip::tools {
+namespace {
+
+struct Options {
+  std::string input;
+  std::string out;
+  std::string format;
+  std::optional<double> rate_hz;
+  double pressure_max_kpa = 100;
+  bool json = false;
+};
+
+const std::vector<std::string>& formats() {
+  static const std::vector<std::string> names{"csv", "mat", "mcap", "c"};
+  return names;
+}
+
+/// What was asked for, or what the file's ending says; empty: neither.
+std::string format_of(const Options& options) {
+  if (!options.format.empty()) return options.format;
+  std::string ending = std::filesystem::path(options.out).extension().string();
+  if (!ending.empty()) ending.erase(0, 1);
+  const bool known = std::find(formats().begin(), formats().end(), ending) != formats().end();
+  return known ? ending : std::string();
+}
+
+void report(const Options& options, const std::string& format, const std::vector<SignalGroup>& groups,
+            const std::vector<std::string>& left_out) {
+  std::FILE* const stream = report_stream(options.out);
+  std::size_t signals = 0;
+  std::size_t samples = 0;
+  for (const SignalGroup& group : groups) {
+    signals += group.signals.size();
+    samples += group.time_s.size();
+  }
+  if (options.json) {
+    const nlohmann::ordered_json json{{"out", options.out}, {"format", format},   {"groups", groups.size()},
+                                      {"signals", signals}, {"samples", samples}, {"left_out", left_out}};
+    std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    return;
+  }
+  for (const std::string& name : left_out) std::fprintf(stream, "left out, a text: %s\n", name.c_str());
+  std::fprintf(stream, "%zu signals, %zu samples -> %s\n", signals, samples, options.out.c_str());
+}
+
+ExitCode export_c(const Options& options) {
+  if (!options.rate_hz)
+    return fail(ExitCode::usage, "--format c needs --rate-hz: how often the function will be called");
+  const auto model = read_model(options.input);
+  if (!model) return model.error();
+  const auto source = c_source(*model, 1 / *options.rate_hz, options.pressure_max_kpa,
+                               "softgrip " + std::string(software_version()));
+  if (!source) return fail(ExitCode::input_refused, options.input + ": " + source.error());
+  if (const auto written = write_output(options.out, source->text); !written)
+    return fail(ExitCode::io, written.error());
+  std::FILE* const stream = report_stream(options.out);
+  if (options.json) {
+    const nlohmann::ordered_json json{{"out", options.out},
+                                      {"format", "c"},
+                                      {"function", source->name + "_step"},
+                                      {"inverse", source->no_inverse.empty()},
+                                      {"no_inverse", source->no_inverse}};
+    std::fprintf(stream, "%s\n", json.dump().c_str());
+    return ExitCode::done;
+  }
+  if (!source->no_inverse.empty()) std::fprintf(stream, "no inverse: %s\n", source->no_inverse.c_str());
+  std::fprintf(stream, "%s_step(), %s Hz -> %s\n", source->name.c_str(),
+               significant(*options.rate_hz).c_str(), options.out.c_str());
+  return ExitCode::done;
+}
+
+ExitCode run(const Options& options) {
+  const std::string format = format_of(options);
+  if (format.empty())
+    return fail(ExitCode::usage,
+                "the ending of " + options.out + " says no format: --format csv, mat, mcap or c");
+  if (format == "c") return export_c(options);
+  if (format == "mat" && is_stream(options.out))
+    return fail(ExitCode::usage, "a .mat is written into a file, not into " + options.out);
+  const auto groups = read_signals(options.input);
+  if (!groups) return groups.error();
+  std::vector<std::string> left_out;
+  tl::expected<void, std::string> written;
+  if (format == "mat") {
+    auto texts = write_mat(options.out, wide(*groups));
+    if (!texts) return fail(ExitCode::io, texts.error());
+    left_out = std::move(*texts);
+  } else if (format == "mcap") {
+    written = write_output(options.out, mcap_bytes(*groups, "softgrip " + std::string(software_version())));
+  } else {
+    written = write_output(options.out, wide_csv(wide(*groups)));
+  }
+  if (!written) return fail(ExitCode::io, written.error());
+  report(options, format, *groups, left_out);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, ExitCode& outcome) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "export", "A recording, log or series for other programs: wide CSV, MATLAB, MCAP; a model as C");
+  command
+      ->add_option("INPUT", options->input,
+                   "A recording's folder, a log, or a series.csv; for C a model file")
+      ->required();
+  command
+      ->add_option("--format", options->format,
+                   "csv (a column per signal and finger), mat, mcap or c [the ending's]")
+      ->check(CLI::IsMember(formats()));
+  command->add_option("--out", options->out, "File to write ('-': standard output)")->required();
+  command->add_option("--rate-hz", options->rate_hz, "Calls per second of the C function")
+      ->check(number_between(0.1, 100000));
+  command->add_option("--pressure-max-kpa", options->pressure_max_kpa, "Up to which its inverse must exist")
+      ->check(number_between(0.1, 10000))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Say what was done as JSON");
+  command->callback([options, &outcome] { outcome = run(*options); });
+}
+
+}  // namespace softgrip::tools

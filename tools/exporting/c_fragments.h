@@ -1,0 +1,30 @@
+#pragma once
+// The C99 text of what an exported model is made of: what model/ computes, without templates, for a fixed
+// tick.
+
+#include <string_view>
+
+namespace softgrip::tools::c_text {
+
+/// Segments and linear responses (model/segment.h, model/exponential.h). Everything else stands on them.
+extern const std::string_view common;
+/// model/blocks/transport_delay.h; needs DELAY_PIECES, a power of two.
+extern const std::string_view transport_delay;
+/// model/blocks/valve_lag.h
+extern const std::string_view valve_lag;
+/// model/two_way_lag.h
+extern const std::string_view two_way_lag;
+/// model/blocks/bouc_wen.h, exponent 1
+extern const std::string_view bouc_wen;
+/// model/play.h and model/blocks/prandtl_ishlinskii.h
+extern const std::string_view prandtl_ishlinskii;
+/// model/blocks/kelvin_voigt.h
+extern const std::string_view kelvin_voigt;
+/// model/blocks/pressure_dependent_creep.h
+extern const std::string_view pressure_dependent_creep;
+/// model/characteristic_map.h and model/blocks/characteristic.h
+extern const std::string_view characteristic;
+/// The pressure that brings the body to a displacement one tick from now.
+extern const std::string_view inverse;
+
+}  // namespace softgrip::tools::c_text

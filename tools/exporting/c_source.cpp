@@ -1,0 +1,337 @@
+#include "tools/exporting/c_source.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "base/numbers.h"
+#include "control/elements/feedforward.h"
+#include "control/elements/limits.h"
+#include "control/feedforward/invertibility.h"
+#include "model/catalogue.h"
+#include "model/file/model_file.h"
+#include "tools/exporting/c_fragments.h"
+
+namespace softgrip::tools {
+namespace {
+
+/// What is cut needs these, in this order.
+constexpr std::string_view cutting = R"(
+static double at_share(segment s, double share) {
+  return s.begin + (s.end - s.begin) * share + bend_of(s) * (share * (1.0 - share));
+}
+
+static segment part_beyond(segment s, double share) {
+  const double value = at_share(s, share);
+  const double middle = at_share(s, (share + 1.0) * 0.5);
+  return bent(s.duration_s * (1.0 - share), value, s.end, (value + s.end + middle * 4.0) * (1.0 / 6.0));
+}
+)";
+constexpr std::string_view cutting_before = R"(
+static segment part_before(segment s, double share) {
+  const double value = at_share(s, share);
+  const double middle = at_share(s, share * 0.5);
+  return bent(s.duration_s * share, s.begin, value, (s.begin + value + middle * 4.0) * (1.0 / 6.0));
+}
+)";
+constexpr std::string_view passing = R"(
+static double fraction_at(segment s, double level) {
+  const double sum = (s.end - s.begin) + bend_of(s);
+  const double discriminant = sum * sum - 4.0 * bend_of(s) * (level - s.begin);
+  double root;
+  if (discriminant <= 0.0) return (level - s.begin) / (s.end - s.begin);
+  root = sqrt(discriminant);
+  return 2.0 * (level - s.begin) / (sum < 0.0 ? sum - root : sum + root);
+}
+)";
+constexpr std::string_view phi_one = R"(
+/* (exp(w) - 1) / w */
+static double phi_one(double w) {
+  if (fabs(w) < 0.004) return 1.0 + w * 0.5 + w * w * (1.0 / 6.0 + w * (1.0 / 24.0) + w * w * (1.0 / 120.0));
+  return expm1(w) / w;
+}
+)";
+
+/// What a block is in C. In code `#` stands for the block's number.
+struct CBlock {
+  std::string_view text;
+  std::string_view state;  ///< declaration
+  std::string_view reset;  ///< an expression: the output at rest
+  std::string_view step;  ///< of the pressure's way a statement that passes on, else an expression: a segment
+  std::string_view lead;  ///< of the pressure's way: the time constant for a rate; empty: it leads nothing
+};
+
+const std::map<std::string_view, CBlock>& c_blocks() {
+  static const CBlock two_way{c_text::two_way_lag, "double block_#;", "block_# = input",
+                              "two_way_lag_step(&s->block_#, values_#[0], values_#[1], in, s, next)",
+                              "(rate >= 0.0 ? values_#[0] : values_#[1])"};
+  static const std::map<std::string_view, CBlock> blocks{
+      {"transport_delay",
+       {c_text::transport_delay, "transport_delay block_#;",
+        "transport_delay_reset(&s->block_#, values_#[0], input)",
+        "transport_delay_step(&s->block_#, values_#[0], in, s, next)", ""}},
+      {"valve_lag",
+       {c_text::valve_lag, "double block_#;", "block_# = input",
+        "valve_lag_step(&s->block_#, values_#[0], in, s, next)", "values_#[0]"}},
+      {"asymmetric_valve_lag", two_way},
+      {"chamber_lag", two_way},
+      {"bouc_wen",
+       {c_text::bouc_wen, "bouc_wen block_#;", "bouc_wen_reset(&b->block_#, values_#, input)",
+        "bouc_wen_step(&b->block_#, values_#, in)", ""}},
+      {"prandtl_ishlinskii",
+       {c_text::prandtl_ishlinskii, "play block_#[PARTS_#];",
+        "prandtl_ishlinskii_reset(b->block_#, values_#, PARTS_#, input)",
+        "prandtl_ishlinskii_step(b->block_#, values_#, PARTS_#, in)", ""}},
+      {"kelvin_voigt",
+       {c_text::kelvin_voigt, "double block_#[PARTS_# + 1];",
+        "kelvin_voigt_reset(b->block_#, values_#, PARTS_#, input)",
+        "kelvin_voigt_step(b->block_#, values_#, PARTS_#, in)", ""}},
+      {"pressure_dependent_creep",
+       {c_text::pressure_dependent_creep, "double block_#[PARTS_#];",
+        "pressure_dependent_creep_reset(b->block_#, values_#, PARTS_#, input)",
+        "pressure_dependent_creep_step(b->block_#, values_#, PARTS_#, in)", ""}},
+      {"characteristic",
+       {c_text::characteristic, "double block_#;", "b->block_# = characteristic_of(values_#, output)",
+        "characteristic_step(&b->block_#, values_#, sum)", ""}},
+  };
+  return blocks;
+}
+
+std::string numbered(std::string_view text, std::size_t number) {
+  std::string out;
+  for (const char c : text) out += c == '#' ? std::to_string(number) : std::string(1, c);
+  return out;
+}
+
+std::string c_name(const std::string& name) {
+  std::string valid;
+  for (const char c : name) valid += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  return valid.empty() || std::isdigit(static_cast<unsigned char>(valid.front())) != 0 ? "model_" + valid
+                                                                                       : valid;
+}
+
+class Generator {
+ public:
+  Generator(const model::Model& model, double tick_s, std::string name)
+      : model_(model), tick_s_(tick_s), name_(std::move(name)) {
+    for (std::size_t i = 0; i < model.blocks.size(); ++i) {
+      const model::BlockInfo& info = model::catalogue()[model.blocks[i].type].info;
+      (info.kind == model::Kind::pressure  ? valve_
+       : info.kind == model::Kind::element ? elements_
+                                           : maps_)
+          .push_back(i);
+    }
+  }
+
+  std::string run(bool with_inverse) {
+    text_ += "#define TICK_S " + shortest(tick_s_) + "\n";
+    add_values();
+    add_fragments();
+    add_body();
+    if (with_inverse) text_ += c_text::inverse;
+    add_chain();
+    if (with_inverse) add_inverse();
+    return text_;
+  }
+
+ private:
+  [[nodiscard]] std::string_view id(std::size_t i) const {
+    return model::catalogue()[model_.blocks[i].type].info.id;
+  }
+  [[nodiscard]] const CBlock& block(std::size_t i) const { return c_blocks().at(id(i)); }
+  [[nodiscard]] bool has(std::initializer_list<std::string_view> ids) const {
+    for (std::size_t i = 0; i < model_.blocks.size(); ++i) {
+      if (std::find(ids.begin(), ids.end(), id(i)) != ids.end()) return true;
+    }
+    return false;
+  }
+
+  void add_values() {
+    for (std::size_t i = 0; i < model_.blocks.size(); ++i) {
+      const std::vector<double>& values = model_.blocks[i].values;
+      const std::string number = std::to_string(i);
+      std::string list;
+      for (const double value : values) list += (list.empty() ? "" : ", ") + shortest(value);
+      text_ +=
+          "/* " + std::string(id(i)) + " */\nstatic const double values_" + number + "[] = {" + list + "};\n";
+      const std::size_t parts = id(i) == "kelvin_voigt"               ? (values.size() - 1) / 2
+                                : id(i) == "prandtl_ishlinskii"       ? values.size() / 2
+                                : id(i) == "pressure_dependent_creep" ? values.size() / 3
+                                                                      : 0;
+      if (parts > 0) text_ += "#define PARTS_" + number + " " + std::to_string(parts) + "\n";
+    }
+  }
+
+  void add_fragments() {
+    text_ += c_text::common;
+    if (has({"transport_delay", "asymmetric_valve_lag", "chamber_lag", "prandtl_ishlinskii"}))
+      text_ += cutting;
+    if (has({"transport_delay", "asymmetric_valve_lag", "chamber_lag"})) text_ += cutting_before;
+    if (has({"prandtl_ishlinskii"})) text_ += passing;
+    if (has({"bouc_wen", "characteristic"})) text_ += phi_one;
+    std::vector<const char*> added;
+    for (std::size_t i = 0; i < model_.blocks.size(); ++i) {
+      const std::string_view fragment = block(i).text;
+      if (std::find(added.begin(), added.end(), fragment.data()) != added.end()) continue;
+      if (id(i) == "transport_delay")
+        text_ += "\n#define DELAY_PIECES " + std::to_string(delay_pieces()) + "\n";
+      text_ += fragment;
+      added.push_back(fragment.data());
+    }
+  }
+
+  /// Two pieces a tick, and a few more where a lag before it cuts them.
+  [[nodiscard]] std::size_t delay_pieces() const {
+    std::size_t needed = 16;
+    for (const std::size_t i : valve_) {
+      if (id(i) == "transport_delay")
+        needed = std::max(needed, 16 + static_cast<std::size_t>(4 * model_.blocks[i].values[0] / tick_s_));
+    }
+    std::size_t pieces = 64;
+    while (pieces < needed) pieces *= 2;
+    return pieces;
+  }
+
+  /// What stands behind the valve: elements add up, maps follow.
+  void add_body() {
+    text_ += "\n/* Behind the valve. */\ntypedef struct {\n";
+    for (const auto* list : {&elements_, &maps_}) {
+      for (const std::size_t i : *list) text_ += "  " + numbered(block(i).state, i) + "\n";
+    }
+    text_ +=
+        "  double output;\n} body;\n\nstatic double body_reset(body *b, double input) {\n  double output = "
+        "0.0;\n";
+    for (const std::size_t i : elements_) text_ += "  output += " + numbered(block(i).reset, i) + ";\n";
+    for (const std::size_t i : maps_) text_ += "  output = " + numbered(block(i).reset, i) + ";\n";
+    text_ +=
+        "  (void)input;\n  return b->output = output;\n}\n\nstatic double body_step(body *b, segment in) {\n";
+    text_ += "  segment sum = bent(in.duration_s, 0.0, 0.0, 0.0);\n";
+    for (const std::size_t i : elements_) {
+      text_ += "  {\n    const segment out = " + numbered(block(i).step, i) +
+               ";\n    sum.begin += out.begin;\n    sum.end += out.end;\n    sum.mean += out.mean;\n  }\n";
+    }
+    for (const std::size_t i : maps_) text_ += "  sum = " + numbered(block(i).step, i) + ";\n";
+    text_ += "  return b->output = sum.end;\n}\n";
+  }
+
+  void add_chain() {
+    text_ += "\n/* From the command to the displacement. */\ntypedef struct {\n  double command_kpa;\n";
+    for (const std::size_t i : valve_) text_ += "  " + numbered(block(i).state, i) + "\n";
+    text_ += "  body body;\n} " + name_ + "_state;\n";
+    text_ += "\nstatic void at_body(void *chain, segment in) {\n  " + name_ +
+             "_state *s = chain;\n  body_step(&s->body, in);\n}\n";
+    std::string next = "at_body";
+    for (std::size_t k = valve_.size(); k-- > 0;) {
+      const std::size_t i = valve_[k];
+      std::string step = numbered(block(i).step, i);
+      step.replace(step.rfind("next"), 4, next);
+      next = numbered("at_#", i);
+      text_ += "\nstatic void " + next + "(void *chain, segment in) {\n  " + name_ +
+               "_state *s = chain;\n  " + step + ";\n}\n";
+    }
+    text_ +=
+        "\n/* At rest, as if the command had risen from 0 once; returns the displacement [mm]. */\ndouble " +
+        name_ + "_reset(" + name_ +
+        "_state *s, double command_kpa) {\n  const double input = command_kpa;\n"
+        "  s->command_kpa = command_kpa;\n";
+    for (const std::size_t i : valve_) {
+      std::string reset = numbered(block(i).reset, i);
+      if (reset.starts_with("block_")) reset = "s->" + reset;
+      text_ += "  (void)(" + reset + ");\n";
+    }
+    text_ += "  return body_reset(&s->body, input);\n}\n";
+    text_ +=
+        "\n/* One tick of TICK_S on, while the command goes straight to command_kpa; returns the "
+        "displacement [mm]. "
+        "*/\ndouble " +
+        name_ + "_step(" + name_ +
+        "_state *s, double command_kpa) {\n"
+        "  const segment in = straight(TICK_S, s->command_kpa, command_kpa);\n  s->command_kpa = "
+        "command_kpa;\n  " +
+        next + "(s, in);\n  return s->body.output;\n}\n";
+  }
+
+  void add_inverse() {
+    const std::string type = name_ + "_inverse_state";
+    text_ +=
+        "\n/* The inverse keeps a body of its own. */\ntypedef struct {\n  body body;\n  double "
+        "pressure_kpa;\n"
+        "  double led_kpa[" +
+        std::to_string(valve_.size() + 1) + "];\n} " + type + ";\n";
+    text_ += "\nvoid " + name_ + "_inverse_reset(" + type +
+             " *s, double pressure_kpa) {\n  int i;\n"
+             "  s->pressure_kpa = pressure_kpa;\n  for (i = 0; i < " +
+             std::to_string(valve_.size() + 1) +
+             "; ++i) s->led_kpa[i] = pressure_kpa;\n  body_reset(&s->body, pressure_kpa);\n}\n";
+    text_ +=
+        "\n/* The command for displacement_mm one tick from now, behind the valve's delay; the pressure at "
+        "the "
+        "actuator\n   stays in [lowest_kpa, highest_kpa] and stands in s->pressure_kpa. */\ndouble " +
+        name_ + "_inverse_step(" + type +
+        " *s, double displacement_mm, double lowest_kpa, double highest_kpa) {\n"
+        "  const double pressure_kpa = body_solve(&s->body, s->pressure_kpa, displacement_mm, lowest_kpa, "
+        "highest_kpa);\n  double led = pressure_kpa;\n  body_step(&s->body, straight(TICK_S, "
+        "s->pressure_kpa, "
+        "pressure_kpa));\n  s->pressure_kpa = pressure_kpa;\n";
+    // From the actuator outwards: what a lag shall give out, and how fast that moves.
+    for (std::size_t k = valve_.size(); k-- > 0;) {
+      const CBlock& lag = block(valve_[k]);
+      if (lag.lead.empty()) continue;
+      const std::string at = "s->led_kpa[" + std::to_string(k) + "]";
+      text_ += "  {\n    const double rate = (led - " + at + ") / TICK_S;\n    " + at +
+               " = led;\n    led += " + numbered(lag.lead, valve_[k]) + " * rate;\n  }\n";
+    }
+    text_ += "  return led;\n}\n";
+  }
+
+  const model::Model& model_;
+  double tick_s_;
+  std::string name_;
+  std::vector<std::size_t> valve_, elements_, maps_;
+  std::string text_;
+};
+
+/// The blocks that have no C, in words; empty: all have.
+std::string without_c(const model::Model& model) {
+  std::string names;
+  for (const model::BlockSpec& spec : model.blocks) {
+    const std::string_view id = model::catalogue()[spec.type].info.id;
+    const bool sharp = id == "bouc_wen" && spec.values.back() != 1;
+    if (c_blocks().contains(id) && !sharp) continue;
+    names += (names.empty() ? "" : ", ") + std::string(id) + (sharp ? " of an exponent above 1" : "");
+  }
+  return names;
+}
+
+std::string why_no_inverse(const model::Model& model, double tick_s, double pressure_max_kpa) {
+  control::FeedforwardSettings settings;
+  settings.kind = control::FeedforwardKind::full_model;
+  control::LimitSettings limits;
+  limits.pressure_max_kpa = pressure_max_kpa;
+  const auto there = control::check_feedforward(model, settings, limits, tick_s);
+  return there ? std::string() : there.error().text;
+}
+
+}  // namespace
+
+tl::expected<CSource, std::string> c_source(const model::Model& model, double tick_s, double pressure_max_kpa,
+                                            const std::string& software) {
+  if (const std::string names = without_c(model); !names.empty())
+    return tl::unexpected("no C is written yet for " + names);
+  CSource source;
+  source.name = c_name(model.name);
+  source.no_inverse = why_no_inverse(model, tick_s, pressure_max_kpa);
+  std::string about = "/* " + model.name +
+                      ", a soft finger behind its valve, in C99: " + model::model_hash(model) + ", by " +
+                      software + ".\n";
+  if (!source.no_inverse.empty()) about += "   It has no inverse: " + source.no_inverse + "\n";
+  for (std::size_t at = 2; (at = about.find("*/", at)) != std::string::npos;) about.replace(at, 2, "* ");
+  source.text = about +
+                "   Pressures in kPa, displacements in mm, one call per tick. */\n#include <math.h>\n\n" +
+                Generator(model, tick_s, source.name).run(source.no_inverse.empty());
+  return source;
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,137 @@
+#include "tools/exporting/signals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "base/numbers.h"
+#include "document/problem.h"
+#include "sysid/import/foreign_file.h"
+#include "sysid/logs/csv_text.h"
+#include "sysid/logs/log_columns.h"
+#include "tools/command_line/command.h"
+#include "tools/command_line/log_input.h"
+#include "tools/recordings/recording.h"
+
+namespace softgrip::tools {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// Numbers where every cell that is not empty is one.
+Signal signal_of(const sysid::OtherColumn& column) {
+  Signal signal{column.name, {}, {}};
+  for (const std::string& cell : column.cells) {
+    const auto number = to_number(cell);
+    if (!number && !cell.empty()) return {column.name, {}, column.cells};
+    signal.values.push_back(number.value_or(nothing));
+  }
+  return signal;
+}
+
+SignalGroup group_of(const sysid::Log& log) {
+  SignalGroup group{log.channel, log.time_s, {}};
+  for (const sysid::KnownColumn& known : sysid::known_columns) {
+    const std::vector<double>& values = log.*known.values;
+    if (&known != &sysid::known_columns[sysid::column_time] && !values.empty())
+      group.signals.push_back({std::string(known.name), values, {}});
+  }
+  for (const sysid::OtherColumn& other : log.others) group.signals.push_back(signal_of(other));
+  return group;
+}
+
+/// A table that is no log; nothing where it has no times.
+std::vector<SignalGroup> groups_of(const sysid::Table& table) {
+  const std::size_t time = sysid::column_index(table, "time_s");
+  if (time == table.columns.size()) return {};
+  SignalGroup group{{}, table.columns[time].values, {}};
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (i != time) group.signals.push_back({sysid::word_of(table, i), table.columns[i].values, {}});
+  }
+  return {group};
+}
+
+bool rises(const std::vector<double>& time_s) {
+  return std::adjacent_find(time_s.begin(), time_s.end(), [](double a, double b) { return !(b > a); }) ==
+         time_s.end();
+}
+
+}  // namespace
+
+tl::expected<std::vector<SignalGroup>, ExitCode> read_signals(const std::string& path) {
+  document::Problems problems;
+  bool unreadable = false;
+  const auto table = sysid::read_foreign_file(path, {}, problems, unreadable);
+  if (!table) {
+    const ExitCode refused = refuse(problems);
+    return tl::unexpected(unreadable ? ExitCode::io : refused);
+  }
+  std::vector<SignalGroup> groups;
+  if (sysid::column_index(*table, "pressure_command_kpa") < table->columns.size()) {
+    const auto recording = read_recording(path, problems);
+    if (!recording) return tl::unexpected(problems.empty() ? recording.error() : refuse_logs(problems));
+    for (const sysid::Log& log : recording->channels) groups.push_back(group_of(log));
+    return groups;
+  }
+  groups = groups_of(*table);
+  if (!groups.empty() && rises(groups.front().time_s)) return groups;
+  problems.add({path,
+                {1, 1},
+                {},
+                "no column 'time_s' with times that rise: neither a log nor a series",
+                "softgrip import makes a log of it"});
+  return tl::unexpected(refuse(problems));
+}
+
+SignalGroup wide(const std::vector<SignalGroup>& groups) {
+  SignalGroup all;
+  for (const SignalGroup& group : groups)
+    all.time_s.insert(all.time_s.end(), group.time_s.begin(), group.time_s.end());
+  std::sort(all.time_s.begin(), all.time_s.end());
+  all.time_s.erase(std::unique(all.time_s.begin(), all.time_s.end()), all.time_s.end());
+  for (const SignalGroup& group : groups) {
+    std::vector<std::size_t> row;
+    for (const double time : group.time_s)
+      row.push_back(static_cast<std::size_t>(std::lower_bound(all.time_s.begin(), all.time_s.end(), time) -
+                                             all.time_s.begin()));
+    for (const Signal& signal : group.signals) {
+      Signal spread{group.name.empty() ? signal.name : group.name + "_" + signal.name, {}, {}};
+      if (signal.texts.empty()) {
+        spread.values.assign(all.time_s.size(), nothing);
+      } else {
+        spread.texts.resize(all.time_s.size());
+      }
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        if (signal.texts.empty()) {
+          spread.values[row[i]] = signal.values[i];
+        } else {
+          spread.texts[row[i]] = signal.texts[i];
+        }
+      }
+      all.signals.push_back(std::move(spread));
+    }
+  }
+  return all;
+}
+
+std::string wide_csv(const SignalGroup& group) {
+  std::string text = "time_s";
+  for (const Signal& signal : group.signals) text += ',' + sysid::as_cell(signal.name);
+  text += '\n';
+  for (std::size_t i = 0; i < group.time_s.size(); ++i) {
+    text += shortest(group.time_s[i]);
+    for (const Signal& signal : group.signals) {
+      text += ',';
+      if (!signal.texts.empty()) {
+        text += sysid::as_cell(signal.texts[i]);
+      } else if (std::isfinite(signal.values[i])) {
+        text += shortest(signal.values[i]);
+      }
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace softgrip::tools
