@@ -124,8 +124,8 @@ static segment bouc_wen_step(bouc_wen *b, const double *v, segment in) {
 )";
 
 const std::string_view prandtl_ishlinskii = R"(
-/* A sum of play operators; the values are threshold and weight in turn. */
-typedef struct { double output; int dragging, upwards; } play;
+/* A sum of play operators; the values are the largest load before the start, then threshold and weight in turn. */
+typedef struct { double output, zero; int dragging, upwards; } play;
 
 static double play_dragged(double input, double from, double reach) {
   if (input - reach > from) return input - reach;
@@ -162,10 +162,11 @@ static double prandtl_ishlinskii_reset(play *o, const double *v, int count, doub
   double sum = 0.0;
   int i;
   for (i = 0; i < count; ++i) {
-    o[i].output = play_dragged(input, 0.0, v[2 * i]);
+    o[i].zero = play_dragged(0.0, play_dragged(v[0], 0.0, v[1 + 2 * i]), v[1 + 2 * i]);
+    o[i].output = play_dragged(input, o[i].zero, v[1 + 2 * i]);
     o[i].dragging = 0;
     o[i].upwards = 0;
-    sum += v[2 * i + 1] * o[i].output;
+    sum += v[2 + 2 * i] * (o[i].output - o[i].zero);
   }
   return sum;
 }
@@ -174,9 +175,9 @@ static segment prandtl_ishlinskii_step(play *o, const double *v, int count, segm
   double begin = 0.0, end = 0.0, mean = 0.0;
   int i;
   for (i = 0; i < count; ++i) {
-    begin += v[2 * i + 1] * o[i].output;
-    mean += v[2 * i + 1] * play_step(&o[i], v[2 * i], in);
-    end += v[2 * i + 1] * o[i].output;
+    begin += v[2 + 2 * i] * (o[i].output - o[i].zero);
+    mean += v[2 + 2 * i] * (play_step(&o[i], v[1 + 2 * i], in) - o[i].zero);
+    end += v[2 + 2 * i] * (o[i].output - o[i].zero);
   }
   return bent(in.duration_s, begin, end, mean);
 }

@@ -156,8 +156,8 @@ class Generator {
       for (const double value : values) list += (list.empty() ? "" : ", ") + shortest(value);
       text_ +=
           "/* " + std::string(id(i)) + " */\nstatic const double values_" + number + "[] = {" + list + "};\n";
-      const std::size_t parts = id(i) == "kelvin_voigt"               ? (values.size() - 1) / 2
-                                : id(i) == "prandtl_ishlinskii"       ? values.size() / 2
+      const std::size_t parts = id(i) == "kelvin_voigt" || id(i) == "prandtl_ishlinskii"
+                                    ? (values.size() - 1) / 2
                                 : id(i) == "pressure_dependent_creep" ? values.size() / 3
                                                                       : 0;
       if (parts > 0) text_ += "#define PARTS_" + number + " " + std::to_string(parts) + "\n";

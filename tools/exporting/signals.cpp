@@ -42,7 +42,7 @@ SignalGroup group_of(const sysid::Log& log) {
 }
 
 /// A table that is no log; nothing where it has no times.
-std::vector<SignalGroup> groups_of(const sysid::Table& table) {
+std::vector<SignalGroup> groups_of(const sysid::ForeignTable& table) {
   const std::size_t time = sysid::column_index(table, "time_s");
   if (time == table.columns.size()) return {};
   SignalGroup group{{}, table.columns[time].values, {}};
