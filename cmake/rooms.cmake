@@ -118,8 +118,8 @@ softgrip_room(tools/studies
   USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)
 softgrip_room(tools/commands
-  USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/pages
-       sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
+  USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
+       sysid/fitting sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
        tools/recordings tools/importing tools/exporting tools/commissioning tools/investigation tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
 

@@ -1,4 +1,4 @@
-"""softgrip export, read back by programs of other people, and C held against simulate."""
+"""softgrip export, read back by programs of other people, and what identify, validate and diagnose write per log."""
 
 import csv
 import importlib.util
@@ -173,6 +173,69 @@ class Signals(bench.BenchTest):
             self.assertIn("does not end in .svg", self.softgrip("plot", "run", "--out", name, expect=2).stderr)
             self.assertFalse((self.folder / name).exists())
         self.assertTrue(self.softgrip("plot", "run", "--out", "-").stdout.startswith("<svg"))
+
+
+class PerLog(bench.BenchTest):
+
+    def setUp(self):
+        super().setUp()
+        for name, signal in (("a", "tp1"), ("b", "sp1")):
+            self.softgrip("simulate", "--model", MODEL, "--input", signal, "--out", f"{name}.csv", "--rate-hz", "20",
+                          "--noise-mm", "0.01")
+
+    def series(self, path, *models):
+        columns = columns_of(self.folder / path)
+        self.assertEqual(list(columns), ["time_s", "drive_kpa", "measured_mm", *(
+            f"{what}_{model}_mm" for model in models for what in ("predicted", "residual")), "held_out"])
+        for model in models:
+            for measured, predicted, residual in zip(columns["measured_mm"], columns[f"predicted_{model}_mm"],
+                                                     columns[f"residual_{model}_mm"]):
+                self.assertAlmostEqual(measured - predicted, residual, places=12)
+        return columns
+
+    @staticmethod
+    def rmse(errors):
+        return math.sqrt(sum(e * e for e in errors) / len(errors))
+
+    def test_identify_writes_what_was_fitted_and_what_was_held_out(self):
+        self.softgrip("identify", "--data", "a.csv", "--validate", "b.csv", "a.csv", "--out", "o", "--start", MODEL,
+                      "--starts", "2", "--fit-share", "0.5", timeout_s=120)
+        told = json.loads((self.folder / "o/identify.json").read_text())
+        fitted = self.series("o/a/series.csv", "identified")
+        log = columns_of(self.folder / "a.csv")
+        self.assertEqual(fitted["time_s"], log["time_s"])
+        self.assertEqual(fitted["measured_mm"], log["displacement_mm"])
+        held = [h == 1 for h in fitted["held_out"]]
+        self.assertAlmostEqual(sum(held) / len(held), 0.5, places=2)
+        self.assertAlmostEqual(self.rmse([e for e, h in zip(fitted["residual_identified_mm"], held) if not h]),
+                               told["rmse_mm"]["a"], places=9)
+        for path in ("o/b/series.csv", "o/a (2)/series.csv"):
+            self.assertEqual(set(self.series(path, "identified")["held_out"]), {1.0})
+
+    def test_validate_writes_them_with_out_alone(self):
+        self.softgrip("validate", "--model", MODEL, "--data", "a.csv", "b.csv", "--out", "o")
+        told = json.loads((self.folder / "o/validate.json").read_text())
+        for name in "ab":
+            columns = self.series(f"o/{name}/series.csv", "given")
+            self.assertAlmostEqual(self.rmse(columns["residual_given_mm"]), told["rmse_mm"][name], places=9)
+        self.softgrip("export", "o/a/series.csv", "--out", "series.mcap")
+        messages = mcap_reading.read(self.folder / "series.mcap")["/signals"]
+        self.assertEqual([m["measured_mm"] for _, m in messages], columns_of(self.folder / "a.csv")["displacement_mm"])
+
+    def test_diagnose_writes_every_model(self):
+        given = (self.folder / MODEL).read_text()
+        without = given[:given.index("valve:")] + given[given.index("actuator:"):]
+        self.softgrip("diagnose", "--model", self.write("given.yaml", without), "--data", "a.csv", "b.csv", "--out", "o",
+                      "--no-closed-loop", timeout_s=170)
+        told = json.loads((self.folder / "o/diagnosis.json").read_text())
+        self.assertEqual(told["verdict"], "cause_found")
+        columns = [self.series(f"o/{name}/series.csv", "given", "recalibrated", "extended") for name in "ab"]
+        given_mm, recalibrated_mm, extended_mm = (
+            self.rmse([e for c in columns for e in c[f"residual_{model}_mm"]])
+            for model in ("given", "recalibrated", "extended"))
+        self.assertGreater(given_mm, recalibrated_mm)
+        self.assertGreater(recalibrated_mm, 2 * extended_mm)
+        self.assertLess(extended_mm, 0.012)
 
 
 DRIVER = """

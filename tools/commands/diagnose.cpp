@@ -18,6 +18,7 @@
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/series_output.h"
 #include "tools/investigation/diagnosis_folder.h"
 
 namespace softgrip::tools {
@@ -137,6 +138,8 @@ ExitCode run(Options options) {
   const std::string page = (std::filesystem::path(options.out) / "report.html").string();
   if (const auto written = write_file(page, sysid::diagnosis_html(report)); !written)
     return fail(ExitCode::io, written.error());
+  if (const auto written = write_series(options.out, series_of(*result, *logs)); !written)
+    return fail(ExitCode::io, written.error());
   if (options.json) {
     std::fputs(json->c_str(), stdout);
   } else {
@@ -156,8 +159,9 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       ->add_option("--data", options->data, "Logs of one campaign, in order (CSV, or a recording's folder)")
       ->required();
   command
-      ->add_option("--out", options->out,
-                   "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html")
+      ->add_option(
+          "--out", options->out,
+          "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html, and series.csv per log")
       ->required();
   command->add_option(
       "--gauge", options->gauge,

@@ -22,6 +22,7 @@
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/series_output.h"
 
 namespace softgrip::tools {
 namespace {
@@ -185,6 +186,15 @@ ExitCode run(Options options) {
       return fail(ExitCode::io, written.error());
     }
   }
+  std::vector<sysid::LogSeries> series =
+      series_of(*logs, result->records, result->scores, "identified", false);
+  if (!validation_logs.empty()) {
+    for (sysid::LogSeries& one :
+         series_of(validation_logs, report.validation_records, report.validation, "identified", true))
+      series.push_back(std::move(one));
+  }
+  if (const auto written = write_series(options.out, series); !written)
+    return fail(ExitCode::io, written.error());
   if (options.json) {
     std::fputs(json.c_str(), stdout);
   } else {
@@ -235,7 +245,10 @@ void add_identify(CLI::App& program, ExitCode& outcome) {
   command->add_option("--branches", options->branches, "Creep branches of the base structure")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
-  command->add_option("--out", options->out, "Folder for model.yaml, identify.json, report.html")->required();
+  command
+      ->add_option("--out", options->out,
+                   "Folder for model.yaml, identify.json, report.html, and series.csv per log")
+      ->required();
   add_fit_options(*command, options->fit);
   add_structure_option(*command, *options);
   add_log_options(*command, options->logs);

@@ -15,6 +15,7 @@
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/series_output.h"
 
 namespace softgrip::tools {
 namespace {
@@ -53,6 +54,9 @@ ExitCode run(const Options& options) {
         return fail(ExitCode::io, written.error());
       }
     }
+    if (const auto written = write_series(options.out, series_of(*logs, v.records, v.scores, "given", true));
+        !written)
+      return fail(ExitCode::io, written.error());
   }
   if (options.json) {
     std::fputs(json.c_str(), stdout);
@@ -73,7 +77,7 @@ void add_validate(CLI::App& program, ExitCode& outcome) {
   CLI::App* command = program.add_subcommand("validate", "How well a model predicts logs");
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--data", options->data, "Logs to predict (CSV, or a recording's folder)")->required();
-  command->add_option("--out", options->out, "Folder for validate.json and report.html");
+  command->add_option("--out", options->out, "Folder for validate.json, report.html, and series.csv per log");
   command
       ->add_option("--at-most-percent", options->at_most_percent,
                    "Exit with 6 if the RMSE of a log is a larger share of its span")

@@ -1,0 +1,39 @@
+#include "sysid/logs/series.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace softgrip::sysid {
+namespace {
+
+TEST(Series, IsCsvWithEmptyCellsWhereNothingIs) {
+  Log log;
+  log.name = "run";
+  log.time_s = {0, 0.01, 0.02};
+  log.displacement_mm = {1, std::nan(""), 3};
+  Record record;
+  record.drive_kpa = {10, 20, 30};
+  record.reading_mm = {1, std::nan(""), std::nan("")};
+  LogSeries series = series_of(log, record, false);
+  series.predicted = {{"given", {0.5, 1.5, 2.5}}, {"extended", {1, 2, std::nan("")}}};
+  EXPECT_EQ(series_csv(series),
+            "time_s,drive_kpa,measured_mm,predicted_given_mm,residual_given_mm,predicted_extended_mm,"
+            "residual_extended_mm,"
+            "held_out\n"
+            "0,10,1,0.5,0.5,1,0,0\n"
+            "0.01,20,,1.5,,2,,0\n"
+            "0.02,30,3,2.5,0.5,,,1\n");
+  EXPECT_EQ(series_of(log, record, true).held_out, (std::vector<bool>{true, false, true}));
+}
+
+TEST(Series, ALogsNameStaysWithinTheFolder) {
+  EXPECT_EQ(series_path("tp1"), "tp1/series.csv");
+  EXPECT_EQ(series_path("2026-11-20T04-21-40Z_pick/left (2)"),
+            "2026-11-20T04-21-40Z_pick_left (2)/series.csv");
+  EXPECT_EQ(series_path(".."), "log/series.csv");
+  EXPECT_EQ(series_path("../../etc"), ".._.._etc/series.csv");
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

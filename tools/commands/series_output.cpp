@@ -1,0 +1,59 @@
+#include "tools/commands/series_output.h"
+
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "base/files.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::tools {
+
+std::vector<sysid::LogSeries> series_of(const std::vector<sysid::Log>& logs,
+                                        const std::vector<sysid::Record>& records,
+                                        const std::vector<sysid::Score>& scores, const std::string& model,
+                                        bool held_out) {
+  std::vector<sysid::LogSeries> all;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    all.push_back(sysid::series_of(logs[i], records[i], held_out));
+    all.back().predicted.push_back({model, scores[i].prediction_mm});
+  }
+  return all;
+}
+
+std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
+                                        const std::vector<sysid::Log>& logs) {
+  std::vector<std::pair<const char*, const sysid::StructureFit*>> fits{
+      {"given", &diagnosis.as_given}, {"recalibrated", &diagnosis.recalibrated}};
+  if (sysid::is_extended(diagnosis)) fits.emplace_back("extended", &diagnosis.extended);
+  std::vector<sysid::LogSeries> all;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const sysid::Record& record = diagnosis.records[i];
+    all.push_back(sysid::series_of(logs[i], record, false));
+    // A reading that was taken for an outlier was fitted by nobody, but it was not held out to judge by.
+    all.back().held_out.clear();
+    for (const auto& [name, fit] : fits) {
+      if (i < fit->point.starts.size())
+        all.back().predicted.push_back(
+            {name, sysid::predict(fit->point.model, record, fit->point.starts[i])});
+    }
+  }
+  return all;
+}
+
+tl::expected<void, std::string> write_series(const std::string& folder,
+                                             const std::vector<sysid::LogSeries>& series) {
+  std::map<std::string, int> seen;
+  for (const sysid::LogSeries& one : series) {
+    // A log that was fitted may be given once more to be predicted.
+    const std::string plain = sysid::series_path(one.name);
+    const int count = ++seen[plain];
+    const std::string name =
+        count == 1 ? plain : sysid::series_path(one.name + " (" + std::to_string(count) + ")");
+    const std::string path = (std::filesystem::path(folder) / name).string();
+    if (auto written = write_file(path, series_csv(one)); !written) return written;
+  }
+  return {};
+}
+
+}  // namespace softgrip::tools
