@@ -203,8 +203,8 @@ def play():
             self.say("## Crossed sensors\n\nAfter the cables were tidied up the two displacement sensors are at each other's "
                      "inputs. `doctor --move` moves one finger after the other and watches all sensors.")
             self.softgripd.end()
-            swap = ((r"sensor: \{input: 0,", "sensor: {input: 99,"), (r"sensor: \{input: 1,", "sensor: {input: 0,"),
-                    (r"sensor: \{input: 99,", "sensor: {input: 1,"))
+            swap = ((r"sensor: \{input: 0\b", "sensor: {input: 99"), (r"sensor: \{input: 1\b", "sensor: {input: 0"),
+                    (r"sensor: \{input: 99\b", "sensor: {input: 1"))
             self.rig(self.emulated.port, swap).rename(self.folder / "rig.yaml")
             (self.folder / "rig.yaml").write_text(
                 (self.folder / "rig.yaml").read_text().replace("boards/", "config/boards/").replace(

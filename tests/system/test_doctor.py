@@ -47,7 +47,7 @@ class Doctor(bench.BenchTest):
     def swapped(key, one, other):
         """Changes of the rig file that swap two terminals."""
         kind = "output" if key == "valve" else "input"
-        return [(rf"{key}: \{{{kind}: {a},", f"{key}: {{{kind}: {b},")
+        return [(rf"{key}: \{{{kind}: {a}\b", f"{key}: {{{kind}: {b}")
                 for a, b in ((one, 99), (other, one), (99, other))]
 
     def crossed(self, *swaps):

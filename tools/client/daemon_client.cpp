@@ -43,7 +43,7 @@ std::string listed(const Json& problems) {
   for (const Json& problem : problems) {
     text += "\n" + problem.value("file", "");
     // Without a line it is about the file as a whole.
-    if (!problem.value("line_text", "").empty()) {
+    if (!problem.contains("line_text") || problem["line_text"] != "") {
       text +=
           ":" + std::to_string(problem.value("line", 0)) + ":" + std::to_string(problem.value("column", 0));
     }
