@@ -140,6 +140,8 @@ def play():
             self.emulated.ask("fault cable")
             self.softgripd.wait_for_state("faulted")
             bench.wait_for("attempts", lambda: self.softgripd.status()["bus"]["attempts"] >= 2)
+            bench.wait_for("readings to be old", lambda: all(
+                channel["validity"] == "stale" for channel in self.softgripd.status()["channels"]))
             self.show_status()
             self.show(("acknowledge",))
             self.say("One cable is one failure for the doctor; what hangs on it is not judged:")
@@ -215,7 +217,8 @@ def play():
             self.write("faults.yaml", "faults:\n  - {name: cable, kind: disconnect}\n"
                                       "  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
             port = self.emulate()
-            rig = self.rig(port)
+            # Long before the board's watchdog, which else may be the first to be noticed.
+            rig = self.rig(port, ((r"bus_down_cycles: \d+", "bus_down_cycles: 10"),))
             self.emulated.end()
             self.softgripd = self.daemon(rig)
             self.no_cable()
