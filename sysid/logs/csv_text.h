@@ -16,7 +16,8 @@ struct Cell {
   int column;
 };
 
-/// Splits at separators outside double quotes. The cells keep their quotes. False where a quote is not closed.
+/// Splits at separators outside double quotes. The cells keep their quotes. False where a quote is not
+/// closed.
 bool split(std::string_view line, std::vector<Cell>& cells, char separator = ',');
 
 /// Without the blanks around it, and without the double quotes around that.
