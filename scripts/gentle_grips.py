@@ -23,6 +23,7 @@ sys.path.insert(0, str(ROOT / "tests/system"))
 
 ZONES = (("nearer by 4 to 8 mm", -8, -4), ("nearer by 0 to 4 mm", -4, 0), ("farther by 0 to 4 mm", 0, 4),
          ("farther by 4 to 8 mm", 4, 8.001))
+SLIPPED = "slips away when held"
 HEAD = ("part", "where", "fingers", "grips", "largest squeeze, median and most [kPa]", "answers",
         "time to the answer, median and most [s]")
 
@@ -42,7 +43,9 @@ import gripping  # noqa: E402
 ALLOWED_KPA = gripping.bound_kpa((ROOT / "config/sequences/pick_stone.yaml").read_text())
 
 
-def key_of(trial):
+def key_of(trial, judged):
+    if judged.slipped:
+        return trial.part.name, SLIPPED, trial.fingers
     if trial.part is None:
         return "nothing", "-", trial.fingers
     zone = next(name for name, low, high in ZONES if low <= trial.offset_mm < high)
@@ -53,7 +56,8 @@ def line_of(key, judged):
     answers = {}
     for one in judged:
         for told in one.answers:
-            answers[told[0]] = answers.get(told[0], 0) + 1
+            for answer in [told[0]] + ["PART LOST"] * ("PART LOST" in told):
+                answers[answer] = answers.get(answer, 0) + 1
     squeezes = [one.peak_kpa for one in judged]
     times = [one.answered_s for one in judged]
     squeeze = f"{statistics.median(squeezes):.1f}, {max(squeezes):.1f}" if key[0] != "nothing" else "-"
@@ -64,7 +68,7 @@ def line_of(key, judged):
 
 def table(groups):
     order = [part.name for part in gripping.PARTS] + ["nothing"]
-    zones = [name for name, _, _ in ZONES] + ["-"]
+    zones = [name for name, _, _ in ZONES] + [SLIPPED, "-"]
     keys = sorted(groups, key=lambda key: (order.index(key[0]), zones.index(key[1]), key[2]))
     rows = [HEAD, tuple("---" for _ in HEAD)] + [line_of(key, groups[key]) for key in keys]
     return "".join("| " + " | ".join(row) + " |\n" for row in rows)
@@ -77,7 +81,8 @@ def page(groups, problems, off, wire):
 ## Over the wire
 
 The first {args.wire} of these trials again in real time, `softgripd` at 100 Hz against `softgrip-rig` over Modbus TCP,
-{args.side_by_side} rigs side by side; both fingers meet the part at the same place. {summary(wire[0])}, {len(wire[1])}
+{args.side_by_side} rigs side by side; both fingers meet the part at the same place, and every fifth part is drawn out a second after it was held, which must be
+told. {summary(wire[0])}, {len(wire[1])}
 promises broken.
 
 {table(wire[0])}"""
@@ -107,7 +112,7 @@ def grips(finger, seeds, folder, play=gripping.play, side_by_side=1):
     with concurrent.futures.ThreadPoolExecutor(side_by_side) as pool:
         all_judged = list(pool.map(lambda trial: play(trial, finger, folder / f"{finger.model.stem}_{trial.seed}"), trials))
     for trial, judged in zip(trials, all_judged):
-        groups.setdefault(key_of(trial), []).append(judged)
+        groups.setdefault(key_of(trial, judged), []).append(judged)
         for problem in gripping.broken(trial, judged, ALLOWED_KPA):
             problems.append(problem)
             print(f"{finger.model.stem}, seed {trial.seed}: {problem}: {trial}", file=sys.stderr)

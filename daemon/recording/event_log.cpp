@@ -91,8 +91,8 @@ void describe_step(const Event& event, const Sequence* sequence, EventEntry& ent
   entry.code = fmt::format("{}", event.detail);
   const bool known = sequence != nullptr && event.detail < sequence->steps.size();
   const control::Step* step = known ? &sequence->steps[event.detail].step : nullptr;
-  entry.text = step != nullptr ? fmt::format("Step {} begins: {}.", event.detail, step->name)
-                               : fmt::format("Step {} begins.", event.detail);
+  entry.text = step != nullptr ? fmt::format("Step {} begins: {}.", event.detail + 1, step->name)
+                               : fmt::format("Step {} begins.", event.detail + 1);
 }
 
 void describe_result(const Event& event, const Sequence*, EventEntry& entry) {

@@ -10,6 +10,7 @@ import random
 import re
 import shutil
 import subprocess
+import time
 import types
 
 import bench
@@ -41,6 +42,11 @@ class Trial:
     tilt_mm: float  # the second finger's part is so much farther
     seed: int
 
+    @property
+    def slips(self):
+        """Over the wire every fifth part slips away while it is held."""
+        return self.part is not None and random.Random(f"slips {self.seed}").random() < 0.2
+
     def place_mm(self, finger):
         return max(1.0, self.part.expected_mm + self.offset_mm + (self.tilt_mm if finger else 0))
 
@@ -51,6 +57,7 @@ class Judged:
     peak_kpa: float  # the largest squeeze; 0 where nothing was touched
     answered_s: float | None  # from the start of motion to the first answer
     end: str
+    slipped: bool = False  # the part left while it was held
 
 
 class Finger:
@@ -155,6 +162,10 @@ def play_on_the_wire(trial, finger, folder):
         daemon = bench.Daemon(folder, bench.BenchTest.rig(types.SimpleNamespace(folder=folder), emulated.port))
         daemon.wait_for_state("idle")
         daemon.start("recipe")
+        if trial.slips:
+            daemon.wait_for_event("grip_result", code="HOLDING")
+            time.sleep(1)
+            emulated.ask("object out")
         finished = bench.wait_for("the recipe's end", lambda: next(
             (event for event in daemon.events() if event["kind"] == "sequence_finished"), None), patience_s=90)
         daemon.end()
@@ -163,7 +174,8 @@ def play_on_the_wire(trial, finger, folder):
             if process and process.running():
                 process.kill()
     recording = next((folder / "runs").glob("*/run.json")).parent
-    return judged(dataclasses.replace(trial, tilt_mm=0), finger, folder, recording, finished["code"])
+    one = judged(dataclasses.replace(trial, tilt_mm=0), finger, folder, recording, finished["code"])
+    return dataclasses.replace(one, slipped=trial.slips)
 
 
 def judged(trial, finger, folder, recording, end):
@@ -203,6 +215,8 @@ def broken(trial, judged, allowed_kpa):
         problems.append("HOLDING on an empty grip")
     if trial.part is not None and "NO PART" in told:
         problems.append("NO PART on a part")
+    if judged.slipped and "PART LOST" not in told:
+        problems.append("a part that slipped away was not missed")
     if not all(judged.answers):
         problems.append("no answer")
     return problems

@@ -52,6 +52,11 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+/// What there is to choose from; nothing where nothing is there.
+std::string in_brackets(const std::vector<std::string>& names) {
+  return names.empty() ? "" : " (" + listed(names) + ")";
+}
+
 /// A path, or a name in a folder of the configuration; empty if it is neither.
 std::string path_of(const std::string& word, const std::string& folder) {
   std::error_code error;
@@ -63,7 +68,8 @@ std::string path_of(const std::string& word, const std::string& folder) {
 std::string unknown_name(const std::string& word, const std::string& folder) {
   const std::vector<std::string> names = names_in(folder);
   const std::string near = document::nearest(word, names);
-  const std::string hint = near.empty() ? "there are " + listed(names) : "did you mean " + near + "?";
+  const std::string all = names.empty() ? "nothing is there" : "there are " + listed(names);
+  const std::string hint = near.empty() ? all : "did you mean " + near + "?";
   return "`" + document::shown(word) + "` is no file, nor a name in " + configuration_path(folder) + ": " +
          hint;
 }
@@ -88,9 +94,9 @@ std::optional<std::pair<double, double>> two_numbers(const std::string& text) {
 // --- the facts
 
 std::optional<Question> ask_board(const RigDraft&) {
-  return Question{
-      "the board's map, as a file or a name, or several (" + listed(names_in("boards")) + "), or `simulated`",
-      ""};
+  return Question{"the board's map, as a file or a name, or several" + in_brackets(names_in("boards")) +
+                      ", or `simulated`",
+                  ""};
 }
 
 std::string take_board(const std::string& text, RigDraft& draft) {
@@ -194,7 +200,7 @@ std::string take_fingers(const std::string& text, RigDraft& draft) {
 }
 
 std::optional<Question> ask_model(const RigDraft&) {
-  return Question{"model of the free finger, as a file or a name (" + listed(names_in("models")) + ")",
+  return Question{"model of the free finger, as a file or a name" + in_brackets(names_in("models")),
                   "bench_twin"};
 }
 
