@@ -3,6 +3,7 @@
 #   scripts/sanitize.sh        what meets bytes from outside under AddressSanitizer and UndefinedBehaviorSanitizer, what
 #                              has threads under ThreadSanitizer: the part of scripts/test.sh
 #   scripts/sanitize.sh all    every test program under the first two, all of the daemon's under the third
+#   scripts/sanitize.sh build  builds what the first form runs, and runs nothing
 # Without the tests that run other programs of the system. What a sanitizer reports is never forgiven, since the reports
 # are files: build/PRESET/reports.
 set -euo pipefail
@@ -10,6 +11,7 @@ cd "$(dirname "$(realpath "$0")")/.."
 . scripts/build.sh
 . scripts/ctest.sh
 
+only_build=false
 # sanitized PRESET TEST_PROGRAM ...
 sanitized() {
   local preset=$1 reports=$PWD/build/$1/reports failed=0
@@ -17,6 +19,7 @@ sanitized() {
   echo "$preset: $*"
   cmake --preset "$preset" >/dev/null
   build "$preset" "$@"
+  ! $only_build || return 0
   rm -rf "$reports" && mkdir -p "$reports"
   ASAN_OPTIONS=log_path=$reports/asan UBSAN_OPTIONS=print_stacktrace=1:log_path=$reports/ubsan \
     TSAN_OPTIONS=log_path=$reports/tsan \
@@ -30,7 +33,8 @@ sanitized() {
 }
 
 case ${1:-} in
-  "")
+  "" | build)
+    [ -z "${1:-}" ] || only_build=true
     sanitized asan-ubsan base_test drivers_test emulator_test
     sanitized tsan drivers_test daemon_test daemon_process_test
     ;;
@@ -38,5 +42,5 @@ case ${1:-} in
     sanitized asan-ubsan all
     sanitized tsan daemon_test daemon_process_test daemon_real_time_test drivers_test emulator_test emulator_wire_test
     ;;
-  *) sed -n '2,7s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac

@@ -42,11 +42,19 @@ if $quick; then
   exit 0
 fi
 
+# Beside the tests, most of which wait, with what they leave of the processors.
+mkdir -p build
+set -m  # a group of its own, so that it can be ended whole
+chrt --idle 0 bash scripts/sanitize.sh build >build/sanitize.log 2>&1 &
+sanitized=$!
+set +m
+trap 'kill -- -$sanitized 2>/dev/null || true' EXIT
 say "test"
 if $all; then run_ctest release ''; else run_ctest release 'recipe|campaign'; fi
 say "package"
 bash scripts/package.sh | tail -n 1
 say "sanitizers"
+wait $sanitized || { tail -n 40 build/sanitize.log >&2; exit 1; }
 if $all; then
   bash scripts/sanitize.sh all
   say "clang-tidy: every source"
