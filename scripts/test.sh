@@ -45,7 +45,7 @@ fi
 # Beside the tests, most of which wait, with what they leave of the processors.
 mkdir -p build
 set -m  # a group of its own, so that it can be ended whole
-chrt --idle 0 bash scripts/sanitize.sh build >build/sanitize.log 2>&1 &
+chrt --idle 0 bash scripts/sanitize.sh build </dev/null >build/sanitize.log 2>&1 &
 sanitized=$!
 set +m
 trap 'kill -- -$sanitized 2>/dev/null || true' EXIT
