@@ -34,7 +34,7 @@ class PrandtlIshlinskii {
 
   PrandtlIshlinskii(std::span<const T> values, const Preparation&) : trained_kpa_(values[0]) {
     for (std::size_t i = 1; i + 1 < values.size(); i += 2)
-      operators_.push_back({Play<T>(values[i]), values[i + 1], T(0.0)});
+      operators_.push_back({Play<T>(values[i]), values[i + 1]});
   }
 
   static std::string_view objection(std::span<const double> values) {
@@ -45,26 +45,27 @@ class PrandtlIshlinskii {
   }
 
   void reset(const T& input) {
-    output_ = T(0.0);
+    untouched_ = output_ = T(0.0);
     for (Operator& each : operators_) {
       each.play.reset(trained_kpa_);
       each.play.settle(T(0.0));
-      each.zero_kpa = each.play.output();
+      untouched_ += each.weight * each.play.output();
       each.play.settle(input);
-      output_ += each.weight * (each.play.output() - each.zero_kpa);
+      output_ += each.weight * each.play.output();
     }
+    output_ -= untouched_;
   }
   [[nodiscard]] T output() const { return output_; }
 
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
     const T begin = output_;
-    T end(0.0), mean(0.0);
+    T end = -untouched_, mean = -untouched_;
     const bool lasts = !is_zero(in.duration_s);
     for (Operator& each : operators_) {
       each.play.step(in, [&](const Segment<T>& part) {
-        if (lasts) mean += each.weight * (part.mean - each.zero_kpa) * (part.duration_s / in.duration_s);
+        if (lasts) mean += each.weight * part.mean * (part.duration_s / in.duration_s);
       });
-      end += each.weight * (each.play.output() - each.zero_kpa);
+      end += each.weight * each.play.output();
     }
     output_ = end;
     return {in.duration_s, begin, end, lasts ? mean : T((begin + end) * 0.5)};
@@ -73,20 +74,19 @@ class PrandtlIshlinskii {
   template <class U>
   [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
     U sum(0.0);
-    for (const Operator& each : operators_)
-      sum = sum + each.weight * (each.play.peek(end_kpa) - each.zero_kpa);
-    return sum;
+    for (const Operator& each : operators_) sum = sum + each.weight * each.play.peek(end_kpa);
+    return sum - untouched_;
   }
 
  private:
   struct Operator {
     Play<T> play;
     T weight;
-    T zero_kpa;  ///< its output at the start, at no pressure
   };
 
   T trained_kpa_;
   std::vector<Operator> operators_;
+  T untouched_{0.0};  ///< the sum at no pressure, as the finger's past left it
   T output_{0.0};
 };
 

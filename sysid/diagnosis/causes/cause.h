@@ -2,6 +2,7 @@
 // Causes: what a diagnosis may name. All that is known of one stands in its own file in this folder (form.h
 // says what that is), and registry.h lists them; here is what the rest of the diagnosis asks.
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -51,6 +52,10 @@ struct Cause {
   std::string_view sensor_shape;  ///< empty: no sensor without memory
 
   [[nodiscard]] constexpr bool is_static_sensor() const { return !sensor_shape.empty(); }
+  /// Whether its numbers may hold a share of the other's.
+  [[nodiscard]] constexpr bool is_confounded_with(const Cause& other) const {
+    return std::find(confounded_with.begin(), confounded_with.end(), other.id) != confounded_with.end();
+  }
   constexpr bool operator==(const Cause& other) const { return id == other.id; }
 };
 

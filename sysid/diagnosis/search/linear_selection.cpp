@@ -62,8 +62,9 @@ class ResidualsBesideBase final : public Residuals {
 
 /// One cause upon a base, on thinned records.
 struct Look {
-  FitPoint point;  ///< the base moved as it answers, with the cause
-  double mean_square_mm2 = std::numeric_limits<double>::infinity();
+  FitPoint beside;  ///< the base where it was, and the cause's numbers
+  Eigen::VectorXd left;
+  double mean_square_mm2 = std::numeric_limits<double>::infinity();  ///< the base moved as it answers
 };
 
 Look look_from(const std::vector<Record>& records, const Scan& base, const Cause& cause,
@@ -77,19 +78,31 @@ Look look_from(const std::vector<Record>& records, const Scan& base, const Cause
   const Minimum minimum = minimise(residuals, numbers.z(start), options);
   Eigen::VectorXd left(static_cast<Eigen::Index>(residuals.count()));
   if (!residuals.inner().evaluate(minimum.z, {left.data(), residuals.count()}, {})) return {};
-  const model::Model with_cause = numbers.point(minimum.z).model;
-  Look look{{}, minimum.rmse_mm * minimum.rmse_mm};
-  double least_mm2 = std::numeric_limits<double>::infinity();
+  return {numbers.point(minimum.z), std::move(left), minimum.rmse_mm * minimum.rmse_mm};
+}
+
+/// Where a fit may begin, and what is left there.
+struct Start {
+  FitPoint point;
+  double left_mm2 = std::numeric_limits<double>::infinity();
+};
+
+Start start_at(const std::vector<Record>& records, FitPoint point) {
+  const double left_mm2 = evaluate_structure(records, {}, point).mean_square_mm2;
+  return {std::move(point), left_mm2};
+}
+
+Start best_answer(const std::vector<Record>& records, const Scan& base, const Cause& cause,
+                  const Look& look) {
+  const model::BlockSpec& block = look.beside.model.blocks[*position_of(look.beside.model, cause)];
+  Start best{look.beside};
   for (const double share : answers) {
-    FitPoint point = base.answer_to(left, share);
-    point.model = model::with_block(point.model, with_cause.blocks[*position_of(with_cause, cause)]);
-    const double left_mm2 = evaluate_structure(records, {}, point).mean_square_mm2;
-    if (!(left_mm2 < least_mm2)) continue;
-    least_mm2 = left_mm2;
-    look.point = std::move(point);
+    FitPoint point = base.answer_to(look.left, share);
+    point.model = model::with_block(point.model, block);
+    Start one = start_at(records, std::move(point));
+    if (one.left_mm2 < best.left_mm2) best = std::move(one);
   }
-  if (look.point.starts.empty()) return {};
-  return look;
+  return best;
 }
 
 class SelectorUpon {
@@ -110,9 +123,8 @@ class SelectorUpon {
 
  private:
   /// Every cause that the structure lacks, with the best of its looks; best first.
-  std::vector<std::pair<Cause, Look>> looks() {
+  std::vector<std::pair<Cause, Look>> looks(const Scan& scan) {
     const StructureFit& current = result_.extended;
-    const Scan scan(data_.thinned, current.causes, current.point);
     std::vector<std::pair<Cause, Look>> list;
     if (!scan.usable()) return list;
     for (const Cause& cause : all_causes()) {
@@ -135,45 +147,42 @@ class SelectorUpon {
     return list;
   }
 
-  [[nodiscard]] double left_mm2(const FitPoint& point) const {
-    return evaluate_structure(data_.thinned, {}, point).mean_square_mm2;
-  }
-
   /// A base that was fitted while a cause was missing has bent itself to it: the base and the cause's numbers
-  /// in turns, each to what the other leaves.
-  [[nodiscard]] FitPoint settled(FitPoint point, const Cause& cause) const {
-    if (!options_.base_again) return point;
-    double least_mm2 = left_mm2(point);
+  /// in turns, each to what the other leaves. The cause is the last of `causes`.
+  [[nodiscard]] FitPoint settled(Start best, const std::vector<Cause>& causes) const {
+    if (!options_.base_again) return best.point;
+    const Cause& cause = causes.back();
     for (int turn = 0; turn < turns; ++turn) {
-      std::vector<Cause> all = result_.extended.causes;
-      all.push_back(cause);
-      FitPoint again = options_.base_again(without_effects(data_.records, point, all));
+      const model::Model& model = best.point.model;
+      FitPoint again = options_.base_again(without_effects(data_.records, best.point, causes));
       for (const Cause& one : result_.extended.causes)
-        again.model = model::with_block(again.model, point.model.blocks[*position_of(point.model, one)]);
+        again.model = model::with_block(again.model, model.blocks[*position_of(model, one)]);
       const Scan scan(data_.thinned, result_.extended.causes, again);
-      again.model = model::with_block(again.model, point.model.blocks[*position_of(point.model, cause)]);
-      if (!scan.usable()) return point;
-      Look look = look_from(data_.thinned, scan, cause, again);
-      const double by_itself_mm2 = left_mm2(again);
-      const bool moved = std::isfinite(look.mean_square_mm2) && left_mm2(look.point) < by_itself_mm2;
-      FitPoint& better = moved ? look.point : again;
-      const double now_mm2 = left_mm2(better);
-      if (!(now_mm2 < least_mm2)) return point;
-      point = std::move(better);
-      least_mm2 = now_mm2;
+      if (!scan.usable()) break;
+      again.model = model::with_block(again.model, model.blocks[*position_of(model, cause)]);
+      const Look look = look_from(data_.thinned, scan, cause, again);
+      Start now = start_at(data_.thinned, std::move(again));
+      if (std::isfinite(look.mean_square_mm2)) {
+        Start answered = best_answer(data_.thinned, scan, cause, look);
+        if (answered.left_mm2 < now.left_mm2) now = std::move(answered);
+      }
+      if (!(now.left_mm2 < best.left_mm2)) break;
+      best = std::move(now);
     }
-    return point;
+    return best.point;
   }
 
   std::vector<ScoredCandidate> score() {
-    std::vector<std::pair<Cause, Look>> found = looks();
+    const Scan scan(data_.thinned, result_.extended.causes, result_.extended.point);
+    const std::vector<std::pair<Cause, Look>> found = looks(scan);
     std::vector<ScoredCandidate> scored(std::min(finalists, found.size()));
     parallel_for(scored.size(), data_.threads, [&](std::size_t i) {
-      auto& [cause, look] = found[i];
+      const auto& [cause, look] = found[i];
       scored[i].candidate.cause = cause;
       std::vector<Cause> causes = result_.extended.causes;
       causes.push_back(cause);
-      scored[i].candidate.fit = fit_structure(data_.records, causes, settled(look.point, cause), finish);
+      const FitPoint start = settled(best_answer(data_.thinned, scan, cause, look), causes);
+      scored[i].candidate.fit = fit_structure(data_.records, causes, start, finish);
       scored[i].losses = linear_held_out_losses(data_.records, division_, *scored[i].candidate.fit);
     });
     std::stable_sort(scored.begin(), scored.end(), [](const ScoredCandidate& a, const ScoredCandidate& b) {

@@ -139,10 +139,8 @@ std::optional<StructureChoice> better_structure(const std::vector<Record>& recor
 
 /// What a cause is confounded with may have been the base's answer to it.
 bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) {
-  return std::any_of(causes.begin(), causes.end(), [&](const Cause& cause) {
-    return std::find(cause.confounded_with.begin(), cause.confounded_with.end(), finding.cause.id) !=
-           cause.confounded_with.end();
-  });
+  return std::any_of(causes.begin(), causes.end(),
+                     [&](const Cause& cause) { return cause.is_confounded_with(finding.cause); });
 }
 
 void take_back_confounded(BaseFindings& found, const SearchData& data, const BaseQuestion& question) {

@@ -25,11 +25,6 @@ bool widen(NamedCause& named, const std::vector<CauseParameter>& with) {
   return wider;
 }
 
-bool is_confounded(const Cause& cause, const Cause& other) {
-  return std::find(cause.confounded_with.begin(), cause.confounded_with.end(), other.id) !=
-         cause.confounded_with.end();
-}
-
 }  // namespace
 
 std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const std::vector<Record>& records,
@@ -41,7 +36,7 @@ std::vector<std::string> mix_intervals(std::vector<NamedCause>& named, const std
     const UncertainPoint at = uncertain_point(records, other.fit.point, space);
     std::string beside;
     for (NamedCause& cause : named) {
-      if (!widen(cause, block_numbers(at, cause.block_type)) || !is_confounded(cause.cause, other.cause))
+      if (!widen(cause, block_numbers(at, cause.block_type)) || !cause.cause.is_confounded_with(other.cause))
         continue;
       beside += (beside.empty() ? "" : " and ") + std::string(cause.cause.id);
     }
