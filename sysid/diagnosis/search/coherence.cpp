@@ -83,13 +83,12 @@ double rmse_apart_mm(const std::vector<Record>& records, const StructureFit& fit
 }  // namespace
 
 std::optional<std::string> strangers_among(const std::vector<Record>& records,
-                                           const StructureFit& recalibrated) {
+                                           const StructureFit& recalibrated, double together_mm2) {
   if (records.size() < 2) return std::nullopt;
-  const double together_mm = std::sqrt(recalibrated.mean_square_mm2);
   const double apart_mm = rmse_apart_mm(records, recalibrated);
-  if (!(apart_mm * apart_mm < apart_share * together_mm * together_mm)) return std::nullopt;
+  if (!(apart_mm * apart_mm < apart_share * together_mm2)) return std::nullopt;
   return "recalibrated on each log alone the model's error is " + significant(apart_mm, 2) +
-         " mm, on all together " + significant(together_mm, 2) +
+         " mm, on all together " + significant(std::sqrt(together_mm2), 2) +
          " mm: are these logs of one rig, and was nothing changed between them?";
 }
 
@@ -97,7 +96,7 @@ std::optional<std::string> why_not_about(const std::vector<Record>& records,
                                          const StructureFit& recalibrated) {
   const double share = explained_share(records, recalibrated);
   if (share >= least_explained_share) return std::nullopt;
-  if (auto strangers = strangers_among(records, recalibrated)) return strangers;
+  if (auto strangers = strangers_among(records, recalibrated, recalibrated.mean_square_mm2)) return strangers;
   return "the readings do not follow the command: fitted to them, the model explains " +
          fixed(100 * std::max(0.0, share), 0) + " % of their variance (sensor, its sign, channel, units?)";
 }

@@ -17,7 +17,11 @@ namespace softgrip::sysid {
 
 /// A sentence where several logs are each explained far better (a tenth of the mean square) by numbers of
 /// their own than by common ones: logs of two rigs, or of one that was changed.
+/// @param together_mm2  what common numbers leave, with the causes that were found: a drift too makes
+/// strangers
+///                      of logs, and explains them.
 [[nodiscard]] std::optional<std::string> strangers_among(const std::vector<Record>& records,
-                                                         const StructureFit& recalibrated);
+                                                         const StructureFit& recalibrated,
+                                                         double together_mm2);
 
 }  // namespace softgrip::sysid

@@ -19,8 +19,10 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t fewest_looks = 2;
-/// Candidates that are judged held out.
+/// Candidates that are judged held out: the best looks, and of them those that leave at most so many times
+/// the best one's mean square. A base that has bent itself hides half of a cause, never nearly all.
 constexpr std::size_t finalists = 5;
+constexpr double hopeless = 4;
 /// Of base and cause, each fitted beside the other.
 constexpr int turns = 2;
 constexpr int look_iterations = 15;
@@ -116,7 +118,8 @@ class SelectorUpon {
   }
 
   Selection run() {
-    while (result_.left.present && result_.chosen.size() < options_.most_causes && add_one()) {
+    while (result_.left.present && result_.chosen.size() < options_.most_causes && more_can_be_worth() &&
+           add_one()) {
     }
     return std::move(result_);
   }
@@ -175,7 +178,10 @@ class SelectorUpon {
   std::vector<ScoredCandidate> score() {
     const Scan scan(data_.thinned, result_.extended.causes, result_.extended.point);
     const std::vector<std::pair<Cause, Look>> found = looks(scan);
-    std::vector<ScoredCandidate> scored(std::min(finalists, found.size()));
+    const auto worse = std::find_if(found.begin(), found.end(), [&](const auto& one) {
+      return one.second.mean_square_mm2 > hopeless * found.front().second.mean_square_mm2;
+    });
+    std::vector<ScoredCandidate> scored(std::min(finalists, static_cast<std::size_t>(worse - found.begin())));
     parallel_for(scored.size(), data_.threads, [&](std::size_t i) {
       const auto& [cause, look] = found[i];
       scored[i].candidate.cause = cause;
@@ -215,6 +221,12 @@ class SelectorUpon {
     const double least = 0.01 * noise_mm_ * noise_mm_;
     if (result_.chosen.empty()) return least;
     return std::max(least, one_more_share * std::pow(result_.base_structure.excess_mm, 2));
+  }
+
+  /// No cause takes what is not there.
+  [[nodiscard]] bool more_can_be_worth() const {
+    const double left_mm = rmse_mm(result_.extended_losses);
+    return left_mm * left_mm - noise_mm_ * noise_mm_ > worth_mm2();
   }
 
   /// By itself or, where others explain as much, as one of them.

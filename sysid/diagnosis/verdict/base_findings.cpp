@@ -40,10 +40,6 @@ constexpr double worth_having = 0.9;
 constexpr double full_inclusion = 0.95;
 /// What an ingredient must bring of the mean square that the recalibrated base left beyond the noise.
 constexpr double least_share = 0.01;
-/// What causes upon a richer base must take together of what that base leaves: no base is a finger's own, and
-/// what makes up for that takes a part.
-constexpr double least_share_upon = 0.3;
-
 /// Where a cause was missing a choice of the ridge and of the simplest structure says little.
 constexpr double most_ridge = 1e-5;
 
@@ -214,7 +210,8 @@ bool outdoes(const BaseFindings& found, const Selection& plain) {
          found.fit.mean_square_mm2 < plain.extended.mean_square_mm2;
 }
 
-void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question) {
+void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question,
+                      double least_share) {
   SelectionOptions options;
   options.seed = question.seed;
   options.progress = question.progress;
@@ -229,7 +226,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   if (selection.chosen.empty()) return;
   const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
   std::vector<NamedCause> causes = name_chosen(data.records, selection.extended, selection.chosen);
-  const bool clear = after * after < (1 - least_share_upon) * before * before;
+  const bool clear = after * after < (1 - least_share) * before * before;
   for (NamedCause& cause : causes) {
     if (clear || !is_among(found.possible, cause))
       (clear ? found.named : found.possible).push_back(std::move(cause));

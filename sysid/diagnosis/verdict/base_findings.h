@@ -39,8 +39,16 @@ struct BaseQuestion {
 [[nodiscard]] std::optional<BaseFindings> find_base(const SearchData& data, const Selection& plain,
                                                     const BaseQuestion& question);
 
+/// What causes upon a richer base must take together of what that base leaves, as a mean square: no base is a
+/// finger's own, and what makes up for that takes a part. Where the base leaves little, its form is most of
+/// it.
+inline constexpr double least_share_of_much = 0.3;
+inline constexpr double least_share_of_little = 0.5;
+
 /// Goes on with the search for causes upon a richer base, and adds what it finds.
-void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question);
+/// @param least_share  one of the two above.
+void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question,
+                      double least_share);
 
 /// Whether a richer base, with what stands upon it, leaves clearly less held out than what was selected on
 /// the given one; or as little, where that is unphysical.

@@ -29,6 +29,9 @@ constexpr std::size_t fewest_samples = 200;
 /// What a staircase may leave of the mean square that stood without it: courses of tiny steps nibble at
 /// anything.
 constexpr double left_by_staircase = 0.25;
+/// Above so many times the noise what another base leaves may be a small effect: a finger's own form leaves
+/// between a half and one (textbook worlds without an effect).
+constexpr double worth_asking = 0.5;
 
 double square(double x) {
   return x * x;
@@ -188,7 +191,8 @@ class Diagnostician {
   void ask_for_base(const Selection& selection, const Division& division) {
     if (asked_for_base_) return;
     asked_for_base_ = true;
-    if (auto strangers = strangers_among(data_.records, d_.recalibrated)) {
+    if (auto strangers =
+            strangers_among(data_.records, d_.recalibrated, selection.extended.mean_square_mm2)) {
       d_.warnings.push_back(*strangers);
       return;
     }
@@ -220,7 +224,12 @@ class Diagnostician {
   void look_for_base(const Selection& selection, const Division& division) {
     ask_for_base(selection, division);
     if (!base_) return;
-    if (base_leaves_too_much(selection)) find_causes_upon(*base_, data_, base_question(division));
+    if (base_leaves_too_much(selection)) {
+      find_causes_upon(*base_, data_, base_question(division), least_share_of_much);
+    } else if (const Structure left = structure_of(base_->fit.residual_mm, d_.noise_mm);
+               left.present && left.excess_mm > worth_asking * d_.noise_mm) {
+      find_causes_upon(*base_, data_, base_question(division), least_share_of_little);
+    }
     if (!outdoes(*base_, selection)) base_.reset();
   }
 
