@@ -20,16 +20,16 @@
 //   static constexpr Column needs = ...;                   a column without which nothing can be told
 //   static constexpr std::array advice{Advice::...};       what tells it from others where no waveform does
 //   static constexpr std::string_view twin = "...";        gives the same readings whatever the command
-//   static constexpr std::array<std::string_view, N> counterparts{...};  what the sensor may be instead of
-//   the
-//                                                          actuator or the load, or the reverse, as asked
-//   static constexpr std::array<std::string_view, N> confounded_with{...};  where one of these may be there
-//                                                          too, the number is less certain than its fit says
+//   static constexpr std::array<std::string_view, N> counterparts{...};
+//       what the sensor may be instead of the actuator or the load, or the reverse, as asked
+//   static constexpr std::array<std::string_view, N> confounded_with{...};
+//       where one of these may be there too, the number is less certain than its fit says
 //   static constexpr bool is_stop = true;                  holds the readings back at a place
-//   static constexpr bool parts_twins = true;              remembers, between actuator and sensor: twins
-//                                                          before it and behind it differ
-//   static constexpr std::string_view sensor_shape = "...";  a sensor without memory, in words: a gauge shows
-//   it static constexpr bool found_by_fitting = false;        no trajectory shows it: it has no starts
+//   static constexpr bool parts_twins = true;
+//       remembers, between actuator and sensor: twins before it and behind it differ
+//   static constexpr std::string_view sensor_shape = "...";
+//       a sensor without memory, in words: a gauge shows it
+//   static constexpr bool found_by_fitting = false;        no trajectory shows it: it has no starts
 
 #include <array>
 #include <cstddef>

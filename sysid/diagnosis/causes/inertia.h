@@ -13,10 +13,9 @@ struct Inertia : FormOf<model::Inertia> {
     return every({{"period_s", {0.05, 0.15, 0.4, 1.0}}, {"damping_ratio", {0.15, 0.5}}});
   }
   static Bounds bounds(const Scales& s, const model::Model&) {
-    return {{"period_s",
-             2 * s.sample_s},  // a shorter one than two samples is not seen
-                               // From a damping of 1/sqrt(2) on nothing resonates: two lags in series.
-            {"damping_ratio", 0.005, 0.7}};
+    // A shorter period than two samples is not seen; from a damping of 1/sqrt(2) on nothing resonates: two
+    // lags in series.
+    return {{"period_s", 2 * s.sample_s}, {"damping_ratio", 0.005, 0.7}};
   }
 };
 

@@ -211,10 +211,11 @@ bool outdoes(const BaseFindings& found, const Selection& plain) {
 }
 
 void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question,
-                      double least_share) {
+                      const CausesUpon& allowed) {
   SelectionOptions options;
   options.seed = question.seed;
   options.progress = question.progress;
+  options.most_causes = allowed.most;
   StructureTrial base = found.chosen;
   base.structure.hysteresis = HysteresisForm::play;
   base.structure.characteristic = true;
@@ -225,9 +226,9 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   Selection selection = select_causes_upon(data, found.fit, question.noise_mm, question.division, options);
   if (selection.chosen.empty()) return;
   const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
-  std::vector<NamedCause> causes = name_chosen(data.records, selection.extended, selection.chosen);
-  const bool clear = after * after < (1 - least_share) * before * before;
-  for (NamedCause& cause : causes) {
+  const bool clear = after * after < (1 - allowed.least_share) * before * before;
+  if (!clear && !allowed.parts) return;
+  for (NamedCause& cause : name_chosen(data.records, selection.extended, selection.chosen)) {
     if (clear || !is_among(found.possible, cause))
       (clear ? found.named : found.possible).push_back(std::move(cause));
   }

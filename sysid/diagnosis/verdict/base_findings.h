@@ -2,6 +2,7 @@
 // Structure is a finding too: where no cause on the given base explains the data, a richer base is looked for
 // (sysid/structure), and each of its ingredients that gains on held-out blocks is named.
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -39,16 +40,19 @@ struct BaseQuestion {
 [[nodiscard]] std::optional<BaseFindings> find_base(const SearchData& data, const Selection& plain,
                                                     const BaseQuestion& question);
 
-/// What causes upon a richer base must take together of what that base leaves, as a mean square: no base is a
-/// finger's own, and what makes up for that takes a part. Where the base leaves little, its form is most of
-/// it.
-inline constexpr double least_share_of_much = 0.3;
-inline constexpr double least_share_of_little = 0.5;
+/// What may stand upon a richer base. No base is a finger's own, and what makes up for that takes a part.
+struct CausesUpon {
+  std::size_t most;    ///< so many causes
+  double least_share;  ///< of what the base leaves, as a mean square, they must take together
+  bool parts;          ///< those that take less are told as a part of it
+};
+inline constexpr CausesUpon upon_much_left{2, 0.3, true};
+/// Where the base leaves little, its form is most of it.
+inline constexpr CausesUpon upon_little_left{1, 0.65, false};
 
 /// Goes on with the search for causes upon a richer base, and adds what it finds.
-/// @param least_share  one of the two above.
 void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question,
-                      double least_share);
+                      const CausesUpon& allowed);
 
 /// Whether a richer base, with what stands upon it, leaves clearly less held out than what was selected on
 /// the given one; or as little, where that is unphysical.

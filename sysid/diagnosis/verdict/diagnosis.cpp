@@ -225,10 +225,10 @@ class Diagnostician {
     ask_for_base(selection, division);
     if (!base_) return;
     if (base_leaves_too_much(selection)) {
-      find_causes_upon(*base_, data_, base_question(division), least_share_of_much);
+      find_causes_upon(*base_, data_, base_question(division), upon_much_left);
     } else if (const Structure left = structure_of(base_->fit.residual_mm, d_.noise_mm);
                left.present && left.excess_mm > worth_asking * d_.noise_mm) {
-      find_causes_upon(*base_, data_, base_question(division), least_share_of_little);
+      find_causes_upon(*base_, data_, base_question(division), upon_little_left);
     }
     if (!outdoes(*base_, selection)) base_.reset();
   }

@@ -78,7 +78,7 @@ TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   Found found = found_in(finger);
   ASSERT_TRUE(found.base);
   const double before_mm = rmse_mm(found.base->losses);
-  find_causes_upon(*found.base, found.data, found.question, least_share_of_much);
+  find_causes_upon(*found.base, found.data, found.question, upon_much_left);
   EXPECT_TRUE(names(*found.base, "pressure_saturation"));
   EXPECT_LT(rmse_mm(found.base->losses), 0.5 * before_mm);
 }
