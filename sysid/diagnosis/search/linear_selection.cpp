@@ -29,8 +29,10 @@ constexpr int look_iterations = 15;
 /// A fit begins where the base answers to the cause best; a base that is not linear by far goes too far at
 /// once.
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
-/// The weight of the structures with a cause that stands alone; it shares its own with a twin.
+/// The share of the resampled blocks in which a cause is ahead of what it clearly beats.
 constexpr double least_inclusion = 0.95;
+/// Causes that a named one does not clearly beat.
+constexpr std::size_t most_undecided = 2;
 /// Of what the base leaves beyond the noise, as a mean square.
 constexpr double one_more_share = 0.05;
 constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
@@ -207,7 +209,7 @@ class SelectorUpon {
     ChosenCause chosen =
         weigh(best.candidate.cause,
               {*best.candidate.fit, best.losses, result_.extended_losses, noise_mm_, options_.seed}, scored);
-    if (!stands(chosen)) return false;
+    if (!stands(chosen, scored)) return false;
     result_.extended = *best.candidate.fit;
     result_.extended_losses = best.losses;
     result_.left = structure_of(result_.extended.residual_mm, noise_mm_);
@@ -229,12 +231,22 @@ class SelectorUpon {
     return left_mm * left_mm - noise_mm_ * noise_mm_ > worth_mm2();
   }
 
-  /// By itself or, where others explain as much, as one of them.
-  [[nodiscard]] static bool stands(const ChosenCause& chosen) {
-    const bool has_twin = std::any_of(chosen.rivals.begin(), chosen.rivals.end(),
-                                      [&](const Cause& rival) { return rival.id == chosen.cause.twin; });
-    if (chosen.rivals.size() > (has_twin ? 1U : 0U)) return true;
-    return chosen.inclusion >= (has_twin ? least_inclusion / 2 : least_inclusion);
+  /// By itself or as one of a few: what it does not clearly beat is a rival. More than a few settle nothing.
+  [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
+    const ScoredCandidate& best = scored.front();
+    const auto beats = [&](const BlockLosses& losses) {
+      return winning_share(best.losses, losses, options_.seed) >= least_inclusion;
+    };
+    if (!beats(result_.extended_losses)) return false;
+    std::size_t undecided = 0;
+    for (const ScoredCandidate& other : scored) {
+      const Cause& cause = other.candidate.cause;
+      if (cause == chosen.cause || is_free_form(other) || beats(other.losses)) continue;
+      ++undecided;
+      if (std::find(chosen.rivals.begin(), chosen.rivals.end(), cause) == chosen.rivals.end())
+        chosen.rivals.push_back(cause);
+    }
+    return undecided <= most_undecided;
   }
 
   const SearchData& data_;

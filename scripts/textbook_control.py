@@ -1,0 +1,217 @@
+#!/usr/bin/python3
+"""Textbook fingers followed in closed loop over the wire: the identified model's feedforward beside PID alone and beside
+the paper's scheme.
+
+    scripts/textbook_control.py --work DIR [--build build/release] [--fingers 10] [--side-by-side 5] [--page PAGE.md]
+                                [--frequencies-hz 0.05 0.1 0.2 0.5]
+
+Each finger (tests/blind/textbook) is identified from a campaign of its own, twice: `softgrip identify --structure auto` and
+`--structure bouc_wen`. Then tests/blind/textbook/rig.cpp plays it in real time on Modbus TCP, four times side by side, and
+softgripd's loop at 200 Hz follows the same sines on all four with four controllers, each with the gains of `softgrip
+tune`: the identified model's feedforward with PID; PID alone with a sensitivity of at most 2, and of at most 1.6; the
+paper's scheme, which is the inverse of the Bouc-Wen element with PID. What is told is the root mean square of reading
+minus reference from the second cycle on, and the same without the sensor's noise.
+"""
+import argparse
+import concurrent.futures
+import csv
+import json
+import math
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+NOISE_MM = 0.04  # of the fingers' sensor
+SCHEMES = {  # channel: (model, feedforward, largest sensitivity)
+    "identified": ("auto", "full_model", 2), "pid": ("auto", "none", 2), "careful_pid": ("auto", "none", 1.6),
+    "paper": ("bouc_wen", "bouc_wen", 2)}
+RIG = """name: textbook
+rate_hz: 200
+board:
+  modbus_tcp: {{map: {root}/config/boards/softgrip-sim.yaml, host: 127.0.0.1, port: {port}, unit: 1,
+    exchange_deadline_s: 0.05, connect_deadline_s: 0.5, first_pause_s: 0.1, longest_pause_s: 2}}
+channel_defaults:
+  limits: {{pressure_min_kpa: 0, pressure_max_kpa: 60, slew_up_kpa_per_s: 300, slew_down_kpa_per_s: 600,
+    displacement_min_mm: -3, displacement_max_mm: 40, displacement_margin_mm: 2}}
+  valve: {{at_v: [0, 10], is_kpa: [0, 100], range_kpa: [0, 100], on_power_loss: vents}}
+  sensor: {{at_v: [0, 10], is_mm: [-5, 45], valid_v: [0.1, 9.9]}}
+  pressure_monitor: {{at_v: [0, 10], is_kpa: [0, 100], valid_v: [-0.2, 10]}}
+channels:
+{channels}
+safety:
+  safe_action: {{idle: vent, closing: vent, holding: hold, releasing: vent}}
+  on_emergency_stop: vent
+  max_missed_commands: 20
+faults: {{bus_down_cycles: 20, invalid_reading_cycles: 10, displacement_cycles: 10, readback_cycles: 20,
+  readback_tolerance_kpa: 1, readback_delay_s: 0.1, pressure_cycles: 200, pressure_tolerance_kpa: 20,
+  pressure_delay_s: 0.5, slipped_cycles: 0, model_unfit_is_fault: false, unsteady_is_fault: false}}
+plausibility: {{max_age_s: 0.1, max_speed_mm_per_s: 500, jump_margin_mm: 0.5, frozen_after_s: 1.0, frozen_band_mm: 0,
+  frozen_command_kpa: 10}}
+detection: {{margin_mm: 1.0}}
+rest: {{band_mm: 0.5, time_s: 0.3, timeout_s: 10}}
+model_health: {{model_error_mm: 0.2, correlation_time_s: 1.0, noise_mm: 0.05, unfit_mm: 3}}
+real_time: {{required: false, priority: 70, cpus: [], lock_memory: true, cpu_dma_latency_us: 0}}
+recorder: {{mode: sequences, directory: {work}}}
+socket: {{path: {work}/socket, mode: "0660", sequence_directory: .}}
+"""
+CHANNEL = ("  - {{name: {name}, model: {work}/{model}/model.yaml, feedforward: {feedforward}, pid: {{{pid}}}, "
+           "valve: {{output: {at}}}, sensor: {{input: {at}}}, pressure_monitor: {{input: {monitor}}}}}")
+START = ("kp_kpa_per_mm: 1, ki_kpa_per_mm_s: 5, kd_kpa_s_per_mm: 0, derivative_filter_s: 0.02, setpoint_weight: 1, "
+         "anti_windup: back_calculation, tracking_time_s: 0.5")
+
+
+def run(*command, **options):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, command))} ends with {done.returncode}: {done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def write_rig(work, port, gains):
+    channels = [CHANNEL.format(name=name, work=work, model=model, feedforward=feedforward, pid=gains[name], at=at,
+                               monitor=4 + at) for at, (name, (model, feedforward, _)) in enumerate(SCHEMES.items())]
+    (work / "rig.yaml").write_text(RIG.format(root=ROOT, port=port, work=work, channels="\n".join(channels)))
+
+
+def tuned(softgrip, work):
+    """The gains of every scheme, as keys of a rig file's `pid`."""
+    gains = dict.fromkeys(SCHEMES, START)
+    write_rig(work, 1, gains)
+    for name, (model, feedforward, sensitivity) in SCHEMES.items():
+        snippet = run(softgrip, "tune", "--rig", work / "rig.yaml", "--channel", name, "--model", work / model / "model.yaml",
+                      "--feedforward", feedforward, "--max-sensitivity", sensitivity, "--out", "-")
+        gains[name] = ", ".join(line.strip() for line in snippet.splitlines() if line.startswith("  "))
+    return gains
+
+
+def steps_of(span_mm, frequencies_hz):
+    mean_mm, amplitude_mm = 0.45 * span_mm, 0.25 * span_mm
+    low = f"  - move: {{displacement_mm: {mean_mm - amplitude_mm:.3f}, speed_mm_per_s: 5, settle_s: 3}}\n"
+    return mean_mm, amplitude_mm, "".join(
+        low + f"  - track: {{mean_mm: {mean_mm:.3f}, amplitude_mm: {amplitude_mm:.3f}, frequency_hz: {hz:g}, "
+        f"cycles: {cycles_at(hz)}}}\n" for hz in frequencies_hz)
+
+
+def cycles_at(hz):
+    return 2 if hz < 0.1 else 3 if hz < 0.3 else 6
+
+
+def errors_mm(recording, frequencies_hz):
+    """Root mean square of reading minus reference by (frequency, scheme), the first cycle left out."""
+    rows = {}
+    with open(recording / "run.csv", encoding="ascii") as file:
+        for row in csv.DictReader(file):
+            if row["reference_mm"] and row["displacement_mm"]:
+                rows.setdefault((int(row["step"]), row["channel"]), []).append(
+                    float(row["displacement_mm"]) - float(row["reference_mm"]))
+    errors = {}
+    for number, hz in enumerate(frequencies_hz):
+        for name in SCHEMES:
+            values = rows[2 * number + 1, name]
+            values = values[len(values) // cycles_at(hz):]
+            errors[hz, name] = math.sqrt(statistics.fmean(value * value for value in values))
+    return errors
+
+
+def follow(build, work, finger, frequencies_hz):
+    """One finger from its campaign to its errors."""
+    make, seed = finger
+    work.mkdir(parents=True, exist_ok=True)
+    textbook, softgrip = build / "tests/blind/textbook", build / "tools/softgrip"
+    run(textbook / "textbook-world", "--seed", seed, "--make", make, "--out", work / "logs", "--truth", work / "truth.json")
+    logs = sorted((work / "logs").glob("*.csv"))
+    for structure in ("auto", "bouc_wen"):
+        run(softgrip, "identify", "--structure", structure, "--data", *logs, "--out", work / structure, "--threads", 1)
+    gains = tuned(softgrip, work)
+    with open(logs[0], encoding="ascii") as file:
+        span_mm = max(float(row["displacement_mm"]) for row in csv.DictReader(file))
+    mean_mm, amplitude_mm, steps = steps_of(span_mm, frequencies_hz)
+    (work / "sines.yaml").write_text("name: sines\nsteps:\n" + steps +
+                                     "  - release: {duration_s: 1, purge_s: 0.5, timeout_s: 15, on_fail: vent}\n")
+    with subprocess.Popen([textbook / "textbook-rig", "--seed", str(seed), "--make", make, "--fingers", str(len(SCHEMES))],
+                          stdout=subprocess.PIPE, text=True) as rig:
+        try:
+            port = re.search(r":(\d+)$", rig.stdout.readline().strip())[1]
+            write_rig(work, port, gains)
+            run(softgrip, "run", work / "sines.yaml", "--rig", work / "rig.yaml", "--record", work / "recording",
+                "--no-socket", "--quiet")
+        finally:
+            rig.terminate()
+    slips = json.loads((work / "recording/run.json").read_text()).get("slips")
+    return {"make": make, "seed": seed, "mean_mm": mean_mm, "amplitude_mm": amplitude_mm, "slips": slips,
+            "errors_mm": errors_mm(work / "recording", frequencies_hz)}
+
+
+def beyond_noise(error_mm):
+    """What is left of it without the sensor's noise; a tenth of that noise at least."""
+    return math.sqrt(max(error_mm**2 - NOISE_MM**2, (NOISE_MM / 10)**2))
+
+
+def best_pid(result, hz):
+    return min(result["errors_mm"][hz, name] for name in ("pid", "careful_pid"))
+
+
+def ratios(results, hz, scheme, measure):
+    return [measure(best_pid(r, hz)) / measure(r["errors_mm"][hz, scheme]) for r in results]
+
+
+def page(results, frequencies_hz, command):
+    lines = ["# Textbook fingers in closed loop", "", f"Written by `{command}`.", "",
+             " ".join(__doc__.split("\n\n")[2].replace("(tests/blind/textbook)", "(`tests/blind/textbook`)").split()), "",
+             f"{len(results)} fingers; sines of a quarter of their span about the middle. The sensor's noise is "
+             f"{NOISE_MM} mm: no scheme reads less.", "",
+             "| frequency | identified model and PID | best PID alone | paper's scheme | better than the best PID, median | "
+             "worst | without the noise, median | paper's scheme, median |", "|---|---|---|---|---|---|---|---|"]
+    for hz in frequencies_hz:
+        median = [statistics.median(r["errors_mm"][hz, "identified"] for r in results),
+                  statistics.median(best_pid(r, hz) for r in results),
+                  statistics.median(r["errors_mm"][hz, "paper"] for r in results)]
+        read, free = ratios(results, hz, "identified", float), ratios(results, hz, "identified", beyond_noise)
+        paper = ratios(results, hz, "paper", float)
+        lines.append(f"| {hz:g} Hz | " + " | ".join(f"{m:.3f} mm" for m in median) +
+                     f" | {statistics.median(read):.1f} times | {min(read):.1f} times | {statistics.median(free):.1f} times | "
+                     f"{statistics.median(paper):.1f} times |")
+    every = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", beyond_noise)]
+    raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
+    lines += ["", f"Over all fingers and frequencies: {statistics.median(raw):.1f} times better than the best PID as it is read, "
+              f"{statistics.median(every):.1f} times without the noise.", "", "## Finger by finger, as it is read", "",
+              "| make | seed | reference | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
+              "|---" * (3 + len(frequencies_hz)) + "|"]
+    for r in results:
+        cells = [", ".join(f"{e:.3f}" for e in (r["errors_mm"][hz, "identified"], best_pid(r, hz), r["errors_mm"][hz, "paper"]))
+                 for hz in frequencies_hz]
+        lines.append(f"| {r['make']} | {r['seed']} | {r['mean_mm']:.1f} ± {r['amplitude_mm']:.1f} mm | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--fingers", type=int, default=10)
+    parser.add_argument("--side-by-side", type=int, default=5)
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--frequencies-hz", type=float, nargs="+", default=[0.05, 0.1, 0.2, 0.5])
+    parser.add_argument("--page", type=pathlib.Path)
+    args = parser.parse_args()
+    build, work = args.build.resolve(), args.work.resolve()
+    makes = run(build / "tests/blind/textbook/textbook-world", "--makes").split()
+    fingers = [(makes[i % len(makes)], args.first_seed + i) for i in range(args.fingers)]
+    results = []
+    with concurrent.futures.ThreadPoolExecutor(args.side_by_side) as pool:
+        for result in pool.map(lambda f: follow(build, work / f"{f[0]}.{f[1]}", f, args.frequencies_hz), fingers):
+            results.append(result)
+            print(f"{result['make']} {result['seed']}: " + "; ".join(
+                f"{hz:g} Hz {result['errors_mm'][hz, 'identified']:.3f}, best PID {best_pid(result, hz):.3f}, paper "
+                f"{result['errors_mm'][hz, 'paper']:.3f} mm" for hz in args.frequencies_hz), flush=True)
+    if args.page:
+        command = f"scripts/textbook_control.py --work DIR --fingers {args.fingers} --page {args.page}"
+        args.page.write_text(page(results, args.frequencies_hz, command), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
