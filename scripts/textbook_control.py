@@ -7,15 +7,16 @@ the paper's scheme.
 
 Each finger (tests/blind/textbook) is identified from a campaign of its own, twice: `softgrip identify --structure auto` and
 `--structure bouc_wen`. Then tests/blind/textbook/rig.cpp plays it in real time on Modbus TCP, four times side by side, and
-softgripd's loop at 200 Hz follows the same sines on all four with four controllers, each with the gains of `softgrip
-tune`: the identified model's feedforward with PID; PID alone with a sensitivity of at most 2, and of at most 1.6; the
-paper's scheme, which is the inverse of the Bouc-Wen element with PID. What is told is the root mean square of reading
-minus reference from the second cycle on, and the same without the sensor's noise.
+softgripd's loop at 200 Hz follows the same sines on all four. First four PIDs try a sine of 0.2 Hz, as `softgrip tune`
+gives them for sensitivities of at most 2, 1.6, 1.3 and 1.15; the better two of them are kept. Then four controllers follow
+all sines: the identified model's feedforward with PID, the two PIDs, and the paper's scheme, which is the inverse of the
+Bouc-Wen element with PID, both with the gains of `softgrip tune`. What is told is the root mean square of reading minus
+reference from the second cycle on, and the same without the sensor's noise, which comes after the motion and so adds its
+own mean square to every scheme's.
 """
 import argparse
 import concurrent.futures
 import csv
-import json
 import math
 import pathlib
 import re
@@ -25,9 +26,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NOISE_MM = 0.04  # of the fingers' sensor
-SCHEMES = {  # channel: (model, feedforward, largest sensitivity)
-    "identified": ("auto", "full_model", 2), "pid": ("auto", "none", 2), "careful_pid": ("auto", "none", 1.6),
-    "paper": ("bouc_wen", "bouc_wen", 2)}
+SENSITIVITIES = (2, 1.6, 1.3, 1.15)
+PIDS = {f"pid_{sensitivity:g}".replace(".", "_"): ("auto", "none", sensitivity) for sensitivity in SENSITIVITIES}
+OTHERS = {"identified": ("auto", "full_model", 2), "paper": ("bouc_wen", "bouc_wen", 2)}
+SCHEMES = PIDS | OTHERS  # channel: (model, feedforward, largest sensitivity)
+TRIAL_HZ = (0.2,)
 RIG = """name: textbook
 rate_hz: 200
 board:
@@ -71,35 +74,27 @@ def run(*command, **options):
 
 
 def write_rig(work, port, gains):
-    channels = [CHANNEL.format(name=name, work=work, model=model, feedforward=feedforward, pid=gains[name], at=at,
-                               monitor=4 + at) for at, (name, (model, feedforward, _)) in enumerate(SCHEMES.items())]
+    channels = [CHANNEL.format(name=name, work=work, model=SCHEMES[name][0], feedforward=SCHEMES[name][1], pid=pid, at=at,
+                               monitor=4 + at) for at, (name, pid) in enumerate(gains.items())]
     (work / "rig.yaml").write_text(RIG.format(root=ROOT, port=port, work=work, channels="\n".join(channels)))
 
 
 def tuned(softgrip, work):
     """The gains of every scheme, as keys of a rig file's `pid`."""
-    gains = dict.fromkeys(SCHEMES, START)
-    write_rig(work, 1, gains)
+    gains = {}
     for name, (model, feedforward, sensitivity) in SCHEMES.items():
-        snippet = run(softgrip, "tune", "--rig", work / "rig.yaml", "--channel", name, "--model", work / model / "model.yaml",
-                      "--feedforward", feedforward, "--max-sensitivity", sensitivity, "--out", "-")
+        write_rig(work, 1, {name: START})
+        snippet = run(softgrip, "tune", "--rig", work / "rig.yaml", "--model", work / model / "model.yaml", "--feedforward",
+                      feedforward, "--max-sensitivity", sensitivity, "--out", "-")
         gains[name] = ", ".join(line.strip() for line in snippet.splitlines() if line.startswith("  "))
     return gains
-
-
-def steps_of(span_mm, frequencies_hz):
-    mean_mm, amplitude_mm = 0.45 * span_mm, 0.25 * span_mm
-    low = f"  - move: {{displacement_mm: {mean_mm - amplitude_mm:.3f}, speed_mm_per_s: 5, settle_s: 3}}\n"
-    return mean_mm, amplitude_mm, "".join(
-        low + f"  - track: {{mean_mm: {mean_mm:.3f}, amplitude_mm: {amplitude_mm:.3f}, frequency_hz: {hz:g}, "
-        f"cycles: {cycles_at(hz)}}}\n" for hz in frequencies_hz)
 
 
 def cycles_at(hz):
     return 2 if hz < 0.1 else 3 if hz < 0.3 else 6
 
 
-def errors_mm(recording, frequencies_hz):
+def errors_mm(recording, names, frequencies_hz):
     """Root mean square of reading minus reference by (frequency, scheme), the first cycle left out."""
     rows = {}
     with open(recording / "run.csv", encoding="ascii") as file:
@@ -109,40 +104,54 @@ def errors_mm(recording, frequencies_hz):
                     float(row["displacement_mm"]) - float(row["reference_mm"]))
     errors = {}
     for number, hz in enumerate(frequencies_hz):
-        for name in SCHEMES:
+        for name in names:
             values = rows[2 * number + 1, name]
             values = values[len(values) // cycles_at(hz):]
             errors[hz, name] = math.sqrt(statistics.fmean(value * value for value in values))
     return errors
 
 
+def followed(build, work, finger, gains, frequencies_hz):
+    """The errors of so many controllers on as many equal fingers, side by side."""
+    make, seed = finger
+    span_mm = span_of(work)
+    mean_mm, amplitude_mm = 0.45 * span_mm, 0.25 * span_mm
+    low = f"  - move: {{displacement_mm: {mean_mm - amplitude_mm:.3f}, speed_mm_per_s: 5, settle_s: 3, on_contact: ignore}}\n"
+    steps = "".join(low + f"  - track: {{mean_mm: {mean_mm:.3f}, amplitude_mm: {amplitude_mm:.3f}, frequency_hz: {hz:g}, "
+                    f"cycles: {cycles_at(hz)}}}\n" for hz in frequencies_hz)
+    (work / "sines.yaml").write_text("name: sines\nsteps:\n" + steps +
+                                     "  - release: {duration_s: 1, purge_s: 0.5, timeout_s: 15, on_fail: vent}\n")
+    with subprocess.Popen([build / "tests/blind/textbook/textbook-rig", "--seed", str(seed), "--make", make, "--fingers",
+                           str(len(gains))], stdout=subprocess.PIPE, text=True) as rig:
+        try:
+            write_rig(work, re.search(r":(\d+)$", rig.stdout.readline().strip())[1], gains)
+            recording = work / f"recording.{'.'.join(gains)}"
+            run(build / "tools/softgrip", "run", work / "sines.yaml", "--rig", work / "rig.yaml", "--record", recording,
+                "--no-socket", "--quiet")
+        finally:
+            rig.terminate()
+    return errors_mm(recording, gains, frequencies_hz)
+
+
+def span_of(work):
+    with open(work / "logs/log_1.csv", encoding="ascii") as file:
+        return max(float(row["displacement_mm"]) for row in csv.DictReader(file))
+
+
 def follow(build, work, finger, frequencies_hz):
     """One finger from its campaign to its errors."""
     make, seed = finger
     work.mkdir(parents=True, exist_ok=True)
-    textbook, softgrip = build / "tests/blind/textbook", build / "tools/softgrip"
-    run(textbook / "textbook-world", "--seed", seed, "--make", make, "--out", work / "logs", "--truth", work / "truth.json")
-    logs = sorted((work / "logs").glob("*.csv"))
+    run(build / "tests/blind/textbook/textbook-world", "--seed", seed, "--make", make, "--out", work / "logs", "--truth",
+        work / "truth.json")
     for structure in ("auto", "bouc_wen"):
-        run(softgrip, "identify", "--structure", structure, "--data", *logs, "--out", work / structure, "--threads", 1)
-    gains = tuned(softgrip, work)
-    with open(logs[0], encoding="ascii") as file:
-        span_mm = max(float(row["displacement_mm"]) for row in csv.DictReader(file))
-    mean_mm, amplitude_mm, steps = steps_of(span_mm, frequencies_hz)
-    (work / "sines.yaml").write_text("name: sines\nsteps:\n" + steps +
-                                     "  - release: {duration_s: 1, purge_s: 0.5, timeout_s: 15, on_fail: vent}\n")
-    with subprocess.Popen([textbook / "textbook-rig", "--seed", str(seed), "--make", make, "--fingers", str(len(SCHEMES))],
-                          stdout=subprocess.PIPE, text=True) as rig:
-        try:
-            port = re.search(r":(\d+)$", rig.stdout.readline().strip())[1]
-            write_rig(work, port, gains)
-            run(softgrip, "run", work / "sines.yaml", "--rig", work / "rig.yaml", "--record", work / "recording",
-                "--no-socket", "--quiet")
-        finally:
-            rig.terminate()
-    slips = json.loads((work / "recording/run.json").read_text()).get("slips")
-    return {"make": make, "seed": seed, "mean_mm": mean_mm, "amplitude_mm": amplitude_mm, "slips": slips,
-            "errors_mm": errors_mm(work / "recording", frequencies_hz)}
+        run(build / "tools/softgrip", "identify", "--structure", structure, "--data", *sorted((work / "logs").glob("*.csv")),
+            "--out", work / structure, "--threads", 1)
+    gains = tuned(build / "tools/softgrip", work)
+    trial = followed(build, work, finger, {name: gains[name] for name in PIDS}, TRIAL_HZ)
+    pids = sorted(PIDS, key=lambda name: trial[TRIAL_HZ[0], name])[:2]
+    errors = followed(build, work, finger, {name: gains[name] for name in (*OTHERS, *pids)}, frequencies_hz)
+    return {"make": make, "seed": seed, "span_mm": span_of(work), "pids": pids, "errors_mm": errors}
 
 
 def beyond_noise(error_mm):
@@ -151,7 +160,7 @@ def beyond_noise(error_mm):
 
 
 def best_pid(result, hz):
-    return min(result["errors_mm"][hz, name] for name in ("pid", "careful_pid"))
+    return min(result["errors_mm"][hz, name] for name in result["pids"])
 
 
 def ratios(results, hz, scheme, measure):
@@ -183,7 +192,7 @@ def page(results, frequencies_hz, command):
     for r in results:
         cells = [", ".join(f"{e:.3f}" for e in (r["errors_mm"][hz, "identified"], best_pid(r, hz), r["errors_mm"][hz, "paper"]))
                  for hz in frequencies_hz]
-        lines.append(f"| {r['make']} | {r['seed']} | {r['mean_mm']:.1f} ± {r['amplitude_mm']:.1f} mm | " + " | ".join(cells) + " |")
+        lines.append(f"| {r['make']} | {r['seed']} | {0.45 * r['span_mm']:.1f} ± {0.25 * r['span_mm']:.1f} mm | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 

@@ -22,6 +22,10 @@ std::string sentence(const std::string& what, int error) {
   return fmt::format("{}: {}", what, std::strerror(error));
 }
 
+std::string csv_in(const std::string& path) {
+  return path + "/run.csv";
+}
+
 /// All of `text`, or the errno of what stopped it.
 int write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
@@ -36,16 +40,20 @@ int write_all(int descriptor, std::string_view text) {
 
 }  // namespace
 
+std::string recorded_already(const std::string& path) {
+  std::error_code ignored;
+  if (path.empty() || !std::filesystem::exists(csv_in(path), ignored)) return {};
+  return csv_in(path) + " exists already; a recording is never overwritten";
+}
+
 tl::expected<RunFolder, std::string> RunFolder::create(const std::string& path, std::string_view header,
                                                        bool durable) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (error) return tl::unexpected(fmt::format("{}: {}", path, error.message()));
-  const std::string file = path + "/run.csv";
+  const std::string file = csv_in(path);
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, file_mode);
-  if (descriptor < 0 && errno == EEXIST) {
-    return tl::unexpected(file + " exists already; a recording is never overwritten");
-  }
+  if (descriptor < 0 && errno == EEXIST) return tl::unexpected(recorded_already(path));
   if (descriptor < 0) return tl::unexpected(sentence(file, errno));
   RunFolder folder(path, descriptor, durable);
   if (!folder.append(header)) {

@@ -9,6 +9,10 @@
 
 namespace softgrip::daemon {
 
+/// A sentence where `path` holds a recording already: one is never overwritten. Empty: a run may be recorded
+/// there, or `path` is empty. For whoever would rather know before anything moves.
+[[nodiscard]] std::string recorded_already(const std::string& path);
+
 /// Writes, and survives what disks do. After the first failed write of run.csv it writes no more rows: the
 /// file is cut back to its last whole line and error() says why.
 class RunFolder {

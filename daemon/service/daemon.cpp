@@ -8,6 +8,7 @@
 
 #include "base/sha256.h"
 #include "base/version.h"
+#include "daemon/recording/run_folder.h"
 #include "daemon/service/daemon_parts.h"
 
 namespace softgrip::daemon {
@@ -194,6 +195,8 @@ ExitCode exit_code_of(const Outcome& outcome) noexcept {
 }
 
 tl::expected<std::unique_ptr<Daemon>, std::string> Daemon::create(rig::RigFile rig, DaemonOptions options) {
+  if (std::string there = recorded_already(options.record_folder); !there.empty())
+    return tl::unexpected(std::move(there));
   if (options.virtual_time) {
     if (!std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board)) {
       return tl::unexpected(

@@ -87,7 +87,8 @@ struct DaemonParts;  // daemon_parts.h
 
 class Daemon {
  public:
-  /// `rig` is valid. The error is a sentence: virtual time with a real board, or without an end.
+  /// `rig` is valid. The error is a sentence: virtual time with a real board, or without an end; a folder
+  /// that holds a recording already.
   [[nodiscard]] static tl::expected<std::unique_ptr<Daemon>, std::string> create(rig::RigFile rig,
                                                                                  DaemonOptions options);
   Daemon(const Daemon&) = delete;

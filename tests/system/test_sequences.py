@@ -71,6 +71,14 @@ class WithoutADaemon(bench.BenchTest):
         self.assertEqual(process.wait(), 4)
         self.assertIn("did you mean adam-6024?", process.errors())
 
+    def test_a_recording_that_is_there_stops_run_before_anything_moves(self):
+        self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "r")
+        before = (self.folder / "r/run.json").read_text()
+        again = self.softgrip("run", PICK, "--virtual-time", "--quiet", "--record", "r", expect=2)
+        self.assertIn("r/run.csv exists already; a recording is never overwritten", again.stderr)
+        self.assertEqual(again.stdout, "")
+        self.assertEqual((self.folder / "r/run.json").read_text(), before)
+
     def test_run_speaks_for_itself(self):
         done = self.softgrip("run", PICK, "--virtual-time", "--record", "r")
         self.assertNotIn("softgripd", done.stderr)

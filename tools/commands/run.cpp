@@ -101,6 +101,8 @@ ExitCode run(const Options& options) {
   if (!daemon) return fail(ExitCode::usage, daemon.error());
   const daemon::Outcome outcome = (*daemon)->run();
   if (!outcome.message.empty()) fail(ExitCode::failed, outcome.message);
+  if (!outcome.recording_error.empty())
+    fail(ExitCode::io, "the recording is not whole: " + outcome.recording_error);
   report(options, outcome);
   return daemon::exit_code_of(outcome);
 }
