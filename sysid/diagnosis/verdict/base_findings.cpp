@@ -94,6 +94,9 @@ class Namer {
     // Between the point where the pressure is measured and the reading it may be either.
     if (finding.ingredient == Ingredient::lag && question_.drive == Drive::measured)
       named.rivals.push_back(*find_cause(causes::SensorLag::id));
+    // Behind a lag a second one looks like a delay.
+    if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
+      named.rivals.push_back(*find_cause(causes::ValveLag::id));
     named.heldout_gain_percent =
         gain_percent(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
     named.gain_mm2 = mean_difference(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
