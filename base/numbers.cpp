@@ -35,7 +35,7 @@ std::string written(double value) {
 }
 
 std::string significant(double value, int digits) {
-  if (!std::isfinite(value)) return shortest(value);
+  if (!std::isfinite(value)) return "-";
   if (value == 0) return "0";
   const double magnitude = std::abs(value);
   if (magnitude < 1e-4 || magnitude >= 1e7)
@@ -46,6 +46,7 @@ std::string significant(double value, int digits) {
 }
 
 std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
   std::string text = formatted(value, std::chars_format::fixed, decimals);
   const bool only_zeros = text.find_first_not_of("-0.") == std::string::npos;
   if (only_zeros && text.front() == '-') text.erase(0, 1);

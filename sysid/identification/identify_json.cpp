@@ -66,6 +66,7 @@ Json structure(const StructureEvidence& s) {
 std::string identify_json(const IdentifyReport& report) {
   const Identification& r = report.result;
   Json json{{"schema", 1}, {"software", software_and_version()}, {"verdict", verdict_of(r)}};
+  json["call"] = report.call;
   json["model"] = {{"name", r.model.name}, {"hash", model::model_hash(r.model)}, {"file", "model.yaml"}};
   json["start"] = {{"name", report.start.name}, {"hash", model::model_hash(report.start)}};
   json["logs"] = logs_json(report.logs);

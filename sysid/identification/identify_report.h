@@ -18,6 +18,7 @@ struct IdentifyReport {
   std::vector<Record> validation_records;
   std::vector<Score> validation;
   const std::vector<Log>* validation_logs = nullptr;
+  std::vector<std::string> call;  ///< the command and what it was given; empty: by no command
 };
 
 /// "The model explains 3 logs to the noise: RMSE 0.050 mm, 0.17 % of the span."

@@ -9,6 +9,7 @@
 #include "model/file/model_file.h"
 #include "sysid/identification/log_figures.h"
 #include "sysid/identification/score_json.h"
+#include "sysid/logs/doubts.h"
 #include "sysid/pages/page.h"
 #include "sysid/pages/provenance.h"
 
@@ -23,6 +24,15 @@ double largest_percent(const Validation& v) {
   double largest = 0;
   for (const Score& s : v.scores) largest = std::max(largest, s.rmse_percent_of_span);
   return largest;
+}
+
+/// ": 2 of them more than the 1 % that were allowed", or "" where no bound was given or none is above it.
+std::string bound_text(const Validation& v) {
+  const auto above =
+      std::count_if(v.scores.begin(), v.scores.end(), [&](const Score& s) { return !is_acceptable(v, s); });
+  if (above == 0) return {};
+  const std::string which = v.scores.size() == 1 ? std::string() : std::to_string(above) + " of them ";
+  return ": " + which + "more than the " + significant(*v.at_most_percent) + " % that were allowed";
 }
 
 std::string offset_text(const Record& record, const Score& score) {
@@ -44,8 +54,19 @@ Validation validate_logs(const model::Model& model, const std::vector<Log>& logs
   for (std::size_t i = 0; i < v.records.size(); ++i) {
     v.scores.push_back(score_of(part, v.records[i], starts[i], v.records[i].reading_mm));
   }
+  v.warnings = doubts_among(logs);
+  for (std::size_t i = 0; i < v.scores.size(); ++i) {
+    if (std::string doubt =
+            doubt_about_scale(logs[i].name, v.scores[i].prediction_mm, v.records[i].reading_mm);
+        !doubt.empty())
+      v.warnings.push_back(std::move(doubt));
+  }
   v.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return v;
+}
+
+bool is_acceptable(const Validation& v, const Score& score) {
+  return !v.at_most_percent || score.rmse_percent_of_span <= *v.at_most_percent;
 }
 
 std::string verdict_of(const Validation& v) {
@@ -61,16 +82,21 @@ std::string verdict_of(const Validation& v) {
                                ? significant(highest, 3) + " mm"
                                : significant(lowest, 3) + " to " + significant(highest, 3) + " mm";
   return v.model.name + " predicts " + logs + " with an RMSE of " + size + ", at most " +
-         significant(largest_percent(v), 2) + " % of a log's span.";
+         significant(largest_percent(v), 2) + " % of a log's span" + bound_text(v) + ".";
 }
 
 std::string validate_html(const Validation& v, const std::vector<Log>& logs) {
   const double percent = largest_percent(v);
   Page page("Validation of " + v.model.name, verdict_of(v),
-            percent < good_percent  ? Tone::good
-            : percent < bad_percent ? Tone::doubtful
-                                    : Tone::bad);
+            !bound_text(v).empty()   ? Tone::bad
+            : percent < good_percent ? Tone::good
+            : percent < bad_percent  ? Tone::doubtful
+                                     : Tone::bad);
   page.provenance(provenance_of(logs, {{"model", &v.model}}));
+  if (!v.warnings.empty()) {
+    page.section("Doubts about the data");
+    page.list(v.warnings);
+  }
   page.section("Prediction");
   page.table(score_table(v.records, v.scores));
   std::vector<std::string> starts;
@@ -87,9 +113,15 @@ std::string validate_html(const Validation& v, const std::vector<Log>& logs) {
 std::string validate_json(const Validation& v, const std::vector<Log>& logs) {
   nlohmann::ordered_json json{
       {"schema", 1}, {"software", software_and_version()}, {"verdict", verdict_of(v)}};
+  json["call"] = v.call;
   json["model"] = {{"name", v.model.name}, {"hash", model::model_hash(v.model)}};
   json["logs"] = logs_json(logs);
   add_scores(json, v.scores);
+  if (v.at_most_percent) {
+    json["at_most_percent"] = *v.at_most_percent;
+    for (const Score& s : v.scores) json["acceptable"][s.name] = is_acceptable(v, s);
+  }
+  json["warnings"] = v.warnings;
   for (std::size_t i = 0; i < v.scores.size(); ++i) {
     json["offset_mm"][v.scores[i].name] = v.scores[i].start.offset_mm;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -199,10 +200,11 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   parallel_for(ridges.size(), options.threads,
                [&](std::size_t i) { by_ridge[i] = judge.judge(structures.back(), ridges[i], 0); });
   choice.ridge = ridges[best_of(by_ridge)];
-  say("comparing " + std::to_string(structures.size()) + " structures");
+  std::atomic<std::size_t> done{0};
   choice.trials.resize(structures.size());
   parallel_for(structures.size(), options.threads, [&](std::size_t i) {
     choice.trials[i] = judge.judge(structures[i], choice.ridge, fold_iterations);
+    say("structures: " + std::to_string(++done) + " of " + std::to_string(structures.size()) + " judged");
   });
   choice.chosen = simplest_of_the_best(choice.trials);
   const StructureTrial& simplest = choice.trials[choice.chosen];

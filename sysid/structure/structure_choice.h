@@ -26,7 +26,7 @@ struct StructureChoiceOptions {
   double slow_from_s = 0;
   std::uint64_t seed = 1;
   unsigned threads = 0;
-  std::function<void(const std::string&)> progress;
+  std::function<void(const std::string&)> progress;  ///< from any thread
 };
 
 /// What a structure can be made without, to see what it brings.

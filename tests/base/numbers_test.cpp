@@ -15,6 +15,14 @@ TEST(Numbers, ForPeopleHaveNoZerosThatSayNothing) {
   EXPECT_EQ(fixed(-0.001, 2), "0.00");
 }
 
+TEST(Numbers, ThatAreNoneAreADashForPeople) {
+  for (const double none :
+       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(significant(none), "-");
+    EXPECT_EQ(fixed(none, 2), "-");
+  }
+}
+
 TEST(Numbers, InMessagesAvoidAnExponentWhereThatIsShort) {
   EXPECT_EQ(shortest(100000), "1e+05");
   EXPECT_EQ(written(100000), "100000");

@@ -42,7 +42,7 @@ struct Options {
 tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::Log>& logs,
                                                       const model::Model& model,
                                                       sysid::DiagnosisOptions options) {
-  const ProgressLine line;
+  ProgressLine line;
   options.progress = line.show();
   return sysid::diagnose(logs, model, options);
 }

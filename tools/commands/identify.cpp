@@ -14,9 +14,11 @@
 #include "sysid/identification/identify.h"
 #include "sysid/identification/identify_report.h"
 #include "sysid/identification/validate.h"
+#include "sysid/logs/doubts.h"
 #include "sysid/pages/page.h"
 #include "sysid/structure/identify_structure.h"
 #include "sysid/structure/structure.h"
+#include "tools/command_line/call.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
@@ -39,10 +41,8 @@ struct Options {
   bool json = false;
 };
 
-sysid::ShowProgress progress_on(const ProgressLine& line) {
-  const auto show = line.show();
-  if (!show) return {};
-  return [show](const sysid::Progress& progress) {
+sysid::ShowProgress progress_on(ProgressLine& line) {
+  return [show = line.show()](const sysid::Progress& progress) {
     if (!progress.stage.empty()) return show(progress.stage);
     show("start " + std::to_string(progress.done) + " of " + std::to_string(progress.starts) +
          ", best RMSE " + significant(progress.best_rmse_mm, 4) + " mm");
@@ -64,7 +64,7 @@ std::optional<sysid::StructureQuestion> question_of(const Options& options) {
 tl::expected<sysid::Identification, std::string> identified(const std::vector<sysid::Log>& logs,
                                                             const model::Model& start,
                                                             const Options& options) {
-  const ProgressLine line;
+  ProgressLine line;
   sysid::IdentifyOptions fit = options.fit;
   fit.progress = progress_on(line);
   if (const auto question = question_of(options)) return sysid::identify_structure(logs, *question, fit);
@@ -144,7 +144,7 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
-ExitCode run(Options options) {
+ExitCode run(Options options, const std::vector<std::string>& call) {
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   std::vector<sysid::Log> validation_logs;
@@ -167,14 +167,16 @@ ExitCode run(Options options) {
   } else {
     result->model.name = start->name + "_identified";
   }
+  for (std::string& doubt : sysid::doubts_among(*logs)) result->warnings.push_back(std::move(doubt));
   result->model.source = source_of(*logs, result->rmse_mm, *start);
 
-  sysid::IdentifyReport report{*result, *logs, *start, options.fit.seed, {}, {}, nullptr};
+  sysid::IdentifyReport report{*result, *logs, *start, options.fit.seed, {}, {}, nullptr, call};
   if (!validation_logs.empty()) {
     sysid::Validation validation = sysid::validate_logs(result->model, validation_logs, options.fit.record);
     report.validation_records = std::move(validation.records);
     report.validation = std::move(validation.scores);
     report.validation_logs = &validation_logs;
+    result->warnings.insert(result->warnings.end(), validation.warnings.begin(), validation.warnings.end());
   }
   const std::string json = sysid::identify_json(report);
   const std::filesystem::path out(options.out);
@@ -253,7 +255,7 @@ void add_identify(CLI::App& program, ExitCode& outcome) {
   add_structure_option(*command, *options);
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print identify.json");
-  command->callback([options, &outcome] { outcome = run(*options); });
+  command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });
 }
 
 }  // namespace softgrip::tools

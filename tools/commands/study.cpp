@@ -46,7 +46,7 @@ ExitCode run_study(const Output& output, Options options, Result (*study)(const 
   if (const auto writable = prepare_folder(output.out); !writable)
     return fail(ExitCode::io, writable.error());
   const Result result = [&] {
-    const ProgressLine line;
+    ProgressLine line;
     options.progress = line.show();
     return study(options);
   }();

@@ -1,6 +1,8 @@
 // softgrip validate: what a model predicts for logs that it was not fitted to.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,9 +13,12 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "sysid/identification/validate.h"
+#include "tools/client/styled_line.h"
+#include "tools/command_line/call.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
 
@@ -29,22 +34,38 @@ struct Options {
   bool json = false;
 };
 
-void print_summary(const sysid::Validation& v) {
-  std::printf("%s\n\n", sysid::verdict_of(v).c_str());
-  for (const sysid::Score& s : v.scores) {
-    std::printf("  %-24s RMSE %8s mm  %6s %% of span  first cycle %8s mm  settled %8s mm  largest %8s mm\n",
-                s.name.c_str(), significant(s.rmse_mm, 4).c_str(),
-                significant(s.rmse_percent_of_span, 3).c_str(), significant(s.first_cycle_rmse_mm, 4).c_str(),
-                significant(s.settled_rmse_mm, 4).c_str(), significant(s.largest_error_mm, 3).c_str());
-  }
+std::string summary_line(const sysid::Validation& v, const sysid::Score& s) {
+  std::string line = "  " + s.name + std::string(s.name.size() < 24 ? 24 - s.name.size() : 0, ' ') +
+                     " RMSE " + significant(s.rmse_mm) + " mm, " + significant(s.rmse_percent_of_span, 3) +
+                     " % of span, largest error " + significant(s.largest_error_mm, 3) + " mm; ";
+  line += std::isfinite(s.settled_rmse_mm) ? "first cycle " + significant(s.first_cycle_rmse_mm) +
+                                                 " mm, settled " + significant(s.settled_rmse_mm) + " mm"
+                                           : "the command does not repeat";
+  if (!is_acceptable(v, s)) line += "; FAILED: above " + significant(*v.at_most_percent) + " %";
+  return line;
 }
 
-ExitCode run(const Options& options) {
+void print_summary(const sysid::Validation& v) {
+  constexpr std::size_t uncut = 1000;
+  const ViewStyle style{uncut, wants_colour(), false};
+  const bool failed = !std::all_of(v.scores.begin(), v.scores.end(),
+                                   [&](const sysid::Score& s) { return is_acceptable(v, s); });
+  std::printf("%s\n\n", Line(style).add(verdict_of(v), failed ? Tone::bad : Tone::plain).text().c_str());
+  for (const sysid::Score& s : v.scores) {
+    const Tone tone = is_acceptable(v, s) ? Tone::plain : Tone::bad;
+    std::printf("%s\n", Line(style).add(summary_line(v, s), tone).text().c_str());
+  }
+  for (const std::string& warning : v.warnings) std::printf("warning: %s\n", warning.c_str());
+}
+
+ExitCode run(const Options& options, const std::vector<std::string>& call) {
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
-  const sysid::Validation v = sysid::validate_logs(*model, *logs, options.logs.record_options());
+  sysid::Validation v = sysid::validate_logs(*model, *logs, options.logs.record_options());
+  v.at_most_percent = options.at_most_percent;
+  v.call = call;
   const std::string json = sysid::validate_json(v, *logs);
   if (!options.out.empty()) {
     const std::filesystem::path out(options.out);
@@ -63,10 +84,8 @@ ExitCode run(const Options& options) {
   } else {
     print_summary(v);
   }
-  bool acceptable = true;
-  for (const sysid::Score& s : v.scores) {
-    acceptable = acceptable && s.rmse_percent_of_span <= options.at_most_percent.value_or(1e300);
-  }
+  const bool acceptable = std::all_of(v.scores.begin(), v.scores.end(),
+                                      [&](const sysid::Score& s) { return is_acceptable(v, s); });
   return acceptable ? ExitCode::done : ExitCode::not_acceptable;
 }
 
@@ -84,7 +103,7 @@ void add_validate(CLI::App& program, ExitCode& outcome) {
       ->check(number_between(0.0, 100.0));
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print validate.json");
-  command->callback([options, &outcome] { outcome = run(*options); });
+  command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });
 }
 
 }  // namespace softgrip::tools

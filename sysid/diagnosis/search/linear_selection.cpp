@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -137,13 +138,16 @@ class SelectorUpon {
           unanswerable(cause, scales_).empty())
         list.emplace_back(cause, Look{});
     }
+    std::atomic<std::size_t> tried{0};
     parallel_for(list.size(), data_.threads, [&](std::size_t i) {
       auto& [cause, best] = list[i];
       for (const FitPoint& start : best_starts({&scan, 1}, cause, scales_, fewest_looks)) {
         Look look = look_from(data_.thinned, scan, cause, start);
         if (look.mean_square_mm2 < best.mean_square_mm2) best = std::move(look);
       }
-      if (options_.progress) options_.progress("tried " + std::string(cause.id));
+      if (options_.progress)
+        options_.progress("upon another base: tried " + std::to_string(++tried) + " of " +
+                          std::to_string(list.size()));
     });
     std::erase_if(list, [](const auto& one) { return !std::isfinite(one.second.mean_square_mm2); });
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) {

@@ -1,6 +1,7 @@
 #include "sysid/diagnosis/search/search.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -111,12 +112,14 @@ std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit
   std::vector<Candidate> candidates(wanted.size());
   std::vector<std::vector<StructureFit>> looks(wanted.size());
   const std::vector<Scan> scans = places(data, current);
+  std::atomic<std::size_t> tried{0};
   parallel_for(wanted.size(), data.threads, [&](std::size_t i) {
     candidates[i] = {wanted[i], std::nullopt, unanswerable(wanted[i], data.scales)};
-    if (!candidates[i].why_not.empty()) return;
-    looks[i] = look_at(data, current, scans, wanted[i]);
-    if (looks[i].empty()) candidates[i].why_not = "no start led to a fit";
-    if (search.done) search.done(wanted[i]);
+    if (candidates[i].why_not.empty()) {
+      looks[i] = look_at(data, current, scans, wanted[i]);
+      if (looks[i].empty()) candidates[i].why_not = "no start led to a fit";
+    }
+    if (search.progress) search.progress(++tried, wanted.size());
   });
 
   std::vector<std::optional<StructureFit>> thin(wanted.size());

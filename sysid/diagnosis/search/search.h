@@ -34,7 +34,7 @@ struct CandidateSearch {
   std::vector<Cause> only = {};  ///< empty: all
   /// Where no look comes near this mean square none is followed to the end.
   double to_beat_mm2 = std::numeric_limits<double>::infinity();
-  std::function<void(const Cause&)> done = {};
+  std::function<void(std::size_t tried, std::size_t of)> progress = {};  ///< from any thread
 };
 
 /// Fits `current` plus each cause that it does not have yet. In the order of all_causes().

@@ -58,9 +58,12 @@ class Selector {
   std::vector<Scored> score(const StructureFit& current) {
     CandidateSearch search;
     search.to_beat_mm2 = to_beat_mm2_;
-    search.done = [&](const Cause& cause) {
-      if (options_.progress) options_.progress("tried " + std::string(cause.id));
-    };
+    if (options_.progress) {
+      search.progress = [&](std::size_t tried, std::size_t of) {
+        options_.progress("cause number " + std::to_string(current.causes.size() + 1) + ": tried " +
+                          std::to_string(tried) + " of " + std::to_string(of));
+      };
+    }
     std::vector<Candidate> candidates = fit_candidates(data_, current, search);
     std::vector<Scored> scored;
     scored.reserve(candidates.size());

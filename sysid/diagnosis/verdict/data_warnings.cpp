@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/identification/combinations.h"
+#include "sysid/logs/doubts.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -31,6 +33,7 @@ void warn_unphysical(const model::Model& model, std::vector<std::string>& warnin
 }
 
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings) {
+  for (std::string& doubt : doubts_among(logs)) warnings.push_back(std::move(doubt));
   warn_of_columns(scales, warnings);
   const bool measured =
       std::any_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
@@ -64,6 +67,17 @@ void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vecto
     if (*high - *low < 0.05 * scales.largest_kpa) {
       warnings.emplace_back("one amplitude only: what depends on amplitude cannot be judged");
     }
+  }
+}
+
+void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,
+                   std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    std::vector<double> predicted_mm = records[k].reading_mm;
+    for (std::size_t i = 0; i < predicted_mm.size(); ++i) predicted_mm[i] -= residual_mm[k][i];
+    if (std::string doubt = doubt_about_scale(records[k].name, predicted_mm, records[k].reading_mm);
+        !doubt.empty())
+      warnings.push_back(std::move(doubt));
   }
 }
 

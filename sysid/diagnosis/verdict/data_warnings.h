@@ -7,6 +7,7 @@
 #include "model/model.h"
 #include "sysid/diagnosis/causes/scales.h"
 #include "sysid/logs/log.h"
+#include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
 
@@ -15,5 +16,10 @@ void warn_unphysical(const model::Model& model, std::vector<std::string>& warnin
 
 /// Limits of the data that bear on what can be told.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings);
+
+/// Readings that are as many times what the given model says as two units are apart.
+/// @param residual_mm  reading minus prediction, by record
+void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,
+                   std::vector<std::string>& warnings);
 
 }  // namespace softgrip::sysid

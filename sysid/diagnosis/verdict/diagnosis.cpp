@@ -64,6 +64,7 @@ class Diagnostician {
 
   tl::expected<Diagnosis, std::string> run() {
     StageClock clock(d_);
+    if (options_.progress) options_.progress("recalibrates");
     if (auto ready = prepare(); !ready) return Failure(ready.error());
     auto base = recalibrate(data_, options_);
     if (!base) return Failure(base.error());
@@ -129,6 +130,7 @@ class Diagnostician {
     d_.outliers = hide_outliers(records, d_.noise_mm);
     use(std::move(records));
     warn_of_data(logs_, data_.scales, d_.warnings);
+    warn_of_scale(d_.records, d_.as_given.residual_mm, d_.warnings);
     return {};
   }
 

@@ -1,6 +1,7 @@
 // softgrip identify and validate as a user calls them: exit codes, files, nothing written on refusal.
 
 #include <filesystem>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -45,6 +46,53 @@ TEST_F(Command, IdentifyWritesModelJsonAndReport) {
   ASSERT_EQ(run("validate --model result/model.yaml --data sp1.csv --out checked"), 0) << read("err.txt");
   EXPECT_TRUE(fs::exists(folder_ / "checked/validate.json"));
   EXPECT_EQ(run("validate --model result/model.yaml --data sp1.csv --at-most-percent 0.01"), 6);
+}
+
+TEST_F(Command, ValidateFailsPerLogOnScreenInJsonAndByItsCode) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  write_log("hold.csv", model::SignalName::hold);
+  write("model.yaml", model::to_yaml(loaded("zhang2025")));
+  ASSERT_EQ(run("validate --model model.yaml --data tp1.csv hold.csv --out fine"), 0) << read("err.txt");
+  EXPECT_FALSE(nlohmann::json::parse(read("fine/validate.json")).contains("acceptable"));
+  const auto percent = nlohmann::json::parse(read("fine/validate.json"))["rmse_percent_of_span"];
+  const double between = 0.5 * (percent["tp1"].get<double>() + percent["hold"].get<double>());
+  const std::string bound = "validate --model model.yaml --data tp1.csv hold.csv --at-most-percent " +
+                            std::to_string(between) + " --out out";
+  ASSERT_EQ(run(bound), 6) << read("err.txt");
+  const auto json = nlohmann::json::parse(read("out/validate.json"));
+  EXPECT_EQ(json["acceptable"]["tp1"], percent["tp1"].get<double>() <= between);
+  EXPECT_NE(json["acceptable"]["tp1"], json["acceptable"]["hold"]);
+  EXPECT_NE(read("out.txt").find("1 of them more than the"), std::string::npos) << read("out.txt");
+  EXPECT_NE(read("out.txt").find("FAILED: above"), std::string::npos) << read("out.txt");
+  for (const char* text : {"out.txt", "out/validate.json", "out/report.html"})
+    EXPECT_EQ(read(text).find("nan"), std::string::npos) << text << ": a hold has no cycles to settle over";
+}
+
+TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {
+  write("model.yaml", model::to_yaml(loaded("zhang2025")));
+  const auto warned = [&](auto change) {
+    Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
+    change(log);
+    write("odd.csv", format_log(log));
+    EXPECT_EQ(run("validate --model model.yaml --data odd.csv --out odd"), 0) << read("err.txt");
+    const std::string warnings = nlohmann::json::parse(read("odd/validate.json"))["warnings"].dump();
+    EXPECT_EQ(warnings == "[]", read("out.txt").find("warning: ") == std::string::npos);
+    return warnings;
+  };
+  const auto scaled = [](std::vector<double>& values, double by) {
+    for (double& value : values) value *= by;
+  };
+  EXPECT_EQ(warned([](Log&) {}), "[]");
+  EXPECT_NE(warned([&](Log& l) { scaled(l.displacement_mm, -1); }).find("the reading falls"),
+            std::string::npos);
+  EXPECT_NE(warned([](Log& l) { std::swap(l.displacement_mm, l.pressure_command_kpa); }).find("swapped"),
+            std::string::npos);
+  for (const auto& [factor, unit] : {std::pair{6.894757, "psi"}, {100.0, "bar"}})
+    EXPECT_NE(warned([&](Log& l) { scaled(l.pressure_command_kpa, 1 / factor); }).find(unit),
+              std::string::npos);
+  for (const auto& [factor, unit] :
+       {std::pair{0.1, "cm"}, {1 / 25.4, "inch"}, {1e-3, "metres"}, {100.0, "bar"}})
+    EXPECT_NE(warned([&](Log& l) { scaled(l.displacement_mm, factor); }).find(unit), std::string::npos);
 }
 
 TEST_F(Command, TheSameInputsGiveTheSameReport) {

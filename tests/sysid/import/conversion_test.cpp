@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/numbers.h"
-#include "sysid/import/doubts.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/samples.h"
 #include "sysid/import/text_table.h"
@@ -192,39 +191,6 @@ TEST(Propose, LeavesWhatIsGivenAlone) {
   const Proposal proposal = propose(table, given, true);
   EXPECT_FALSE(proposal.mapping[Role::command].given());
   EXPECT_EQ(proposal.guessed, (std::vector<Role>{Role::time, Role::displacement}));
-}
-
-TEST(Doubts, SignScaleAndOrder) {
-  Log log;
-  for (int i = 0; i < 400; ++i) {
-    const double p = 30 - std::abs(i % 100 - 50) * 0.6;
-    log.time_s.push_back(0.01 * i);
-    log.pressure_command_kpa.push_back(p);
-    log.pressure_kpa.push_back(p + 0.01 * (i % 3));
-    log.displacement_mm.push_back(0.2 * p);
-  }
-  EXPECT_TRUE(doubts_about(log).empty());
-  const auto doubted = [&](auto change) {
-    Log other = log;
-    for (std::size_t i = 0; i < other.size(); ++i) change(other, i);
-    const auto doubts = doubts_about(other);
-    return doubts.empty() ? std::string() : doubts.front();
-  };
-  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.displacement_mm[i] *= -1; }).find("the reading falls"),
-            std::string::npos);
-  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.pressure_kpa[i] /= 6.894757; }).find("psi and kPa"),
-            std::string::npos);
-  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.displacement_mm[i] /= 1000; }).find("metres"),
-            std::string::npos);
-  EXPECT_NE(doubted([](Log& l, std::size_t i) {
-              l.pressure_command_kpa[i] += 101;
-              l.pressure_kpa[i] += 101;
-            }).find("absolute"),
-            std::string::npos);
-  EXPECT_NE(doubted([&](Log& l, std::size_t i) {
-              l.pressure_kpa[i] = log.pressure_kpa[std::min<std::size_t>(i + 5, 399)];
-            }).find("swapped"),
-            std::string::npos);
 }
 
 }  // namespace

@@ -9,10 +9,10 @@
 #include <string_view>
 
 #include "sysid/import/conversion.h"
-#include "sysid/import/doubts.h"
 #include "sysid/import/mapping_file.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/text_table.h"
+#include "sysid/logs/doubts.h"
 
 namespace {
 

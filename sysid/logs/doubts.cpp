@@ -1,4 +1,4 @@
-#include "sysid/import/doubts.h"
+#include "sysid/logs/doubts.h"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
+#include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -20,6 +22,8 @@ constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
 /// Correlations beyond this are no chance.
 constexpr double clear_correlation = 0.5;
+/// Loops that run backwards by more than this share are no drift of the sensor.
+constexpr double clear_loop_backwards = -0.02;
 
 struct Sums {
   double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
@@ -62,25 +66,7 @@ std::optional<Extent> extent_of(const std::vector<double>& values) {
   return extent;
 }
 
-/// A factor that lies between two units of pressure.
-std::string units_apart(double factor) {
-  struct Apart {
-    double factor;
-    const char* units;
-  };
-  constexpr std::array apart{Apart{6.894757, "psi and kPa"}, Apart{100, "bar and kPa"},
-                             Apart{10, "mbar and kPa"},      Apart{1000, "Pa and kPa"},
-                             Apart{14.50377, "psi and bar"}, Apart{101.325, "atm and kPa"}};
-  for (const Apart& pair : apart) {
-    if (std::abs(std::log(std::abs(factor) / pair.factor)) < 0.1 ||
-        std::abs(std::log(std::abs(factor) * pair.factor)) < 0.1)
-      return pair.units;
-  }
-  return {};
-}
-
-/// ForeignSamples by which the increments of `later` follow those of `earlier` best; negative: it comes
-/// first.
+/// Samples by which the increments of `later` follow those of `earlier` best; negative: it comes first.
 int best_lag(const std::vector<double>& earlier, const std::vector<double>& later) {
   constexpr int farthest = 20;
   const auto increments = [](const std::vector<double>& values) {
@@ -110,17 +96,71 @@ void doubt_measured_pressure(const Log& log, std::vector<std::string>& doubts) {
   if (log.pressure_kpa.empty() || log.pressure_kpa == log.pressure_command_kpa) return;
   const Sums sums = sums_of(log.pressure_command_kpa, log.pressure_kpa);
   if (sums.correlation() < -clear_correlation) {
-    doubts.emplace_back("the measured pressure falls when the command rises: --scale pressure=-X turns it");
+    doubts.push_back("the measured pressure falls when the command rises (correlation " +
+                     significant(sums.correlation(), 3) +
+                     "): `softgrip import --scale pressure=-X` turns it");
     return;
   }
   if (sums.correlation() < clear_correlation) return;
   const double slope = sums.covariance() / sums.variance_x();
-  if (const std::string units = units_apart(slope); !units.empty())
+  if (const std::string units = pressure_units_apart(slope); !units.empty())
     doubts.push_back("the measured pressure is " + significant(slope, 3) + " times the command, as " + units +
-                     " are: is the unit of one of them another? --unit says it");
+                     " are: is the unit of one of them another? `softgrip import --unit` says it");
   constexpr int clearly_before = -2;
   if (best_lag(log.pressure_command_kpa, log.pressure_kpa) <= clearly_before)
     doubts.emplace_back("the measured pressure moves before its command: are the two columns swapped?");
+}
+
+const std::vector<double>& drive_of(const Log& log) {
+  return log.pressure_kpa.empty() ? log.pressure_command_kpa : log.pressure_kpa;
+}
+
+/// Mean area of the loops that the readings draw over the pressure, as a share of the square around them:
+/// above 0 where the readings follow the pressure, as they do in whatever dissipates or is late.
+double loop_share(const std::vector<double>& pressure, const std::vector<double>& reading) {
+  const auto p = extent_of(pressure), y = extent_of(reading);
+  if (!p || !y || p->width() <= 0 || y->width() <= 0) return 0;
+  double area = 0, travel = 0;
+  std::optional<std::size_t> before;
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
+    if (!std::isfinite(pressure[i]) || !std::isfinite(reading[i])) continue;
+    if (before) {
+      area += (0.5 * (pressure[i] + pressure[*before]) - p->lowest) * (reading[i] - reading[*before]);
+      travel += std::abs(pressure[i] - pressure[*before]);
+    }
+    before = i;
+  }
+  const double loops = std::max(1.0, travel / (2 * p->width()));
+  return area / (p->width() * y->width() * loops);
+}
+
+void doubt_response(const Log& log, std::vector<std::string>& doubts) {
+  const std::vector<double>& drive = drive_of(log);
+  const double correlation = sums_of(drive, log.displacement_mm).correlation();
+  if (correlation < -clear_correlation) {
+    doubts.push_back(
+        "the reading falls when the pressure rises (correlation " + significant(correlation, 3) +
+        "): a sensor mounted the other way round? `softgrip import --scale displacement=-X` with "
+        "a negative factor turns it");
+    return;
+  }
+  const double share = loop_share(drive, log.displacement_mm);
+  if (correlation > clear_correlation && share < clear_loop_backwards)
+    doubts.push_back("the reading moves before the pressure (its loops run backwards and enclose " +
+                     significant(-100 * share, 2) +
+                     " % of the square around them): are the columns of pressure and displacement swapped?");
+}
+
+void doubt_free_motion(const Log& log, std::vector<std::string>& doubts) {
+  const auto result = std::find_if(log.others.begin(), log.others.end(),
+                                   [](const OtherColumn& column) { return column.name == "result"; });
+  if (result == log.others.end()) return;
+  const auto holding = std::count(result->cells.begin(), result->cells.end(), "holding");
+  if (holding == 0) return;
+  doubts.push_back("the finger holds a part in " +
+                   significant(100 * static_cast<double>(holding) / static_cast<double>(log.size()), 2) +
+                   " % of the rows (column result): a model of free motion cannot be fitted to them or "
+                   "judged by them; record a run that touches nothing");
 }
 
 void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
@@ -133,7 +173,7 @@ void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
                        " kPa: no soft finger bears that; is the unit right?");
     if (p->lowest > 0.9 * atmosphere_kpa && p->lowest < 1.1 * atmosphere_kpa)
       doubts.push_back("the pressure never falls below " + significant(p->lowest) +
-                       " kPa, about an atmosphere: absolute? --zero subtracts it");
+                       " kPa, about an atmosphere: absolute? `softgrip import --zero` subtracts it");
   }
   if (const auto y = extent_of(log.displacement_mm); y && y->width() > 0) {
     if (y->width() < small_displacement_mm)
@@ -151,11 +191,8 @@ void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
 
 std::vector<std::string> doubts_about(const Log& log) {
   std::vector<std::string> doubts;
-  const std::vector<double>& drive = log.pressure_kpa.empty() ? log.pressure_command_kpa : log.pressure_kpa;
-  if (sums_of(drive, log.displacement_mm).correlation() < -clear_correlation)
-    doubts.emplace_back(
-        "the reading falls when the pressure rises: a sensor mounted the other way round? A negative "
-        "--scale displacement=-X turns it");
+  doubt_response(log, doubts);
+  doubt_free_motion(log, doubts);
   doubt_measured_pressure(log, doubts);
   doubt_spans(log, doubts);
   if (log.size() > 1) {
@@ -166,6 +203,39 @@ std::vector<std::string> doubts_about(const Log& log) {
       doubts.push_back("samples are " + significant(interval) + " s apart: is the unit of the time right?");
   }
   return doubts;
+}
+
+std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
+  std::vector<std::string> doubts;
+  std::vector<double> gains;
+  for (const Log& log : logs) {
+    for (const std::string& doubt : doubts_about(log))
+      doubts.push_back(logs.size() > 1 ? log.name + ": " + doubt : doubt);
+    const Sums sums = sums_of(drive_of(log), log.displacement_mm);
+    gains.push_back(sums.correlation() > clear_correlation ? sums.covariance() / sums.variance_x() : 0);
+  }
+  std::vector<double> clear = gains;
+  std::erase(clear, 0);
+  if (clear.size() < 2) return doubts;
+  const double usual = median_of(std::span(clear));
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    if (gains[i] <= 0) continue;
+    if (const std::string mistake = mistaken_unit(gains[i] / usual); !mistake.empty())
+      doubts.push_back(logs[i].name + ": the finger moves " + significant(gains[i] / usual, 3) +
+                       " times as far per kPa as in the other logs: " + mistake + "?");
+  }
+  return doubts;
+}
+
+std::string doubt_about_scale(const std::string& log_name, const std::vector<double>& prediction_mm,
+                              const std::vector<double>& reading_mm) {
+  const Sums sums = sums_of(prediction_mm, reading_mm);
+  if (sums.correlation() < clear_correlation) return {};
+  const double factor = sums.covariance() / sums.variance_x();
+  const std::string mistake = mistaken_unit(factor);
+  if (mistake.empty()) return {};
+  return log_name + ": the readings are " + significant(factor, 3) +
+         " times what the model says: " + mistake + "?";
 }
 
 }  // namespace softgrip::sysid

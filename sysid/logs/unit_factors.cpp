@@ -1,0 +1,67 @@
+#include "sysid/logs/unit_factors.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+namespace {
+
+struct UnitFactor {
+  double factor;
+  const char* means;
+};
+
+constexpr std::array pressures{UnitFactor{6.894757, "psi and kPa"}, UnitFactor{100, "bar and kPa"},
+                               UnitFactor{10, "mbar and kPa"},      UnitFactor{1000, "Pa and kPa"},
+                               UnitFactor{14.50377, "psi and bar"}, UnitFactor{101.325, "atm and kPa"}};
+
+// A finger is nearly proportional: a pressure that is read too small makes readings too large.
+constexpr std::array mistakes{
+    UnitFactor{6.894757, "psi in a pressure column taken for kPa"},
+    UnitFactor{100, "bar in a pressure column taken for kPa"},
+    UnitFactor{1000,
+               "micrometres in the displacement column taken for mm, or MPa in a pressure column taken "
+               "for kPa"},
+    UnitFactor{10, "mm in the displacement column converted as if they were cm"},
+    UnitFactor{25.4, "mm in the displacement column converted as if they were inch"},
+    UnitFactor{1 / 10.0,
+               "cm in the displacement column taken for mm, or mbar in a pressure column taken for "
+               "kPa"},
+    UnitFactor{1 / 25.4, "inch in the displacement column taken for mm"},
+    UnitFactor{1 / 6.894757, "kPa in a pressure column taken for psi"},
+    UnitFactor{1 / 100.0, "kPa in a pressure column taken for bar"},
+    UnitFactor{1 / 1000.0,
+               "metres in the displacement column taken for mm, or Pa in a pressure column taken "
+               "for kPa"}};
+
+double apart(double factor, double of) {
+  return std::abs(std::log(std::abs(factor) / of));
+}
+
+}  // namespace
+
+std::string pressure_units_apart(double factor) {
+  constexpr double close = 0.1;
+  for (const UnitFactor& pair : pressures) {
+    if (apart(factor, pair.factor) < close || apart(factor, 1 / pair.factor) < close) return pair.means;
+  }
+  return {};
+}
+
+std::string mistaken_unit(double factor) {
+  // A finger is not quite proportional, and the model may be another finger's.
+  constexpr double close = 0.25;
+  const UnitFactor* nearest = nullptr;
+  for (const UnitFactor& mistake : mistakes) {
+    if (nearest == nullptr || apart(factor, mistake.factor) < apart(factor, nearest->factor))
+      nearest = &mistake;
+  }
+  if (apart(factor, nearest->factor) > close) return {};
+  return std::string(nearest->means) + " (a factor of " +
+         significant(nearest->factor > 1 ? nearest->factor : 1 / nearest->factor) + ")";
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,101 @@
+#include "sysid/logs/doubts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+std::string all_of(const std::vector<std::string>& doubts) {
+  std::string text;
+  for (const std::string& doubt : doubts) text += doubt + "\n";
+  return text;
+}
+
+TEST(Doubts, SignScaleAndOrder) {
+  Log log;
+  for (int i = 0; i < 400; ++i) {
+    const double p = 30 - std::abs(i % 100 - 50) * 0.6;
+    log.time_s.push_back(0.01 * i);
+    log.pressure_command_kpa.push_back(p);
+    log.pressure_kpa.push_back(p + 0.01 * (i % 3));
+    log.displacement_mm.push_back(0.2 * p);
+  }
+  EXPECT_TRUE(doubts_about(log).empty());
+  const auto doubted = [&](auto change) {
+    Log other = log;
+    for (std::size_t i = 0; i < other.size(); ++i) change(other, i);
+    const auto doubts = doubts_about(other);
+    return doubts.empty() ? std::string() : doubts.front();
+  };
+  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.displacement_mm[i] *= -1; }).find("the reading falls"),
+            std::string::npos);
+  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.pressure_kpa[i] /= 6.894757; }).find("psi and kPa"),
+            std::string::npos);
+  EXPECT_NE(doubted([](Log& l, std::size_t i) { l.displacement_mm[i] /= 1000; }).find("metres"),
+            std::string::npos);
+  EXPECT_NE(doubted([](Log& l, std::size_t i) {
+              l.pressure_command_kpa[i] += 101;
+              l.pressure_kpa[i] += 101;
+            }).find("absolute"),
+            std::string::npos);
+  EXPECT_NE(doubted([&](Log& l, std::size_t i) {
+              l.pressure_kpa[i] = log.pressure_kpa[std::min<std::size_t>(i + 5, 399)];
+            }).find("swapped"),
+            std::string::npos);
+}
+
+TEST(Doubts, NoneAboutAFingerAsItIs) {
+  for (const char* name : {"bench_twin", "zhang2025"}) {
+    std::vector<Log> logs;
+    for (const auto signal :
+         {model::SignalName::tp1, model::SignalName::sp2, model::SignalName::steps, model::SignalName::hold})
+      logs.push_back(simulated(loaded(name), signal, 20, 0.05, 7));
+    EXPECT_EQ(all_of(doubts_among(logs)), "") << name;
+  }
+}
+
+TEST(Doubts, ColumnsThatAreSwappedRunTheirLoopsBackwards) {
+  for (const auto signal : {model::SignalName::tp1, model::SignalName::steps, model::SignalName::hold}) {
+    Log log = simulated(loaded("bench_twin"), signal, 50, 0.05, 7);
+    std::swap(log.pressure_command_kpa, log.displacement_mm);
+    EXPECT_NE(all_of(doubts_about(log)).find("swapped"), std::string::npos) << log.name;
+  }
+}
+
+TEST(Doubts, AGripIsNoFreeMotion) {
+  Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  log.others.push_back({"result", std::vector<std::string>(log.size(), "none")});
+  EXPECT_TRUE(doubts_about(log).empty());
+  std::fill_n(log.others[0].cells.begin() + 100, log.size() / 4, "holding");
+  EXPECT_NE(all_of(doubts_about(log)).find("holds a part in 25 % of the rows"), std::string::npos)
+      << all_of(doubts_about(log));
+}
+
+TEST(Doubts, OneLogInAnotherUnitStandsOutAmongTheOthers) {
+  std::vector<Log> logs(3, simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7));
+  logs[0].name = "a", logs[1].name = "b", logs[2].name = "c";
+  for (double& y : logs[1].displacement_mm) y /= 25.4;
+  const std::string doubts = all_of(doubts_among(logs));
+  EXPECT_NE(doubts.find("b: the finger moves 0.0394 times as far per kPa as in the other logs: inch"),
+            std::string::npos)
+      << doubts;
+  EXPECT_EQ(doubts.find("a: "), std::string::npos);
+}
+
+TEST(Doubts, ReadingsInAnotherUnitThanTheModels) {
+  const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  std::vector<double> predicted = log.displacement_mm;
+  EXPECT_EQ(doubt_about_scale("x", predicted, log.displacement_mm), "");
+  for (double& y : predicted) y /= 6.5;
+  EXPECT_NE(doubt_about_scale("x", predicted, log.displacement_mm).find("x: the readings are 6.5 times"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

@@ -1,0 +1,60 @@
+#include "tools/command_line/progress_line.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+
+namespace softgrip::tools {
+namespace {
+
+TEST(RestEstimate, IsWhatTheStageTookSoFar) {
+  RestEstimate estimate;
+  EXPECT_LT(estimate.left_s("start 1 of 20", 10), 0) << "nothing to go by yet";
+  EXPECT_NEAR(estimate.left_s("start 6 of 20, best RMSE 0.3 mm", 15), 14, 1e-9);
+  EXPECT_NEAR(estimate.left_s("start 20 of 20", 29), 0, 1e-9);
+}
+
+TEST(RestEstimate, AnotherWholeOrASmallerNumberIsAnotherStage) {
+  RestEstimate estimate;
+  (void)estimate.left_s("start 1 of 20", 0);
+  (void)estimate.left_s("start 11 of 20", 10);
+  EXPECT_LT(estimate.left_s("null campaign 12 of 19", 11), 0);
+  EXPECT_NEAR(estimate.left_s("null campaign 13 of 19", 13), 12, 1e-9);
+  EXPECT_LT(estimate.left_s("null campaign 1 of 19", 14), 0);
+  EXPECT_LT(estimate.left_s("choosing the ridge", 15), 0);
+  EXPECT_LT(estimate.left_s("one of many", 16), 0);
+}
+
+std::string text_of(std::FILE* file) {
+  std::rewind(file);
+  std::array<char, 4096> buffer{};
+  return {buffer.data(), std::fread(buffer.data(), 1, buffer.size(), file)};
+}
+
+TEST(ProgressLine, WhereThereIsNoTerminalALineNowAndThenSaysHowFarItIs) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  {
+    ProgressLine line(file.get(), std::chrono::milliseconds(20));
+    const auto show = line.show();
+    show("start 1 of 4");
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    show("start 2 of 4");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  const std::string text = text_of(file.get());
+  EXPECT_NE(text.find("start 2 of 4, about 0 s left\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\033'), std::string::npos);
+}
+
+TEST(ProgressLine, ShortWorkIsSilent) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  {
+    ProgressLine line(file.get());
+    line.show()("start 1 of 4");
+  }
+  EXPECT_EQ(text_of(file.get()), "");
+}
+
+}  // namespace
+}  // namespace softgrip::tools
