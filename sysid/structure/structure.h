@@ -27,6 +27,7 @@ struct BaseStructure {
   bool two_way = true;         ///< filling and venting have a time constant each
   bool characteristic = true;  ///< a bent, monotone map behind the sum
   bool hinged_creep = false;   ///< creep that depends on the pressure: a short ladder behind every hinge
+  bool wandering = false;      ///< beside it every record's zero wanders as it likes; no part of the finger
   /// The published element: Bouc-Wen and two Kelvin-Voigt branches whose time constants are searched too, one
   /// lag.
   bool published = false;

@@ -161,6 +161,10 @@ ColumnLayout::ColumnLayout(const BaseStructure& structure, const StructureGrid& 
     const bool open = record.start_unknown && branches_ > 0;
     unsettled_.push_back(open ? count_ : -1);
     if (open) count_ += static_cast<Eigen::Index>(branches_);
+    const double knots = structure.wandering ? std::ceil(record.length_s() / knot_interval_s) : 0;
+    knots_.push_back(static_cast<std::size_t>(knots));
+    wandering_.push_back(count_);
+    count_ += static_cast<Eigen::Index>(knots);
   }
 }
 
@@ -196,6 +200,12 @@ Eigen::MatrixXd structure_columns(const std::vector<Record>& records, const Base
       for (std::size_t b = 0; layout.unsettled(r) >= 0 && b < layout.branches(); ++b) {
         columns(row, layout.unsettled(r) + static_cast<Eigen::Index>(b)) =
             std::exp(-(record.time_s[i] - record.time_s.front()) / grid.ladder_s[b]);
+      }
+      for (std::size_t k = 0; k < layout.knots(r); ++k) {
+        const double knots_away = (record.time_s[i] - record.time_s.front()) / ColumnLayout::knot_interval_s -
+                                  static_cast<double>(k + 1);
+        columns(row, layout.wandering(r) + static_cast<Eigen::Index>(k)) =
+            std::max(0.0, 1 - std::abs(knots_away));
       }
       ++row;
     }

@@ -13,8 +13,8 @@
 namespace softgrip::sysid {
 
 /// Where the columns of a structure stand. Those before own() are behind the characteristic's input and have
-/// weights that are not negative; a record's own (offset and unsettled creep) are added behind it and may
-/// have either sign.
+/// weights that are not negative; a record's own (offset, unsettled creep, wandering zero) are added behind
+/// it and may have either sign.
 class ColumnLayout {
  public:
   ColumnLayout(const BaseStructure& structure, const StructureGrid& grid, const std::vector<Record>& records);
@@ -35,6 +35,11 @@ class ColumnLayout {
   /// -1: the record has none.
   [[nodiscard]] Eigen::Index offset(std::size_t record) const { return offset_[record]; }
   [[nodiscard]] Eigen::Index unsettled(std::size_t record) const { return unsettled_[record]; }
+  /// The first of knots() columns, straight between knots that stand `knot_interval_s` apart from the
+  /// record's first sample on; the zero at that sample is no column.
+  [[nodiscard]] Eigen::Index wandering(std::size_t record) const { return wandering_[record]; }
+  [[nodiscard]] std::size_t knots(std::size_t record) const { return knots_[record]; }
+  static constexpr double knot_interval_s = 20;
   [[nodiscard]] Eigen::Index count() const { return count_; }
   [[nodiscard]] std::size_t records() const { return offset_.size(); }
 
@@ -45,7 +50,8 @@ class ColumnLayout {
 
  private:
   std::size_t hysteretic_, branches_, hinges_, hinge_branches_;
-  std::vector<Eigen::Index> offset_, unsettled_;
+  std::vector<Eigen::Index> offset_, unsettled_, wandering_;
+  std::vector<std::size_t> knots_;
   Eigen::Index count_ = 0;
 };
 

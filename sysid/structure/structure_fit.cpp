@@ -298,4 +298,24 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   return fit;
 }
 
+std::vector<Record> without_wandering(std::vector<Record> records, BaseStructure structure,
+                                      const StructureFitOptions& options) {
+  structure.wandering = true;
+  const FittedStructure fit = fit_form(records, structure, grid_for(records), options);
+  const ColumnLayout layout(fit.structure, fit.grid, records);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const double first_s = records[r].time_s.front();
+    const auto at_knot_mm = [&](std::size_t knot) {
+      return knot == 0 ? 0 : fit.weights(layout.wandering(r) + static_cast<Eigen::Index>(knot) - 1);
+    };
+    for (std::size_t i = 0; i < records[r].size(); ++i) {
+      const double place = (records[r].time_s[i] - first_s) / ColumnLayout::knot_interval_s;
+      const auto knot = std::min(static_cast<std::size_t>(place), layout.knots(r) - 1);
+      const double part = place - static_cast<double>(knot);
+      records[r].reading_mm[i] -= (1 - part) * at_knot_mm(knot) + part * at_knot_mm(knot + 1);
+    }
+  }
+  return records;
+}
+
 }  // namespace softgrip::sysid

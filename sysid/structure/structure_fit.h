@@ -38,4 +38,9 @@ struct FittedStructure {
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);
 
+/// The readings without what their zeros do besides what the finger does: the structure with wandering zeros
+/// fitted, and those taken away.
+[[nodiscard]] std::vector<Record> without_wandering(std::vector<Record> records, BaseStructure structure,
+                                                    const StructureFitOptions& options);
+
 }  // namespace softgrip::sysid

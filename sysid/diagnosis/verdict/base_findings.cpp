@@ -30,6 +30,7 @@
 #include "sysid/structure/held_out_blocks.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_choice.h"
+#include "sysid/structure/structure_fit.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -181,9 +182,13 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   options.published_yields_below = worth_having;
   auto choice = better_structure(data.records, plain.base.point, options);
   if (!choice && !plain.extended.causes.empty()) {
-    // An effect that no structure has may spoil all of them.
+    // An effect that no structure has may spoil all of them; a drift that an unfit base hides is among none.
     choice = better_structure(without_effects(data.records, plain.extended.point, plain.extended.causes),
                               plain.base.point, options);
+    if (!choice)
+      choice =
+          better_structure(without_wandering(data.records, {.delay = question.drive == Drive::command}, {}),
+                           plain.base.point, options);
   }
   if (!choice) return std::nullopt;
   const StructureTrial& chosen = choice->trials[choice->chosen];

@@ -108,6 +108,30 @@ TEST(StructureProjection, WeightsAreNeverNegative) {
   EXPECT_NEAR(found.weights.head(layout.own()).sum(), 0, 1e-3);
 }
 
+TEST(WithoutWandering, TakesADriftAwayAndLeavesWhatTheFingerDoes) {
+  const Log steady = simulated(play_finger(), SignalName::tp1, 100, 0.03, 5);
+  Log drifting = steady;
+  constexpr double drift_mm = 0.8, period_s = 90;
+  for (std::size_t i = 0; i < drifting.size(); ++i)
+    drifting.displacement_mm[i] += drift_mm * std::sin(2 * M_PI * drifting.time_s[i] / period_s);
+  const auto moved_mm = [](const Log& log) {
+    const std::vector<Record> records = make_records({log}, {});
+    const std::vector<Record> left = without_wandering(records, {}, {});
+    std::vector<double> moved(records[0].size());
+    for (std::size_t i = 0; i < moved.size(); ++i)
+      moved[i] = records[0].reading_mm[i] - left[0].reading_mm[i];
+    return moved;
+  };
+  const std::vector<double> of_steady = moved_mm(steady), of_drifting = moved_mm(drifting);
+  // Slow creep and a drift are alike in part; beyond that part the drift alone is taken.
+  EXPECT_LT(rms(of_steady), 0.3 * drift_mm);
+  std::vector<double> missed(of_drifting.size());
+  for (std::size_t i = 0; i < missed.size(); ++i) {
+    missed[i] = of_drifting[i] - of_steady[i] - (drifting.displacement_mm[i] - steady.displacement_mm[i]);
+  }
+  EXPECT_LT(rms(missed), 0.1 * drift_mm);
+}
+
 TEST(IdentifyStructure, FindsThePublishedElementWithItsDelayAndItsLag) {
   const model::Model twin = loaded("bench_twin");
   std::vector<Log> logs;
