@@ -70,7 +70,8 @@ std::optional<unsigned> octal(std::string_view text) {
   return mode;
 }
 
-void read_socket_mode(MapReader& reader, SocketSettings& socket) {
+/// `moves`: who connects may move the gripper.
+void read_socket_mode(MapReader& reader, SocketFile& socket, bool moves) {
   const std::string text = reader.text("mode");
   if (text.empty()) return;
   const auto letters = in_letters(text);
@@ -85,10 +86,20 @@ void read_socket_mode(MapReader& reader, SocketSettings& socket) {
     reader.report("mode", "`mode` gives the right to execute, which a socket does not have",
                   "rw-rw----: the owner and the group may connect");
   }
-  if ((*mode & 0006U) != 0) {
+  if (moves && (*mode & 0006U) != 0) {
     reader.warn("mode", "everyone on this machine may move the gripper",
                 "rw-rw----: the owner and the group may connect");
   }
+}
+
+void read_socket_file(Context& context, MapReader& reader, SocketFile& socket, bool moves) {
+  socket.path = resolved(context, reader.text("path"));
+  // sockaddr_un has room for 108 bytes, one of them the final NUL.
+  if (socket.path.size() > 107) {
+    reader.report("path", "the path of the socket is longer than 107 bytes, the most that Linux allows");
+  }
+  read_socket_mode(reader, socket, moves);
+  socket.group = reader.optional_text("group").value_or("");
 }
 
 }  // namespace
@@ -220,13 +231,15 @@ void read_socket(Context& context, MapReader& top) {
   if (node == nullptr) return;
   MapReader reader(context.document, *node, context.problems, "socket");
   SocketSettings& socket = context.rig.socket;
-  socket.path = resolved(context, reader.text("path"));
-  // sockaddr_un has room for 108 bytes, one of them the final NUL.
-  if (socket.path.size() > 107) {
-    reader.report("path", "the path of the socket is longer than 107 bytes, the most that Linux allows");
+  read_socket_file(context, reader, socket, true);
+  if (const Node* const look = reader.child("look", false)) {
+    MapReader look_reader(context.document, *look, context.problems, "socket: look");
+    read_socket_file(context, look_reader, socket.look, false);
+    if (!socket.look.path.empty() && socket.look.path == socket.path) {
+      look_reader.report("path", "this is the socket of those who operate",
+                         "a path of its own: what may be done is told apart by the socket");
+    }
   }
-  read_socket_mode(reader, socket);
-  socket.group = reader.optional_text("group").value_or("");
   socket.sequence_directory = resolved(context, reader.text("sequence_directory"));
   const auto bound = [&](std::string_view key, std::size_t& value, std::int64_t lower, std::int64_t upper) {
     if (const auto number = reader.optional_integer(key, lower, upper)) {

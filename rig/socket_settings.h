@@ -6,13 +6,21 @@
 
 namespace softgrip::rig {
 
-struct SocketSettings {
-  /// A Unix domain stream socket; empty: none.
-  std::string path = "/run/softgrip/softgripd.sock";
-  /// Permissions of the socket's file: who may connect may move the gripper.
+/// A Unix domain stream socket in the file system.
+struct SocketFile {
+  std::string path;  ///< empty: none
+  /// Permissions of its file.
   unsigned mode = 0660;
-  /// Group of the socket's file; empty: the daemon's.
+  /// Group of its file; empty: the daemon's.
   std::string group;
+};
+
+/// The file is the socket of those who may operate: who may connect may move the gripper.
+struct SocketSettings : SocketFile {
+  SocketSettings() { path = "/run/softgrip/softgripd.sock"; }
+  /// Who connects here may only look.
+  SocketFile look;
+  /// Of each of the two.
   std::size_t max_clients = 16;
   /// Longest line a client may send [bytes]; a longer one is answered and the client dropped.
   std::size_t max_line_bytes = 64 * 1024;

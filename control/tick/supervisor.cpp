@@ -80,6 +80,9 @@ void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orde
     case Request::Kind::start:
       answer_start(input, facts, orders, events);
       break;
+    case Request::Kind::check:
+      answer_check(input, facts, events);
+      break;
     case Request::Kind::stop:
       if (playing()) {
         stop(facts, request.id, orders, events);
@@ -116,6 +119,15 @@ RefusalCode Supervisor::refusal_of_start(const TickInput& input, const Facts& fa
     return RefusalCode::no_valid_reading;
   }
   return RefusalCode::none;
+}
+
+void Supervisor::answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept {
+  const RefusalCode refusal = refusal_of_start(input, facts);
+  if (refusal == RefusalCode::none) {
+    events.add(Event::Kind::start_checked, 0, input.request.id);
+  } else {
+    events.add(Event::Kind::request_refused, refusal, input.request.id);
+  }
 }
 
 void Supervisor::answer_start(const TickInput& input, const Facts& facts, Orders& orders,

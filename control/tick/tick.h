@@ -45,10 +45,18 @@ enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 
 /// What the outside may ask of the controller; at most one per tick (the loop queues them).
 struct Request {
-  enum class Kind : std::uint8_t { none, start, stop, vent, acknowledge, release };
+  enum class Kind : std::uint8_t {
+    none,
+    start,
+    check,  ///< answered as a start would be now; nothing else comes of it
+    stop,
+    vent,
+    acknowledge,
+    release,
+  };
   Kind kind = Kind::none;
   std::uint32_t id = 0;                        ///< echoed in the events that answer it
-  const PreparedSequence* sequence = nullptr;  ///< for start; outlives its run
+  const PreparedSequence* sequence = nullptr;  ///< for start, whose run it outlives, and check
 };
 
 /// What the bus did since the last tick, as far as control must know.
@@ -142,6 +150,7 @@ struct Event {
     release_asked,     ///< on with the release step
     reading_unsteady,  ///< the reading jumps there and back, again and again
     reading_steady,    ///< it has been calm for a while
+    start_checked,     ///< a start would be accepted now
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;

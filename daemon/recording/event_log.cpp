@@ -205,12 +205,16 @@ void describe_release(const Event&, const Sequence*, EventEntry& entry) {
   entry.text = "A release was asked for.";
 }
 
+void describe_check(const Event&, const Sequence*, EventEntry& entry) {
+  entry.text = "A start was checked: it would be accepted now.";
+}
+
 struct Telling {
   std::string_view kind;
   void (*describe)(const Event& event, const Sequence* sequence, EventEntry& entry);
 };
 /// In the order of control::Event::Kind.
-constexpr std::array<Telling, 17> tellings{{
+constexpr std::array<Telling, 18> tellings{{
     {"state_changed", describe_state},
     {"fault_latched", describe_fault},
     {"fault_acknowledged", describe_acknowledged},
@@ -228,8 +232,9 @@ constexpr std::array<Telling, 17> tellings{{
     {"release_asked", describe_release},
     {"reading_unsteady", describe_unsteady},
     {"reading_steady", describe_unsteady},
+    {"start_checked", describe_check},
 }};
-static_assert(static_cast<std::size_t>(Kind::reading_steady) + 1 == tellings.size());
+static_assert(static_cast<std::size_t>(Kind::start_checked) + 1 == tellings.size());
 
 }  // namespace
 
@@ -292,8 +297,10 @@ std::uint64_t EventLog::add(EventEntry entry) {
 
 std::vector<EventEntry> EventLog::since(std::uint64_t id, std::size_t limit) const {
   const std::scoped_lock lock(mutex_);
-  const auto first =
-      std::find_if(entries_.begin(), entries_.end(), [id](const EventEntry& entry) { return entry.id > id; });
+  if (id >= last_id_) return {};
+  // The ids have no gaps.
+  const std::uint64_t known = last_id_ - entries_.size();
+  const auto first = entries_.begin() + static_cast<std::ptrdiff_t>(std::max(id, known) - known);
   const auto count = std::min<std::size_t>(limit, static_cast<std::size_t>(entries_.end() - first));
   return {first, first + static_cast<std::ptrdiff_t>(count)};
 }
@@ -301,6 +308,11 @@ std::vector<EventEntry> EventLog::since(std::uint64_t id, std::size_t limit) con
 std::uint64_t EventLog::newest() const {
   const std::scoped_lock lock(mutex_);
   return last_id_;
+}
+
+std::uint64_t EventLog::oldest() const {
+  const std::scoped_lock lock(mutex_);
+  return entries_.empty() ? 0 : entries_.front().id;
 }
 
 }  // namespace softgrip::daemon

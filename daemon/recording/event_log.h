@@ -27,6 +27,7 @@ struct EventEntry {
   std::string code;           ///< "F101", "R02", "HOLDING", a state, a step; by kind; may be empty
   std::string text;           ///< one sentence
   std::uint32_t request = 0;  ///< the request it answers, or 0
+  std::string client;         ///< who made that request, as it calls itself; empty: nobody said so
   double value = 0;           ///< a number that goes with it, or 0
   std::vector<control::Argument> parameters;  ///< of sequence_started: what the sequence runs with
 };
@@ -61,6 +62,8 @@ class EventLog {
   [[nodiscard]] std::vector<EventEntry> since(std::uint64_t id, std::size_t limit) const;
   /// The id of the newest event; 0 if there is none.
   [[nodiscard]] std::uint64_t newest() const;
+  /// The id of the oldest that is kept; 0 if there is none.
+  [[nodiscard]] std::uint64_t oldest() const;
 
  private:
   mutable std::mutex mutex_;

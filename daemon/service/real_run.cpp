@@ -181,14 +181,15 @@ void RealRun::service_body() {
                         &report_,
                         parts_.rig.gpio ? &*parts_.rig.gpio : nullptr,
                         &parts_.wires};
-  SocketApi api(sources, parts_.loader, parts_.events,
+  SocketApi api(sources, parts_.rig.socket, parts_.loader, parts_.events,
                 [this](ClientId client, std::string_view line, bool skippable) {
-                  if (server_) server_->send(client, line, skippable);
+                  return server_ && server_->send(client, line, skippable);
                 });
   if (server_) {
     server_->set_handlers(
         {[&](ClientId client, std::string_view line) { api.on_line(client, line, parts_.clock.now()); },
-         [&](ClientId client) { api.on_closed(client); }, is_urgent});
+         [&](ClientId client) { api.on_closed(client); }, is_urgent,
+         [&](ClientId client, Role role) { api.on_opened(client, role); }});
   }
   while (!stop_service_.is_set()) {
     service_turns_.add();

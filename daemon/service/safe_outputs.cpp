@@ -10,7 +10,7 @@
 #include "base/grid.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
-#include "daemon/socket/socket_server.h"
+#include "daemon/socket/listener.h"
 
 namespace softgrip::daemon {
 

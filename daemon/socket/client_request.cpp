@@ -17,7 +17,7 @@ using Command = ClientRequest::Command;
 
 constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // what every JSON reader keeps exactly
 
-constexpr std::array<std::pair<std::string_view, Command>, 11> commands{{
+constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{
     {"status", Command::status},
     {"watch", Command::watch},
     {"unwatch", Command::unwatch},
@@ -29,11 +29,15 @@ constexpr std::array<std::pair<std::string_view, Command>, 11> commands{{
     {"events", Command::events},
     {"statistics", Command::statistics},
     {"sequences", Command::sequences},
+    {"hello", Command::hello},
+    {"subscribe", Command::subscribe},
+    {"unsubscribe", Command::unsubscribe},
 }};
 
 /// The one key under which an object may stand.
 constexpr std::string_view nested_key = "parameters";
 constexpr std::size_t most_parameters = 64;
+constexpr std::size_t longest_name = 64;
 
 /// Parses a flat JSON object; what is wrong with it as a JSON object is left in `problem`.
 json parse_object(std::string_view line, std::string& problem) {
@@ -62,7 +66,8 @@ class Reader {
  public:
   explicit Reader(json& object) : object_(object) {}
 
-  void whole(const char* key, std::uint64_t lower, std::uint64_t upper, std::uint64_t& value) {
+  template <class Whole>
+  void whole(const char* key, std::uint64_t lower, std::uint64_t upper, Whole& value) {
     const json given = take(key);
     if (given.is_null()) return;
     if (!given.is_number_unsigned() || given.get<std::uint64_t>() < lower ||
@@ -89,6 +94,16 @@ class Reader {
       return;
     }
     value = given.get<std::string>();
+  }
+  /// It stands in events and logs.
+  void name(const char* key, std::string& value) {
+    text(key, value);
+    const bool printable = std::none_of(value.begin(), value.end(), [](char letter) {
+      return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+    });
+    if (value.size() > longest_name || !printable) {
+      fail(fmt::format("'{}' has at most {} bytes and no control characters", key, longest_name));
+    }
   }
   void boolean(const char* key, bool& value) {
     const json given = take(key);
@@ -149,11 +164,20 @@ void read_arguments(Reader& reader, ClientRequest& request) {
       reader.text("sequence", request.sequence);
       reader.text("sequence_text", request.sequence_text);
       reader.parameters("parameters", request.parameters);
+      reader.boolean("dry_run", request.dry_run);
       if (request.sequence.empty()) reader.fail("'start' needs the key 'sequence'");
       break;
     case Command::events:
       reader.whole("since", 0, largest_id, request.since);
       reader.whole("limit", 1, 1000, request.limit);
+      break;
+    case Command::subscribe:
+      reader.whole("since", 0, largest_id, request.since);
+      reader.text("started_at", request.started_at);
+      break;
+    case Command::hello:
+      reader.name("client", request.client);
+      reader.whole("api", 1, largest_id, request.api);
       break;
     case Command::statistics:
       reader.boolean("histograms", request.histograms);
@@ -165,6 +189,7 @@ void read_arguments(Reader& reader, ClientRequest& request) {
     case Command::release:
     case Command::acknowledge:
     case Command::sequences:
+    case Command::unsubscribe:
       break;
   }
 }
@@ -197,6 +222,27 @@ tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view l
   problem = reader.finish(command);
   if (!problem.empty()) return tl::unexpected(ClientError{request.id, problem});
   return request;
+}
+
+std::vector<std::string_view> commands_of(Role role) {
+  std::vector<std::string_view> names;
+  for (const auto& [name, command] : commands) {
+    if (role == Role::operate || only_looks(command)) names.push_back(name);
+  }
+  return names;
+}
+
+bool only_looks(Command command) noexcept {
+  switch (command) {
+    case Command::start:
+    case Command::stop:
+    case Command::vent:
+    case Command::release:
+    case Command::acknowledge:
+      return false;
+    default:
+      return true;
+  }
 }
 
 bool is_urgent(std::string_view line) {

@@ -12,8 +12,12 @@
 #include <tl/expected.hpp>
 
 #include "control/tick/parameter.h"
+#include "daemon/socket/role.h"
 
 namespace softgrip::daemon {
+
+/// Of the socket API.
+inline constexpr std::uint64_t api_version = 1;
 
 struct ClientRequest {
   enum class Command : std::uint8_t {
@@ -28,6 +32,9 @@ struct ClientRequest {
     events,
     statistics,
     sequences,
+    hello,
+    subscribe,
+    unsubscribe,
   };
 
   std::optional<std::uint64_t> id;  ///< the client's own, echoed in every reply
@@ -36,9 +43,13 @@ struct ClientRequest {
   std::string sequence;       ///< of start: a file in the daemon's sequence directory, or ...
   std::string sequence_text;  ///< ... the sequence itself; then `sequence` is its name in messages
   std::vector<control::Argument> parameters;  ///< of start: values in the place of defaults
-  std::uint64_t since = 0;                    ///< of events: only those with a larger id
-  std::uint64_t limit = 100;                  ///< of events: [1, 1000]
-  bool histograms = false;                    ///< of statistics: with the bins
+  bool dry_run = false;                       ///< of start: everything but the motion
+  std::optional<std::uint64_t> since;         ///< of events and subscribe: only those with a larger id
+  std::string started_at;           ///< of subscribe: of the daemon whose ids these are; empty: this one
+  std::string client;               ///< of hello: who it is, [1, 64] bytes without control characters
+  std::uint64_t api = api_version;  ///< of hello: the version that the client speaks
+  std::uint64_t limit = 100;        ///< of events: [1, 1000]
+  bool histograms = false;          ///< of statistics: with the bins
 };
 
 /// Why a line was refused.
@@ -50,6 +61,11 @@ struct ClientError {
 /// Reads one line without its line break. Strict: an unknown, repeated or missing key, a key of another
 /// command, a wrong type and a number out of range are errors.
 [[nodiscard]] tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view line);
+
+/// The names of the commands that a role may use.
+[[nodiscard]] std::vector<std::string_view> commands_of(Role role);
+/// False of what moves, stops or acknowledges.
+[[nodiscard]] bool only_looks(ClientRequest::Command command) noexcept;
 
 /// Whether it asks to stop or to vent.
 [[nodiscard]] bool is_urgent(std::string_view line);

@@ -1,16 +1,21 @@
 #include "daemon/socket/service.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/grid.h"
+#include "daemon/socket/overall_result.h"
 
 namespace softgrip::daemon {
 
 using Kind = control::Event::Kind;
 
 namespace {
+
+/// Requests whose clients' names are kept.
+constexpr std::size_t most_clients = 256;
 
 /// The fault that an answer is about.
 control::Fault fault_in(const control::Event& event) {
@@ -29,10 +34,12 @@ Service::Service(std::vector<std::string> channel_names, Nanoseconds origin, Wir
       wires_(wires),
       events_(wires.events),
       log_(log),
-      shelf_(shelf) {}
+      shelf_(shelf),
+      results_(channel_names_.size()) {}
 
 std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
-                                             std::shared_ptr<const LoadedSequence> sequence) {
+                                             std::shared_ptr<const LoadedSequence> sequence,
+                                             const std::string& client) {
   control::Request request;
   request.kind = kind;
   request.id = last_request_ + 1;
@@ -44,7 +51,21 @@ std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
   }
   ++last_request_;
   answers_[request.id] = {};
+  note_client(request.id, client);
   return request.id;
+}
+
+void Service::note_client(std::uint32_t request, const std::string& client) {
+  if (!client.empty()) clients_[request] = client;
+  // The oldest goes, but for the one whose sequence may still run.
+  auto oldest = clients_.begin();
+  if (oldest != clients_.end() && oldest->first == sequence_request_) ++oldest;
+  if (clients_.size() > most_clients) clients_.erase(oldest);
+}
+
+std::string Service::client_of(std::uint32_t request) const {
+  const auto found = clients_.find(request);
+  return found == clients_.end() ? std::string() : found->second;
 }
 
 bool Service::push(const control::Request& request, std::shared_ptr<const LoadedSequence> sequence) {
@@ -98,9 +119,11 @@ void Service::take(const StampedEvent& stamped) {
     sequence_ = shelf_.find(event.request);
     sequence_request_ = event.request;
     shelf_.drop_before(event.request);
+    std::fill(results_.begin(), results_.end(), control::GripResult::none);
+    overall_ = control::GripResult::none;
   }
   // The loop has let go of it.
-  if (event.kind == Kind::request_refused) shelf_.drop(event.request);
+  if (event.kind == Kind::request_refused || event.kind == Kind::start_checked) shelf_.drop(event.request);
   if (event.kind == Kind::sequence_finished) {
     ending_ = {event.request, static_cast<control::SequenceEnd>(event.detail)};
   }
@@ -113,6 +136,26 @@ void Service::take(const StampedEvent& stamped) {
   }
   EventEntry entry = describe(event, channel_names_, sequence_ ? &sequence_->prepared : nullptr);
   entry.time_s = seconds(stamped.at - origin_);
+  entry.client = client_of(event.request);
+  log_.add(std::move(entry));
+  if (event.kind == Kind::grip_result) note_result(stamped);
+}
+
+/// What came of the grip as a whole, whenever that changes.
+void Service::note_result(const StampedEvent& stamped) {
+  const control::Event& event = stamped.event;
+  if (event.channel >= results_.size()) return;
+  results_[event.channel] = static_cast<control::GripResult>(event.detail);
+  const control::GripResult overall =
+      overall_result(results_, sequence_ ? sequence_->prepared.channels : ~0U);
+  if (overall == std::exchange(overall_, overall) || overall == control::GripResult::none) return;
+  EventEntry entry;
+  entry.kind = "overall_result";
+  entry.time_s = seconds(stamped.at - origin_);
+  entry.code = control::title_of(overall);
+  entry.request = sequence_request_;
+  entry.client = client_of(sequence_request_);
+  entry.text = fmt::format("The result of all fingers is {}.", entry.code);
   log_.add(std::move(entry));
 }
 

@@ -23,9 +23,11 @@ class Service {
 
   /// Hands a request to the loop; returns its id, or nothing if the loop has not taken the last ones yet.
   /// Vent and stop have lanes of their own, which pass whatever else waits, and always return an id: if their
-  /// lane is full, that of one that waits in it and will do the same.
+  /// lane is full, that of one that waits in it and will do the same. `client` stands in the events that come
+  /// of it; may be empty.
   std::optional<std::uint32_t> submit(control::Request::Kind kind,
-                                      std::shared_ptr<const LoadedSequence> sequence = nullptr);
+                                      std::shared_ptr<const LoadedSequence> sequence = nullptr,
+                                      const std::string& client = {});
 
   /// Moves what loop and bus had to tell into the log, and notes answers.
   void pump();
@@ -53,6 +55,13 @@ class Service {
   /// The request that started it, or 0.
   [[nodiscard]] std::uint32_t sequence_request() const noexcept { return sequence_request_; }
 
+  /// Who made a request; empty where nobody said so, or too many came since.
+  [[nodiscard]] std::string client_of(std::uint32_t request) const;
+  /// A request has started a sequence that has not ended.
+  [[nodiscard]] bool runs(std::uint32_t request) const noexcept {
+    return request != 0 && request == sequence_request_ && ending_.request != request;
+  }
+
   /// The first failure since the last good exchange, in a sentence; empty while the board answers.
   [[nodiscard]] const std::string& bus_failure() const noexcept { return bus_failure_; }
   [[nodiscard]] const std::vector<std::string>& channel_names() const noexcept { return channel_names_; }
@@ -62,6 +71,8 @@ class Service {
 
  private:
   void take(const StampedEvent& event);
+  void note_result(const StampedEvent& event);
+  void note_client(std::uint32_t request, const std::string& client);
   bool push(const control::Request& request, std::shared_ptr<const LoadedSequence> sequence);
 
   std::vector<std::string> channel_names_;
@@ -73,7 +84,10 @@ class Service {
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;
-  std::map<std::uint32_t, Answer> answers_;  // of requests that were submitted and not taken
+  std::map<std::uint32_t, Answer> answers_;   // of requests that were submitted and not taken
+  std::vector<control::GripResult> results_;  // by channel, of the sequence
+  control::GripResult overall_ = control::GripResult::none;
+  std::map<std::uint32_t, std::string> clients_;  // who made the newest requests
   std::shared_ptr<const LoadedSequence> sequence_;
   std::uint32_t sequence_request_ = 0;
   Ending ending_;

@@ -10,6 +10,7 @@
 
 #include "base/grid.h"
 #include "base/wall_clock.h"
+#include "daemon/socket/reply_json.h"
 
 namespace softgrip::daemon {
 
@@ -21,57 +22,22 @@ using Kind = control::Request::Kind;
 
 /// The loop answers within a tick; after this it is not coming.
 constexpr Nanoseconds longest_answer = ns_per_s;
-/// How long on_time() may be left alone.
+/// How long on_time() may be left alone, and while somebody waits for the loop's answer.
 constexpr Nanoseconds longest_pause = ns_per_s / 50;
-
-Json json_of(std::optional<std::uint64_t> id) {
-  return id ? Json(*id) : Json(nullptr);
-}
-
-Json error_json(std::string_view code, std::string_view message) {
-  return {{"code", code}, {"message", message}};
-}
-
-Json json_of(const document::Problem& problem) {
-  return {{"file", problem.file},           {"line", problem.at.line},    {"column", problem.at.column},
-          {"line_text", problem.line_text}, {"message", problem.message}, {"hint", problem.hint}};
-}
-
-Json json_of(const std::vector<document::Problem>& problems) {
-  Json list = Json::array();
-  for (const document::Problem& problem : problems) {
-    list.push_back(json_of(problem));
-  }
-  return list;
-}
-
-Json json_of(const control::Parameter& parameter) {
-  return {{"name", parameter.name},
-          {"unit", parameter.unit},
-          {"lower", parameter.lower},
-          {"upper", parameter.upper},
-          {"default", parameter.default_value},
-          {"about", parameter.about}};
-}
-
-Json json_of(const std::vector<SequenceLoader::Listed>& sequences) {
-  Json list = Json::array();
-  for (const SequenceLoader::Listed& listed : sequences) {
-    Json parameters = Json::array();
-    for (const control::Parameter& parameter : listed.parameters) parameters.push_back(json_of(parameter));
-    list.push_back({{"name", listed.name},
-                    {"about", listed.about},
-                    {"parameters", std::move(parameters)},
-                    {"problems", json_of(listed.problems.list())}});
-  }
-  return list;
-}
+constexpr Nanoseconds pause_while_asked = ns_per_s / 1000;
+/// Events for one subscriber in one turn: the others have theirs.
+constexpr std::size_t most_fed = 50;
 
 }  // namespace
 
-SocketApi::SocketApi(StatusSources sources, std::shared_ptr<const SequenceLoader> loader,
-                     const EventLog& events, Send send)
-    : sources_(sources), loader_(std::move(loader)), events_(events), send_(std::move(send)) {}
+SocketApi::SocketApi(StatusSources sources, rig::SocketSettings settings,
+                     std::shared_ptr<const SequenceLoader> loader, const EventLog& events, Send send)
+    : sources_(sources),
+      settings_(std::move(settings)),
+      started_at_(utc_text(wall_time(sources.origin), 3)),
+      loader_(std::move(loader)),
+      events_(events),
+      send_(std::move(send)) {}
 
 SocketApi::~SocketApi() {
   if (planned_) abandon_planned();
@@ -83,9 +49,23 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
     fail(client, request.error().id, error_json("bad_request", request.error().message));
     return;
   }
+  if (const Json refusal = refusal_of(client, *request); !refusal.is_null()) {
+    fail(client, request->id, refusal);
+    return;
+  }
   switch (request->command) {
+    case Command::hello:
+      greet(client, *request);
+      break;
+    case Command::subscribe:
+      subscribe(client, *request);
+      break;
+    case Command::unsubscribe:
+      subscriptions_.erase(client);
+      ok(client, request->id, Json::object());
+      break;
     case Command::status:
-      ok(client, request->id, status_json(sources_));
+      ok(client, request->id, status());
       break;
     case Command::watch:
       watch(client, *request, now);
@@ -124,7 +104,62 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
   }
 }
 
+/// Why this client may not ask for that now; null if it may. What a start would come to is anybody's to know
+/// who may start.
+Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const {
+  if (only_looks(request.command)) return nullptr;
+  const auto found = clients_.find(client);
+  if (found == clients_.end() || found->second.role != Role::operate) {
+    return error_json("not_allowed",
+                      "this socket is for looking only; who may move the gripper connects to the other one");
+  }
+  const bool halts = request.command == Command::stop || request.command == Command::vent;
+  const std::string* const other = owner();
+  if (halts || request.dry_run || other == nullptr || owner_.client == client) return nullptr;
+  Json error = error_json("owned", "'" + *other +
+                                       "' has started the sequence that runs, and is still connected: others "
+                                       "may stop and vent");
+  error["owner"] = *other;
+  return error;
+}
+
+/// The name of the client whose sequence runs or is asked for; nullptr if there is none. One without a name
+/// owns nothing, nor does one that has gone.
+const std::string* SocketApi::owner() const {
+  const auto found = clients_.find(owner_.client);
+  if (found == clients_.end() || found->second.name.empty()) return nullptr;
+  const bool keeps = asked_.contains(owner_.request) || sources_.service.runs(owner_.request);
+  return keeps ? &found->second.name : nullptr;
+}
+
+Json SocketApi::status() const {
+  Json json = status_json(sources_);
+  const std::string* const name = owner();
+  json["owner"] = name != nullptr ? Json(*name) : Json(nullptr);
+  return json;
+}
+
+void SocketApi::greet(ClientId client, const ClientRequest& request) {
+  if (request.api != api_version) {
+    fail(client, request.id,
+         error_json("wrong_api", "this daemon speaks version " + std::to_string(api_version)));
+    return;
+  }
+  Client& known = clients_[client];
+  if (!request.client.empty()) known.name = request.client;
+  ok(client, request.id,
+     hello_json(
+         {sources_.provenance.software_version, started_at_, known.role, known.name, seconds(longest_answer)},
+         settings_));
+}
+
+void SocketApi::on_opened(ClientId client, Role role) {
+  clients_[client] = {role, {}};
+}
+
 void SocketApi::on_closed(ClientId client) {
+  clients_.erase(client);
+  subscriptions_.erase(client);
   watches_.erase(client);
   std::erase_if(asked_, [this, client](const auto& entry) {
     if (entry.second.client != client) return false;
@@ -151,10 +186,11 @@ Nanoseconds SocketApi::on_time(Nanoseconds now) {
     if (said.kind == Service::Answer::Kind::pending) sources_.service.forget(request);
     entry = asked_.erase(entry, end);
   }
-  Nanoseconds next = now + longest_pause;
+  feed(now);
+  Nanoseconds next = now + (asked_.empty() ? longest_pause : pause_while_asked);
   for (auto& [client, watch] : watches_) {
     if (now >= watch.due) {
-      send_(client, line_of({{"id", json_of(watch.id)}, {"watch", status_json(sources_)}}), true);
+      send_(client, line_of({{"id", id_json(watch.id)}, {"watch", status()}}), true);
       watch.due = std::max(watch.due + watch.period, now);
     }
     next = std::min(next, watch.due);
@@ -176,7 +212,7 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
         return text.empty() ? loader->load_named(name, parameters, token)
                             : loader->load_text(name, text, parameters, token);
       });
-  planned_ = Planned{client, request.id, load.get_future(), stop};
+  planned_ = Planned{client, request.id, load.get_future(), stop, request.dry_run};
   std::thread(std::move(load)).detach();
 }
 
@@ -196,7 +232,7 @@ void SocketApi::take_listing() {
   if (!listing_ || listing_->read.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   Listing listing = std::move(*listing_);
   listing_.reset();
-  const Json result{{"sequences", json_of(listing.read.get())}};
+  const Json result{{"sequences", sequences_json(listing.read.get())}};
   for (const auto& [client, id] : listing.waiting) ok(client, id, result);
 }
 
@@ -219,30 +255,32 @@ void SocketApi::take_planned(Nanoseconds now) {
   planned_.reset();
   SequenceLoader::Result sequence = planned.loaded.get();
   // Who left before the motion could begin does not want it any more.
-  if (!planned.abandoned) loaded(planned.client, planned.id, std::move(sequence), now);
+  if (!planned.abandoned) loaded(planned, std::move(sequence), now);
 }
 
-void SocketApi::loaded(ClientId client, std::optional<std::uint64_t> id, SequenceLoader::Result sequence,
-                       Nanoseconds now) {
+void SocketApi::loaded(const Planned& planned, SequenceLoader::Result sequence, Nanoseconds now) {
   if (sequence) {
-    ask(client, id, Kind::start, std::move(*sequence), now);
+    ask(planned.client, planned.id, planned.dry_run ? Kind::check : Kind::start, std::move(*sequence), now);
     return;
   }
   Json error = error_json("sequence_refused", "the sequence cannot be run on this rig");
-  error["problems"] = json_of(sequence.error().list());
-  fail(client, id, error);
+  error["problems"] = problems_json(sequence.error().list());
+  fail(planned.client, planned.id, error);
 }
 
 void SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
                     std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
-  document::Problems remarks;
-  if (sequence) remarks = sequence->remarks;
-  const auto number = sources_.service.submit(kind, std::move(sequence));
+  Asked asked{client, id, now + longest_answer, {}, {}};
+  if (sequence) asked.remarks = sequence->remarks;
+  if (kind == Kind::check) asked.checked = sequence;
+  const auto number = sources_.service.submit(kind, std::move(sequence), clients_[client].name);
   if (!number) {
     fail(client, id, error_json("busy", "the loop has not yet taken the requests before this one"));
     return;
   }
-  asked_.insert({*number, {client, id, now + longest_answer, std::move(remarks)}});
+  const bool taken = asked_.contains(owner_.request) || sources_.service.runs(owner_.request);
+  if (kind == Kind::start && !taken) owner_ = {client, *number};
+  asked_.insert({*number, std::move(asked)});
 }
 
 void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer) {
@@ -255,7 +293,8 @@ void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service:
     if (answer.fault.code != control::FaultCode::none) {
       result["acknowledged"] = fault_title_json(answer.fault, sources_.service.channel_names());
     }
-    if (!asked.remarks.warnings().empty()) result["warnings"] = json_of(asked.remarks.warnings());
+    if (asked.checked) result["would_start"] = checked_json(*asked.checked);
+    if (!asked.remarks.warnings().empty()) result["warnings"] = problems_json(asked.remarks.warnings());
     ok(asked.client, asked.id, result);
     return;
   }
@@ -272,27 +311,49 @@ void SocketApi::watch(ClientId client, const ClientRequest& request, Nanoseconds
   ok(client, request.id, {{"rate_hz", request.rate_hz}});
 }
 
+Json SocketApi::dated(const EventEntry& event, Nanoseconds now) const {
+  Json json = event_json(event);
+  json["at"] = utc_text(wall_time_now() - (now - sources_.origin) + nanoseconds(event.time_s), 3);
+  return json;
+}
+
 void SocketApi::tell_events(ClientId client, const ClientRequest& request, Nanoseconds now) {
   Json list = Json::array();
-  const Nanoseconds started = wall_time_now() - (now - sources_.origin);
-  for (const EventEntry& event : events_.since(request.since, request.limit)) {
-    Json json = event_json(event);
-    json["at"] = utc_text(started + nanoseconds(event.time_s), 3);
-    list.push_back(std::move(json));
+  for (const EventEntry& event : events_.since(request.since.value_or(0), request.limit)) {
+    list.push_back(dated(event, now));
   }
   ok(client, request.id, {{"events", std::move(list)}, {"newest", events_.newest()}});
 }
 
+/// Ids of another daemon's run say nothing of this one's events: then all that are kept are new.
+void SocketApi::subscribe(ClientId client, const ClientRequest& request) {
+  const std::uint64_t newest = events_.newest();
+  const bool of_another = !request.started_at.empty() && request.started_at != started_at_;
+  const std::uint64_t since = of_another ? 0 : std::min(request.since.value_or(newest), newest);
+  subscriptions_[client] = {request.id, since};
+  ok(client, request.id,
+     {{"since", since}, {"oldest", events_.oldest()}, {"newest", newest}, {"started_at", started_at_}});
+}
+
+/// Who does not read gets the events later, as long as they are kept; nobody waits.
+void SocketApi::feed(Nanoseconds now) {
+  const std::uint64_t newest = events_.newest();
+  for (auto& [client, subscription] : subscriptions_) {
+    if (subscription.last == newest) continue;
+    for (const EventEntry& event : events_.since(subscription.last, most_fed)) {
+      const Json line{{"id", id_json(subscription.id)}, {"event", dated(event, now)}};
+      if (!send_(client, line_of(line), true)) break;
+      subscription.last = event.id;
+    }
+  }
+}
+
 void SocketApi::ok(ClientId client, std::optional<std::uint64_t> id, const Json& result) {
-  send_(client, line_of({{"id", json_of(id)}, {"ok", true}, {"result", result}}), false);
+  send_(client, line_of({{"id", id_json(id)}, {"ok", true}, {"result", result}}), false);
 }
 
 void SocketApi::fail(ClientId client, std::optional<std::uint64_t> id, const Json& error) {
-  send_(client, line_of({{"id", json_of(id)}, {"ok", false}, {"error", error}}), false);
-}
-
-std::string error_line(std::optional<std::uint64_t> id, std::string_view code, std::string_view message) {
-  return line_of({{"id", json_of(id)}, {"ok", false}, {"error", error_json(code, message)}});
+  send_(client, line_of({{"id", id_json(id)}, {"ok", false}, {"error", error}}), false);
 }
 
 }  // namespace softgrip::daemon

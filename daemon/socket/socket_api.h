@@ -14,9 +14,11 @@
 #include <vector>
 
 #include "daemon/socket/client_request.h"
+#include "daemon/socket/role.h"
 #include "daemon/socket/sequence_loader.h"
 #include "daemon/socket/service.h"
 #include "daemon/socket/status_json.h"
+#include "rig/socket_settings.h"
 
 namespace softgrip::daemon {
 
@@ -27,16 +29,18 @@ using ClientId = std::uint64_t;
 class SocketApi {
  public:
   /// How lines reach a client; the line ends with a line break. `skippable`: not sent if the client has not
-  /// yet read the last ones.
-  using Send = std::function<void(ClientId client, std::string_view line, bool skippable)>;
+  /// yet read the last ones; then it returns false.
+  using Send = std::function<bool(ClientId client, std::string_view line, bool skippable)>;
 
-  SocketApi(StatusSources sources, std::shared_ptr<const SequenceLoader> loader, const EventLog& events,
-            Send send);
+  SocketApi(StatusSources sources, rig::SocketSettings settings, std::shared_ptr<const SequenceLoader> loader,
+            const EventLog& events, Send send);
   SocketApi(const SocketApi&) = delete;
   SocketApi& operator=(const SocketApi&) = delete;
   /// What is being planned is told to stop. It is not waited for: its thread may hang in the file system.
   ~SocketApi();
 
+  /// A client has come. One that was never announced may only look.
+  void on_opened(ClientId client, Role role);
   /// One line of a client, without its line break.
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
   /// The client is gone.
@@ -45,11 +49,24 @@ class SocketApi {
   Nanoseconds on_time(Nanoseconds now);
 
  private:
+  struct Client {
+    Role role = Role::look;
+    std::string name;  ///< of its hello
+  };
+  struct Owner {  // of the sequence that runs
+    ClientId client = 0;
+    std::uint32_t request = 0;  ///< that started it
+  };
   struct Asked {  // of the loop
     ClientId client = 0;
     std::optional<std::uint64_t> id;
     Nanoseconds give_up = 0;
-    document::Problems remarks;  ///< on the sequence
+    document::Problems remarks;                     ///< on the sequence
+    std::shared_ptr<const LoadedSequence> checked;  ///< of a dry run
+  };
+  struct Subscription {
+    std::optional<std::uint64_t> id;
+    std::uint64_t last = 0;  ///< the newest event that was sent
   };
   struct Watch {
     std::optional<std::uint64_t> id;
@@ -62,6 +79,7 @@ class SocketApi {
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
     std::stop_source stop;
+    bool dry_run = false;
     bool abandoned = false;  ///< nobody waits for it any more
   };
 
@@ -70,9 +88,15 @@ class SocketApi {
     std::vector<std::pair<ClientId, std::optional<std::uint64_t>>> waiting;
   };
 
+  [[nodiscard]] nlohmann::ordered_json refusal_of(ClientId client, const ClientRequest& request) const;
+  [[nodiscard]] const std::string* owner() const;
+  [[nodiscard]] nlohmann::ordered_json status() const;
+  void greet(ClientId client, const ClientRequest& request);
+  void subscribe(ClientId client, const ClientRequest& request);
+  void feed(Nanoseconds now);
+  [[nodiscard]] nlohmann::ordered_json dated(const EventEntry& event, Nanoseconds now) const;
   void start(ClientId client, const ClientRequest& request, Nanoseconds now);
-  void loaded(ClientId client, std::optional<std::uint64_t> id, SequenceLoader::Result sequence,
-              Nanoseconds now);
+  void loaded(const Planned& planned, SequenceLoader::Result sequence, Nanoseconds now);
   void take_planned(Nanoseconds now);
   void abandon_planned() noexcept;
   void refuse_planned();
@@ -87,17 +111,18 @@ class SocketApi {
   void fail(ClientId client, std::optional<std::uint64_t> id, const nlohmann::ordered_json& error);
 
   StatusSources sources_;
+  rig::SocketSettings settings_;
+  std::string started_at_;
   std::shared_ptr<const SequenceLoader> loader_;
   const EventLog& events_;
   Send send_;
   std::multimap<std::uint32_t, Asked> asked_;  // by the request's id in the loop
+  std::map<ClientId, Client> clients_;
+  Owner owner_;
+  std::map<ClientId, Subscription> subscriptions_;
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
   std::optional<Listing> listing_;
 };
-
-/// The line that refuses a client before it could say anything, or for what cannot be parsed.
-[[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
-                                     std::string_view message);
 
 }  // namespace softgrip::daemon

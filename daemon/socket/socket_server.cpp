@@ -1,17 +1,12 @@
 #include "daemon/socket/socket_server.h"
 
-#include <grp.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <filesystem>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -20,13 +15,12 @@
 #include <fmt/format.h>
 
 #include "base/grid.h"
-#include "daemon/socket/socket_api.h"
+#include "daemon/socket/reply_json.h"
 
 namespace softgrip::daemon {
 
 namespace {
 
-constexpr int backlog = 128;
 /// New clients in one call: they must not keep those that are there from having their turn.
 constexpr int most_accepts = 4;
 /// A client that has just come keeps its place for so long, though it has not said anything yet; one that has
@@ -46,106 +40,33 @@ constexpr Nanoseconds answer_pause = 2 * ns_per_s;
 /// At most so much is read of one client before the others have their turn.
 constexpr std::size_t read_bytes = 16 * 1024;
 
-using Failure = tl::unexpected<std::string>;
-
-Failure failure(const std::string& path, std::string_view what) {
-  return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
-}
-
-/// Nothing if the path is too long for a socket.
-std::optional<sockaddr_un> address_of(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  if (path.size() >= sizeof address.sun_path) return std::nullopt;
-  std::memcpy(address.sun_path, path.data(), path.size());
-  return address;
-}
-
-/// Whether somebody listens there; if not, errno says why.
-bool answers(const sockaddr_un& address) {
-  const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  const auto* generic = reinterpret_cast<const sockaddr*>(&address);
-  return connect(probe.get(), generic, sizeof address) == 0 || errno == EAGAIN;
-}
-
-/// Removes the file of a daemon that is gone. False if one answers.
-bool clear_away(const sockaddr_un& address) {
-  if (answers(address)) return false;
-  // A file that is no socket refuses a connection, too; it is somebody's, and bind() will say that it is
-  // there.
-  struct stat status {};
-  const bool refused = errno == ECONNREFUSED;
-  if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);
-  return true;
-}
-
-/// Mode and group of the socket's file.
-bool give_rights(const rig::SocketSettings& settings) {
-  if (!settings.group.empty()) {
-    const group* entry = getgrnam(settings.group.c_str());
-    if (entry == nullptr) {
-      errno = errno == 0 ? EINVAL : errno;
-      return false;
-    }
-    if (chown(settings.path.c_str(), static_cast<uid_t>(-1), entry->gr_gid) != 0) return false;
-  }
-  return chmod(settings.path.c_str(), settings.mode) == 0;
-}
-
 }  // namespace
 
-bool socket_answers(const std::string& path) {
-  const auto address = address_of(path);
-  return !path.empty() && address && answers(*address);
-}
-
 tl::expected<SocketServer, std::string> SocketServer::listen(const rig::SocketSettings& settings) {
-  const auto address = address_of(settings.path);
-  if (!address) {
-    return Failure(fmt::format("{}: the path of a socket has at most {} bytes", settings.path,
-                               sizeof address->sun_path - 1));
-  }
-  if (!clear_away(*address))
-    return Failure(fmt::format("{}: another softgripd answers there", settings.path));
-  std::error_code ignored;
-  std::filesystem::create_directories(std::filesystem::path(settings.path).parent_path(), ignored);
-
-  Descriptor listener(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!listener) return failure(settings.path, "socket");
-  // Between bind and chmod nobody else may connect.
-  const mode_t before = umask(0177);
-  const int bound = bind(listener.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
-  umask(before);
-  if (bound != 0) return failure(settings.path, "bind");
-  if (!give_rights(settings)) {
-    const auto problem =
-        failure(settings.path, fmt::format("mode {:o} group '{}'", settings.mode, settings.group));
-    unlink(settings.path.c_str());
-    return problem;
-  }
-  if (::listen(listener.get(), backlog) != 0) return failure(settings.path, "listen");
-  struct stat status {};
-  if (lstat(settings.path.c_str(), &status) != 0) return failure(settings.path, "its own file");
-  SocketServer server(settings, std::move(listener));
-  server.device_ = status.st_dev;
-  server.inode_ = status.st_ino;
+  SocketServer server(settings);
+  const auto add = [&server](Role role, const rig::SocketFile& file) -> std::string {
+    auto listener = Listener::open(file);
+    if (!listener) return std::move(listener.error());
+    server.listeners_.push_back({role, std::move(*listener)});
+    return {};
+  };
+  std::string problem = add(Role::operate, settings);
+  if (problem.empty() && !settings.look.path.empty()) problem = add(Role::look, settings.look);
+  if (!problem.empty()) return tl::unexpected(std::move(problem));
   return server;
 }
 
 SocketServer::SocketServer(SocketServer&& other) noexcept = default;
-
-SocketServer::~SocketServer() {
-  struct stat status {};
-  // Somebody may have removed it and another daemon have put its own there.
-  const bool there = listener_ && lstat(settings_.path.c_str(), &status) == 0;
-  if (there && status.st_dev == device_ && status.st_ino == inode_) unlink(settings_.path.c_str());
-}
+SocketServer::~SocketServer() = default;
 
 void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   now_ = now;
   const bool accepts = now >= accepts_again_;
-  std::vector<pollfd> polled{{listener_.get(), static_cast<short>(accepts ? POLLIN : 0), 0}};
-  std::vector<std::uint64_t> ids{0};
+  std::vector<pollfd> polled;
+  for (const Entrance& entrance : listeners_) {
+    polled.push_back({entrance.listener.get(), static_cast<short>(accepts ? POLLIN : 0), 0});
+  }
+  std::vector<std::uint64_t> ids(polled.size());
   for (const auto& [id, client] : clients_) {
     // A client whose replies are not taken is not read either, nor one that has more to say than its turn
     // takes.
@@ -157,46 +78,61 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   const Nanoseconds wait = lines_left_ ? 0 : std::max<Nanoseconds>(until - now, 0);
   const timespec timeout{wait / ns_per_s, wait % ns_per_s};
   if (::ppoll(polled.data(), polled.size(), &timeout, nullptr) > 0) {
-    for (std::size_t i = 1; i < polled.size(); ++i) {
+    for (std::size_t i = listeners_.size(); i < polled.size(); ++i) {
       Client& client = clients_.at(ids[i]);
       if ((polled[i].revents & POLLOUT) != 0) write_to(client, now);
       if ((polled[i].revents & POLLIN) != 0) read_from(client);
       if ((polled[i].revents & (POLLERR | POLLNVAL)) != 0) client.dead = true;
       if ((polled[i].revents & POLLHUP) != 0 && (polled[i].revents & POLLIN) == 0) client.dead = true;
     }
-    if ((polled[0].revents & POLLIN) != 0) accept_some();
+    for (std::size_t i = 0; i < listeners_.size(); ++i) {
+      if ((polled[i].revents & POLLIN) != 0) accept_some(listeners_[i]);
+    }
   }
   lines_left_ = false;
-  for (auto& [id, client] : clients_) {
-    take_lines(id, client);
-    lines_left_ = lines_left_ || (!client.dead && client.output.empty() && has_line(client));
+  // Who may stop or vent is heard first.
+  for (const Role role : {Role::operate, Role::look}) {
+    for (auto& [id, client] : clients_) {
+      if (client.role != role) continue;
+      take_lines(id, client);
+      lines_left_ = lines_left_ || (!client.dead && client.output.empty() && has_line(client));
+    }
   }
   sweep(now);
 }
 
-void SocketServer::accept_some() {
+std::size_t SocketServer::count_of(Role role) const {
+  return static_cast<std::size_t>(std::count_if(
+      clients_.begin(), clients_.end(), [role](const auto& entry) { return entry.second.role == role; }));
+}
+
+void SocketServer::accept_some(const Entrance& entrance) {
+  const Role role = entrance.role;
   for (int i = 0; i < most_accepts; ++i) {
-    Descriptor socket = accept_one();
+    Descriptor socket = accept_one(entrance);
     if (!socket) return;
-    const bool full = clients_.size() >= settings_.max_clients;
-    const bool stands = full && !displace_one(false);
-    if (clients_.size() >= settings_.max_clients + most_standing) displace_one(true);
+    const bool stands = count_of(role) >= settings_.max_clients && !displace_one(role, false);
+    if (count_of(role) >= settings_.max_clients + most_standing) displace_one(role, true);
     Client& client = clients_[++last_id_];
     client.socket = std::move(socket);
+    client.role = role;
     client.active_at = now_;
     client.stands = stands;
+    if (handlers_.on_opened) handlers_.on_opened(last_id_, role);
     read_from(client);  // what it has to say is usually there already
   }
 }
 
-/// Nothing if nobody waits, or if there is no descriptor even without the longest silent client.
-Descriptor SocketServer::accept_one() {
+/// Nothing if nobody waits, or if there is no descriptor even without the longest silent client. Who looks
+/// takes none from those who operate.
+Descriptor SocketServer::accept_one(const Entrance& entrance) {
   for (;;) {
-    Descriptor socket(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    Descriptor socket(accept4(entrance.listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     const bool none_left =
         !socket && (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM);
     if (!none_left) return socket;
-    if (displace_one(true)) continue;
+    if (displace_one(Role::look, true)) continue;
+    if (entrance.role == Role::operate && displace_one(Role::operate, true)) continue;
     accepts_again_ = now_ + accept_pause;
     return socket;
   }
@@ -207,16 +143,16 @@ bool SocketServer::may_go(const Client& client) const {
   return client.ended_at != 0 || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
 }
 
-/// Of those that may go, or of all if it must be: the one that stands, never spoke, was silent for longest,
-/// in this order. False if there is none.
-bool SocketServer::displace_one(bool whoever) {
+/// Of those of the role that may go, or of all if it must be: the one that stands, never spoke, was silent
+/// for longest, in this order. False if there is none.
+bool SocketServer::displace_one(Role role, bool whoever) {
   const auto rank = [](const Client& client) {
     return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
   };
   auto found = clients_.end();
   for (auto entry = clients_.begin(); entry != clients_.end(); ++entry) {
     const Client& client = entry->second;
-    if (!whoever && !may_go(client)) continue;
+    if (client.role != role || (!whoever && !may_go(client))) continue;
     if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
   }
   if (found == clients_.end()) return false;
@@ -295,17 +231,18 @@ void SocketServer::take_lines(std::uint64_t id, Client& client) {
   }
 }
 
-void SocketServer::send(std::uint64_t id, std::string_view line, bool skippable) {
+bool SocketServer::send(std::uint64_t id, std::string_view line, bool skippable) {
   const auto found = clients_.find(id);
-  if (found == clients_.end()) return;
+  if (found == clients_.end()) return false;
   Client& client = found->second;
-  if (client.dead || client.closing || (skippable && !client.output.empty())) return;
+  if (client.dead || client.closing || (skippable && !client.output.empty())) return false;
   if (client.output.size() + line.size() > settings_.max_queue_bytes) {
     client.dead = true;
-    return;
+    return false;
   }
   client.output += line;
   write_to(client, now_);
+  return true;
 }
 
 void SocketServer::write_to(Client& client, Nanoseconds now) {

@@ -1,26 +1,25 @@
 #pragma once
 // Lines over a Unix domain socket, every bound enforced. Knows nothing of what the lines mean.
 
-#include <sys/types.h>
-
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tl/expected.hpp>
 
 #include "base/descriptor.h"
+#include "daemon/socket/listener.h"
+#include "daemon/socket/role.h"
 #include "model/reading.h"
 #include "rig/socket_settings.h"
 
 namespace softgrip::daemon {
 
-/// Whether a daemon listens on the socket at `path`.
-[[nodiscard]] bool socket_answers(const std::string& path);
-
-/// A listening socket and its clients. All calls come from one thread.
+/// The listening sockets, one per role, and their clients. Every role has places of its own. All calls come
+/// from one thread.
 class SocketServer {
  public:
   struct Handlers {
@@ -28,16 +27,16 @@ class SocketServer {
     std::function<void(std::uint64_t client)> on_closed;
     /// Whether a line must be heard even of a client for which there is no place.
     std::function<bool(std::string_view line)> is_urgent;
+    /// Before its first line.
+    std::function<void(std::uint64_t client, Role role)> on_opened = nullptr;
   };
 
-  /// Creates the socket's file with the owner's rights first and the settings' then. A file left by a daemon
-  /// that is gone is replaced; one of a daemon that answers is an error. The error is a sentence.
+  /// Opens the sockets of the settings (daemon/socket/listener.h). The error is a sentence.
   [[nodiscard]] static tl::expected<SocketServer, std::string> listen(const rig::SocketSettings& settings);
   SocketServer(const SocketServer&) = delete;
   SocketServer& operator=(const SocketServer&) = delete;
   SocketServer(SocketServer&& other) noexcept;
   SocketServer& operator=(SocketServer&&) = delete;
-  /// Removes the socket's file, if it still is its own.
   ~SocketServer();
 
   /// To be set before the first poll().
@@ -49,15 +48,16 @@ class SocketServer {
   /// unless it is urgent.
   void poll(Nanoseconds now, Nanoseconds until);
 
-  /// Queues a line for a client; unknown clients are ignored. `skippable`: dropped if the client has not yet
-  /// read what was queued before.
-  void send(std::uint64_t client, std::string_view line, bool skippable);
+  /// Queues a line for a client; false if it is gone. `skippable`: dropped, and false, if the client has not
+  /// yet read what was queued before.
+  bool send(std::uint64_t client, std::string_view line, bool skippable);
 
   [[nodiscard]] std::size_t clients() const noexcept { return clients_.size(); }
 
  private:
   struct Client {
     Descriptor socket;
+    Role role = Role::look;
     std::string input;
     std::string output;
     Nanoseconds stalled_since = 0;  // output is waiting and nothing was taken since; 0: not
@@ -69,12 +69,17 @@ class SocketServer {
     bool dead = false;
   };
 
-  SocketServer(const rig::SocketSettings& settings, Descriptor listener)
-      : settings_(settings), listener_(std::move(listener)) {}
-  void accept_some();
-  Descriptor accept_one();
+  struct Entrance {
+    Role role;
+    Listener listener;
+  };
+
+  explicit SocketServer(const rig::SocketSettings& settings) : settings_(settings) {}
+  [[nodiscard]] std::size_t count_of(Role role) const;
+  void accept_some(const Entrance& entrance);
+  Descriptor accept_one(const Entrance& entrance);
   [[nodiscard]] bool may_go(const Client& client) const;
-  bool displace_one(bool whoever);
+  bool displace_one(Role role, bool whoever);
   [[nodiscard]] std::string too_many() const;
   void hear(std::uint64_t id, Client& client, std::string_view line);
   void read_from(Client& client);
@@ -84,9 +89,7 @@ class SocketServer {
   void sweep(Nanoseconds now);
 
   rig::SocketSettings settings_;
-  Descriptor listener_;
-  dev_t device_ = 0;  // of the socket's file
-  ino_t inode_ = 0;
+  std::vector<Entrance> listeners_;
   Handlers handlers_;
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t last_id_ = 0;

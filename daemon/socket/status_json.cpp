@@ -8,6 +8,7 @@
 
 #include "base/grid.h"
 #include "daemon/recording/csv_row.h"
+#include "daemon/socket/overall_result.h"
 #include "daemon/socket/under_pressure.h"
 
 namespace softgrip::daemon {
@@ -109,8 +110,10 @@ Json json_of_sequence(const Service& service, const Snapshot& snapshot) {
   if (!sequence) return nullptr;
   const std::size_t step = snapshot.channels.front().step;
   const auto& steps = sequence->prepared.steps;
+  const std::string client = service.client_of(service.sequence_request());
   Json json{{"name", sequence->prepared.name},
             {"request", service.sequence_request()},
+            {"client", client.empty() ? Json(nullptr) : Json(client)},
             {"parameters", parameters_json(sequence->prepared.parameters)},
             {"step", step},
             {"step_name", step < steps.size() ? steps[step].step.name : ""},
@@ -118,6 +121,13 @@ Json json_of_sequence(const Service& service, const Snapshot& snapshot) {
   const bool ended = service.last_ending().request == service.sequence_request();
   json["ended"] = ended ? Json(control::name_of(service.last_ending().end)) : Json(nullptr);
   return json;
+}
+
+std::string_view overall_title(const Service& service, const Snapshot& snapshot) {
+  const std::uint32_t members = service.sequence() ? service.sequence()->prepared.channels : ~0U;
+  std::vector<control::GripResult> results;
+  for (std::size_t i = 0; i < snapshot.channel_count; ++i) results.push_back(snapshot.channels[i].result);
+  return control::title_of(overall_result(results, members));
 }
 
 Json json_of(const RecorderStatus& recorder) {
@@ -192,7 +202,8 @@ Json status_json(const StatusSources& sources) {
             {"state", control::name_of(snapshot.state)},
             {"under_pressure", under_pressure_json(sources.rig.channels, snapshot)},
             {"fault", json_of_latched(snapshot, sources.service.channel_names())},
-            {"sequence", json_of_sequence(sources.service, snapshot)}};
+            {"sequence", json_of_sequence(sources.service, snapshot)},
+            {"result", overall_title(sources.service, snapshot)}};
   json["channels"] = Json::array();
   for (std::size_t i = 0; i < snapshot.channel_count; ++i) {
     json["channels"].push_back(json_of_channel(sources.rig.channels[i], snapshot.channels[i]));
@@ -236,6 +247,7 @@ Json event_json(const EventEntry& event) {
   if (!event.channel.empty()) json["channel"] = event.channel;
   if (!event.code.empty()) json["code"] = event.code;
   if (event.request != 0) json["request"] = event.request;
+  if (!event.client.empty()) json["client"] = event.client;
   if (event.value != 0) json["value"] = number(event.value);
   if (!event.parameters.empty()) json["parameters"] = parameters_json(event.parameters);
   json["text"] = event.text;

@@ -18,6 +18,7 @@ import tempfile
 import time
 import unittest
 
+import api_schema
 import recording_check
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -165,7 +166,9 @@ class Daemon(Process):
         return False
 
     def ask(self, command, **arguments):
-        return json.loads(self.lines.ask(json.dumps({"command": command, **arguments})))
+        reply = json.loads(self.lines.ask(json.dumps({"command": command, **arguments})))
+        api_schema.check(reply, command)
+        return reply
 
     def result(self, command, **arguments):
         reply = self.ask(command, **arguments)

@@ -65,7 +65,8 @@ ClientFailure failure_of(const Json& error) {
     const Json refusal = error.value("refusal", Json::object());
     return {ExitCode::state_refused, "refused (" + refusal.value("code", "?") + "): " + message};
   }
-  if (code == "busy" || code == "abandoned") return {ExitCode::state_refused, message};
+  if (code == "busy" || code == "abandoned" || code == "owned" || code == "not_allowed")
+    return {ExitCode::state_refused, message};
   return {ExitCode::failed, message};
 }
 

@@ -27,6 +27,23 @@ class Requests : public testing::Test {
   PreparedSequence pick = example_sequence("pick_stone", settings);
 };
 
+TEST_F(Requests, ACheckIsAnsweredAsAStartAndMovesNothing) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request(Request::Kind::check, &pick);
+  rig.tick();
+  EXPECT_TRUE(rig.answer(Event::Kind::start_checked));
+  EXPECT_EQ(rig.output().state, State::idle);
+  rig.interlock_open = true;
+  rig.request(Request::Kind::check, &pick);
+  expect_refused(rig, RefusalCode::interlock_open);
+  rig.interlock_open = false;
+  start(rig, pick);
+  rig.request(Request::Kind::check, &pick);
+  expect_refused(rig, RefusalCode::not_idle);
+  EXPECT_EQ(rig.output().state, State::running);
+}
+
 TEST_F(Requests, StartIsRefusedWithItsReason) {
   SimulatedRig rig(settings);
   rig.wire_cut = true;

@@ -76,7 +76,7 @@ class Chaos {
   }
 
   Request::Kind ask() {
-    const auto kind = chance(0.5) ? Request::Kind::start : static_cast<Request::Kind>(any(1, 5));
+    const auto kind = chance(0.5) ? Request::Kind::start : static_cast<Request::Kind>(any(1, 6));
     rig_.request(kind, &sequences_[any<std::size_t>(0, sequences_.size() - 1)]);
     return kind;
   }

@@ -34,7 +34,7 @@ struct Tick {
 std::vector<Tick> all_ticks() {
   std::vector<Tick> ticks;
   for (const Kind request :
-       {Kind::none, Kind::start, Kind::stop, Kind::vent, Kind::acknowledge, Kind::release}) {
+       {Kind::none, Kind::start, Kind::check, Kind::stop, Kind::vent, Kind::acknowledge, Kind::release}) {
     for (const FaultCode fault : {FaultCode::none, FaultCode::bus_down, FaultCode::board_watchdog_tripped,
                                   FaultCode::sensor_error, FaultCode::emergency_stop}) {
       for (const Phase phase : {Phase::idle, Phase::closing, Phase::holding, Phase::releasing}) {
@@ -68,8 +68,8 @@ class SupervisorSearch : public testing::Test {
     const State before = supervisor.state();
     TickInput input;
     // A start is always newer than what would overtake it; that is a test of its own.
-    input.request = {tick.request, tick.request == Kind::start ? 2U : 1U,
-                     tick.request == Kind::start ? &sequence_ : nullptr};
+    const bool names_one = tick.request == Kind::start || tick.request == Kind::check;
+    input.request = {tick.request, names_one ? 2U : 1U, names_one ? &sequence_ : nullptr};
     input.interlock_open = tick.interlock_open;
     input.emergency_stop = tick.fault == FaultCode::emergency_stop;
     Facts facts;

@@ -31,6 +31,25 @@ TEST(EventLog, AStartIsToldWithWhatItWasAskedFor) {
   EXPECT_EQ(entry.request, 7U);
 }
 
+TEST(EventLog, IdsHaveNoGapsAndTheOldestGo) {
+  EventLog log(3);
+  EXPECT_EQ(log.oldest(), 0U);
+  EXPECT_TRUE(log.since(0, 10).empty());
+  for (int i = 0; i < 5; ++i) log.add({});
+  EXPECT_EQ(log.oldest(), 3U);
+  EXPECT_EQ(log.newest(), 5U);
+  const auto ids = [&](std::uint64_t since, std::size_t limit) {
+    std::vector<std::uint64_t> found;
+    for (const EventEntry& entry : log.since(since, limit)) found.push_back(entry.id);
+    return found;
+  };
+  EXPECT_EQ(ids(0, 10), (std::vector<std::uint64_t>{3, 4, 5}));
+  EXPECT_EQ(ids(3, 1), (std::vector<std::uint64_t>{4}));
+  EXPECT_EQ(ids(4, 10), (std::vector<std::uint64_t>{5}));
+  EXPECT_TRUE(ids(5, 10).empty());
+  EXPECT_TRUE(ids(99, 10).empty());
+}
+
 TEST(RunJson, HoldsWhatTheSequenceRanWith) {
   auto loaded = std::make_shared<LoadedSequence>();
   loaded->prepared.name = "pick_stone";

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,6 +39,9 @@ TEST(ClientRequest, ReadsEveryCommand) {
       {R"({"command":"events","since":5,"limit":10})", Command::events},
       {R"({"command":"statistics","histograms":true})", Command::statistics},
       {R"({"command":"sequences"})", Command::sequences},
+      {R"({"command":"hello","client":"cell 4","api":1})", Command::hello},
+      {R"({"command":"subscribe","since":0,"started_at":"2026"})", Command::subscribe},
+      {R"({"command":"unsubscribe"})", Command::unsubscribe},
   };
   for (const auto& [line, command] : lines) {
     const auto request = parse_client_request(line);
@@ -102,12 +108,36 @@ TEST(ClientRequest, SaysWhatIsWrong) {
       {R"({"command":"start","sequence":"s","parameters":4})", "'parameters' is an object"},
       {R"({"command":"stop","parameters":{}})", "knows no key 'parameters'"},
       {R"({"command":"statistics","histograms":1})", "'histograms' is true or false"},
+      {R"({"command":"start","sequence":"s","dry_run":1})", "'dry_run' is true or false"},
+      {R"({"command":"stop","dry_run":true})", "knows no key 'dry_run'"},
+      {R"({"command":"hello","client":"a\nb"})", "'client' has at most 64 bytes"},
+      {R"({"command":"hello","api":0})", "'api' is a whole number"},
+      {R"({"command":"subscribe","since":-1})", "'since' is a whole number"},
   };
   for (const auto& [line, part] : lines) {
     const auto request = parse_client_request(line);
     EXPECT_FALSE(request) << line;
     EXPECT_NE(problem_of(line).find(part), std::string::npos) << line << ": " << problem_of(line);
   }
+}
+
+TEST(ClientRequest, WhatOnlyLooksIsKnown) {
+  const auto all = commands_of(Role::operate);
+  const auto looking = commands_of(Role::look);
+  EXPECT_EQ(all.size(), looking.size() + 5);
+  for (const std::string_view moves : {"start", "stop", "vent", "release", "acknowledge"}) {
+    EXPECT_EQ(std::count(all.begin(), all.end(), moves), 1) << moves;
+    EXPECT_EQ(std::count(looking.begin(), looking.end(), moves), 0) << moves;
+  }
+}
+
+TEST(ClientRequest, ANameHasItsBounds) {
+  const auto hello = [](std::size_t letters) {
+    return R"({"command":"hello","client":")" + std::string(letters, 'x') + R"("})";
+  };
+  EXPECT_TRUE(parse_client_request(hello(64)));
+  EXPECT_FALSE(parse_client_request(hello(65)));
+  EXPECT_EQ(parse_client_request(R"({"command":"subscribe"})")->since, std::nullopt);
 }
 
 TEST(ClientRequest, TheErrorCarriesTheIdWhereItCouldBeRead) {

@@ -54,7 +54,8 @@ class SocketServerTest : public ::testing::Test {
                                if (answer_) answer_(client, line);
                              },
                              [this](std::uint64_t) { ++closed_; },
-                             [](std::string_view line) { return line.rfind("urgent", 0) == 0; }});
+                             [](std::string_view line) { return line.rfind("urgent", 0) == 0; },
+                             [this](std::uint64_t, Role role) { opened_.push_back(role); }});
     }
     return *server_;
   }
@@ -83,6 +84,7 @@ class SocketServerTest : public ::testing::Test {
   std::optional<SocketServer> server_;
   std::vector<std::string> lines_;
   std::function<void(std::uint64_t, std::string_view)> answer_;
+  std::vector<Role> opened_;
   int closed_ = 0;
   Nanoseconds now_ = MonotonicClock().now();
 };
@@ -229,6 +231,46 @@ TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
       << "the longest silent";
   EXPECT_EQ(received(clients[2]), "");
   EXPECT_EQ(received(clients[3]), "");
+}
+
+TEST_F(SocketServerTest, WhoLooksHasPlacesOfItsOwn) {
+  settings_.look.path = temporary_.path() + "/look";
+  settings_.look.mode = 0666;
+  server();
+  std::vector<Descriptor> lookers;
+  for (int i = 0; i < 3; ++i) {
+    lookers.push_back(connect_to(settings_.look.path));
+    send_text(lookers.back(), "hello\n");
+    turn();
+  }
+  const Descriptor operating = connect_to(settings_.path);
+  send_text(operating, "move\n");
+  turn();
+  EXPECT_EQ(received(operating), "") << "it stays";
+  EXPECT_EQ(opened_, (std::vector<Role>{Role::look, Role::look, Role::look, Role::operate}));
+  const Descriptor late = connect_to(settings_.look.path);
+  send_text(late, "and I\n");
+  turn();
+  EXPECT_NE(received(late).value_or("").find("too_many_clients"), std::string::npos);
+  EXPECT_EQ(received(operating), "");
+  struct stat status {};
+  ASSERT_EQ(stat(settings_.look.path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0666U);
+  server_.reset();
+  EXPECT_NE(stat(settings_.look.path.c_str(), &status), 0) << "its file goes with it";
+}
+
+TEST_F(SocketServerTest, WhoOperatesIsHeardBeforeWhoLooks) {
+  settings_.look.path = temporary_.path() + "/look";
+  server();
+  const Descriptor looking = connect_to(settings_.look.path);
+  turn();
+  const Descriptor operating = connect_to(settings_.path);
+  turn();
+  send_text(looking, "first\n");
+  send_text(operating, "second\n");
+  turn(1);
+  EXPECT_EQ(lines_, (std::vector<std::string>{"second", "first"}));
 }
 
 TEST_F(SocketServerTest, ACrowdThatComesAndGoesLeavesRoomForAnUrgentLine) {

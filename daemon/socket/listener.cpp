@@ -1,0 +1,115 @@
+#include "daemon/socket/listener.h"
+
+#include <grp.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace softgrip::daemon {
+
+namespace {
+
+constexpr int backlog = 128;
+
+using Failure = tl::unexpected<std::string>;
+
+Failure failure(const std::string& path, std::string_view what) {
+  return Failure(fmt::format("{}: {}: {}", path, what, std::strerror(errno)));
+}
+
+/// Nothing if the path is too long for a socket.
+std::optional<sockaddr_un> address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) return std::nullopt;
+  std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
+}
+
+/// Whether somebody listens there; if not, errno says why.
+bool answers(const sockaddr_un& address) {
+  const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const auto* generic = reinterpret_cast<const sockaddr*>(&address);
+  return connect(probe.get(), generic, sizeof address) == 0 || errno == EAGAIN;
+}
+
+/// Removes the file of a daemon that is gone. False if one answers.
+bool clear_away(const sockaddr_un& address) {
+  if (answers(address)) return false;
+  // A file that is no socket refuses a connection, too; it is somebody's, and bind() will say that it is
+  // there.
+  struct stat status {};
+  const bool refused = errno == ECONNREFUSED;
+  if (refused && lstat(address.sun_path, &status) == 0 && S_ISSOCK(status.st_mode)) unlink(address.sun_path);
+  return true;
+}
+
+/// Mode and group of the socket's file.
+bool give_rights(const rig::SocketFile& file) {
+  if (!file.group.empty()) {
+    const group* entry = getgrnam(file.group.c_str());
+    if (entry == nullptr) {
+      errno = errno == 0 ? EINVAL : errno;
+      return false;
+    }
+    if (chown(file.path.c_str(), static_cast<uid_t>(-1), entry->gr_gid) != 0) return false;
+  }
+  return chmod(file.path.c_str(), file.mode) == 0;
+}
+
+}  // namespace
+
+bool socket_answers(const std::string& path) {
+  const auto address = address_of(path);
+  return !path.empty() && address && answers(*address);
+}
+
+tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) {
+  const auto address = address_of(file.path);
+  if (!address) {
+    return Failure(fmt::format("{}: the path of a socket has at most {} bytes", file.path,
+                               sizeof address->sun_path - 1));
+  }
+  if (!clear_away(*address)) return Failure(fmt::format("{}: another softgripd answers there", file.path));
+  std::error_code ignored;
+  std::filesystem::create_directories(std::filesystem::path(file.path).parent_path(), ignored);
+
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!socket) return failure(file.path, "socket");
+  // Between bind and chmod nobody else may connect.
+  const mode_t before = umask(0177);
+  const int bound = bind(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address);
+  umask(before);
+  if (bound != 0) return failure(file.path, "bind");
+  if (!give_rights(file)) {
+    const auto problem = failure(file.path, fmt::format("mode {:o} group '{}'", file.mode, file.group));
+    unlink(file.path.c_str());
+    return problem;
+  }
+  if (::listen(socket.get(), backlog) != 0) return failure(file.path, "listen");
+  struct stat status {};
+  if (lstat(file.path.c_str(), &status) != 0) return failure(file.path, "its own file");
+  Listener listener(file.path, std::move(socket));
+  listener.device_ = status.st_dev;
+  listener.inode_ = status.st_ino;
+  return listener;
+}
+
+Listener::~Listener() {
+  struct stat status {};
+  // Somebody may have removed it and another daemon have put its own there.
+  const bool there = socket_ && lstat(path_.c_str(), &status) == 0;
+  if (there && status.st_dev == device_ && status.st_ino == inode_) unlink(path_.c_str());
+}
+
+}  // namespace softgrip::daemon

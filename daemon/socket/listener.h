@@ -1,0 +1,41 @@
+#pragma once
+// A listening Unix domain socket and its file.
+
+#include <sys/types.h>
+
+#include <string>
+
+#include <tl/expected.hpp>
+
+#include "base/descriptor.h"
+#include "rig/socket_settings.h"
+
+namespace softgrip::daemon {
+
+/// Whether a daemon listens on the socket at `path`.
+[[nodiscard]] bool socket_answers(const std::string& path);
+
+class Listener {
+ public:
+  /// Creates the socket's file with the owner's rights first and those of `file` then. A file left by a
+  /// daemon that is gone is replaced; one of a daemon that answers is an error. The error is a sentence.
+  [[nodiscard]] static tl::expected<Listener, std::string> open(const rig::SocketFile& file);
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+  Listener(Listener&& other) noexcept = default;
+  Listener& operator=(Listener&&) = delete;
+  /// Removes the socket's file, if it still is its own.
+  ~Listener();
+
+  [[nodiscard]] int get() const noexcept { return socket_.get(); }
+
+ private:
+  Listener(std::string path, Descriptor socket) : path_(std::move(path)), socket_(std::move(socket)) {}
+
+  std::string path_;
+  Descriptor socket_;
+  dev_t device_ = 0;  // of the socket's file
+  ino_t inode_ = 0;
+};
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,43 @@
+#pragma once
+// The parts of replies of the socket API that are no state: errors, problems, sequences, the greeting.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/recording/sequence_shelf.h"
+#include "daemon/socket/role.h"
+#include "daemon/socket/sequence_loader.h"
+#include "document/problem.h"
+#include "rig/socket_settings.h"
+
+namespace softgrip::daemon {
+
+/// Null where the client gave none.
+[[nodiscard]] nlohmann::ordered_json id_json(std::optional<std::uint64_t> id);
+[[nodiscard]] nlohmann::ordered_json error_json(std::string_view code, std::string_view message);
+[[nodiscard]] nlohmann::ordered_json problems_json(const std::vector<document::Problem>& problems);
+[[nodiscard]] nlohmann::ordered_json sequences_json(const std::vector<SequenceLoader::Listed>& sequences);
+/// Of a start that was only checked: what would run.
+[[nodiscard]] nlohmann::ordered_json checked_json(const LoadedSequence& sequence);
+
+/// Who answers a hello, and to whom.
+struct Greeting {
+  std::string_view software_version;
+  std::string_view started_at;  ///< of the daemon, UTC: event ids count from there
+  Role role = Role::look;
+  std::string_view client;  ///< as it calls itself
+  double longest_answer_s = 0;
+};
+[[nodiscard]] nlohmann::ordered_json hello_json(const Greeting& greeting,
+                                                const rig::SocketSettings& settings);
+
+/// The line that refuses a client before it could say anything, or for what cannot be parsed.
+[[nodiscard]] std::string error_line(std::optional<std::uint64_t> id, std::string_view code,
+                                     std::string_view message);
+
+}  // namespace softgrip::daemon

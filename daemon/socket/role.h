@@ -1,0 +1,18 @@
+#pragma once
+// What a client of the socket API may do, by the socket that it came through.
+
+#include <cstdint>
+#include <string_view>
+
+namespace softgrip::daemon {
+
+enum class Role : std::uint8_t {
+  look,     ///< `socket: look:` of the rig file
+  operate,  ///< `socket: path:`
+};
+/// "look", "operate"
+[[nodiscard]] constexpr std::string_view name_of(Role role) noexcept {
+  return role == Role::look ? "look" : "operate";
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,35 @@
+"""Every line of the daemon against the schema that the package installs."""
+
+import functools
+import json
+import pathlib
+
+import jsonschema
+
+SCHEMA = pathlib.Path(__file__).resolve().parents[2] / "daemon/socket/socket-api-1.schema.json"
+
+
+@functools.cache
+def validator(name=None):
+    """Of any line of the daemon, or of what $defs calls `name`."""
+    schema = json.loads(SCHEMA.read_text())
+    if name:
+        schema.pop("oneOf")
+        schema["$ref"] = f"#/$defs/{name}"
+    return jsonschema.Draft202012Validator(schema)
+
+
+RESULTS = {"start": "accepted", "stop": "accepted", "vent": "accepted", "release": "accepted",
+           "acknowledge": "accepted", "watch": "watching", "unwatch": "nothing", "subscribe": "subscribed",
+           "unsubscribe": "nothing"}
+
+
+def check(line, command=None):
+    """Raises an AssertionError that names what is not as the schema says."""
+    result = line.get("result") if command and line.get("ok") else None
+    name, value = (RESULTS.get(command, command), result) if result is not None else (None, line)
+    error = jsonschema.exceptions.best_match(validator(name).iter_errors(value))
+    if error:
+        raise AssertionError(f"{command}: {error.json_path}: {error.message}")
+    if result is not None and set(line) != {"id", "ok", "result"}:
+        raise AssertionError(f"{command}: {sorted(line)}")
