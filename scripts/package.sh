@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Debian package and checks it with lintian: scripts/package.sh [OUT_DIR [REVISION]]
-# OUT_DIR: default build/; prints the package's path as the last line. Uses build/release, which the tests use, too.
+# Builds the Debian packages, softgrip and python3-softgrip, and checks them with lintian: scripts/package.sh [OUT_DIR
+# [REVISION]]. OUT_DIR: default build/; prints the path of softgrip's as the last line. Uses build/release, which the tests use, too.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-build}")
@@ -15,5 +15,7 @@ log=$(mktemp) && trap 'rm -f "$log"' EXIT
 (cd build/release && cpack -B "$out" >"$log" 2>&1) || { cat "$log" >&2; exit 1; }
 rm -rf "$out/_CPack_Packages"
 package=$(ls -t "$out"/softgrip_*-"$revision"_*.deb | head -n 1)
-lintian --fail-on warning,error "$package"
+python=$(bash packaging/deb/python.sh . build/release/packaging/changelog.Debian.gz \
+  "$(dpkg-deb -f "$package" Version)" "$out")
+lintian --fail-on warning,error "$package" "$python"
 echo "$package"

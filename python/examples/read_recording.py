@@ -1,0 +1,25 @@
+"""What a recorded run shows of each finger: the largest pressure, how far it went, how long its grip held.
+
+    read_recording.py RECORDING
+"""
+
+import sys
+
+import numpy as np
+
+from softgrip.recordings import Recording
+
+
+def main(folder: str) -> None:
+    recording = Recording.read(folder)
+    sequence = recording.about["sequence"]
+    print(f"{sequence['name'] if sequence else 'no sequence'}, {recording.about['rate_hz']} Hz")
+    for name, columns in recording.channels.items():
+        held = columns["result"] == "holding"
+        seconds = np.count_nonzero(held) * recording.about["decimation"] / recording.about["rate_hz"]
+        print(f"{name}: at most {np.nanmax(columns['pressure_command_kpa']):.1f} kPa, "
+              f"{np.nanmax(columns['displacement_mm']):.2f} mm, held for {seconds:.2f} s")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,82 @@
+"""What can go wrong, each with what a program may do about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Optional
+
+from .messages import Problem, Result, SequenceEnd
+
+
+class SoftgripError(Exception):
+    """The base of all of them."""
+
+
+class NoDaemon(SoftgripError):
+    """Nobody listens on the socket, or this user may not open it."""
+
+
+class ConnectionLost(SoftgripError):
+    """The daemon has gone. `reconnect()` goes on where the events left off."""
+
+
+class NotAnswered(SoftgripError, TimeoutError):
+    """The daemon, or the grip, took longer than the time that was given."""
+
+
+class ProtocolError(SoftgripError):
+    """What answers speaks something else; or it says that the request was none. `code` is the daemon's."""
+
+    def __init__(self, message: str, code: str = "") -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class Refused(SoftgripError):
+    """The rig's state does not allow it; the text says why and what to do. `code` is `R01` ..., or the daemon's word
+    (`busy`, `abandoned`, `not_allowed`)."""
+
+    def __init__(self, message: str, code: str, name: str) -> None:
+        super().__init__(f"{message} ({code})")
+        self.code = code
+        self.name = name
+
+
+class Owned(Refused):
+    """Another client's sequence runs: it may be stopped and vented, nothing else."""
+
+
+class SequenceRefused(SoftgripError):
+    """The sequence cannot be run on this rig."""
+
+    def __init__(self, message: str, problems: tuple[Problem, ...]) -> None:
+        super().__init__("\n".join([message, *map(str, problems)]))
+        self.problems = problems
+
+
+class GripFailed(SoftgripError):
+    """The grip came to something else than what was waited for."""
+
+    def __init__(self, result: Result, end: Optional[SequenceEnd]) -> None:
+        super().__init__(f"the grip's result is {result.value}" +
+                         (f", the sequence ended: {end.value}" if end else ""))
+        self.result = result
+        self.end = end
+
+
+def error_of(error: Mapping[str, Any]) -> SoftgripError:
+    """The exception that a reply of the daemon stands for."""
+    code, message = str(error.get("code", "")), str(error.get("message", ""))
+    if code == "sequence_refused":
+        return SequenceRefused(message, tuple(Problem.of(p) for p in error["problems"]))
+    if code == "refused":
+        return Refused(message, error["refusal"]["code"], error["refusal"]["name"])
+    if code == "owned":
+        return Owned(message, code, code)
+    if code in ("busy", "abandoned", "not_allowed"):
+        return Refused(message, code, code)
+    if code == "no_answer":
+        return NotAnswered(message)
+    if code == "too_many_clients":
+        return ConnectionLost(message)
+    return ProtocolError(message, code)

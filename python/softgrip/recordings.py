@@ -1,0 +1,78 @@
+"""Recordings and reports of softgrip as NumPy arrays."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import json
+import os
+import pathlib
+from collections.abc import Mapping
+from typing import Any, Union
+
+import numpy as np
+import numpy.typing as npt
+
+Path = Union[str, os.PathLike[str]]
+Array = npt.NDArray[Any]
+
+
+def _column(cells: list[str]) -> Array:
+    """Numbers where all that is there is a number; an empty cell among them is NaN. Text otherwise."""
+    try:
+        return np.array([float(cell) if cell else np.nan for cell in cells])
+    except ValueError:
+        return np.array(cells)
+
+
+def read_columns(path: Path) -> dict[str, Array]:
+    """A CSV with a header (run.csv, a log, a series.csv): an array per column. A last line that is not whole, as a run
+    that was killed leaves it, is left out; any other that does not fit is a ValueError with its number."""
+    with open(path, newline="") as file:
+        text = file.read()
+    whole = text[:text.rfind("\n") + 1]
+    rows = list(csv.reader(whole.splitlines()))
+    if not rows:
+        raise ValueError(f"{path}: no header")
+    names = rows[0]
+    for number, row in enumerate(rows[1:], start=2):
+        if len(row) != len(names):
+            raise ValueError(f"{path}:{number}: {len(row)} cells, the header has {len(names)}")
+    columns = zip(*rows[1:]) if len(rows) > 1 else ([] for _ in names)
+    return {name: _column(list(cells)) for name, cells in zip(names, columns)}
+
+
+def read_report(path: Path) -> Mapping[str, Any]:
+    """identify.json, diagnosis.json or run.json; lists of numbers are arrays."""
+    with open(path) as file:
+        return _with_arrays(json.load(file))  # type: ignore[no-any-return]
+
+
+def _with_arrays(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _with_arrays(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        if value and all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in value):
+            return np.array(value)
+        return [_with_arrays(inner) for inner in value]
+    return value
+
+
+@dataclasses.dataclass(frozen=True)
+class Recording:
+    """A recorded run: a folder with run.csv and run.json."""
+
+    about: Mapping[str, Any]  # run.json
+    channels: Mapping[str, Mapping[str, Array]]  # by finger: the columns of run.csv, as long as one another
+
+    @classmethod
+    def read(cls, folder: Path) -> Recording:
+        folder = pathlib.Path(folder)
+        columns = read_columns(folder / "run.csv")
+        with open(folder / "run.json") as file:
+            about = json.load(file)
+        if "channel" not in columns:
+            return cls(about, {str(about["channels"][0]): columns})
+        of = columns.pop("channel")
+        return cls(about, {name: {key: column[of == name] for key, column in columns.items()}
+                           for name in dict.fromkeys(of.tolist())})

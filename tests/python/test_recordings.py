@@ -1,0 +1,89 @@
+"""Recordings and reports as arrays."""
+
+import contextlib
+import io
+import json
+import pathlib
+import runpy
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+import package
+
+from softgrip.recordings import Recording, read_columns, read_report
+
+RUN = """time_s,channel,pressure_command_kpa,displacement_mm,result
+0,left,0,,none
+0,right,1,2,none
+0.5,left,10.5,3.25,holding
+0.5,right,11,4,released
+"""
+ABOUT = {"rate_hz": 2, "decimation": 1, "channels": ["left", "right"], "sequence": {"name": "pick"}}
+
+
+class Recordings(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "run.json").write_text(json.dumps(ABOUT))
+
+    def write(self, text):
+        (self.folder / "run.csv").write_text(text)
+
+    def test_a_column_per_finger(self):
+        self.write(RUN)
+        recording = Recording.read(self.folder)
+        self.assertEqual(list(recording.channels), ["left", "right"])
+        left = recording.channels["left"]
+        np.testing.assert_array_equal(left["time_s"], [0, 0.5])
+        np.testing.assert_array_equal(left["displacement_mm"], [np.nan, 3.25])
+        self.assertEqual(left["result"].tolist(), ["none", "holding"])
+        self.assertNotIn("channel", left)
+
+    def test_a_line_that_a_kill_cut_off_is_left_out(self):
+        self.write(RUN + "1,left,1")
+        self.assertEqual(len(read_columns(self.folder / "run.csv")["time_s"]), 4)
+
+    def test_a_line_that_does_not_fit_is_named(self):
+        self.write(RUN + "1,left,1\n1,right,1,2,none\n")
+        with self.assertRaisesRegex(ValueError, "run.csv:6: 3 cells, the header has 5"):
+            read_columns(self.folder / "run.csv")
+
+    def test_no_rows_and_no_header(self):
+        self.write("time_s,displacement_mm\n")
+        self.assertEqual({k: len(v) for k, v in read_columns(self.folder / "run.csv").items()},
+                         {"time_s": 0, "displacement_mm": 0})
+        self.write("")
+        with self.assertRaisesRegex(ValueError, "no header"):
+            read_columns(self.folder / "run.csv")
+
+    def test_a_log_of_one_finger(self):
+        self.write("time_s,displacement_mm\n0,1\n")
+        self.assertEqual(Recording.read(self.folder).channels["left"]["displacement_mm"].tolist(), [1])
+
+    def test_lists_of_numbers_in_a_report_are_arrays(self):
+        report = self.folder / "identify.json"
+        report.write_text(json.dumps({"a": [1, 2.5], "b": [[1], ["x"]], "c": {"d": []}, "e": [True]}))
+        read = read_report(report)
+        np.testing.assert_array_equal(read["a"], [1, 2.5])
+        np.testing.assert_array_equal(read["b"][0], [1])
+        self.assertEqual((read["b"][1], read["c"], read["e"]), (["x"], {"d": []}, [True]))
+
+    def test_the_example_reads_it(self):
+        self.write(RUN)
+        said = io.StringIO()
+        argv, sys.argv = sys.argv, ["read_recording.py", str(self.folder)]
+        try:
+            with contextlib.redirect_stdout(said):
+                runpy.run_path(str(package.SOURCE / "python/examples/read_recording.py"), run_name="__main__")
+        finally:
+            sys.argv = argv
+        self.assertEqual(said.getvalue(), "pick, 2 Hz\nleft: at most 10.5 kPa, 3.25 mm, held for 0.50 s\n"
+                         "right: at most 11.0 kPa, 4.00 mm, held for 0.00 s\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,142 @@
+"""What the clients make of the daemon's lines, without a socket."""
+
+import json
+import unittest
+
+import package  # noqa: F401
+import softgrip
+from softgrip import errors
+from softgrip.session import Session
+
+
+def line(**said):
+    return json.dumps(said).encode()
+
+
+class Events:
+    """A session that is told of one grip."""
+
+    def __init__(self):
+        self.session = Session()
+        self.session.subscribed({"since": 0, "started_at": "first"})
+        self.session.grip = 3
+        self.id = 0
+
+    def tell(self, kind, code, request=3):
+        self.id += 1
+        self.session.receive(line(id=1, event={"id": self.id, "time_s": 1.5, "at": "2026-11-21T09:00:00.000Z",
+                                               "kind": kind, "severity": "information", "text": "It is told.",
+                                               "code": code, "request": request}))
+
+    def reached(self, *wanted):
+        return self.session.reached(frozenset(wanted))
+
+
+class Story(unittest.TestCase):
+    def test_what_came_and_went_is_still_found(self):
+        told = Events()
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING))
+        for code in ("HOLDING", "RELEASED"):
+            told.tell("overall_result", code)
+        told.tell("sequence_finished", "done")
+        self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+        self.assertEqual(told.reached(softgrip.Result.RELEASED), softgrip.Result.RELEASED)
+        self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
+        self.assertFalse(told.session.runs())
+
+    def test_another_end_than_was_waited_for_is_an_error(self):
+        told = Events()
+        told.tell("overall_result", "NO PART")
+        with self.assertRaises(softgrip.GripFailed) as raised:
+            told.reached(softgrip.Result.HOLDING)
+        self.assertEqual(raised.exception.result, softgrip.Result.NO_PART)
+        told.tell("sequence_finished", "failed")
+        with self.assertRaises(softgrip.GripFailed) as raised:
+            told.reached(softgrip.Result.HOLDING)
+        self.assertEqual(raised.exception.end, softgrip.SequenceEnd.FAILED)
+
+    def test_a_failure_may_be_what_is_waited_for(self):
+        told = Events()
+        told.tell("overall_result", "PART LOST")
+        self.assertEqual(told.reached(softgrip.Result.PART_LOST), softgrip.Result.PART_LOST)
+
+    def test_grips_of_others_do_not_count(self):
+        told = Events()
+        told.tell("overall_result", "HOLDING", request=2)
+        told.tell("sequence_finished", "done", request=2)
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING))
+        self.assertTrue(told.session.runs())
+
+    def test_events_before_the_answer_to_the_start_count(self):
+        told = Events()
+        told.session.grip = 0
+        told.tell("overall_result", "HOLDING", request=7)
+        told.session.grip = 7
+        self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+
+    def test_a_subscription_goes_on_where_it_was(self):
+        told = Events()
+        told.tell("overall_result", "HOLDING")
+        self.assertEqual(told.session.subscription(), {"since": 1, "started_at": "first"})
+        told.session.subscribed({"since": 1, "started_at": "first"})
+        self.assertTrue(told.session.runs())
+        told.session.subscribed({"since": 0, "started_at": "second"})
+        self.assertEqual(told.session.ended(), softgrip.SequenceEnd.FAULTED)
+
+    def test_another_daemon_counts_its_requests_anew(self):
+        told = Events()
+        told.tell("overall_result", "HOLDING")
+        told.session.subscribed({"since": 0, "started_at": "second"})
+        told.tell("overall_result", "RELEASED")  # of a request with the number of the old one
+        self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+        told.session.grip = 3
+        self.assertFalse(told.session.ended())
+        self.assertEqual(told.reached(softgrip.Result.RELEASED), softgrip.Result.RELEASED)
+
+    def test_results_of_one_finger_are_not_those_of_all(self):
+        told = Events()
+        told.tell("grip_result", "HOLDING")
+        self.assertIsNone(told.reached(softgrip.Result.HOLDING))
+
+
+class Replies(unittest.TestCase):
+    def test_come_to_who_asked_in_any_order(self):
+        session = Session()
+        first, first_line = session.request("status", {})
+        second, _ = session.request("stop", {})
+        self.assertEqual(json.loads(first_line), {"id": first, "command": "status"})
+        session.receive(line(id=second, ok=True, result={"request": 9}))
+        session.receive(line(id=first, ok=True, result={}))
+        self.assertEqual(session.result_of(second), {"request": 9})
+        self.assertEqual(session.result_of(first), {})
+
+    def test_errors_are_exceptions(self):
+        problem = {"file": "a.yaml", "line": 3, "column": 5, "line_text": "x", "message": "no", "hint": ""}
+        for error, kind in (
+                ({"code": "refused", "message": "m", "refusal": {"code": "R02", "name": "not_idle"}}, errors.Refused),
+                ({"code": "sequence_refused", "message": "m", "problems": [problem]}, errors.SequenceRefused),
+                ({"code": "owned", "message": "m", "owner": "robot"}, errors.Owned),
+                ({"code": "not_allowed", "message": "m"}, errors.Refused),
+                ({"code": "no_answer", "message": "m"}, errors.NotAnswered),
+                ({"code": "bad_request", "message": "m"}, errors.ProtocolError)):
+            session = Session()
+            number, _ = session.request("start", {})
+            session.receive(line(id=number, ok=False, error=error))
+            with self.assertRaises(kind) as raised:
+                session.result_of(number)
+            self.assertIs(type(raised.exception), kind)
+        self.assertEqual(str(errors.error_of({"code": "sequence_refused", "message": "m", "problems": [problem]})),
+                         "m\na.yaml:3:5: no")
+
+    def test_what_is_no_line_of_the_daemon_is_an_error(self):
+        for text in (b"HTTP/1.1 400 Bad Request", b"[]", b""):
+            with self.assertRaises(softgrip.ProtocolError):
+                Session().receive(text)
+
+    def test_what_cannot_be_said_in_json_is_not_sent(self):
+        with self.assertRaises(ValueError):
+            Session().request("start", {"parameters": {"squeeze_kpa": float("nan")}})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,19 @@
+"""The annotations of package and examples hold."""
+
+import os
+import subprocess
+import unittest
+
+import package
+
+
+class Types(unittest.TestCase):
+    def test_mypy_finds_nothing(self):
+        done = subprocess.run(["/usr/bin/mypy", "--strict", "--cache-dir", os.devnull, "python/softgrip",
+                               "python/examples"], cwd=package.SOURCE, capture_output=True, text=True,
+                              env={**os.environ, "MYPYPATH": "python"})
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
