@@ -111,7 +111,7 @@ softgrip_room(tools/commissioning
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig
-       daemon/service daemon/socket sysid/logs sysid/identification sysid/diagnosis/verdict
+       daemon/service daemon/socket sysid/logs sysid/pages sysid/identification sysid/diagnosis/verdict
        sysid/diagnosis/experiments sysid/diagnosis/report tools/recordings
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/studies

@@ -33,7 +33,8 @@ std::optional<std::pair<std::size_t, std::size_t>> share_in(std::string_view tex
 }
 
 std::string seconds_text(double seconds) {
-  if (seconds < 100) return fixed(seconds, 0) + " s";
+  constexpr double short_enough = 600;
+  if (seconds < short_enough) return fixed(seconds, 0) + " s";
   return fixed(seconds / 60, 0) + " min";
 }
 

@@ -14,6 +14,7 @@
 #include "base/numbers.h"
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
+#include "tools/command_line/call.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/progress_line.h"
@@ -44,7 +45,16 @@ tl::expected<sysid::Diagnosis, std::string> diagnosed(const std::vector<sysid::L
                                                       sysid::DiagnosisOptions options) {
   ProgressLine line;
   options.progress = line.show();
-  return sysid::diagnose(logs, model, options);
+  auto diagnosis = sysid::diagnose(logs, model, options);
+  if (diagnosis) sysid::examine(*diagnosis, options);
+  return diagnosis;
+}
+
+/// The same for what follows.
+Consequences followed(const sysid::Diagnosis& diagnosis, const ConsequenceOptions& options) {
+  ProgressLine line;
+  line.show()("plays experiments and the closed loop in simulation");
+  return consequences_of(diagnosis, options);
 }
 
 void print_cause(const sysid::NamedCause& named) {
@@ -111,7 +121,7 @@ std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences&
                                    next.best->minutes, next.best->waveform.about};
 }
 
-ExitCode run(Options options) {
+ExitCode run(Options options, const std::vector<std::string>& call) {
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
@@ -125,9 +135,9 @@ ExitCode run(Options options) {
   auto result = diagnosed(*logs, *model, options.diagnosis);
   if (!result) return fail(ExitCode::input_refused, result.error());
 
-  sysid::examine(*result, options.diagnosis);
-  const Consequences consequences = consequences_of(*result, consequence_options(options, *logs));
-  const auto json = write_diagnosis_folder(options.out, *result, consequences, options.logs.channel);
+  const Consequences consequences = followed(*result, consequence_options(options, *logs));
+  const auto json =
+      write_diagnosis_folder(options.out, *result, {*logs, *model, call}, consequences, options.logs.channel);
   if (!json) return fail(ExitCode::io, json.error());
   const sysid::DiagnosisReport report{*result,
                                       *logs,
@@ -186,7 +196,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
                     "Do not measure the extension's gain in closed loop");
   add_log_options(*command, options->logs);
   command->add_flag("--json", options->json, "Print diagnosis.json");
-  command->callback([options, &outcome] { outcome = run(*options); });
+  command->callback([options, command, &outcome] { outcome = run(*options, call_of(*command)); });
 }
 
 }  // namespace softgrip::tools

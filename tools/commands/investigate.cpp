@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/files.h"
@@ -19,10 +20,12 @@
 #include "rig/rig_file.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
+#include "tools/command_line/progress_line.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/gauge_by_hand.h"
 #include "tools/investigation/experiment_rig.h"
 #include "tools/investigation/investigation.h"
+#include "tools/investigation/investigation_report.h"
 #include "tools/investigation/rig_tracking.h"
 
 namespace softgrip::tools {
@@ -37,6 +40,7 @@ struct Options {
   std::string gauge;
   std::string out;
   LogInput logs;
+  std::string rig_channel;  ///< "": that of the logs
   sysid::DiagnosisOptions diagnosis;
   double budget_minutes = 30;
   double pressure_max_kpa = 0;  ///< of --rig-command; 0: the largest of the logs
@@ -102,7 +106,8 @@ tl::expected<Playground, ExitCode> playground_of(const Options& options, const C
   document::Problems problems;
   auto file = rig::load_rig(options.rig, problems);
   if (!file) return tl::unexpected(refuse(problems));
-  auto rig = experiment_rig(std::move(*file), options.logs.channel);
+  auto rig = experiment_rig(std::move(*file),
+                            options.rig_channel.empty() ? options.logs.channel : options.rig_channel);
   if (!rig) return tl::unexpected(fail(ExitCode::usage, rig.error()));
   if (!rig->simulated && !options.yes && ::isatty(STDIN_FILENO) == 0) {
     return tl::unexpected(
@@ -150,7 +155,7 @@ void print_end(const Investigation& investigation, const std::optional<ClosedLoo
               significant(investigation.budget_minutes, 3).c_str(), investigation.why.empty() ? "" : ": ",
               investigation.why.c_str());
   if (gain) std::fputs(text_of({{}, gain}, out).c_str(), stdout);
-  std::printf("investigation: %s\n", (std::filesystem::path(out) / "investigation.json").c_str());
+  std::printf("report: %s\n", (std::filesystem::path(out) / "report.html").c_str());
 }
 
 ExitCode exit_code_of(const Investigation& investigation) {
@@ -160,6 +165,8 @@ ExitCode exit_code_of(const Investigation& investigation) {
     case InvestigationEnd::stopped:
     case InvestigationEnd::failed:
       return fail(ExitCode::failed, investigation.why);
+    case InvestigationEnd::contact:
+    case InvestigationEnd::not_as_asked:
     case InvestigationEnd::unexplained:
     case InvestigationEnd::nothing_left:
     case InvestigationEnd::budget_spent:
@@ -169,21 +176,27 @@ ExitCode exit_code_of(const Investigation& investigation) {
 }
 
 /// Extends, retunes, measures, and leaves the result.
-ExitCode conclude(const Options& options, const Playground& ground, const Investigation& investigation) {
+ExitCode conclude(const Options& options, const model::Model& given, const Playground& ground,
+                  const Investigation& investigation) {
   ConsequenceOptions wanted;
   wanted.experiment.most_minutes = 0;  // whatever is still open was judged in the last step
   wanted.closed_loop = !options.no_closed_loop && investigation.end != InvestigationEnd::stopped;
   wanted.seed = options.diagnosis.seed;
   const Consequences consequences = consequences_of(investigation.last, wanted);
-  if (const auto written =
-          write_diagnosis_folder(options.out, investigation.last, consequences, ground.channel);
+  if (const auto written = write_diagnosis_folder(
+          options.out, investigation.last, {investigation.logs, given, {}}, consequences, ground.channel);
       !written) {
     return fail(ExitCode::io, written.error());
   }
   const auto tracking = on_rig(options, ground, investigation, consequences.closed_loop);
   const std::string json = completed(investigation, ground, consequences.closed_loop, tracking);
   const std::string path = (std::filesystem::path(options.out) / "investigation.json").string();
-  if (const auto written = write_file(path, json); !written) return fail(ExitCode::io, written.error());
+  const std::string page = (std::filesystem::path(options.out) / "report.html").string();
+  const std::string closed_loop = consequences.closed_loop ? text_of({{}, consequences.closed_loop}, "") : "";
+  for (const auto& [file, text] :
+       {std::pair{path, json}, {page, investigation_html(investigation, ground.name, closed_loop)}}) {
+    if (const auto written = write_file(file, text); !written) return fail(ExitCode::io, written.error());
+  }
   if (options.json) {
     std::fputs(json.c_str(), stdout);
   } else {
@@ -200,6 +213,8 @@ ExitCode conclude(const Options& options, const Playground& ground, const Invest
 ExitCode run(const Options& options) {
   if (options.rig.empty() == options.rig_command.empty())
     return fail(ExitCode::usage, "an investigation needs --rig or --rig-command, and not both");
+  if (!options.rig_channel.empty() && options.rig.empty())
+    return fail(ExitCode::usage, "--rig-channel goes with --rig");
   if (!options.gauge_command.empty() && options.rig_command.empty())
     return fail(ExitCode::usage, "--gauge-command goes with --rig-command");
   const auto model = read_model(options.model);
@@ -234,9 +249,13 @@ ExitCode run(const Options& options) {
       std::fflush(stdout);
     };
   }
-  const auto result = investigate(investigation);
+  const auto result = [&] {
+    ProgressLine line;
+    investigation.diagnosis.progress = line.show();
+    return investigate(investigation);
+  }();
   if (!result) return fail(ExitCode::input_refused, result.error());
-  return conclude(options, *ground, *result);
+  return conclude(options, *model, *ground, *result);
 }
 
 }  // namespace
@@ -248,6 +267,8 @@ void add_investigate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--model", options->model, "Model file as it is used today")->required();
   command->add_option("--data", options->data, "Logs of one campaign, in order")->required();
   command->add_option("--rig", options->rig, "Rig file of the rig that is moved");
+  command->add_option("--rig-channel", options->rig_channel,
+                      "With --rig: which of its channels is moved [that of --channel]");
   command->add_option("--rig-command", options->rig_command,
                       "Command that plays on another rig: COMMAND COMMAND_CSV LOG_OUT");
   command->add_option(

@@ -12,7 +12,9 @@
 #include "base/numbers.h"
 #include "model/file/model_file.h"
 #include "sysid/diagnosis/report/diagnosis_json.h"
+#include "sysid/identification/score_json.h"
 #include "sysid/identification/start_points.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::tools {
 namespace {
@@ -25,8 +27,14 @@ std::string listed(const std::vector<std::string>& ids) {
   return text;
 }
 
-std::string complete_json(const sysid::Diagnosis& diagnosis, const Consequences& consequences) {
+std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSource& source,
+                          const Consequences& consequences) {
   nlohmann::ordered_json json = sysid::json_of(diagnosis);
+  json["software"] = sysid::software_and_version();
+  json["call"] = source.call;
+  json["given"] = {{"name", source.given.name}, {"hash", model::model_hash(source.given)}};
+  json["model"] = {{"hash", model::model_hash(diagnosis.extended_model)}, {"file", "model.yaml"}};
+  json["logs"] = sysid::logs_json(source.logs);
   add_experiment(json, consequences.experiment, experiment_file);
   if (consequences.closed_loop) add_closed_loop(json, *consequences.closed_loop);
   return json.dump(2) + "\n";
@@ -57,11 +65,12 @@ Consequences consequences_of(const sysid::Diagnosis& diagnosis, const Consequenc
 
 tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                               const sysid::Diagnosis& diagnosis,
+                                                              const DiagnosisSource& source,
                                                               const Consequences& consequences,
                                                               const std::string& channel) {
   const std::filesystem::path out(folder);
   std::vector<std::pair<const char*, std::string>> files{
-      {"diagnosis.json", complete_json(diagnosis, consequences)},
+      {"diagnosis.json", complete_json(diagnosis, source, consequences)},
       {"model.yaml", model::to_yaml(diagnosis.extended_model)}};
   std::error_code ignored;
   if (consequences.experiment.best) {

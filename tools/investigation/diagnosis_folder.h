@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tl/expected.hpp>
 
@@ -27,11 +28,19 @@ struct ConsequenceOptions {
 [[nodiscard]] Consequences consequences_of(const sysid::Diagnosis& diagnosis,
                                            const ConsequenceOptions& options);
 
+/// What a diagnosis was made of.
+struct DiagnosisSource {
+  const std::vector<sysid::Log>& logs;
+  const model::Model& given;
+  std::vector<std::string> call;  ///< the command and what it was given; empty: by no command of its own
+};
+
 /// Writes the files into `folder` and returns what diagnosis.json says; a next_experiment.yaml of an earlier
 /// diagnosis goes where there is none.
 /// @param channel  for which the experiment is written; "": all of the rig.
 [[nodiscard]] tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                                             const sysid::Diagnosis& diagnosis,
+                                                                            const DiagnosisSource& source,
                                                                             const Consequences& consequences,
                                                                             const std::string& channel = "");
 

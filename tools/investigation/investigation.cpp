@@ -1,11 +1,14 @@
 #include "tools/investigation/investigation.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "base/numbers.h"
+#include "sysid/identification/start_points.h"
+#include "tools/investigation/experiment_check.h"
 
 namespace softgrip::tools {
 namespace {
@@ -20,6 +23,9 @@ InvestigationStep step_of(const sysid::Diagnosis& diagnosis, const std::string& 
   InvestigationStep step;
   step.folder = folder;
   step.verdict = diagnosis.verdict;
+  step.sentence = sysid::verdict_sentence(diagnosis);
+  step.recalibrated_rmse_mm = diagnosis.recalibrated_rmse_mm;
+  step.extended_rmse_mm = diagnosis.extended_rmse_mm;
   for (const sysid::NamedCause& named : diagnosis.causes) {
     step.causes.emplace_back(named.cause.id);
     step.alternatives.emplace_back();
@@ -53,16 +59,19 @@ class Investigator {
     sysid::DiagnosisOptions how = options_.diagnosis;
     how.gauge = result_.gauge;
     auto diagnosis = sysid::diagnose(result_.logs, options_.given, how);
+    if (how.progress) how.progress("");
     if (!diagnosis) return tl::unexpected(diagnosis.error());
     result_.last = std::move(*diagnosis);
     result_.steps.push_back(step_of(result_.last, name));
-    tell(name + ": " + sysid::verdict_sentence(result_.last));
+    tell(name + ": " + result_.steps.back().sentence);
 
     Consequences consequences;
     plan_.most_minutes = result_.budget_minutes - result_.spent_minutes;
     consequences.experiment = sysid::design_experiment(result_.last, plan_);
     const std::string folder = (std::filesystem::path(options_.out) / name).string();
-    if (auto written = write_diagnosis_folder(folder, result_.last, consequences, options_.channel); !written)
+    const DiagnosisSource source{result_.logs, options_.given, {}};
+    if (auto written = write_diagnosis_folder(folder, result_.last, source, consequences, options_.channel);
+        !written)
       return tl::unexpected(written.error());
     if (result_.last.verdict == Verdict::unexplained)
       return end(InvestigationEnd::unexplained, "structure is left that no cause of the library explains");
@@ -105,14 +114,30 @@ class Investigator {
     if (!log) {
       return end(log.error().stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, log.error().why);
     }
+    if (options_.diagnosis.record.drive == sysid::Drive::measured && log->pressure_kpa.empty())
+      return end(InvestigationEnd::failed, "the rig measured no pressure, which drives the model here");
     step.experiment = best.waveform.name;
     step.predicted_separation_sigma = experiment.predicted_separation_sigma;
     step.minutes = best.minutes;
     step.log = log->path;
+    step.answer = sysid::validate_logs(result_.last.extended_model, {*log}, options_.diagnosis.record);
     result_.spent_minutes += best.minutes;
+    if (const auto why = broken_promise(best.waveform, *log))
+      return end(InvestigationEnd::not_as_asked, *why);
+    if (const auto why = contact_in(*log)) return end(InvestigationEnd::contact, *why);
     plan_.done.push_back(best.waveform.name);
     result_.logs.push_back(std::move(*log));
     return true;
+  }
+
+  /// A contact that the campaign does not know yet. What the diagnosis holds possible is no surprise.
+  [[nodiscard]] std::optional<std::string> contact_in(const sysid::Log& log) const {
+    for (const sysid::NamedCause& named : result_.last.causes) {
+      const auto is_contact = [](const sysid::Cause& cause) { return cause.id == "contact"; };
+      if (is_contact(named.cause) || std::any_of(named.rivals.begin(), named.rivals.end(), is_contact))
+        return std::nullopt;
+    }
+    return touched(*result_.steps.back().answer, log, sysid::campaign_size(result_.last.records).largest_kpa);
   }
 
   /// No waveform tells the rivals apart, and they make different sensors.
@@ -159,6 +184,10 @@ const char* name_of(InvestigationEnd end) {
       return "nothing_left";
     case InvestigationEnd::budget_spent:
       return "budget_spent";
+    case InvestigationEnd::contact:
+      return "contact";
+    case InvestigationEnd::not_as_asked:
+      return "not_as_asked";
     case InvestigationEnd::stopped:
       return "stopped";
     case InvestigationEnd::failed:
@@ -185,6 +214,9 @@ Json json_of(const Investigation& investigation, const std::string& rig) {
   for (const InvestigationStep& step : investigation.steps) {
     Json one{{"folder", step.folder},
              {"verdict", sysid::name_of(step.verdict)},
+             {"sentence", step.sentence},
+             {"heldout_rmse_mm",
+              {{"recalibrated", step.recalibrated_rmse_mm}, {"extended", step.extended_rmse_mm}}},
              {"causes", step.causes},
              {"alternatives", step.alternatives}};
     one["experiment"] = nullptr;

@@ -12,6 +12,7 @@
 
 #include "model/model.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
+#include "sysid/identification/validate.h"
 #include "sysid/logs/log.h"
 #include "tools/investigation/diagnosis_folder.h"
 
@@ -49,6 +50,8 @@ enum class InvestigationEnd {
   unexplained,   ///< something is left that no cause explains: no waveform helps
   nothing_left,  ///< no experiment would tell the rivals apart
   budget_spent,  ///< one would, but it takes longer than what is left
+  contact,       ///< the finger touched something while an experiment was played
+  not_as_asked,  ///< the rig did not play the experiment that it was asked for
   stopped,       ///< by the user
   failed,        ///< an experiment could not be played or its log not be read
 };
@@ -61,12 +64,17 @@ inline constexpr const char* gauge_check_name = "gauge_check";
 struct InvestigationStep {
   std::string folder;  ///< within `out`
   sysid::Verdict verdict = sysid::Verdict::unexplained;
+  std::string sentence;             ///< the verdict in words
+  double recalibrated_rmse_mm = 0;  ///< held out
+  double extended_rmse_mm = 0;      ///< held out
   std::vector<std::string> causes;
   std::vector<std::vector<std::string>> alternatives;
   std::string experiment;  ///< the waveform that was played, or gauge_check; empty: none
   double predicted_separation_sigma = 0;
   double minutes = 0;
   std::string log;  ///< where its log is
+  /// What the rig answered, predicted by this step's extended model; empty: nothing, or a gauge check.
+  std::optional<sysid::Validation> answer;
 };
 
 struct Investigation {

@@ -60,8 +60,10 @@ class Selector {
     search.to_beat_mm2 = to_beat_mm2_;
     if (options_.progress) {
       search.progress = [&](std::size_t tried, std::size_t of) {
-        options_.progress("cause number " + std::to_string(current.causes.size() + 1) + ": tried " +
-                          std::to_string(tried) + " of " + std::to_string(of));
+        const std::string number = "cause number " + std::to_string(current.causes.size() + 1);
+        options_.progress(tried < of
+                              ? number + ": tried " + std::to_string(tried) + " of " + std::to_string(of)
+                              : number + ": fits the most promising ones");
       };
     }
     std::vector<Candidate> candidates = fit_candidates(data_, current, search);

@@ -1,0 +1,104 @@
+#include "tools/investigation/experiment_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/numbers.h"
+
+namespace softgrip::tools {
+namespace {
+
+/// What a daemon adds (ramps to the start, rests) or rounds (slew limits at corners) is less.
+constexpr double shortest_share = 0.97;
+constexpr double pressure_tolerance = 0.05;
+constexpr double travel_tolerance = 0.1;
+
+struct Played {
+  double length_s = 0;
+  double largest_kpa = 0;
+  double travel_kpa = 0;
+};
+
+Played of_log(const sysid::Log& log) {
+  Played played;
+  played.length_s = log.time_s.back() - log.time_s.front();
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    played.largest_kpa = std::max(played.largest_kpa, log.pressure_command_kpa[i]);
+    if (i > 0) played.travel_kpa += std::abs(log.pressure_command_kpa[i] - log.pressure_command_kpa[i - 1]);
+  }
+  return played;
+}
+
+Played of_waveform(const sysid::Waveform& waveform) {
+  Played asked;
+  const auto& corners = waveform.corners;
+  asked.length_s = corners.back().time_s - corners.front().time_s;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    asked.largest_kpa = std::max(asked.largest_kpa, corners[i].pressure_kpa);
+    if (i > 0) asked.travel_kpa += std::abs(corners[i].pressure_kpa - corners[i - 1].pressure_kpa);
+  }
+  return asked;
+}
+
+/// Readings over predictions within a band of predictions: the slope of a straight line.
+class Slope {
+ public:
+  void add(double x, double y) {
+    count_ += 1;
+    x_ += x;
+    y_ += y;
+    xx_ += x * x;
+    xy_ += x * y;
+  }
+  [[nodiscard]] bool known() const { return count_ >= 10 && count_ * xx_ - x_ * x_ > 0; }
+  [[nodiscard]] double value() const { return (count_ * xy_ - x_ * y_) / (count_ * xx_ - x_ * x_); }
+
+ private:
+  double count_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
+};
+
+}  // namespace
+
+std::optional<std::string> broken_promise(const sysid::Waveform& waveform, const sysid::Log& log) {
+  const Played asked = of_waveform(waveform), played = of_log(log);
+  const auto differs = [](double a, double b, double share) { return std::abs(a - b) > share * b; };
+  const auto sentence = [](const std::string& what, double got, double wanted, const char* unit) {
+    return "the rig did not play what was asked: " + what + " " + significant(got, 3) + " instead of " +
+           significant(wanted, 3) + " " + unit;
+  };
+  if (played.length_s < shortest_share * asked.length_s)
+    return sentence("it took", played.length_s, asked.length_s, "s");
+  if (differs(played.largest_kpa, asked.largest_kpa, pressure_tolerance))
+    return sentence("its command went to", played.largest_kpa, asked.largest_kpa, "kPa");
+  if (differs(played.travel_kpa, asked.travel_kpa, travel_tolerance))
+    return sentence("its command travelled", played.travel_kpa, asked.travel_kpa, "kPa up and down");
+  return std::nullopt;
+}
+
+std::optional<std::string> touched(const sysid::Validation& predicted, const sysid::Log& log,
+                                   double known_kpa) {
+  const std::vector<double>& free_mm = predicted.scores.front().prediction_mm;
+  double highest_mm = 0;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    if (log.pressure_command_kpa[i] <= known_kpa) highest_mm = std::max(highest_mm, free_mm[i]);
+  }
+  Slope lower, upper;
+  double stopped_at_mm = 0, deficit_mm = 0;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    const double reading_mm = log.displacement_mm[i];
+    if (!std::isfinite(reading_mm) || log.pressure_command_kpa[i] > known_kpa) continue;
+    if (free_mm[i] > 0.1 * highest_mm && free_mm[i] < 0.5 * highest_mm) lower.add(free_mm[i], reading_mm);
+    if (free_mm[i] < 0.75 * highest_mm) continue;
+    upper.add(free_mm[i], reading_mm);
+    deficit_mm = std::max(deficit_mm, free_mm[i] - reading_mm);
+    stopped_at_mm = std::max(stopped_at_mm, reading_mm);
+  }
+  if (!lower.known() || !upper.known()) return std::nullopt;
+  // Half as steep, and a tenth of the stroke short: no error of a model that fitted the campaign so far.
+  const bool stopped = upper.value() < 0.5 * lower.value() && deficit_mm > 0.1 * highest_mm;
+  if (!stopped) return std::nullopt;
+  return "the finger touched something: it stopped at " + significant(stopped_at_mm, 3) + " mm, " +
+         significant(deficit_mm, 2) + " mm short of its free motion; clear its way and start again";
+}
+
+}  // namespace softgrip::tools

@@ -1,0 +1,101 @@
+#include "tools/investigation/investigation_report.h"
+
+#include "base/numbers.h"
+#include "model/file/model_file.h"
+#include "sysid/identification/log_figures.h"
+#include "sysid/pages/page.h"
+#include "sysid/pages/provenance.h"
+
+namespace softgrip::tools {
+namespace {
+
+sysid::Tone tone_of(InvestigationEnd end) {
+  switch (end) {
+    case InvestigationEnd::settled:
+      return sysid::Tone::good;
+    case InvestigationEnd::unexplained:
+    case InvestigationEnd::nothing_left:
+    case InvestigationEnd::budget_spent:
+      return sysid::Tone::doubtful;
+    case InvestigationEnd::contact:
+    case InvestigationEnd::not_as_asked:
+    case InvestigationEnd::stopped:
+    case InvestigationEnd::failed:
+      break;
+  }
+  return sysid::Tone::bad;
+}
+
+std::string causes_of(const InvestigationStep& step) {
+  std::string text;
+  for (std::size_t i = 0; i < step.causes.size(); ++i) {
+    text += (i == 0 ? "" : "; ") + step.causes[i];
+    for (const std::string& rival : step.alternatives[i]) text += " or " + rival;
+  }
+  return text.empty() ? "-" : text;
+}
+
+sysid::Table course_of(const Investigation& investigation) {
+  sysid::Table table;
+  table.caption = "Each step: what the diagnosis of all logs so far says, and what was played to tell more";
+  table.header = {"step",
+                  "verdict",
+                  "causes",
+                  "held out, recalibrated [mm]",
+                  "extended",
+                  "played then",
+                  "predicted separation [standard deviations]",
+                  "rig time [min]"};
+  table.numeric = {false, false, false, true, true, false, true, true};
+  for (const InvestigationStep& step : investigation.steps) {
+    const bool separates = !step.experiment.empty() && step.experiment != gauge_check_name;
+    table.rows.push_back({step.folder, sysid::name_of(step.verdict), causes_of(step),
+                          significant(step.recalibrated_rmse_mm, 3), significant(step.extended_rmse_mm, 3),
+                          step.experiment.empty() ? "-" : step.experiment,
+                          separates ? significant(step.predicted_separation_sigma, 3) : "-",
+                          step.experiment.empty() ? "-" : significant(step.minutes, 2)});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string investigation_html(const Investigation& investigation, const std::string& rig,
+                               const std::string& closed_loop) {
+  const sysid::Diagnosis& last = investigation.last;
+  const std::string why =
+      investigation.why.empty() ? "" : " The investigation ended: " + investigation.why + ".";
+  sysid::Page page("Investigation on " + rig, sysid::verdict_sentence(last) + why,
+                   tone_of(investigation.end));
+  page.provenance(sysid::provenance_of(
+      investigation.logs, {{"recalibrated", &last.recalibrated_model}, {"extended", &last.extended_model}}));
+  page.section("The course");
+  page.paragraph(significant(investigation.spent_minutes, 3) + " of " +
+                 significant(investigation.budget_minutes, 3) + " minutes on the rig were used.");
+  page.table(course_of(investigation));
+  for (const InvestigationStep& step : investigation.steps) {
+    page.section(step.folder);
+    page.paragraph(step.sentence);
+    if (step.answer) {
+      page.paragraph("Then " + step.experiment +
+                     " was played. What the rig answered, and what this step's "
+                     "extended model had said of it:");
+      sysid::add_log_figures(page, step.answer->records.front(), step.answer->scores.front());
+    } else if (!step.experiment.empty()) {
+      page.paragraph("Then the sensor was checked against a gauge: " + step.log);
+    }
+  }
+  if (!closed_loop.empty()) {
+    page.section("In closed loop");
+    page.paragraph(closed_loop);
+  }
+  if (!last.warnings.empty()) {
+    page.section("What the logs cannot tell");
+    page.list(last.warnings);
+  }
+  page.section("The extended model");
+  page.code(model::to_yaml(last.extended_model));
+  return page.to_html();
+}
+
+}  // namespace softgrip::tools
