@@ -114,13 +114,15 @@ softgrip_room(tools/investigation
        daemon/service daemon/socket sysid/logs sysid/pages sysid/identification sysid/diagnosis/verdict
        sysid/diagnosis/experiments sysid/diagnosis/report tools/recordings
   LIBRARIES nlohmann_json::nlohmann_json)
+# A report computed again.
+softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/studies
   USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
        sysid/fitting sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
-       tools/recordings tools/importing tools/exporting tools/commissioning tools/investigation tools/studies
+       tools/recordings tools/importing tools/exporting tools/commissioning tools/investigation tools/verification tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)

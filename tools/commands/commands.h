@@ -17,6 +17,7 @@
   X(validate)                \
   X(diagnose)                \
   X(investigate)             \
+  X(report)                  \
   X(run)                     \
   X(tune)                    \
   X(study)                   \

@@ -1,0 +1,247 @@
+#include "tools/verification/verification.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "base/files.h"
+#include "base/sha256.h"
+#include "document/problem.h"
+#include "model/file/model_file.h"
+
+namespace softgrip::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t largest_file = std::size_t{512} * 1024 * 1024;
+
+/// What may be called, and what it leaves.
+struct Kind {
+  const char* command;
+  const char* json;
+};
+constexpr std::array kinds{Kind{"identify", "identify.json"}, Kind{"validate", "validate.json"},
+                           Kind{"diagnose", "diagnosis.json"}};
+
+/// A folder that is gone with it.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_((fs::temp_directory_path() / "softgrip-report-XXXXXX").string()) {
+    if (::mkdtemp(path_.data()) == nullptr) path_.clear();
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ScratchFolder(ScratchFolder&&) = delete;
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// Calls the program with its standard output closed; its exit code, or -1.
+int called(const std::string& program, std::vector<std::string> words) {
+  words.insert(words.begin(), program);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int failed = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return -1;
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string model_hash_of(const std::string& path) {
+  document::Problems problems;
+  const auto model = model::load_model(path, problems);
+  return model ? model::model_hash(*model) : std::string();
+}
+
+std::string sha256_of(const std::string& path) {
+  const auto bytes = read_file(fs::is_directory(path) ? path + "/run.csv" : path, largest_file);
+  return bytes ? sha256(*bytes) : std::string();
+}
+
+class Verifier {
+ public:
+  Verifier(const std::string& folder, const std::string& program, double tolerance)
+      : folder_(folder), program_(program) {
+    result_.comparison.tolerance = tolerance;
+  }
+
+  Verification run() {
+    if (read() && find_inputs()) compute_again();
+    return std::move(result_);
+  }
+
+ private:
+  bool missing(std::string sentence) {
+    result_.missing.push_back(std::move(sentence));
+    return false;
+  }
+
+  bool read() {
+    std::string names;
+    for (const Kind& kind : kinds) {
+      names += (names.empty() ? "" : ", ") + std::string(kind.json);
+      if (fs::exists(folder_ / kind.json)) kind_ = &kind;
+    }
+    if (kind_ == nullptr) return missing("no report in " + folder_.string() + ": none of " + names);
+    const std::string path = (folder_ / kind_->json).string();
+    const auto text = read_file(path, largest_file);
+    json_ = text ? Json::parse(*text, nullptr, false) : Json();
+    if (!json_.is_object()) return missing(path + " cannot be read as JSON");
+    result_.reported_by = json_.value("software", "");
+    const Json call = json_.value("call", Json::array());
+    for (const Json& word : call) call_.push_back(word.is_string() ? word.get<std::string>() : "");
+    if (call_.empty())
+      return missing(path +
+                     " does not say how it was made (key call): an older version or an investigation "
+                     "wrote it");
+    const bool writes_elsewhere = std::any_of(call_.begin(), call_.end(), [](const std::string& word) {
+      return word.starts_with("--out") || word.starts_with("--figures");
+    });
+    if (call_.front() != kind_->command || writes_elsewhere)
+      return missing(path + ": its key call is no call of softgrip " + kind_->command);
+    return true;
+  }
+
+  /// The hash that the report names for a file, by the option that takes it.
+  [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
+    for (const Json* logs : {&at("/logs"), &at("/validation/logs")}) {
+      for (const Json& log : *logs) {
+        if (log.value("path", "") == path) return log.value("sha256", "");
+      }
+    }
+    if (option == "--gauge") return at("/gauge").value("sha256", "");
+    if (option == "--start") return at("/start").value("hash", "");
+    if (option == "--model") return at(json_.contains("given") ? "/given" : "/model").value("hash", "");
+    return {};
+  }
+  [[nodiscard]] const Json& at(const char* pointer) const {
+    static const Json none = Json::object();
+    const Json::json_pointer place(pointer);
+    return json_.contains(place) ? json_.at(place) : none;
+  }
+
+  /// Puts every file of the call where it is now.
+  bool find_inputs() {
+    static const std::set<std::string> takes_files{"--data", "--validate", "--start", "--model", "--gauge"};
+    std::string option;
+    for (std::size_t i = 1; i < call_.size(); ++i) {
+      if (call_[i].starts_with("--")) {
+        option = call_[i];
+      } else if (takes_files.contains(option)) {
+        find(option, call_[i]);
+      }
+    }
+    return result_.missing.empty();
+  }
+
+  void find(const std::string& option, std::string& path) {
+    const bool is_model = option == "--start" || option == "--model";
+    const std::string wanted = hash_of(option, path);
+    const fs::path name = fs::path(path).filename();
+    std::string other;
+    for (const fs::path& candidate : {fs::path(path), folder_ / name, folder_.parent_path() / name}) {
+      if (!fs::exists(candidate)) continue;
+      const std::string hash = is_model ? model_hash_of(candidate.string()) : sha256_of(candidate.string());
+      if (hash == wanted && !hash.empty()) {
+        path = candidate.string();
+        return;
+      }
+      if (other.empty()) other = candidate.string() + " is another one (" + hash + ")";
+    }
+    missing(std::string(is_model              ? "model "
+                        : option == "--gauge" ? "gauge file "
+                                              : "log ") +
+            path + ", " + (is_model ? "hash " : "sha256 ") + wanted + ": " +
+            (other.empty() ? "not found" : other));
+  }
+
+  void compute_again() {
+    const ScratchFolder scratch;
+    std::vector<std::string> words = call_;
+    words.insert(words.end(), {"--out", scratch.path()});
+    const int code = scratch.path().empty() ? -1 : called(program_, words);
+    const fs::path again(scratch.path());
+    const auto text = read_file((again / kind_->json).string(), largest_file);
+    const Json json = text ? Json::parse(*text, nullptr, false) : Json();
+    if (!json.is_object()) {
+      missing("softgrip " + std::string(kind_->command) + " computed nothing: exit code " +
+              std::to_string(code));
+      return;
+    }
+    result_.recomputed_by = json.value("software", "");
+    compare_json(kind_->json, json_, json, result_.comparison);
+    compare_series(again);
+    compare_model(again);
+  }
+
+  void compare_series(const fs::path& again) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(again)) {
+      if (!fs::exists(entry.path() / "series.csv")) continue;
+      const std::string name = entry.path().filename().string() + "/series.csv";
+      const auto was = read_file((folder_ / name).string(), largest_file);
+      const auto is = read_file((again / name).string(), largest_file);
+      if (was && is) {
+        compare_csv(name, *was, *is, result_.comparison);
+      } else {
+        result_.comparison.compare(name, std::string(was ? "is there" : "is missing"), "is there");
+      }
+    }
+  }
+
+  void compare_model(const fs::path& again) {
+    if (!fs::exists(again / "model.yaml")) return;
+    document::Problems problems;
+    const auto was = model::load_model((folder_ / "model.yaml").string(), problems);
+    const auto is = model::load_model((again / "model.yaml").string(), problems);
+    if (was && is) {
+      compare_models("model.yaml", *was, *is, result_.comparison);
+    } else {
+      result_.comparison.compare("model.yaml", std::string("is missing or broken"), "is there");
+    }
+  }
+
+  fs::path folder_;
+  std::string program_;
+  const Kind* kind_ = nullptr;
+  Json json_;
+  std::vector<std::string> call_;
+  Verification result_;
+};
+
+}  // namespace
+
+Verification verify_report(const std::string& folder, const std::string& program, double tolerance) {
+  const std::string plain = fs::path(folder).lexically_normal().string();
+  return Verifier(plain.ends_with('/') && plain.size() > 1 ? plain.substr(0, plain.size() - 1) : plain,
+                  program, tolerance)
+      .run();
+}
+
+}  // namespace softgrip::tools
