@@ -85,7 +85,7 @@ softgrip_room(sysid/diagnosis/experiments
        sysid/diagnosis/gauge sysid/diagnosis/verdict)
 softgrip_room(sysid/diagnosis/report
   USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
-       sysid/diagnosis/gauge sysid/diagnosis/verdict
+       sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict
   LIBRARIES nlohmann_json::nlohmann_json)
 # The innermost loops of a fit.
 softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
@@ -97,6 +97,8 @@ target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="
 softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/figures USES base sysid/pages)
+target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/exporting
@@ -122,7 +124,8 @@ softgrip_room(tools/studies
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
        sysid/fitting sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
-       tools/recordings tools/importing tools/exporting tools/commissioning tools/investigation tools/verification tools/studies
+       tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
+       tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)

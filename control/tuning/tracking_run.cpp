@@ -164,6 +164,11 @@ TrackingResult track(const TrackingRun& run) {
       squares += 0.5 * error * error;
       result.worst_mm = std::max(result.worst_mm, std::abs(error));
     }
+    if (run.trace != nullptr) {
+      run.trace->time_s.push_back(input.demand.time_s - start_s);
+      run.trace->reference_mm.push_back(reference.at(input.demand.time_s + tick_s).value);
+      run.trace->displacement_mm.push_back(places[1]);
+    }
     result.pressure_mean_kpa += step.command_kpa;
     result.pressure_most_kpa = std::max(result.pressure_most_kpa, step.command_kpa);
     residuals += std::isfinite(step.residual_mm) ? step.residual_mm * step.residual_mm : 0;

@@ -2,12 +2,20 @@
 // A finger tracked in simulation: how well would this channel follow a sine? For studies, tuning and tests.
 
 #include <cstdint>
+#include <vector>
 
 #include "control/feedforward/pressure_plan.h"
 #include "control/tick/channel_settings.h"
 #include "model/model.h"
 
 namespace softgrip::control {
+
+/// The finger's way over the measured cycles, one value per tick; times from the first of them.
+struct TrackingTrace {
+  std::vector<double> time_s;
+  std::vector<double> reference_mm;
+  std::vector<double> displacement_mm;
+};
 
 /// One run: rest, ramp to the lowest point of the sine, cycles. The board holds each command for a tick, from
 /// `exchange_s` after the tick on; it reads in the same exchange, so a reading is a tick old when it is used.
@@ -27,6 +35,7 @@ struct TrackingRun {
   std::uint64_t seed = 1;
   /// For feedforward `planned`: plan_for() of this run; made anew where there is none.
   const PressurePlan* plan = nullptr;
+  TrackingTrace* trace = nullptr;  ///< filled where there is one
 };
 
 /// The plan for a run's reference, by the model that its controller believes in.

@@ -7,7 +7,6 @@
 #include "model/file/model_file.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/log_figures.h"
-#include "sysid/pages/page.h"
 #include "sysid/pages/provenance.h"
 
 namespace softgrip::sysid {
@@ -155,9 +154,11 @@ void add_residuals(Page& page, const Identification& r) {
   if (r.huber_mm > 0) {
     page.paragraph("Robust fit: errors beyond " + significant(r.huber_mm, 3) + " mm count linearly.");
   }
-  page.figure_row({correlation_chart(r), multistart_chart(r)},
-                  fixed(100 * r.multistart.share_at_best, 0) + " % of " +
-                      std::to_string(r.multistart.starts) + " starts reached the best fit.");
+  page.figure({"errors and search",
+               "Correlation of the errors over the time between them, and where the search ended: " +
+                   fixed(100 * r.multistart.share_at_best, 0) + " % of " +
+                   std::to_string(r.multistart.starts) + " starts reached the best fit.",
+               {{correlation_chart(r), multistart_chart(r)}}});
   if (r.exponent_rmse_mm.size() > 1) {
     Table table{"Exponents of the hysteresis that were tried", {"exponent", "RMSE [mm]"}, {true, true}, {}};
     for (const auto& [exponent, rmse_mm] : r.exponent_rmse_mm) {
@@ -237,7 +238,7 @@ std::string verdict_of(const Identification& r) {
   return text;
 }
 
-std::string identify_html(const IdentifyReport& report) {
+Page identify_page(const IdentifyReport& report) {
   const Identification& r = report.result;
   Page page("Identification: " + r.model.name + " from " + logs_in_words(r), verdict_of(r), tone_of(r));
   auto provenance = provenance_of(report.logs, {{"start", &report.start}, {"identified model", &r.model}});
@@ -275,7 +276,7 @@ std::string identify_html(const IdentifyReport& report) {
   add_notes(page, report.logs);
   page.section("Model file");
   page.code(model::to_yaml(r.model));
-  return page.to_html();
+  return page;
 }
 
 }  // namespace softgrip::sysid

@@ -6,6 +6,7 @@
 
 #include "sysid/identification/identify.h"
 #include "sysid/logs/log.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 
@@ -24,7 +25,7 @@ struct IdentifyReport {
 /// "The model explains 3 logs to the noise: RMSE 0.050 mm, 0.17 % of the span."
 [[nodiscard]] std::string verdict_of(const Identification& result);
 /// report.html
-[[nodiscard]] std::string identify_html(const IdentifyReport& report);
+[[nodiscard]] Page identify_page(const IdentifyReport& report);
 /// identify.json: schema, rmse_mm, rmse_percent_of_span, parameters, combinations, multistart, wall_s and
 /// more.
 [[nodiscard]] std::string identify_json(const IdentifyReport& report);

@@ -7,9 +7,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Pages stay below 1.5 MB: from here on figures give way to a sentence.
-constexpr std::size_t large_page_bytes = 1'250'000;
-
 Series line(std::string label, const std::vector<double>& x, const std::vector<double>& y, Colour colour) {
   Series series;
   series.label = std::move(label);
@@ -82,14 +79,12 @@ Chart error_by_pressure(const Record& record, const Score& score) {
 }
 
 void add_log_figures(Page& page, const Record& record, const Score& score) {
-  if (page.size() > large_page_bytes) {
-    page.paragraph("The figures of " + record.name + " are left out to keep this page small.");
-    return;
-  }
-  const std::string& pressure = record.name;
-  page.figure(overlay(record, score), pressure + ": measured against model over time, and their difference.");
-  page.figure_row({loops(record, score), error_by_pressure(record, score)},
-                  pressure + ": hysteresis loops, and the error over the pressure.");
+  page.figure({record.name + " over time",
+               record.name + ": measured against model over time, and their difference.",
+               stacked(overlay(record, score))});
+  page.figure({record.name + " over pressure",
+               record.name + ": hysteresis loops, and the error over the pressure.",
+               {{loops(record, score), error_by_pressure(record, score)}}});
 }
 
 std::string or_dash(double value, int digits) {

@@ -17,7 +17,7 @@ namespace softgrip::sysid {
 /// The error over pressure, loading and unloading apart.
 [[nodiscard]] Chart error_by_pressure(const Record& record, const Score& score);
 
-/// Adds the figures of one log to a page, or a sentence in their place once the page is large.
+/// Adds the figures of one log to a page.
 void add_log_figures(Page& page, const Record& record, const Score& score);
 
 /// One row per log: samples, RMSE, % of span, first and settled cycles, largest error.

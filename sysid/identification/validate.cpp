@@ -10,7 +10,6 @@
 #include "sysid/identification/log_figures.h"
 #include "sysid/identification/score_json.h"
 #include "sysid/logs/doubts.h"
-#include "sysid/pages/page.h"
 #include "sysid/pages/provenance.h"
 
 namespace softgrip::sysid {
@@ -85,7 +84,7 @@ std::string verdict_of(const Validation& v) {
          significant(largest_percent(v), 2) + " % of a log's span" + bound_text(v) + ".";
 }
 
-std::string validate_html(const Validation& v, const std::vector<Log>& logs) {
+Page validate_page(const Validation& v, const std::vector<Log>& logs) {
   const double percent = largest_percent(v);
   Page page("Validation of " + v.model.name, verdict_of(v),
             !bound_text(v).empty()   ? Tone::bad
@@ -107,7 +106,7 @@ std::string validate_html(const Validation& v, const std::vector<Log>& logs) {
   for (std::size_t i = 0; i < v.scores.size(); ++i) add_log_figures(page, v.records[i], v.scores[i]);
   page.section("Model file");
   page.code(model::to_yaml(v.model));
-  return page.to_html();
+  return page;
 }
 
 std::string validate_json(const Validation& v, const std::vector<Log>& logs) {

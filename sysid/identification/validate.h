@@ -9,6 +9,7 @@
 #include "sysid/fitting/score.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/record.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 
@@ -33,7 +34,7 @@ struct Validation {
 /// the 1.5 % that were allowed."
 [[nodiscard]] std::string verdict_of(const Validation& validation);
 /// report.html
-[[nodiscard]] std::string validate_html(const Validation& validation, const std::vector<Log>& logs);
+[[nodiscard]] Page validate_page(const Validation& validation, const std::vector<Log>& logs);
 /// validate.json
 [[nodiscard]] std::string validate_json(const Validation& validation, const std::vector<Log>& logs);
 

@@ -4,47 +4,30 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/numbers.h"
+#include "sysid/pages/axis_words.h"
+#include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_path.h"
 #include "sysid/pages/chart_scale.h"
-#include "sysid/pages/markup.h"
 
 namespace softgrip::sysid {
 namespace {
 
-// Okabe and Ito's palette: distinct for all kinds of colour vision, and in grey.
-std::string_view code_of(Colour colour) {
-  switch (colour) {
-    case Colour::measured:
-      return "#4d4d4d";
-    case Colour::model:
-      return "#0072b2";
-    case Colour::error:
-      return "#d55e00";
-    case Colour::other:
-      return "#cc79a7";
-    case Colour::faint:
-      return "#b8c4cc";
-    case Colour::good:
-      return "#009e73";
-    case Colour::bad:
-      return "#a3291f";
+constexpr double line_px = 16;  ///< of title and legend
+
+/// Attributes of a dash.
+std::string_view dashes_of(Dash dash) {
+  switch (dash) {
+    case Dash::solid:
+      return "";
+    case Dash::dashed:
+      return " stroke-dasharray=\"6 3\"";
+    case Dash::dotted:
+      return " stroke-dasharray=\"1.5 2.5\"";
   }
-  return "#000";
-}
-
-constexpr std::string_view grid_colour = "#e4e8eb";
-constexpr std::string_view axis_colour = "#8a949c";
-constexpr std::string_view text_colour = "#30383e";
-constexpr double font_px = 11;
-/// Width of a character, about: for margins and legends without a font at hand.
-constexpr double character_px = 6.1;
-
-double text_width(std::string_view text) {
-  const auto characters = std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80; });
-  return character_px * static_cast<double>(characters);
+  return "";
 }
 
 struct Range {
@@ -58,11 +41,12 @@ struct Range {
   }
 };
 
-/// Draws one chart, its upper left corner at (0, top).
+/// Draws one chart, its upper left corner at (edge, top).
 class Painter {
  public:
-  /// @param left  where the axes begin [px]: at least left_margin().
-  Painter(const Chart& chart, double top, double left) : chart_(chart), top_(top), left_(left) {
+  /// @param margin  from the edge to where the axes begin [px]: at least left_margin().
+  Painter(const Chart& chart, double edge, double top, double margin)
+      : chart_(chart), edge_(edge), top_(top), left_(edge + margin) {
     for (const Series& s : chart.series) {
       for (const double value : s.x) x_range_.include(value, chart.x.logarithmic);
       for (const double value : s.y) y_range_.include(value, chart.y.logarithmic);
@@ -90,63 +74,59 @@ class Painter {
     });
     const Scale x(chart_.x, x_range_.lowest, x_range_.highest, left_, right_, margin);
     const Scale y(chart_.y, y_range_.lowest, y_range_.highest, lower_, upper_, true);
-    text_.clear();
     grid(x, y);
     // A nested <svg> clips what leaves the axes, without the document-wide names that a clip path needs.
     const std::string box = fixed(left_, 1) + ' ' + fixed(upper_, 1) + ' ' + fixed(right_ - left_, 1) + ' ' +
                             fixed(lower_ - upper_, 1);
-    text_ += "<svg x=\"" + fixed(left_, 1) + "\" y=\"" + fixed(upper_, 1) + "\" width=\"" +
-             fixed(right_ - left_, 1) + "\" height=\"" + fixed(lower_ - upper_, 1) + "\" viewBox=\"" + box +
-             "\">";
+    canvas_.raw("<svg x=\"" + fixed(left_, 1) + "\" y=\"" + fixed(upper_, 1) + "\" width=\"" +
+                fixed(right_ - left_, 1) + "\" height=\"" + fixed(lower_ - upper_, 1) + "\" viewBox=\"" +
+                box + "\">");
     for (const Series& s : chart_.series) series(s, x, y);
-    text_ += "</svg>";
+    canvas_.raw("</svg>");
     for (const Mark& mark : chart_.marks) draw_mark(mark, x, y);
     title_and_legend();
     axis_labels();
-    return text_;
+    return canvas_.markup();
   }
 
  private:
   void lay_out() {
-    right_ = chart_.width - 14;
-    const bool has_head = !chart_.title.empty() || has_legend();
-    upper_ = top_ + (has_head ? 26 : 10);
+    right_ = edge_ + chart_.width - 14;
+    upper_ = top_ + 10 + line_px * head_lines();
     lower_ = top_ + chart_.height - (chart_.x.label.empty() ? 22 : 40);
   }
-  [[nodiscard]] bool has_legend() const {
-    return std::any_of(chart_.series.begin(), chart_.series.end(),
-                       [](const Series& s) { return !s.label.empty(); });
+  /// Title and legend share a line where both fit.
+  [[nodiscard]] int head_lines() const {
+    const double legend = legend_width();
+    if (chart_.title.empty()) return legend > 0 ? 1 : 0;
+    return legend > 0 && text_width(chart_.title) * 1.1 + 12 + legend > right_ - left_ ? 2 : 1;
   }
-
-  void line(double x1, double y1, double x2, double y2, std::string_view colour, std::string_view more = {}) {
-    text_ += "<path d=\"" + path_data({{x1, y1}, {x2, y2}}) + "\" stroke=\"" + std::string(colour) + "\"" +
-             std::string(more) + "/>";
-  }
-  void words(double x, double y, std::string_view anchor, std::string_view content,
-             std::string_view more = {}) {
-    text_ += "<text x=\"" + fixed(x, 1) + "\" y=\"" + fixed(y, 1) + "\" text-anchor=\"" +
-             std::string(anchor) + "\" fill=\"" + std::string(text_colour) + "\"" + std::string(more) + ">" +
-             escaped(content) + "</text>";
+  [[nodiscard]] double legend_width() const {
+    double width = 0;
+    for (const Series& s : chart_.series) {
+      if (!s.label.empty()) width += text_width(s.label) + 36;
+    }
+    return width;
   }
 
   void grid(const Scale& x, const Scale& y) {
     const int most_x = std::max(2, static_cast<int>((right_ - left_) / 75));
     const int most_y = std::max(3, static_cast<int>((lower_ - upper_) / 34));
     for (const Tick& tick : y.ticks(most_y)) {
-      line(left_, y.px(tick.at), right_, y.px(tick.at), grid_colour);
-      words(left_ - 6, y.px(tick.at) + 4, "end", tick.text);
+      canvas_.line({left_, y.px(tick.at)}, {right_, y.px(tick.at)}, Colour::grid);
+      canvas_.words({left_ - 6, y.px(tick.at) + 4}, Anchor::end, tick.text);
     }
     for (const Tick& tick : x.ticks(most_x)) {
-      if (chart_.x.categories.empty()) line(x.px(tick.at), upper_, x.px(tick.at), lower_, grid_colour);
-      words(x.px(tick.at), lower_ + 15, "middle", tick.text);
+      if (chart_.x.categories.empty())
+        canvas_.line({x.px(tick.at), upper_}, {x.px(tick.at), lower_}, Colour::grid);
+      canvas_.words({x.px(tick.at), lower_ + 15}, Anchor::middle, tick.text);
     }
-    line(left_, lower_, right_, lower_, axis_colour);
+    canvas_.line({left_, lower_}, {right_, lower_}, Colour::axis);
     if (y.lower() < 0 && y.upper() > 0 && !chart_.y.logarithmic)
-      line(left_, y.px(0), right_, y.px(0), axis_colour);
+      canvas_.line({left_, y.px(0)}, {right_, y.px(0)}, Colour::axis);
   }
 
   void series(const Series& s, const Scale& x, const Scale& y) {
-    const std::string colour(code_of(s.colour));
     const std::size_t size = std::min(s.x.size(), s.y.size());
     std::vector<Pixel> curve;
     curve.reserve(size);
@@ -163,39 +143,38 @@ class Painter {
     switch (s.style) {
       case Series::Style::line:
       case Series::Style::steps:
-        text_ += "<path d=\"" + path_data(thinned(curve)) + "\" stroke=\"" + colour + "\" stroke-width=\"" +
-                 fixed(s.width, 1) + "\"" + (s.dashed ? " stroke-dasharray=\"5 4\"" : "") + "/>";
+        canvas_.raw("<path d=\"" + path_data(thinned(curve)) + '"' + stroked(s.colour) + " stroke-width=\"" +
+                    fixed(s.width, 1) + '"' + std::string(dashes_of(s.dash)) + "/>");
         break;
       case Series::Style::points:
-        points(curve, colour, s.width);
+        points(curve, s.colour, s.width);
         break;
       case Series::Style::band:
-        band(s, curve, colour, pixel);
+        band(s, curve, pixel);
         break;
       case Series::Style::bars:
-        bars(s, curve, colour, y.px(std::max(0.0, y.lower())));
+        bars(s, curve, y.px(std::max(0.0, y.lower())));
         break;
     }
   }
 
-  /// Dots as strokes of no length with round ends; dots on the same pixel are drawn once.
-  void points(std::vector<Pixel> curve, const std::string& colour, double radius) {
-    for (Pixel& p : curve) p = {std::round(p.x * 2) / 2, std::round(p.y * 2) / 2};
-    std::sort(curve.begin(), curve.end(),
-              [](const Pixel& a, const Pixel& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
-    curve.erase(std::unique(curve.begin(), curve.end(),
-                            [](const Pixel& a, const Pixel& b) { return a.x == b.x && a.y == b.y; }),
-                curve.end());
-    std::string data;
-    for (const Pixel& p : curve) {
-      if (std::isfinite(p.x)) data += path_data({p}) + "h0";
+  /// Dots as strokes of no length: round, or square in the colours of what is wrong and of others.
+  void points(const std::vector<Pixel>& curve, Colour colour, double radius) {
+    const bool square = colour == Colour::error || colour == Colour::other;
+    const auto dots = distinct_dots(curve);
+    if (!dots) {
+      canvas_.raw("<path d=\"" + path_data(ground_of(curve)) + '"' + stroked(colour) +
+                  " stroke-width=\"1.1\" stroke-opacity=\"0.5\"/>");
+      return;
     }
-    text_ += "<path d=\"" + data + "\" stroke=\"" + colour + "\" stroke-linecap=\"round\" stroke-width=\"" +
-             fixed(2 * radius, 1) + "\"/>";
+    std::string data;
+    for (const Pixel& p : *dots) data += path_data({p}) + "h0";
+    canvas_.raw("<path d=\"" + data + '"' + stroked(colour) + " stroke-linecap=\"" +
+                (square ? "square" : "round") + "\" stroke-width=\"" + fixed(2 * radius, 1) + "\"/>");
   }
 
   template <class ToPixel>
-  void band(const Series& s, const std::vector<Pixel>& lower_edge, const std::string& colour, ToPixel pixel) {
+  void band(const Series& s, const std::vector<Pixel>& lower_edge, ToPixel pixel) {
     std::vector<Pixel> upper_edge;
     for (std::size_t i = 0; i < std::min(lower_edge.size(), s.y_upper.size()); ++i) {
       upper_edge.push_back(pixel(s.x[i], s.y_upper[i]));
@@ -204,11 +183,11 @@ class Painter {
     const std::vector<Pixel> back = thinned(upper_edge);
     outline.insert(outline.end(), back.rbegin(), back.rend());
     std::erase_if(outline, [](const Pixel& p) { return !std::isfinite(p.x); });
-    text_ += "<path d=\"" + path_data(outline) + "z\" fill=\"" + colour +
-             "\" fill-opacity=\"0.18\" stroke=\"none\"/>";
+    canvas_.raw("<path d=\"" + path_data(outline) + "z\"" + filled(s.colour) +
+                " fill-opacity=\"0.18\" stroke=\"none\"/>");
   }
 
-  void bars(const Series& s, const std::vector<Pixel>& tops, const std::string& colour, double zero) {
+  void bars(const Series& s, const std::vector<Pixel>& tops, double zero) {
     double spacing = right_ - left_;
     for (std::size_t i = 1; i < tops.size(); ++i)
       spacing = std::min(spacing, std::abs(tops[i].x - tops[i - 1].x));
@@ -224,47 +203,53 @@ class Painter {
               {{top.x - half, zero}, {top.x - half, top.y}, {top.x + half, top.y}, {top.x + half, zero}}) +
           "z";
     }
-    text_ += "<path d=\"" + data + "\" fill=\"" + colour + "\" stroke=\"none\"/>";
+    canvas_.raw("<path d=\"" + data + '"' + filled(s.colour) + " stroke=\"none\"/>");
   }
 
   void draw_mark(const Mark& mark, const Scale& x, const Scale& y) {
-    constexpr std::string_view halo = " paint-order=\"stroke\" stroke=\"#fff\" stroke-width=\"3\"";
     constexpr std::string_view dashes = " stroke-dasharray=\"2 3\"";
     if (mark.direction == Mark::Direction::horizontal) {
-      line(left_, y.px(mark.at), right_, y.px(mark.at), text_colour, dashes);
-      if (!mark.label.empty()) words(right_ - 4, y.px(mark.at) - 4, "end", mark.label, halo);
+      canvas_.line({left_, y.px(mark.at)}, {right_, y.px(mark.at)}, Colour::text, dashes);
+      if (!mark.label.empty())
+        canvas_.words_on_curve({right_ - 4, y.px(mark.at) - 4}, Anchor::end, mark.label);
     } else {
-      line(x.px(mark.at), upper_, x.px(mark.at), lower_, text_colour, dashes);
+      canvas_.line({x.px(mark.at), upper_}, {x.px(mark.at), lower_}, Colour::text, dashes);
       // Beside its line, on the side where there is room.
       const bool fits = x.px(mark.at) + 4 + text_width(mark.label) <= right_;
       const double at = fits ? x.px(mark.at) + 4 : x.px(mark.at) - 4;
-      if (!mark.label.empty()) words(at, upper_ + 11, fits ? "start" : "end", mark.label, halo);
+      if (!mark.label.empty())
+        canvas_.words_on_curve({at, upper_ + 11}, fits ? Anchor::start : Anchor::end, mark.label);
     }
   }
 
   void title_and_legend() {
-    if (!chart_.title.empty()) words(left_, top_ + 16, "start", chart_.title, " font-weight=\"600\"");
+    if (!chart_.title.empty())
+      canvas_.words({left_, top_ + 16}, Anchor::start, chart_.title, Colour::text, " font-weight=\"600\"");
+    const double y = top_ + line_px * std::max(1, head_lines());
     double x = right_;
     for (auto s = chart_.series.rbegin(); s != chart_.series.rend(); ++s) {
       if (s->label.empty()) continue;
       x -= text_width(s->label);
-      words(x, top_ + 16, "start", s->label);
-      const double y = top_ + 12;
-      line(x - 22, y, x - 6, y, code_of(s->colour),
-           s->dashed ? " stroke-width=\"2\" stroke-dasharray=\"5 4\"" : " stroke-width=\"3\"");
+      canvas_.words({x, y}, Anchor::start, s->label);
+      canvas_.line({x - 26, y - 4}, {x - 6, y - 4}, s->colour,
+                   " stroke-width=\"2.4\"" + std::string(dashes_of(s->dash)));
       x -= 36;
     }
   }
 
   void axis_labels() {
     if (!chart_.x.label.empty())
-      words((left_ + right_) / 2, top_ + chart_.height - 7, "middle", chart_.x.label);
+      canvas_.words({(left_ + right_) / 2, top_ + chart_.height - 7}, Anchor::middle,
+                    in_words(chart_.x.label));
     if (chart_.y.label.empty()) return;
+    const double x = edge_ + 13;
     const double y = (upper_ + lower_) / 2;
-    words(13, y, "middle", chart_.y.label, " transform=\"rotate(-90 13 " + fixed(y, 1) + ")\"");
+    canvas_.words({x, y}, Anchor::middle, in_words(chart_.y.label), Colour::text,
+                  " transform=\"rotate(-90 " + fixed(x, 1) + ' ' + fixed(y, 1) + ")\"");
   }
 
   const Chart& chart_;
+  double edge_;
   double top_;
   double left_;
   Range x_range_;
@@ -272,39 +257,52 @@ class Painter {
   double right_ = 0;
   double upper_ = 0;  ///< y of the upper edge [px], smaller than lower_
   double lower_ = 0;
-  std::string text_;
+  Canvas canvas_;
 };
 
 }  // namespace
 
-std::string to_svg(const std::vector<Chart>& stacked) {
-  int height = 0;
-  std::string label;
-  for (const Chart& chart : stacked) {
-    height += chart.height;
-    if (!chart.title.empty()) label += (label.empty() ? "" : "; ") + chart.title;
+Extent extent_of(const ChartRows& rows) {
+  Extent extent;
+  for (const auto& row : rows) {
+    Extent of_row;
+    for (const Chart& chart : row) {
+      of_row.width += chart.width;
+      of_row.height = std::max(of_row.height, chart.height);
+    }
+    extent.width = std::max(extent.width, of_row.width);
+    extent.height += of_row.height;
   }
-  const int width = stacked.empty() ? 0 : stacked.front().width;
-  const std::string size = std::to_string(width) + ' ' + std::to_string(height);
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + size + "\" width=\"" +
-                    std::to_string(width) + "\" height=\"" + std::to_string(height) +
-                    "\" role=\"img\" aria-label=\"" + escaped(label.empty() ? "chart" : label) +
-                    "\" font-family=\"system-ui,sans-serif\" font-size=\"" + fixed(font_px, 0) +
-                    "\"><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>"
-                    "<g fill=\"none\" stroke-linejoin=\"round\">";
-  double left = 0;
-  for (const Chart& chart : stacked) left = std::max(left, Painter(chart, 0, 0).left_margin());
-  double top = 0;
-  for (Chart chart : stacked) {
-    chart.width = width;
-    svg += Painter(chart, top, left).draw();
-    top += chart.height;
-  }
-  return svg + "</g></svg>\n";
+  return extent;
 }
 
-std::string to_svg(const Chart& chart) {
-  return to_svg(std::vector<Chart>{chart});
+std::string markup_of(const ChartRows& rows) {
+  std::string markup;
+  std::vector<double> margins;  // by column
+  for (const auto& row : rows) {
+    margins.resize(std::max(margins.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i)
+      margins[i] = std::max(margins[i], Painter(row[i], 0, 0, 0).left_margin());
+  }
+  double top = 0;
+  for (const auto& row : rows) {
+    double edge = 0;
+    double height = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      markup += Painter(row[i], edge, top, margins[i]).draw();
+      edge += row[i].width;
+      height = std::max(height, static_cast<double>(row[i].height));
+    }
+    top += height;
+  }
+  return markup;
+}
+
+ChartRows stacked(std::vector<Chart> charts) {
+  ChartRows rows;
+  rows.reserve(charts.size());
+  for (Chart& chart : charts) rows.push_back({std::move(chart)});
+  return rows;
 }
 
 }  // namespace softgrip::sysid

@@ -1,18 +1,21 @@
 #pragma once
-// Charts as SVG: lines, points, bands, bars. No script, no style sheet, no font but the reader's own.
+// Charts as SVG: lines, points, bands, bars. No script, no font but the reader's own.
 //
-// A chart is a plain value; to_svg() draws it. Long series are thinned to what the picture can show: where x
-// increases, each pixel column keeps its first, lowest, highest and last value, so that a single outlier
-// among a million samples stays visible; other curves (loops) lose points that fall on drawn ground.
+// A chart is a plain value; markup_of() draws it, in a figure (figure.h). Units of axes are drawn in words.
+// Long series are thinned to what the picture can show: where x increases, each pixel column keeps its first,
+// lowest, highest and last value, so that a single outlier among a million samples stays visible; other
+// curves (loops) lose points that fall on drawn ground.
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "sysid/pages/palette.h"
+
 namespace softgrip::sysid {
 
-/// A colour by its role, so that one thing looks alike in all charts of a report.
-enum class Colour { measured, model, error, other, faint, good, bad };
+/// How a line is drawn, beside its colour: what is told apart by colour alone, some readers cannot tell.
+enum class Dash { solid, dashed, dotted };
 
 /// One curve. `x` and `y` have the same length; a value that is not finite interrupts the line.
 struct Series {
@@ -29,7 +32,7 @@ struct Series {
   std::vector<double> y_upper;  ///< of a band
   Style style = Style::line;
   Colour colour = Colour::measured;
-  bool dashed = false;
+  Dash dash = Dash::solid;
   double width = 1.4;  ///< of the line, or radius of the points [px]
 };
 
@@ -60,10 +63,21 @@ struct Chart {
   int height = 280;  ///< [px]
 };
 
-/// The chart as an <svg> element, complete for a file of its own or for a page.
-[[nodiscard]] std::string to_svg(const Chart& chart);
+/// Rows of charts, one below the other: each a chart of full width, or several side by side.
+using ChartRows = std::vector<std::vector<Chart>>;
 
-/// Several charts in one picture, one below the other, all of the first one's width.
-[[nodiscard]] std::string to_svg(const std::vector<Chart>& stacked);
+/// [px]
+struct Extent {
+  int width = 0;
+  int height = 0;
+};
+/// Width of the widest row, heights together.
+[[nodiscard]] Extent extent_of(const ChartRows& rows);
+
+/// The charts as SVG elements within that extent. Charts of a column have their axes below each other.
+[[nodiscard]] std::string markup_of(const ChartRows& rows);
+
+/// One chart below the other.
+[[nodiscard]] ChartRows stacked(std::vector<Chart> charts);
 
 }  // namespace softgrip::sysid

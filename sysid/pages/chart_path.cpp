@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <unordered_set>
@@ -25,20 +26,26 @@ bool x_increases(const std::vector<Pixel>& curve) {
   return true;
 }
 
-/// Appends first, lowest, highest, last of [begin, end), all in one column, each once, in their order.
+/// Beyond so many nobody can tell strokes or dots from the ground that they cover.
+constexpr std::size_t most_strokes = 9000;
+constexpr std::size_t most_dots = 6000;
+
+/// Appends of [begin, end), all in one column, the lowest and the highest in their order; of a few, all.
 void append_column(const std::vector<Pixel>& curve, std::size_t begin, std::size_t end,
                    std::vector<Pixel>& kept) {
+  if (end - begin <= 4) {
+    kept.insert(kept.end(), curve.begin() + static_cast<std::ptrdiff_t>(begin),
+                curve.begin() + static_cast<std::ptrdiff_t>(end));
+    return;
+  }
   std::size_t lowest = begin;
   std::size_t highest = begin;
   for (std::size_t i = begin; i < end; ++i) {
     if (curve[i].y < curve[lowest].y) lowest = i;
     if (curve[i].y > curve[highest].y) highest = i;
   }
-  std::size_t last = end;  // none yet
-  for (const std::size_t i : {begin, std::min(lowest, highest), std::max(lowest, highest), end - 1}) {
-    if (i != last) kept.push_back(curve[i]);
-    last = i;
-  }
+  kept.push_back(curve[std::min(lowest, highest)]);
+  if (lowest != highest) kept.push_back(curve[std::max(lowest, highest)]);
 }
 
 std::vector<Pixel> thinned_by_column(const std::vector<Pixel>& curve) {
@@ -58,7 +65,8 @@ std::vector<Pixel> thinned_by_column(const std::vector<Pixel>& curve) {
   return kept;
 }
 
-std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve) {
+/// Points closer than `least_px` to the last one are left out.
+std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve, double least_px) {
   constexpr double grid = 1.0 / 3.0;
   std::vector<Pixel> kept;
   std::unordered_set<std::uint64_t> strokes;
@@ -72,7 +80,8 @@ std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve) {
     }
     const auto x = static_cast<std::int64_t>(std::lround(p.x / grid));
     const auto y = static_cast<std::int64_t>(std::lround(p.y / grid));
-    if (pen_down && x == last_x && y == last_y) continue;
+    const auto far_px = grid * std::hypot(static_cast<double>(x - last_x), static_cast<double>(y - last_y));
+    if (pen_down && far_px <= least_px) continue;
     const Pixel here{static_cast<double>(x) * grid, static_cast<double>(y) * grid};
     if (!pen_down) {
       if (!kept.empty()) kept.push_back({lifted, lifted});
@@ -97,6 +106,28 @@ std::vector<Pixel> thinned_by_stroke(const std::vector<Pixel>& curve) {
   return kept;
 }
 
+/// The ground that a cloud covers: column by column, upright strokes over points closer than `gap`.
+std::vector<Pixel> covered(const std::vector<Pixel>& curve, double gap) {
+  constexpr double dot = 0.7;  // of one point alone
+  std::vector<Pixel> cloud;
+  for (const Pixel& p : curve) {
+    if (drawn(p)) cloud.push_back({std::floor(p.x) + 0.5, p.y});
+  }
+  std::sort(cloud.begin(), cloud.end(),
+            [](const Pixel& a, const Pixel& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  std::vector<Pixel> kept;
+  for (std::size_t begin = 0; begin < cloud.size();) {
+    std::size_t end = begin + 1;
+    while (end < cloud.size() && cloud[end].x == cloud[begin].x && cloud[end].y - cloud[end - 1].y <= gap)
+      ++end;
+    if (!kept.empty()) kept.push_back({lifted, lifted});
+    kept.push_back({cloud[begin].x, cloud[begin].y - dot / 2});
+    kept.push_back({cloud[begin].x, cloud[end - 1].y + dot / 2});
+    begin = end;
+  }
+  return kept;
+}
+
 void append_tenths(std::string& text, std::int64_t tenths) {
   if (tenths < 0) text += '-';
   const std::int64_t magnitude = tenths < 0 ? -tenths : tenths;
@@ -107,7 +138,33 @@ void append_tenths(std::string& text, std::int64_t tenths) {
 }  // namespace
 
 std::vector<Pixel> thinned(const std::vector<Pixel>& curve) {
-  return x_increases(curve) ? thinned_by_column(curve) : thinned_by_stroke(curve);
+  if (x_increases(curve)) return thinned_by_column(curve);
+  for (const double least_px : {0.0, 2.0}) {
+    std::vector<Pixel> kept = thinned_by_stroke(curve, least_px);
+    if (kept.size() <= most_strokes) return kept;
+  }
+  return ground_of(curve);
+}
+
+std::vector<Pixel> ground_of(const std::vector<Pixel>& cloud) {
+  std::vector<Pixel> kept = covered(cloud, 1);
+  for (double gap = 2; kept.size() > most_strokes && gap < 100; gap *= 2) kept = covered(cloud, gap);
+  return kept;
+}
+
+std::optional<std::vector<Pixel>> distinct_dots(const std::vector<Pixel>& dots) {
+  constexpr double grid = 0.5;
+  std::vector<Pixel> kept;
+  for (const Pixel& p : dots) {
+    if (drawn(p)) kept.push_back({std::round(p.x / grid) * grid, std::round(p.y / grid) * grid});
+  }
+  std::sort(kept.begin(), kept.end(),
+            [](const Pixel& a, const Pixel& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  kept.erase(std::unique(kept.begin(), kept.end(),
+                         [](const Pixel& a, const Pixel& b) { return a.x == b.x && a.y == b.y; }),
+             kept.end());
+  if (kept.size() > most_dots) return std::nullopt;
+  return kept;
 }
 
 std::string path_data(const std::vector<Pixel>& curve) {

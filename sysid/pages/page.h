@@ -1,8 +1,9 @@
 #pragma once
 // The self-contained HTML page that every report is: verdict first, then provenance, then sections.
 //
-// Readable without JavaScript (there is none), no reference to anything outside, prints well. Every text is
-// escaped here; only pictures made by sysid/pages/chart.h enter as markup.
+// Readable without JavaScript (there is none), no reference to anything outside, prints well, in the reader's
+// colour scheme on a screen. Every text is escaped here; only pictures made in this room enter as markup.
+// Figures are numbered in the order in which they come.
 
 #include <cstddef>
 #include <string>
@@ -10,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "sysid/pages/chart.h"
+#include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
 
@@ -25,39 +26,55 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// Terms and their values.
+using Terms = std::vector<std::pair<std::string, std::string>>;
+
 /// A report, built from top to bottom.
 class Page {
  public:
+  /// No page is larger, however long its logs are [bytes]: figures that would make it so give way to a
+  /// sentence.
+  static constexpr std::size_t most_bytes = 1'500'000;
+
   /// @param title  of the document. @param verdict  one sentence that a technician understands.
   Page(std::string title, std::string verdict, Tone tone);
 
-  /// Terms and their values under "Provenance", right below the verdict (versions, files, hashes).
-  void provenance(std::vector<std::pair<std::string, std::string>> entries);
+  /// Right below the verdict (versions, files, hashes).
+  void provenance(Terms entries);
   void section(std::string_view title);
+  /// A section that begins on a new sheet of paper: what only those read who check.
+  void appendix(std::string_view title);
   void subsection(std::string_view title);
   void paragraph(std::string_view text);
   void list(const std::vector<std::string>& items);
+  void terms(const Terms& entries);
   void table(const Table& table);
-  void figure(const std::vector<Chart>& stacked, std::string_view caption);
-  void figure(const Chart& chart, std::string_view caption);
-  /// Two or more charts side by side where the page is wide enough.
-  void figure_row(const std::vector<Chart>& charts, std::string_view caption);
+  /// With its number, its caption and itself as a file to keep.
+  void figure(Figure figure);
   /// A text in its own lines, in a fixed-width font (a model file).
   void code(std::string_view text);
 
-  /// Bytes of the page's body so far.
-  [[nodiscard]] std::size_t size() const noexcept { return body_.size(); }
+  /// All figures so far, those too that the page had no room for.
+  [[nodiscard]] const std::vector<Figure>& figures() const noexcept { return figures_; }
+  /// With a table of contents where there are many sections.
   [[nodiscard]] std::string to_html() const;
 
  private:
+  void heading(std::string_view title, std::string_view more);
+
   std::string title_;
   std::string verdict_;
   Tone tone_;
-  std::vector<std::pair<std::string, std::string>> provenance_;
+  Terms provenance_;
+  std::vector<std::string> sections_;
+  std::vector<Figure> figures_;
   std::string body_;
 };
 
 /// Software name and version, first entry of every provenance.
 [[nodiscard]] std::string software_and_version();
+
+/// "figure-2-error-over-time": the stem of a figure's files.
+[[nodiscard]] std::string figure_stem(std::size_t number, std::string_view name);
 
 }  // namespace softgrip::sysid

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/files.h"
@@ -20,6 +21,7 @@
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
+#include "tools/figures/figure_files.h"
 #include "tools/investigation/diagnosis_folder.h"
 
 namespace softgrip::tools {
@@ -29,6 +31,7 @@ struct Options {
   std::string model;
   std::vector<std::string> data;
   std::string out;
+  std::string figures;
   std::string gauge;
   LogInput logs;
   sysid::DiagnosisOptions diagnosis;
@@ -121,6 +124,22 @@ std::optional<sysid::ProposedExperiment> proposed_experiment(const Consequences&
                                    next.best->minutes, next.best->waveform.about};
 }
 
+/// The closed loop as the report draws it; models without a feedforward have no curve of their own.
+std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& consequences) {
+  if (!consequences.closed_loop) return std::nullopt;
+  const ClosedLoopGain& gain = *consequences.closed_loop;
+  sysid::ClosedLoopCurves curves{
+      gain.reference(), gain.pid_alone.trace.time_s, gain.pid_alone.trace.reference_mm, {}, gain.notes()};
+  for (const auto& [name, scheme] :
+       {std::pair<const char*, const ClosedLoopScheme*>{"PID alone", &gain.pid_alone},
+        {"recalibrated model", &gain.recalibrated},
+        {"extended model", &gain.extended}}) {
+    if (scheme->refused.empty())
+      curves.schemes.push_back({name, scheme->rmse_mm, scheme->trace.displacement_mm});
+  }
+  return curves;
+}
+
 ExitCode run(Options options, const std::vector<std::string>& call) {
   const auto model = read_model(options.model);
   if (!model) return model.error();
@@ -144,9 +163,14 @@ ExitCode run(Options options, const std::vector<std::string>& call) {
                                       *model,
                                       options.diagnosis.seed,
                                       proposed_experiment(consequences),
-                                      consequences.experiment.advice};
-  const std::string page = (std::filesystem::path(options.out) / "report.html").string();
-  if (const auto written = write_file(page, sysid::diagnosis_html(report)); !written)
+                                      consequences.experiment.advice,
+                                      closed_loop_curves(consequences)};
+  const sysid::Page page = sysid::diagnosis_page(report);
+  if (const auto written =
+          write_file((std::filesystem::path(options.out) / "report.html").string(), page.to_html());
+      !written)
+    return fail(ExitCode::io, written.error());
+  if (const auto written = write_figures(options.figures, page.figures()); !written)
     return fail(ExitCode::io, written.error());
   if (const auto written = write_series(options.out, series_of(*result, *logs)); !written)
     return fail(ExitCode::io, written.error());
@@ -173,6 +197,7 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
           "--out", options->out,
           "Folder for diagnosis.json, model.yaml, next_experiment.yaml, report.html, and series.csv per log")
       ->required();
+  add_figures_option(*command, options->figures);
   command->add_option(
       "--gauge", options->gauge,
       "What the sensor reads at positions that a gauge knows (CSV: gauge_mm,displacement_mm)");

@@ -25,6 +25,7 @@
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
+#include "tools/figures/figure_files.h"
 
 namespace softgrip::tools {
 namespace {
@@ -34,6 +35,7 @@ struct Options {
   std::vector<std::string> validate;
   std::string start;
   std::string out;
+  std::string figures;
   std::string structure;
   std::size_t branches = 2;
   LogInput logs;
@@ -179,11 +181,12 @@ ExitCode run(Options options, const std::vector<std::string>& call) {
     result->warnings.insert(result->warnings.end(), validation.warnings.begin(), validation.warnings.end());
   }
   const std::string json = sysid::identify_json(report);
+  const sysid::Page page = sysid::identify_page(report);
   const std::filesystem::path out(options.out);
   for (const auto& [name, text] :
        {std::pair<const char*, std::string>{"model.yaml", model::to_yaml(result->model)},
         {"identify.json", json},
-        {"report.html", sysid::identify_html(report)}}) {
+        {"report.html", page.to_html()}}) {
     if (const auto written = write_file((out / name).string(), text); !written) {
       return fail(ExitCode::io, written.error());
     }
@@ -196,6 +199,8 @@ ExitCode run(Options options, const std::vector<std::string>& call) {
       series.push_back(std::move(one));
   }
   if (const auto written = write_series(options.out, series); !written)
+    return fail(ExitCode::io, written.error());
+  if (const auto written = write_figures(options.figures, page.figures()); !written)
     return fail(ExitCode::io, written.error());
   if (options.json) {
     std::fputs(json.c_str(), stdout);
@@ -251,6 +256,7 @@ void add_identify(CLI::App& program, ExitCode& outcome) {
       ->add_option("--out", options->out,
                    "Folder for model.yaml, identify.json, report.html, and series.csv per log")
       ->required();
+  add_figures_option(*command, options->figures);
   add_fit_options(*command, options->fit);
   add_structure_option(*command, *options);
   add_log_options(*command, options->logs);

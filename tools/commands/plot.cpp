@@ -2,13 +2,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
+#include "tools/figures/picture_format.h"
 #include "tools/recordings/recording.h"
 #include "tools/recordings/recording_picture.h"
 #include "tools/recordings/recording_tracking.h"
@@ -17,14 +21,18 @@ namespace softgrip::tools {
 namespace {
 
 struct Options {
-  std::string recording;
+  std::vector<std::string> recordings;
   std::string out;
+  std::string channel;
+  double from_s = -std::numeric_limits<double>::infinity();
+  double to_s = std::numeric_limits<double>::infinity();
+  bool beside = false;
   bool json = false;
 };
 
-void report(const Options& options, const Recording& recording) {
+nlohmann::ordered_json told_of(const Options& options, const Recording& recording) {
   std::FILE* const stream = report_stream(options.out);
-  nlohmann::ordered_json json{{"out", options.out}, {"channels", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json channels = nlohmann::ordered_json::array();
   for (const sysid::Log& log : recording.channels) {
     const Tracking tracking = tracking_of(log);
     const std::string name = log.channel.empty() ? recording.name : log.channel;
@@ -39,12 +47,20 @@ void report(const Options& options, const Recording& recording) {
       entry["gripping"] = {{"samples", tracking.gripping_samples},
                            {"short_of_reference_mm", tracking.gripping_largest_mm}};
     }
-    json["channels"].push_back(std::move(entry));
+    channels.push_back(std::move(entry));
     if (options.json) continue;
     const std::string told = to_text(tracking);
     std::fprintf(stream, "%s: %zu samples%s%s\n", name.c_str(), log.size(), told.empty() ? "" : "; ",
                  told.c_str());
   }
+  return channels;
+}
+
+void report(const Options& options, const std::vector<Recording>& recordings) {
+  std::FILE* const stream = report_stream(options.out);
+  nlohmann::ordered_json json{{"out", options.out}};
+  json["channels"] = told_of(options, recordings.front());
+  if (recordings.size() > 1) json["second"] = {{"channels", told_of(options, recordings.back())}};
   if (options.json) {
     std::fprintf(stream, "%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
@@ -53,15 +69,30 @@ void report(const Options& options, const Recording& recording) {
 }
 
 ExitCode run(const Options& options) {
-  if (!is_stream(options.out) && std::filesystem::path(options.out).extension() != ".svg")
-    return fail(ExitCode::usage, "plot writes SVG: " + options.out + " does not end in .svg");
-  document::Problems problems;
-  const auto recording = read_recording(options.recording, problems);
-  if (!recording) return problems.empty() ? recording.error() : refuse_logs(problems);
-  if (const auto written = write_output(options.out, picture_of(*recording)); !written) {
-    return fail(ExitCode::io, written.error());
+  // A stream has no ending: SVG.
+  const auto format = is_stream(options.out) ? PictureFormat::svg : picture_format_of(options.out);
+  if (!format)
+    return fail(ExitCode::usage, "plot writes " + std::string(picture_formats()) +
+                                     ", by the ending: " + options.out + " ends in none of them");
+  if (!(options.from_s < options.to_s)) return fail(ExitCode::usage, "--from must be below --to");
+  std::vector<Recording> recordings;
+  for (const std::string& path : options.recordings) {
+    document::Problems problems;
+    const auto recording = read_recording(path, problems);
+    if (!recording) return problems.empty() ? recording.error() : refuse_logs(problems);
+    auto part = part_of(*recording, options.channel, options.from_s, options.to_s);
+    if (!part) return fail(ExitCode::usage, part.error());
+    recordings.push_back(std::move(*part));
   }
-  report(options, *recording);
+  const sysid::Figure figure =
+      recordings.size() == 1
+          ? figure_of(recordings.front())
+          : figure_of(recordings[0], recordings[1], options.beside ? Pairing::beside : Pairing::over);
+  const auto bytes = bytes_of(figure, *format);
+  if (!bytes) return fail(ExitCode::failed, bytes.error());
+  if (const auto written = write_output(options.out, *bytes); !written)
+    return fail(ExitCode::io, written.error());
+  report(options, recordings);
   return ExitCode::done;
 }
 
@@ -71,8 +102,19 @@ void add_plot(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       program.add_subcommand("plot", "A recording as a picture: pressure, displacement, error, states");
-  command->add_option("RECORDING", options->recording, "A recording's folder, or a log (CSV)")->required();
-  command->add_option("--out", options->out, "SVG file to write ('-': standard output)")->required();
+  command
+      ->add_option("RECORDING", options->recordings,
+                   "A recording's folder, or a log (CSV); two of them: the second over the first")
+      ->required()
+      ->expected(1, 2);
+  command
+      ->add_option("--out", options->out,
+                   "File to write: .svg, .pdf, .png or .html ('-': SVG to the standard output)")
+      ->required();
+  command->add_option("--channel", options->channel, "This channel only");
+  command->add_option("--from", options->from_s, "Begin at this time [s]");
+  command->add_option("--to", options->to_s, "End at this time [s]");
+  command->add_flag("--beside", options->beside, "Two recordings side by side instead of over each other");
   command->add_flag("--json", options->json, "Say what was done as JSON");
   command->callback([options, &outcome] { outcome = run(*options); });
 }

@@ -1,5 +1,6 @@
 #include "tools/commands/series_output.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -39,6 +40,11 @@ std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
     }
   }
   return all;
+}
+
+void add_figures_option(CLI::App& command, std::string& folder) {
+  command.add_option("--figures", folder,
+                     "Folder for each figure of the report: SVG, PDF, and its data as CSV");
 }
 
 tl::expected<void, std::string> write_series(const std::string& folder,

@@ -1,5 +1,5 @@
 #pragma once
-// The series.csv of every log, beside what else identify, validate and diagnose write.
+// What identify, validate and diagnose write beside their reports: the series.csv of every log, and figures.
 
 #include <string>
 #include <vector>
@@ -10,6 +10,10 @@
 #include "sysid/fitting/score.h"
 #include "sysid/logs/log.h"
 #include "sysid/logs/series.h"
+
+namespace CLI {
+class App;
+}
 
 namespace softgrip::tools {
 
@@ -24,6 +28,9 @@ namespace softgrip::tools {
 /// readings (what diagnosis.json says of held-out blocks was judged on others).
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
                                                       const std::vector<sysid::Log>& logs);
+
+/// Adds --figures DIR to a command that writes a report; write_figures() (tools/figures) fills the folder.
+void add_figures_option(CLI::App& command, std::string& folder);
 
 /// Writes FOLDER/LOG/series.csv for each. The error is a sentence.
 [[nodiscard]] tl::expected<void, std::string> write_series(const std::string& folder,

@@ -13,6 +13,8 @@
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/series_output.h"
+#include "tools/figures/figure_files.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/published.h"
 
@@ -21,18 +23,21 @@ namespace {
 
 struct Output {
   std::string out;
+  std::string figures;
   bool json = false;
 };
 
 ExitCode write_all(const Output& output, const std::string& json_name, const std::string& json,
-                   const std::string& html, const std::string& text) {
+                   const sysid::Page& page, const std::string& text) {
   const std::filesystem::path folder(output.out);
   for (const auto& [name, content] :
-       {std::pair<std::string, const std::string&>{json_name, json}, {"report.html", html}}) {
+       {std::pair<std::string, const std::string&>{json_name, json}, {"report.html", page.to_html()}}) {
     if (const auto written = write_file((folder / name).string(), content); !written) {
       return fail(ExitCode::io, written.error());
     }
   }
+  if (const auto written = write_figures(output.figures, page.figures()); !written)
+    return fail(ExitCode::io, written.error());
   std::fputs(output.json ? json.c_str() : text.c_str(), stdout);
   if (!output.json) std::printf("report: %s\n", (folder / "report.html").c_str());
   return ExitCode::done;
@@ -42,7 +47,7 @@ ExitCode write_all(const Output& output, const std::string& json_name, const std
 template <class Options, class Result>
 ExitCode run_study(const Output& output, Options options, Result (*study)(const Options&),
                    const std::string& json_name, std::string (*json)(const Result&),
-                   std::string (*html)(const Result&), std::string (*text)(const Result&)) {
+                   sysid::Page (*page)(const Result&), std::string (*text)(const Result&)) {
   if (const auto writable = prepare_folder(output.out); !writable)
     return fail(ExitCode::io, writable.error());
   const Result result = [&] {
@@ -50,11 +55,12 @@ ExitCode run_study(const Output& output, Options options, Result (*study)(const 
     options.progress = line.show();
     return study(options);
   }();
-  return write_all(output, json_name, json(result), html(result), text(result));
+  return write_all(output, json_name, json(result), page(result), text(result));
 }
 
 void add_output(CLI::App& command, Output& output) {
   command.add_option("--out", output.out, "Folder for the report and the numbers")->required();
+  add_figures_option(command, output.figures);
   command.add_flag("--json", output.json, "The numbers as JSON on the standard output");
 }
 
@@ -73,7 +79,7 @@ void add_published(CLI::App& study, ExitCode& outcome) {
       ->capture_default_str();
   command->callback([options, &outcome] {
     outcome = run_study(options->output, options->study, study_published, "published.json", published_json,
-                        published_html, published_text);
+                        published_page, published_text);
   });
 }
 
@@ -98,7 +104,7 @@ void add_control(CLI::App& study, ExitCode& outcome) {
       ->capture_default_str();
   command->callback([options, &outcome] {
     outcome = run_study(options->output, options->study, study_control, "control.json", control_json,
-                        control_html, control_text);
+                        control_page, control_text);
   });
 }
 

@@ -21,6 +21,7 @@
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
+#include "tools/figures/figure_files.h"
 
 namespace softgrip::tools {
 namespace {
@@ -29,6 +30,7 @@ struct Options {
   std::string model;
   std::vector<std::string> data;
   std::string out;
+  std::string figures;
   LogInput logs;
   std::optional<double> at_most_percent;
   bool json = false;
@@ -67,10 +69,15 @@ ExitCode run(const Options& options, const std::vector<std::string>& call) {
   v.at_most_percent = options.at_most_percent;
   v.call = call;
   const std::string json = sysid::validate_json(v, *logs);
+  if (!options.figures.empty()) {
+    const sysid::Page page = sysid::validate_page(v, *logs);
+    if (const auto written = write_figures(options.figures, page.figures()); !written)
+      return fail(ExitCode::io, written.error());
+  }
   if (!options.out.empty()) {
     const std::filesystem::path out(options.out);
     for (const auto& [name, text] : {std::pair<const char*, std::string>{"validate.json", json},
-                                     {"report.html", sysid::validate_html(v, *logs)}}) {
+                                     {"report.html", sysid::validate_page(v, *logs).to_html()}}) {
       if (const auto written = write_file((out / name).string(), text); !written) {
         return fail(ExitCode::io, written.error());
       }
@@ -97,6 +104,7 @@ void add_validate(CLI::App& program, ExitCode& outcome) {
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--data", options->data, "Logs to predict (CSV, or a recording's folder)")->required();
   command->add_option("--out", options->out, "Folder for validate.json, report.html, and series.csv per log");
+  add_figures_option(*command, options->figures);
   command
       ->add_option("--at-most-percent", options->at_most_percent,
                    "Exit with 6 if the RMSE of a log is a larger share of its span")

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "base/numbers.h"
 #include "base/random.h"
@@ -69,10 +71,13 @@ class Rigs {
     scheme.pid =
         control::search_gains([&](const control::PidSettings& pid) { return cost(run, pid); }, gain_search);
     run.settings.pid = scheme.pid;
-    std::vector<double> rmse;
-    for (std::uint64_t i = searched_rigs; i < rigs_.size(); ++i) rmse.push_back(rmse_on(run, i));
+    std::vector<std::pair<double, std::uint64_t>> rmse;
+    for (std::uint64_t i = searched_rigs; i < rigs_.size(); ++i) rmse.emplace_back(rmse_on(run, i), i);
     std::sort(rmse.begin(), rmse.end());
-    scheme.rmse_mm = rmse[rmse.size() / 2];
+    const auto& [median_mm, rig] = rmse[rmse.size() / 2];
+    scheme.rmse_mm = median_mm;
+    run.trace = &scheme.trace;
+    static_cast<void>(rmse_on(run, rig));
     return scheme;
   }
 
@@ -164,6 +169,7 @@ ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question) {
     if (scheme->refused.empty()) continue;
     scheme->rmse_mm = gain.pid_alone.rmse_mm;
     scheme->pid = gain.pid_alone.pid;
+    scheme->trace = gain.pid_alone.trace;
   }
   gain.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return gain;

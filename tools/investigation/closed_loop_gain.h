@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "control/elements/pid.h"
+#include "control/tuning/tracking_run.h"
 #include "model/model.h"
 
 namespace softgrip::tools {
@@ -29,7 +30,8 @@ struct ClosedLoopQuestion {
 struct ClosedLoopScheme {
   double rmse_mm = 0;  ///< median over rigs
   control::PidSettings pid;
-  std::string refused;  ///< why its feedforward does not exist; then this is the PID alone
+  std::string refused;           ///< why its feedforward does not exist; then this is the PID alone
+  control::TrackingTrace trace;  ///< on the rig of that median
 };
 
 struct ClosedLoopGain {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/numbers.h"
-#include "sysid/pages/chart.h"
+#include "sysid/pages/figure.h"
 #include "tools/recordings/recording_tracking.h"
 
 namespace softgrip::tools {
@@ -76,7 +76,7 @@ Chart displacement_chart(const Recording& recording, const sysid::Log& log) {
   displacement.series.push_back(line("measured", log, log.displacement_mm, Colour::measured));
   if (std::vector<double> reference = numbers_of(log, "reference_mm"); any_number(reference)) {
     Series wanted = line("reference", log, std::move(reference), Colour::model);
-    wanted.dashed = true;
+    wanted.dash = sysid::Dash::dashed;
     displacement.series.push_back(std::move(wanted));
   }
   displacement.marks = marks_of(recording, log.channel);
@@ -123,9 +123,7 @@ void add_states(const Recording& recording, std::vector<Chart>& charts) {
   if (!states.series.empty()) charts.push_back(std::move(states));
 }
 
-}  // namespace
-
-std::string picture_of(const Recording& recording) {
+std::vector<Chart> charts_of(const Recording& recording) {
   std::vector<Chart> charts;
   for (const sysid::Log& log : recording.channels) {
     charts.push_back(pressure_chart(log));
@@ -135,10 +133,108 @@ std::string picture_of(const Recording& recording) {
     }
   }
   add_states(recording, charts);
-  const std::string what =
-      recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
-  charts.front().title = what + " · " + charts.front().title;
-  return sysid::to_svg(charts);
+  return charts;
+}
+
+std::string called(const Recording& recording) {
+  return recording.sequence.empty() ? recording.name : recording.sequence + ", " + recording.name;
+}
+
+/// Titles of charts say what they show first; what a number is of the run comes behind it.
+std::string subject_of(const Chart& chart) {
+  return chart.title.substr(0, chart.title.find(','));
+}
+
+Colour of_the_second(Colour colour) {
+  switch (colour) {
+    case Colour::measured:
+      return Colour::error;
+    case Colour::model:
+      return Colour::good;
+    default:
+      return Colour::other;
+  }
+}
+
+void lay_over(Chart& below, Chart above, const std::string& name) {
+  for (Series& series : above.series) {
+    series.label = series.label.empty() ? name : series.label + ", " + name;
+    series.colour = of_the_second(series.colour);
+    series.dash = sysid::Dash::dashed;
+    below.series.push_back(std::move(series));
+  }
+  below.title = subject_of(below);
+}
+
+}  // namespace
+
+sysid::Figure figure_of(const Recording& recording) {
+  std::vector<Chart> charts = charts_of(recording);
+  charts.front().title = called(recording) + " · " + charts.front().title;
+  return {called(recording), "Recording " + called(recording) + ".", sysid::stacked(std::move(charts))};
+}
+
+sysid::Figure figure_of(const Recording& first, const Recording& second, Pairing pairing) {
+  std::vector<Chart> charts = charts_of(first);
+  std::vector<Chart> others = charts_of(second);
+  sysid::Figure figure{called(first) + " and " + called(second), {}, {}};
+  if (pairing == Pairing::over) {
+    figure.caption = "Recordings " + called(first) + " and, dashed, " + called(second) + ".";
+    for (Chart& chart : charts) {
+      const auto same = std::find_if(others.begin(), others.end(), [&](const Chart& other) {
+        return subject_of(other) == subject_of(chart) && other.y.categories == chart.y.categories;
+      });
+      if (same == others.end()) continue;
+      lay_over(chart, std::move(*same), second.name);
+      others.erase(same);
+    }
+    for (Chart& chart : others) {
+      chart.title += ", " + second.name;
+      charts.push_back(std::move(chart));
+    }
+    charts.front().title = figure.name + " · " + charts.front().title;
+    figure.charts = sysid::stacked(std::move(charts));
+    return figure;
+  }
+  figure.caption = "Recordings " + called(first) + " (left) and " + called(second) + " (right).";
+  charts.front().title = called(first) + " · " + charts.front().title;
+  others.front().title = called(second) + " · " + others.front().title;
+  for (std::size_t i = 0; i < std::max(charts.size(), others.size()); ++i) {
+    figure.charts.emplace_back();
+    for (std::vector<Chart>* column : {&charts, &others}) {
+      Chart chart = i < column->size() ? std::move((*column)[i]) : Chart{};
+      chart.width = picture_width * 3 / 4;
+      chart.height = tall;
+      figure.charts.back().push_back(std::move(chart));
+    }
+  }
+  return figure;
+}
+
+tl::expected<Recording, std::string> part_of(const Recording& recording, const std::string& channel,
+                                             double from_s, double to_s) {
+  Recording part = recording;
+  part.channels.clear();
+  std::string known;
+  for (const sysid::Log& log : recording.channels) {
+    known += (known.empty() ? "" : ", ") + log.channel;
+    if (!channel.empty() && log.channel != channel) continue;
+    const auto first = std::lower_bound(log.time_s.begin(), log.time_s.end(), from_s);
+    const auto last = std::upper_bound(log.time_s.begin(), log.time_s.end(), to_s);
+    if (last - first < 2)
+      return tl::unexpected(recording.name + " has nothing from " + significant(from_s) + " to " +
+                            significant(to_s) + " s: it lasts from " + significant(log.time_s.front()) +
+                            " to " + significant(log.time_s.back()) + " s");
+    sysid::Log cut = sysid::slice(log, static_cast<std::size_t>(first - log.time_s.begin()),
+                                  static_cast<std::size_t>(last - log.time_s.begin()));
+    cut.time_s.assign(first, last);
+    part.channels.push_back(std::move(cut));
+  }
+  if (part.channels.empty())
+    return tl::unexpected(recording.name + " has no channel " + channel +
+                          (known.empty() ? "" : "; it has " + known));
+  std::erase_if(part.events, [&](const RecordedEvent& e) { return e.time_s < from_s || e.time_s > to_s; });
+  return part;
 }
 
 }  // namespace softgrip::tools

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/numbers.h"
-#include "sysid/pages/page.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/models.h"
 
@@ -52,7 +51,7 @@ sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
     sysid::Series line, band;
     line.label = id;
     line.colour = band.colour = colour;
-    line.dashed = dashed;
+    line.dash = dashed ? sysid::Dash::dashed : sysid::Dash::solid;
     band.style = sysid::Series::Style::band;
     for (const double frequency : study.options.frequencies_hz) {
       const ControlFigure* const figure = study.find(id, frequency, mismatch);
@@ -94,7 +93,7 @@ sysid::Table table_of(const ControlScheme& scheme) {
 
 }  // namespace
 
-std::string control_html(const ControlStudy& study) {
+sysid::Page control_page(const ControlStudy& study) {
   const ControlStudyOptions& options = study.options;
   const double mismatch = options.mismatches.front();
   sysid::Page page("Study of control", verdict(study), sysid::Tone::good);
@@ -112,8 +111,10 @@ std::string control_html(const ControlStudy& study) {
        {"Time", significant(study.wall_s, 3) + " s"}});
   page.section("Scheme by scheme");
   for (const double each : options.mismatches) {
-    page.figure(chart_of(study, each), "Fingers off by up to " + significant(100 * each) +
-                                           " %: RMSE of the finger itself, not of its noisy reading.");
+    page.figure({"tracking error by frequency " + significant(100 * each) + " percent off",
+                 "Fingers off by up to " + significant(100 * each) +
+                     " %: RMSE of the finger itself, not of its noisy reading.",
+                 {{chart_of(study, each)}}});
   }
   page.list({"Full inverse of the extended structure against PID alone, RMSE by a factor of " +
                  gains_in_words(study, "pid", "full_extended", mismatch) + ".",
@@ -139,7 +140,7 @@ std::string control_html(const ControlStudy& study) {
     page.paragraph("At " + significant(scheme.figures.front().frequency_hz) + " Hz limited by " +
                    scheme.figures.front().limited_by + ".");
   }
-  return page.to_html();
+  return page;
 }
 
 }  // namespace softgrip::tools

@@ -9,6 +9,7 @@
 #include "control/elements/feedforward.h"
 #include "control/elements/pid.h"
 #include "model/model.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::tools {
 
@@ -82,7 +83,7 @@ struct ControlStudy {
 /// control.json
 [[nodiscard]] std::string control_json(const ControlStudy& study);
 /// report.html
-[[nodiscard]] std::string control_html(const ControlStudy& study);
+[[nodiscard]] sysid::Page control_page(const ControlStudy& study);
 /// The tables for a terminal.
 [[nodiscard]] std::string control_text(const ControlStudy& study);
 

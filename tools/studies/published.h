@@ -15,6 +15,7 @@
 
 #include "model/model.h"
 #include "sysid/logs/log.h"
+#include "sysid/pages/page.h"
 #include "tools/studies/paper_table.h"
 
 namespace softgrip::tools {
@@ -109,7 +110,7 @@ enum class Triangles {
 /// published.json
 [[nodiscard]] std::string published_json(const PublishedStudy& study);
 /// report.html
-[[nodiscard]] std::string published_html(const PublishedStudy& study);
+[[nodiscard]] sysid::Page published_page(const PublishedStudy& study);
 /// The tables for a terminal.
 [[nodiscard]] std::string published_text(const PublishedStudy& study);
 

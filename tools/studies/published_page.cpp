@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/numbers.h"
-#include "sysid/pages/page.h"
 #include "tools/studies/published.h"
 
 namespace softgrip::tools {
@@ -23,7 +22,7 @@ Series line(std::string label, std::vector<double> x, std::vector<double> y, Col
   series.x = std::move(x);
   series.y = std::move(y);
   series.colour = colour;
-  series.dashed = dashed;
+  series.dash = dashed ? sysid::Dash::dashed : sysid::Dash::solid;
   return series;
 }
 
@@ -46,24 +45,22 @@ Chart ratio_chart(const PublishedStudy& study) {
   chart.y.logarithmic = true;
   chart.y.lower = 0.4;
   chart.y.upper = 40;
-  std::vector<double> latency, ratio, other, planned;
+  std::vector<double> latency, ratio, other;
   for (const HiddenLatency& row : study.latency) {
     latency.push_back(row.lag_s + row.delay_s);
     ratio.push_back(row.ratio);
     other.push_back(row.other_ratio);
-    planned.push_back(row.planned_ratio);
   }
   chart.series.push_back(line("six mixed triangles", latency, ratio, Colour::model));
   chart.series.push_back(line("three rising triangles", latency, other, Colour::other));
-  chart.series.push_back(line("planning simulation", latency, planned, Colour::faint, true));
   chart.marks.push_back({sysid::Mark::Direction::horizontal, 1, "wrong way first from here on"});
   chart.marks.push_back({sysid::Mark::Direction::horizontal, study.published_ratio, "published"});
   return chart;
 }
 
 /// What was fitted and what is left, one below the other.
-std::vector<Chart> fit_charts(const sysid::Log& log, const std::vector<double>& answer_mm,
-                              const std::string& given, const std::string& answering) {
+sysid::ChartRows fit_charts(const sysid::Log& log, const std::vector<double>& answer_mm,
+                            const std::string& given, const std::string& answering) {
   Chart overlay;
   overlay.y.label = "displacement [mm]";
   overlay.series.push_back(line(given, log.time_s, log.displacement_mm, Colour::measured));
@@ -75,7 +72,7 @@ std::vector<Chart> fit_charts(const sysid::Log& log, const std::vector<double>& 
   std::vector<double> difference(log.size());
   for (std::size_t i = 0; i < log.size(); ++i) difference[i] = log.displacement_mm[i] - answer_mm[i];
   error.series.push_back(line("", log.time_s, difference, Colour::error));
-  return {overlay, error};
+  return {{overlay}, {error}};
 }
 
 void latency_section(sysid::Page& page, const PublishedStudy& study) {
@@ -91,27 +88,29 @@ void latency_section(sysid::Page& page, const PublishedStudy& study) {
   sysid::Table table;
   table.caption = "Ratio: beta/(alpha + 1/k0). Published: ratio " + fixed(study.published_ratio, 2) +
                   ", tau2 0.60 s, k2 0.020 bar/mm, c2 0.012 bar s/mm; truth: k2 0.04, c2 0.016, tau2 0.4 s.";
-  table.header = {"lag / delay [s]", "ratio",    "other triangles", "planning simulation", "RMSE [mm]",
-                  "span [mm]",       "tau2 [s]", "k2 [bar/mm]",     "c2 [bar s/mm]",       "inverse"};
-  table.numeric = {true, true, true, true, true, true, true, true, true, false};
+  table.header = {"lag / delay [s]", "ratio",       "other triangles", "RMSE [mm]", "span [mm]",
+                  "tau2 [s]",        "k2 [bar/mm]", "c2 [bar s/mm]",   "inverse"};
+  table.numeric = {true, true, true, true, true, true, true, true, false};
   for (const HiddenLatency& row : study.latency) {
-    table.rows.push_back(
-        {fixed(row.lag_s, 2) + " / " + fixed(row.delay_s, 2), significant(row.ratio, 3),
-         ratio_text(row.other_ratio), significant(row.planned_ratio, 3), fixed(row.rmse_mm, 3),
-         fixed(row.span_mm, 1), fixed(row.tau2_s, 2), significant(row.k2_kpa_per_mm / kpa_per_bar, 3),
-         significant(row.c2_kpa_s_per_mm / kpa_per_bar, 3), row.refused ? "refused" : "exists"});
+    table.rows.push_back({fixed(row.lag_s, 2) + " / " + fixed(row.delay_s, 2), significant(row.ratio, 3),
+                          ratio_text(row.other_ratio), fixed(row.rmse_mm, 3), fixed(row.span_mm, 1),
+                          fixed(row.tau2_s, 2), significant(row.k2_kpa_per_mm / kpa_per_bar, 3),
+                          significant(row.c2_kpa_s_per_mm / kpa_per_bar, 3),
+                          row.refused ? "refused" : "exists"});
   }
   page.table(table);
-  page.figure(ratio_chart(study), "The fitted ratio against the hidden latency.");
+  page.figure({"fitted ratio by hidden latency",
+               "The fitted ratio against the hidden latency.",
+               {{ratio_chart(study)}}});
   page.paragraph(
-      "Where the figures differ from the planning simulation, the triangles do: it said of them only their "
-      "range, and the two choices here differ from each other more than the first does from it. The larger "
-      "the ratio, the "
-      "smaller alpha + 1/k0 in its denominator, until nothing is left of it.");
+      "The triangles matter: two choices within the same range differ. The larger the ratio, the smaller "
+      "alpha + 1/k0 in its denominator, until nothing is left of it.");
   if (study.latency_log.size() > 0) {
-    page.figure(fit_charts(study.latency_log, study.latency_mm, "actuator behind the valve", "fitted model"),
-                "The longest latency: the structure without a valve follows it closely. A small error is no "
-                "evidence for the structure.");
+    page.figure(
+        {"fit to the longest latency",
+         "The longest latency: the structure without a valve follows it closely. A small error is no "
+         "evidence for the structure.",
+         fit_charts(study.latency_log, study.latency_mm, "actuator behind the valve", "fitted model")});
   }
 }
 
@@ -120,9 +119,8 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
   page.paragraph(
       "The published model's own answer to tp1, for several values of eta, which was never published, "
       "matched "
-      "by an actuator with beta at most 0.8 (alpha + 1/k0) behind lag and delay. The planning simulation "
-      "found "
-      "0.056 to 0.064 mm and 0.15 to 0.17 s; the paper's own residual on its TP1 is 0.194 mm.");
+      "by an actuator with beta at most 0.8 (alpha + 1/k0) behind lag and delay. The paper's own residual on "
+      "its TP1 is 0.194 mm.");
   sysid::Table table;
   table.header = {"eta [1/bar]", "RMSE [mm]", "on tp2, unseen [mm]", "span [mm]",
                   "lag [s]",     "delay [s]", "lag + delay [s]",     "beta / (alpha + 1/k0)"};
@@ -134,16 +132,15 @@ void match_section(sysid::Page& page, const PublishedStudy& study) {
   }
   page.table(table);
   if (study.match_log.size() > 0) {
-    page.figure(fit_charts(study.match_log, study.match_mm, "published model", "invertible actuator + valve"),
-                "The first row, on the signal it was fitted to.");
+    page.figure(
+        {"published response from an invertible actuator",
+         "The first row of the table, on the signal it was fitted to.",
+         fit_charts(study.match_log, study.match_mm, "published model", "invertible actuator + valve")});
   }
   page.paragraph(
       "The model of the simulated rig (bench_twin) is such a match; against the published response "
       "with eta 2 /bar on this tp1 it stands at " +
-      fixed(study.twin_rmse_mm, 4) +
-      " mm. The planning simulation did not say on which signal it matched; this one matches on tp1 "
-      "as the project defines it and has every parameter but k0 free, so its figures are a little "
-      "smaller and its lag a little longer.");
+      fixed(study.twin_rmse_mm, 4) + " mm. Every parameter but k0 is free in the match.");
 }
 
 void inverse_section(sysid::Page& page, const PublishedStudy& study) {
@@ -182,9 +179,10 @@ void inverse_section(sysid::Page& page, const PublishedStudy& study) {
         line("to be found", study.inverse_time_s, study.inverse_true_kpa, Colour::measured, true));
     charts.push_back(std::move(chart));
   }
-  page.figure(charts,
-              "Below 1 both find the pressure, the explicit form with an error that grows as the ratio "
-              "nears 1. Above 1 there is nothing to find.");
+  page.figure({"inverses",
+               "Below 1 both find the pressure, the explicit form with an error that grows as the ratio "
+               "nears 1. Above 1 there is nothing to find.",
+               sysid::stacked(std::move(charts))});
   page.list(
       {"Where the inverse stops existing: at beta = alpha for the element alone. The published element has "
        "beta/alpha 2.43; on its first loading it falls by " +
@@ -226,7 +224,7 @@ void paper_section(sysid::Page& page, const PublishedStudy& study) {
 
 }  // namespace
 
-std::string published_html(const PublishedStudy& study) {
+sysid::Page published_page(const PublishedStudy& study) {
   sysid::Page page("Study of the published model", verdict(study), sysid::Tone::doubtful);
   page.provenance({{"Software", sysid::software_and_version()},
                    {"Command", "softgrip study published --seed " + std::to_string(study.options.seed)},
@@ -242,7 +240,7 @@ std::string published_html(const PublishedStudy& study) {
   match_section(page, study);
   inverse_section(page, study);
   paper_section(page, study);
-  return page.to_html();
+  return page;
 }
 
 }  // namespace softgrip::tools

@@ -8,6 +8,7 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "sysid/diagnosis/evidence/clear.h"
 #include "sysid/diagnosis/evidence/spectrum.h"
 #include "sysid/fitting/trajectory.h"
 
@@ -23,9 +24,6 @@ constexpr std::size_t draws = 1999;
 constexpr double memories_per_block = 8;
 constexpr double shortest_block_s = 4;
 constexpr std::size_t fewest_blocks = 12;
-/// Stricter than the 5 % that are aimed at: in short logs with a long memory the blocks are fewer memories
-/// long than wanted, and the test is a little too easily impressed.
-constexpr double clear_below = 0.02;
 /// Below this share of the noise's variance there is no structure to be divided among conditions.
 constexpr double worth = 0.01;
 
@@ -294,7 +292,7 @@ void adjust(std::vector<ConditionEvidence>& list) {
   for (std::size_t i = 0; i < judged.size(); ++i) {
     largest = std::max(largest, judged[i]->p_value * static_cast<double>(judged.size() - i));
     judged[i]->p_adjusted = std::min(1.0, largest);
-    judged[i]->clear = judged[i]->p_adjusted < clear_below;
+    judged[i]->clear = is_clear(judged[i]->p_adjusted, judged[i]->share_percent);
   }
 }
 
@@ -381,11 +379,11 @@ std::string dependence_sentence(const ResidualEvidence& evidence) {
   std::string text;
   std::size_t named = 0;
   for (const ConditionEvidence& e : evidence.conditions) {
-    if (!e.clear || e.share_percent < 5 || named == 3) continue;
+    if (!e.clear || named == 3) continue;
     text += (named == 0 ? "" : "; ") + e.condition.phrase + " (" + fixed(e.share_percent, 0) + " %)";
     ++named;
   }
-  if (evidence.spectrum.p_value < 0.01 && evidence.spectrum.share_percent >= 5) {
+  if (is_clear(evidence.spectrum.p_value, evidence.spectrum.share_percent)) {
     text += (named == 0 ? "" : "; ") + std::string("an oscillation at ") +
             significant(evidence.spectrum.peak_hz, 3) + " Hz (" + fixed(evidence.spectrum.share_percent, 0) +
             " %)";

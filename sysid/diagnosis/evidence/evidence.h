@@ -40,7 +40,7 @@ struct ConditionEvidence {
   double share_percent = 0;  ///< of the structural variance, on blocks outside the means; 0 if negative
   double p_value = 1;        ///< that means differ so much by chance
   double p_adjusted = 1;     ///< for looking at all conditions (Holm 1979)
-  bool clear = false;        ///< p_adjusted below 0.02
+  bool clear = false;        ///< is_clear(p_adjusted, share_percent)
 };
 
 /// The residual by frequency.

@@ -9,6 +9,7 @@
 #include "model/model.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/logs/log.h"
+#include "sysid/pages/page.h"
 
 namespace softgrip::sysid {
 
@@ -21,6 +22,20 @@ struct ProposedExperiment {
   std::string waveform;  ///< in words
 };
 
+/// The same reference tracked in simulation with each model in the feedforward.
+struct ClosedLoopCurves {
+  struct Scheme {
+    std::string name;  ///< "PID alone", "extended model"
+    double rmse_mm = 0;
+    std::vector<double> displacement_mm;  ///< by time_s
+  };
+  std::string reference;  ///< in words
+  std::vector<double> time_s;
+  std::vector<double> reference_mm;
+  std::vector<Scheme> schemes;  ///< the best last; at most three
+  std::vector<std::string> notes;
+};
+
 /// What goes onto the page.
 struct DiagnosisReport {
   const Diagnosis& result;
@@ -29,9 +44,10 @@ struct DiagnosisReport {
   std::uint64_t seed = 1;
   std::optional<ProposedExperiment> next_experiment;
   std::vector<std::string> advice;  ///< what would tell more besides; sentences
+  std::optional<ClosedLoopCurves> closed_loop;
 };
 
-/// A self-contained page below 1.5 MB.
-[[nodiscard]] std::string diagnosis_html(const DiagnosisReport& report);
+/// report.html
+[[nodiscard]] Page diagnosis_page(const DiagnosisReport& report);
 
 }  // namespace softgrip::sysid

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
 
 #include "base/numbers.h"
+#include "sysid/diagnosis/evidence/clear.h"
 #include "sysid/fitting/trajectory.h"
 
 namespace softgrip::sysid {
@@ -16,20 +20,40 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 struct Shown {
   const char* label;
   Colour colour;
+  Dash dash;
   const StructureFit* fit;
 };
 
 std::vector<Shown> shown(const Diagnosis& d) {
-  std::vector<Shown> list{{"as given", Colour::error, &d.as_given},
-                          {"recalibrated", Colour::model, &d.recalibrated}};
-  if (is_extended(d)) list.push_back({"extended", Colour::good, &d.extended});
+  std::vector<Shown> list{{"given model", Colour::error, Dash::dotted, &d.as_given},
+                          {"recalibrated model", Colour::model, Dash::dashed, &d.recalibrated}};
+  if (is_extended(d)) list.push_back({"extended model", Colour::good, Dash::solid, &d.extended});
   return list;
 }
 
-Series curve(const char* label, Colour colour, double width, const std::vector<double>& x,
+/// The model that a diagnosis ends with.
+const StructureFit& final_fit(const Diagnosis& d) {
+  return is_extended(d) ? d.extended : d.recalibrated;
+}
+/// The model that it is compared with.
+const StructureFit& first_fit(const Diagnosis& d) {
+  return is_extended(d) ? d.recalibrated : d.as_given;
+}
+
+double mean_square(const std::vector<double>& residual_mm) {
+  double sum = 0, count = 0;
+  for (const double r : residual_mm) {
+    if (std::isnan(r)) continue;
+    sum += r * r;
+    count += 1;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+Series curve(std::string label, Colour colour, double width, const std::vector<double>& x,
              const std::vector<double>& y) {
   Series series;
-  series.label = label;
+  series.label = std::move(label);
   series.colour = colour;
   series.width = width;
   series.x = x;
@@ -37,8 +61,67 @@ Series curve(const char* label, Colour colour, double width, const std::vector<d
   return series;
 }
 
+Series curve_of(const Shown& model, const std::vector<double>& x, const std::vector<double>& y) {
+  Series series = curve(model.label, model.colour, 1.1, x, y);
+  series.dash = model.dash;
+  return series;
+}
+
+/// A part of the plane of pressure and displacement.
+struct Window {
+  double lower_kpa, upper_kpa, lower_mm, upper_mm;
+
+  [[nodiscard]] bool holds(double kpa, double mm) const {
+    return kpa >= lower_kpa && kpa <= upper_kpa && mm >= lower_mm && mm <= upper_mm;
+  }
+};
+
 std::vector<double> prediction(const StructureFit& fit, const Record& record, std::size_t k) {
   return predict(fit.point.model, record, fit.point.starts[k]);
+}
+
+/// Around the sample where the first and the final model differ most: a tenth of the pressures, and high
+/// enough to show what they differ by.
+Window window_of(const Record& record, const std::vector<double>& first, const std::vector<double>& final) {
+  std::size_t at = 0;
+  double most = 0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double difference = std::abs(first[i] - final[i]);
+    if (!(difference > most)) continue;
+    most = difference;
+    at = i;
+  }
+  const auto [low, high] = std::minmax_element(record.drive_kpa.begin(), record.drive_kpa.end());
+  const double half_kpa = std::max(1e-6, (*high - *low) / 20);
+  const double half_mm = std::max({1.2 * most, 0.03 * record.span_mm, 1e-6});
+  const double mm = 0.5 * (first[at] + final[at]);
+  const double kpa =
+      std::clamp(record.drive_kpa[at], *low + half_kpa, std::max(*low + half_kpa, *high - half_kpa));
+  return {kpa - half_kpa, kpa + half_kpa, mm - half_mm, mm + half_mm};
+}
+
+/// Lowest and highest value of a chart's curves, and a little more.
+std::pair<double, double> reach_of(const Chart& chart) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const Series& series : chart.series) {
+    for (const double y : series.y) {
+      if (!std::isfinite(y)) continue;
+      lowest = std::min(lowest, y);
+      highest = std::max(highest, y);
+    }
+  }
+  if (!(lowest < highest)) return {-1, 1};
+  const double margin = 0.04 * (highest - lowest);
+  return {lowest - margin, highest + margin};
+}
+
+/// What of a curve lies in the window; the pen is lifted elsewhere.
+Series within(Series series, const Window& window) {
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (!window.holds(series.x[i], series.y[i])) series.y[i] = none;
+  }
+  return series;
 }
 
 /// The bins of one group as points with whiskers.
@@ -49,7 +132,7 @@ void add_bins(Chart& chart, const ConditionEvidence& e, std::size_t group, const
   means.colour = intervals.colour = colour;
   means.style = e.condition.categories.empty() ? Series::Style::line : Series::Style::points;
   means.width = e.condition.categories.empty() ? 1.4 : 3.5;
-  means.dashed = !whiskers;
+  means.dash = whiskers ? Dash::solid : Dash::dashed;
   intervals.width = 1.2;
   for (const ConditionBin& bin : e.bins) {
     if (bin.group != group) continue;
@@ -67,58 +150,6 @@ void add_bins(Chart& chart, const ConditionEvidence& e, std::size_t group, const
   }
   if (whiskers) chart.series.push_back(intervals);
   chart.series.push_back(means);
-}
-
-}  // namespace
-
-std::vector<Chart> diagnosis_overlay(const Diagnosis& d, std::size_t k) {
-  const Record& record = d.records[k];
-  Chart values, errors;
-  values.title = record.name;
-  values.y.label = "displacement [mm]";
-  values.height = 260;
-  values.series.push_back(curve("measured", Colour::measured, 2.4, record.time_s, record.reading_mm));
-  errors.y.label = "error [mm]";
-  errors.x.label = "time [s]";
-  errors.height = 200;
-  for (const Shown& model : shown(d)) {
-    values.series.push_back(
-        curve(model.label, model.colour, 1, record.time_s, prediction(*model.fit, record, k)));
-    errors.series.push_back(curve("", model.colour, 1, record.time_s, model.fit->residual_mm[k]));
-  }
-  return {values, errors};
-}
-
-Chart diagnosis_loops(const Diagnosis& d, std::size_t k) {
-  const Record& record = d.records[k];
-  Chart chart;
-  chart.width = 380;
-  chart.height = 300;
-  chart.x.label = "pressure [kPa]";
-  chart.y.label = "displacement [mm]";
-  chart.series.push_back(curve("measured", Colour::measured, 2.2, record.drive_kpa, record.reading_mm));
-  for (const Shown& model : shown(d)) {
-    if (model.fit == &d.as_given) continue;
-    chart.series.push_back(
-        curve(model.label, model.colour, 1, record.drive_kpa, prediction(*model.fit, record, k)));
-  }
-  return chart;
-}
-
-Chart errors_by_pressure(const Diagnosis& d, std::size_t k) {
-  const Record& record = d.records[k];
-  Chart chart;
-  chart.width = 380;
-  chart.height = 300;
-  chart.x.label = "pressure [kPa]";
-  chart.y.label = "error [mm]";
-  for (const Shown& model : shown(d)) {
-    if (model.fit == &d.as_given) continue;
-    Series series = curve(model.label, model.colour, 0.7, record.drive_kpa, model.fit->residual_mm[k]);
-    series.style = Series::Style::points;
-    chart.series.push_back(series);
-  }
-  return chart;
 }
 
 Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvidence* extended) {
@@ -143,58 +174,192 @@ Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvid
   const std::size_t groups = std::max<std::size_t>(1, condition.groups.size());
   if (extended != nullptr && extended->condition.why_not.empty()) {
     for (std::size_t g = 0; g < groups; ++g)
-      add_bins(chart, *extended, g, g == 0 ? "extended" : "", Colour::good, false);
+      add_bins(chart, *extended, g, g == 0 ? "extended model" : "", Colour::good, false);
   }
   for (std::size_t g = 0; g < groups; ++g) {
-    const std::string label = condition.groups.empty() ? "recalibrated" : condition.groups[g];
+    const std::string label = condition.groups.empty() ? "recalibrated model" : condition.groups[g];
     add_bins(chart, recalibrated, g, label, g == 0 ? Colour::model : Colour::error, true);
   }
   return chart;
 }
 
-Chart spectrum_chart(const Diagnosis& d) {
+}  // namespace
+
+std::vector<std::size_t> logs_by_gain(const Diagnosis& d) {
+  std::vector<std::size_t> order(d.records.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto gain = [&](std::size_t k) {
+    return mean_square(first_fit(d).residual_mm[k]) - mean_square(final_fit(d).residual_mm[k]);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return gain(a) > gain(b); });
+  return order;
+}
+
+Figure error_figure(const Diagnosis& d, std::size_t k) {
+  const Record& record = d.records[k];
+  // The curve of a model that is far off would press the others flat.
+  constexpr double far_off = 4;
+  const bool given_far_off = std::sqrt(mean_square(d.as_given.residual_mm[k])) >
+                             far_off * std::sqrt(mean_square(d.recalibrated.residual_mm[k]));
+  Chart values, before, after;
+  // Their titles say what they show: along so low an axis there is room for the unit alone.
+  values.title = record.name + ": displacement";
+  values.y.label = before.y.label = after.y.label = "[mm]";
+  values.height = 150;
+  values.series.push_back(curve("measured", Colour::measured, 2.4, record.time_s, record.reading_mm));
+  before.title = is_extended(d) ? "error before" : "error";
+  after.title = "error after";
+  before.height = after.height = 105;
+  std::string numbers;
+  for (const Shown& model : shown(d)) {
+    const bool left_out = given_far_off && model.fit == &d.as_given;
+    if (left_out || model.fit == &final_fit(d))
+      values.series.push_back(curve_of(model, record.time_s, prediction(*model.fit, record, k)));
+    Chart& errors = model.fit == &d.extended ? after : before;
+    if (!left_out) errors.series.push_back(curve_of(model, record.time_s, model.fit->residual_mm[k]));
+    numbers += (numbers.empty() ? "" : ", ") + std::string(model.label) + " " +
+               significant(std::sqrt(mean_square(model.fit->residual_mm[k])), 3) + " mm";
+  }
+  std::vector<Chart> charts{values, before};
+  if (is_extended(d)) {
+    const auto [lowest, highest] = reach_of(before);
+    after.y.lower = lowest;
+    after.y.upper = highest;
+    charts[1].y = after.y;
+    charts.push_back(after);
+  }
+  charts.back().x.label = "time [s]";
+  charts.back().height = is_extended(d) ? 125 : 170;
+  return {"error over time " + record.name,
+          record.name +
+              ": measured and modelled, and reading minus model on the same axes. RMSE: " + numbers + "." +
+              (given_far_off ? " The given model's error is too large to be drawn beside the others." : "") +
+              (d.outliers.present ? " Isolated wrong readings are left out." : ""),
+          stacked(std::move(charts))};
+}
+
+Figure loops_figure(const Diagnosis& d, std::size_t k) {
+  const Record& record = d.records[k];
+  Chart whole;
+  whole.width = 380;
+  whole.height = 290;
+  whole.x.label = "pressure [kPa]";
+  whole.y.label = "displacement [mm]";
+  Chart zoom = whole;
+  const Window window =
+      window_of(record, prediction(first_fit(d), record, k), prediction(final_fit(d), record, k));
+  zoom.x.lower = window.lower_kpa;
+  zoom.x.upper = window.upper_kpa;
+  zoom.y.lower = window.lower_mm;
+  zoom.y.upper = window.upper_mm;
+  zoom.title = "where they differ most";
+  const Series measured = curve("measured", Colour::measured, 2.2, record.drive_kpa, record.reading_mm);
+  whole.series.push_back(measured);
+  zoom.series.push_back(within(measured, window));
+  zoom.series.back().label.clear();
+  zoom.series.back().style = Series::Style::points;
+  zoom.series.back().width = 2.2;
+  for (const Shown& model : shown(d)) {
+    if (model.fit != &first_fit(d) && model.fit != &final_fit(d)) continue;
+    const Series modelled = curve_of(model, record.drive_kpa, prediction(*model.fit, record, k));
+    whole.series.push_back(modelled);
+    zoom.series.push_back(within(modelled, window));
+    zoom.series.back().label.clear();
+    zoom.series.back().width = 1.3;
+  }
+  whole.series.push_back(
+      curve("", Colour::text, 1,
+            {window.lower_kpa, window.upper_kpa, window.upper_kpa, window.lower_kpa, window.lower_kpa},
+            {window.lower_mm, window.lower_mm, window.upper_mm, window.upper_mm, window.lower_mm}));
+  return {"loops " + record.name,
+          record.name +
+              ": displacement over pressure, as a whole and, enlarged, in the frame where the models differ "
+              "most.",
+          {{whole, zoom}}};
+}
+
+Figure closed_loop_figure(const ClosedLoopCurves& curves) {
+  constexpr Colour colours[]{Colour::other, Colour::model, Colour::good};
+  constexpr Dash dashes[]{Dash::dotted, Dash::dashed, Dash::solid};
+  Chart values, errors;
+  values.title = "displacement";
+  values.y.label = errors.y.label = "[mm]";
+  values.height = 160;
+  errors.title = "displacement minus reference";
+  errors.x.label = "time [s]";
+  errors.height = 150;
+  values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
+  std::string numbers;
+  for (std::size_t i = 0; i < curves.schemes.size(); ++i) {
+    const ClosedLoopCurves::Scheme& scheme = curves.schemes[i];
+    const std::size_t look = i + 3 - std::min<std::size_t>(3, curves.schemes.size());
+    Series way = curve(scheme.name, colours[std::min<std::size_t>(look, 2)], 1.2, curves.time_s,
+                       scheme.displacement_mm);
+    way.dash = dashes[std::min<std::size_t>(look, 2)];
+    Series error = way;
+    error.label.clear();
+    for (std::size_t t = 0; t < error.y.size(); ++t) error.y[t] -= curves.reference_mm[t];
+    values.series.push_back(std::move(way));
+    errors.series.push_back(std::move(error));
+    numbers += (numbers.empty() ? "" : ", ") + scheme.name + " " + significant(scheme.rmse_mm, 3) + " mm";
+  }
+  return {
+      "closed loop",
+      "In closed loop, " + curves.reference + ". RMSE: " + numbers + ". Gains by the same search for each.",
+      stacked({values, errors})};
+}
+
+Figure conditions_figure(const Diagnosis& d) {
+  constexpr std::size_t most = 4;
+  Figure figure{
+      "error by condition",
+      "Mean error with its 95 % interval by each condition on which it clearly depends. Position is the "
+      "model's, for a reading shares its noise with the error." +
+          std::string(is_extended(d) ? " Dashed: the extended model; what it explains becomes flat." : ""),
+      {}};
+  std::size_t charts = 0;
+  for (const ConditionEvidence& e : d.evidence->recalibrated.conditions) {
+    if (!e.condition.why_not.empty() || !e.clear || charts == most) continue;
+    const auto& after = d.evidence->extended.conditions;
+    const auto same = std::find_if(after.begin(), after.end(), [&](const ConditionEvidence& other) {
+      return other.condition.id == e.condition.id;
+    });
+    if (charts % 2 == 0) figure.charts.emplace_back();
+    figure.charts.back().push_back(
+        condition_chart(e, is_extended(d) && same != after.end() ? &*same : nullptr));
+    ++charts;
+  }
+  return figure;
+}
+
+Figure spectrum_figure(const Diagnosis& d) {
   Chart chart;
-  chart.height = 260;
+  chart.height = 230;
   chart.x.label = "frequency [Hz]";
   chart.y.label = "error [mm\xc2\xb2/Hz]";
   chart.x.logarithmic = true;
   chart.y.logarithmic = true;
-  const auto add = [&](const char* label, Colour colour, const ResidualEvidence& e) {
-    chart.series.push_back(curve(label, colour, 1.4, e.spectrum.frequency_hz, e.spectrum.density_mm2_per_hz));
+  const auto add = [&](const Shown& model, const ResidualEvidence& e) {
+    chart.series.push_back(curve_of(model, e.spectrum.frequency_hz, e.spectrum.density_mm2_per_hz));
   };
-  add("as given", Colour::error, d.evidence->as_given);
-  add("recalibrated", Colour::model, d.evidence->recalibrated);
-  if (is_extended(d)) add("extended", Colour::good, d.evidence->extended);
+  const std::vector<Shown> models = shown(d);
+  add(models[0], d.evidence->as_given);
+  add(models[1], d.evidence->recalibrated);
+  if (is_extended(d)) add(models[2], d.evidence->extended);
   const SpectrumEvidence& s = d.evidence->recalibrated.spectrum;
   if (!s.frequency_hz.empty()) {
     // White noise of this deviation, up to half the sampling rate.
     const double density = d.noise_mm * d.noise_mm / s.frequency_hz.back();
     chart.marks.push_back({Mark::Direction::horizontal, density, "noise of the readings"});
   }
-  return chart;
-}
-
-Chart gain_chart(const Diagnosis& d) {
-  Chart chart;
-  chart.width = 440;
-  chart.height = 220;
-  chart.y.label = "held-out RMSE [mm]";
-  chart.x.categories = {"as given", "recalibrated"};
-  Series bars;
-  bars.style = Series::Style::bars;
-  bars.colour = Colour::model;
-  bars.x = {0, 1};
-  bars.y = {d.as_given_rmse_mm, d.recalibrated_rmse_mm};
-  if (is_extended(d)) {
-    chart.x.categories.emplace_back("extended");
-    bars.x.push_back(2);
-    bars.y.push_back(d.extended_rmse_mm);
-  }
-  chart.x.lower = -0.6;
-  chart.x.upper = static_cast<double>(bars.x.size()) - 0.4;
-  chart.series = {bars};
-  chart.marks.push_back({Mark::Direction::horizontal, d.noise_mm, "noise"});
-  return chart;
+  return {"spectrum of the error",
+          is_clear(s.p_value, s.share_percent)
+              ? "Spectrum of the error. The strongest line that the command does not have: " +
+                    significant(s.peak_hz, 4) + " Hz, amplitude " + significant(s.peak_amplitude_mm, 2) +
+                    " mm (p " + significant(s.p_value, 2) + ")."
+              : "Spectrum of the error. No line stands out that the command does not have.",
+          {{chart}}};
 }
 
 }  // namespace softgrip::sysid

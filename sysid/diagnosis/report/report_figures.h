@@ -1,24 +1,28 @@
 #pragma once
-// The pictures of a diagnosis.
+// The charts of a diagnosis. In all of them the given model is dotted, the recalibrated one dashed, the
+// extended one solid.
 
 #include <cstddef>
 #include <vector>
 
+#include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
-#include "sysid/pages/chart.h"
+#include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
 
-/// Measured, given, recalibrated and, if there is one, extended over time; below it the errors.
-[[nodiscard]] std::vector<Chart> diagnosis_overlay(const Diagnosis& diagnosis, std::size_t record);
-/// Displacement over pressure.
-[[nodiscard]] Chart diagnosis_loops(const Diagnosis& diagnosis, std::size_t record);
-/// Errors over pressure, recalibrated and, if there is one, extended.
-[[nodiscard]] Chart errors_by_pressure(const Diagnosis& diagnosis, std::size_t record);
-/// Conditional means with their intervals: recalibrated and, faintly, extended.
-[[nodiscard]] Chart condition_chart(const ConditionEvidence& recalibrated, const ConditionEvidence* extended);
-[[nodiscard]] Chart spectrum_chart(const Diagnosis& diagnosis);
-/// Held-out errors of the three models.
-[[nodiscard]] Chart gain_chart(const Diagnosis& diagnosis);
+/// The logs' indices: those first of which extending (or recalibrating, where nothing was added) takes most.
+[[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
+
+/// Measured and the models over time, and on the same axis the errors before and after.
+[[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);
+/// Displacement over pressure, as a whole and where the models differ most.
+[[nodiscard]] Figure loops_figure(const Diagnosis& diagnosis, std::size_t record);
+/// The reference and what follows it, and the tracking errors.
+[[nodiscard]] Figure closed_loop_figure(const ClosedLoopCurves& curves);
+/// Conditional means with their intervals of conditions on which the error clearly depends, two beside each
+/// other. No charts where there are none.
+[[nodiscard]] Figure conditions_figure(const Diagnosis& diagnosis);
+[[nodiscard]] Figure spectrum_figure(const Diagnosis& diagnosis);
 
 }  // namespace softgrip::sysid

@@ -57,7 +57,7 @@ Chart gauge_chart(const GaugeEvidence& gauge) {
     Series curve = beside(check.fits[h].predicted_mm);
     curve.label = title_of(check.fits[h]);
     curve.colour = colour_of(h);
-    curve.dashed = check.fits[h].ruled_out;
+    curve.dash = check.fits[h].ruled_out ? Dash::dashed : Dash::solid;
     chart.series.push_back(std::move(curve));
   }
   Series points = beside(check.cut_mm);
@@ -72,10 +72,11 @@ void add_gauge_section(Page& page, const GaugeEvidence& gauge) {
   const GaugeCheck& check = gauge.check;
   page.section("The sensor on the gauge");
   page.paragraph(gauge.sentence);
-  page.figure(gauge_chart(gauge),
-              "What the sensor read at known positions (" + gauge.file.path +
-                  "), beside the straight line that fits best; dashed: ruled out. Readings are "
-                  "cut a little beyond what the logs have read.");
+  page.figure({"sensor on the gauge",
+               "What the sensor read at known positions (" + gauge.file.path +
+                   "), beside the straight line that fits best; dashed: ruled out. Readings are "
+                   "cut a little beyond what the logs have read.",
+               {{gauge_chart(gauge)}}});
   page.table(hypotheses_table(check));
   page.paragraph("Zero and scale of every hypothesis are fitted to the readings. Noise of a reading: " +
                  significant(check.noise_mm, 2) + " mm (readings at one position differ by " +

@@ -61,12 +61,12 @@ Table rmse_table(const Diagnosis& d) {
   const auto other = [](const std::optional<double>& value) {
     return value ? or_dash(*value, 3) : std::string(dash);
   };
-  table.rows.push_back({"as given (not fitted)", fitted(d.as_given), or_dash(d.as_given_rmse_mm, 3),
+  table.rows.push_back({"given model (not fitted)", fitted(d.as_given), or_dash(d.as_given_rmse_mm, 3),
                         d.records.size() > 1 ? or_dash(d.as_given_rmse_mm, 3) : dash, excess(d.as_given)});
-  table.rows.push_back({"recalibrated", fitted(d.recalibrated), or_dash(d.recalibrated_rmse_mm, 3),
+  table.rows.push_back({"recalibrated model", fitted(d.recalibrated), or_dash(d.recalibrated_rmse_mm, 3),
                         other(d.recalibrated_other_logs_rmse_mm), excess(d.recalibrated)});
   if (is_extended(d)) {
-    table.rows.push_back({"extended", fitted(d.extended), or_dash(d.extended_rmse_mm, 3),
+    table.rows.push_back({"extended model", fitted(d.extended), or_dash(d.extended_rmse_mm, 3),
                           other(d.extended_other_logs_rmse_mm), excess(d.extended)});
   }
   return table;
@@ -77,7 +77,7 @@ Table condition_table(const Evidence& evidence, bool extended) {
   table.caption =
       "Share of the error's structure that goes with a condition, and the probability of such "
       "differences by chance (adjusted for looking at all)";
-  table.header = {"condition", "as given [%]", "recalibrated [%]", "p", "extended [%]", "p", "note"};
+  table.header = {"condition", "given [%]", "recalibrated [%]", "p", "extended [%]", "p", "note"};
   table.numeric = {false, true, true, true, true, true, false};
   for (const ConditionEvidence& e : evidence.recalibrated.conditions) {
     std::string name = e.condition.id;
@@ -117,15 +117,26 @@ Table candidate_table(const std::vector<CandidateScore>& candidates, const Named
   return table;
 }
 
-Table cause_parameter_table(const NamedCause& named) {
+Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
   Table table;
-  table.header = {"parameter", "value", "95 % interval", "unit"};
-  table.numeric = {false, true, true, false};
-  for (const CauseParameter& p : named.parameters) {
-    table.rows.push_back(
-        {p.name, significant(p.value, 4),
-         p.has_interval ? significant(p.ci95.lower, 4) + " to " + significant(p.ci95.upper, 4) : "not fitted",
-         p.unit});
+  table.caption = "What the causes are worth in numbers";
+  table.header = {"cause", "parameter", "value", "95 % interval", "unit"};
+  table.numeric = {false, false, true, true, false};
+  const auto row = [](const NamedCause& named, const CauseParameter& p) -> std::vector<std::string> {
+    return {
+        std::string(named.cause.title), p.name, significant(p.value, 4),
+        p.has_interval ? significant(p.ci95.lower, 4) + " to " + significant(p.ci95.upper, 4) : "not fitted",
+        p.unit};
+  };
+  for (const auto* list : {&d.causes, &d.partial}) {
+    for (const NamedCause& named : *list) {
+      const std::size_t size = named.parameters.size();
+      const std::size_t shown = size > most ? most - 1 : size;
+      for (std::size_t i = 0; i < shown; ++i) table.rows.push_back(row(named, named.parameters[i]));
+      if (shown < size)
+        table.rows.push_back({std::string(named.cause.title),
+                              "and " + std::to_string(size - shown) + " more, in the appendix"});
+    }
   }
   return table;
 }
@@ -133,7 +144,7 @@ Table cause_parameter_table(const NamedCause& named) {
 Table moved_table(const Diagnosis& d, const model::Model& given) {
   const bool extended = is_extended(d);
   Table table;
-  table.header = {"parameter", "unit", "as given", "recalibrated"};
+  table.header = {"parameter", "unit", "given", "recalibrated"};
   table.numeric = {false, false, true, true};
   if (extended) {
     table.header.insert(table.header.end(), {"extended", "moved against given"});

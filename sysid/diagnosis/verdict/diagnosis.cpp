@@ -293,7 +293,8 @@ class Diagnostician {
         d_.extended_other_logs_rmse_mm = rmse_mm(held_out_losses(data_.records, logs, selection.extended));
       }
     }
-    d_.extended_model = named_model(selection.extended.point.model, "extended");
+    d_.extended_model = named_model(selection.extended.point.model,
+                                    selection.extended.causes.empty() ? "recalibrated" : "extended");
   }
 
   void calibrate(const Division& division) {
@@ -309,8 +310,9 @@ class Diagnostician {
     d_.null_calibration = calibrate_on_nulls(data_, d_.recalibrated, d_.gain.value, division, nulls);
   }
 
+  /// One name for two models would let nobody tell which a file or a figure shows.
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
-    model.name = given_.name;
+    model.name = given_.name + '_' + how.substr(0, how.find(' '));
     std::string files;
     for (const Log& log : logs_) files += (files.empty() ? "" : ", ") + log.name;
     model.source = how + " by softgrip diagnose from " + files + "; before: " + given_.source;

@@ -62,7 +62,7 @@ struct Diagnosis {
   StructureFit as_given;
   StructureFit recalibrated;
   StructureFit extended;
-  model::Model extended_model;  ///< ready for the daemon: the given name, extended
+  model::Model extended_model;  ///< ready for the daemon: GIVEN_extended
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;

@@ -7,8 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "sysid/pages/axis_words.h"
 #include "sysid/pages/chart_path.h"
 #include "sysid/pages/chart_scale.h"
+#include "sysid/pages/figure.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -76,7 +78,7 @@ TEST(Thinning, KeepsEveryExtreme) {
   curve[123'456].y = 50;
   curve[77'777].y = -60;
   const auto kept = thinned(curve);
-  EXPECT_LE(kept.size(), 4 * 700U);
+  EXPECT_LE(kept.size(), 2 * 700U);
   double highest = 0;
   double lowest = 0;
   for (const Pixel& p : kept) {
@@ -122,6 +124,13 @@ TEST(Thinning, ALoopRunThousandTimesIsDrawnOnce) {
   const auto kept = thinned(curve);
   EXPECT_LT(kept.size(), 2000U);
   EXPECT_GT(kept.size(), 300U);
+}
+
+std::string to_svg(std::vector<Chart> charts) {
+  return svg_file_of({"a name", "", stacked(std::move(charts))});
+}
+std::string to_svg(const Chart& chart) {
+  return to_svg(std::vector<Chart>{chart});
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -176,6 +185,62 @@ TEST(Chart, NothingToDrawIsStillAChart) {
   Chart chart;
   chart.series = {Series{.label = "", .x = {nan_value}, .y = {nan_value}, .y_upper = {}}};
   EXPECT_EQ(to_svg(chart).find("nan"), std::string::npos);
+}
+
+TEST(Chart, UnitsOfAxesAreDrawnInWords) {
+  EXPECT_EQ(in_words("rate of the pressure [kPa/s]"), "rate of the pressure in kilopascals per second");
+  EXPECT_EQ(in_words("error [furlong]"), "error [furlong]");
+  EXPECT_EQ(in_words("[mm]"), "millimetres");
+  EXPECT_EQ(in_words("x[mm]"), "x[mm]");
+  EXPECT_NE(to_svg(a_chart()).find(">displacement in millimetres<"), std::string::npos);
+}
+
+// Half a million noisy readings on a loop would be megabytes if every one that is told apart were drawn.
+TEST(Chart, AnyLengthOfLogMakesASmallPicture) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise;
+  Chart chart;
+  Series loop;
+  for (int i = 0; i < 600'000; ++i) {
+    const double angle = 1e-3 * i;
+    loop.x.push_back(30 - 30 * std::cos(angle));
+    loop.y.push_back(10 * std::sin(angle) + 2 * noise(random));
+  }
+  Series cloud = loop;
+  cloud.style = Series::Style::points;
+  chart.series = {loop, cloud};
+  EXPECT_LT(to_svg(chart).size(), 150'000U);
+}
+
+TEST(Chart, BothColourSchemesAreInTheFileAndColoursAreThereWithoutThem) {
+  const std::string svg = to_svg(a_chart());
+  EXPECT_NE(svg.find("@media screen and (prefers-color-scheme:dark)"), std::string::npos);
+  EXPECT_NE(svg.find("class=\"s-model\" stroke=\"#0072b2\""), std::string::npos);
+  EXPECT_NE(svg.find(".s-model{stroke:var(--model)}"), std::string::npos);
+  const std::string inside = svg_of({"", "", stacked({a_chart()})});
+  EXPECT_EQ(inside.find("<style"), std::string::npos) << "the page brings it";
+}
+
+TEST(Chart, WhatColourTellsApartDashesTellApart) {
+  Chart chart = a_chart();
+  chart.series.front().dash = Dash::dotted;
+  // In the curve and in the legend.
+  EXPECT_EQ(count(to_svg(chart), "stroke-dasharray=\"1.5 2.5\""), 2U);
+}
+
+TEST(Figure, ItsNumbersStandBesideItInFullLength) {
+  Chart above;
+  above.y.label = "displacement [mm]";
+  above.series = {Series{.label = "read, twice", .x = {0, 0.5}, .y = {1, nan_value}, .y_upper = {}},
+                  Series{.label = "model", .x = {0, 0.5}, .y = {1.25, 2}, .y_upper = {}}};
+  Chart below;
+  below.x.label = "time [s]";
+  below.y.label = "error [mm]";
+  below.series = {Series{.label = "", .x = {0.5}, .y = {-1}, .y_upper = {}}};
+  EXPECT_EQ(csv_of({"", "", stacked({above, below})}),
+            "time [s],\"read, twice: displacement [mm]\",model: displacement [mm],time [s],error [mm]\n"
+            "0,1,1.25,0.5,-1\n"
+            "0.5,,2,,\n");
 }
 
 TEST(Chart, SameValuesSameBytes) {

@@ -30,8 +30,10 @@ TEST(Page, EveryTextThatEntersIsEscaped) {
   chart.series = {Series{.label = evil, .x = {0, 1}, .y = {0, 1}, .y_upper = {}}};
   chart.marks = {{Mark::Direction::horizontal, 0.5, evil}, {Mark::Direction::vertical, 0.5, evil}};
   chart.x.categories = {evil};
-  page.figure(chart, evil);
-  page.figure_row({chart, chart}, evil);
+  page.figure({evil, evil, {{chart}}});
+  page.figure({evil, evil, {{chart, chart}}});
+  page.appendix(evil);
+  page.terms({{evil, evil}});
   const std::string html = page.to_html();
   EXPECT_EQ(html.find("<img"), std::string::npos);
   EXPECT_NE(html.find("&lt;img"), std::string::npos);
@@ -46,7 +48,56 @@ TEST(Page, StandsAloneAndOpensWithTheVerdict) {
   EXPECT_EQ(html.find("<link"), std::string::npos);
   EXPECT_EQ(html.find("url("), std::string::npos);
   EXPECT_LT(html.find("The model fits."), html.find("softgrip "));
-  EXPECT_LT(html.find("softgrip "), html.find("<h2>Fit"));
+  EXPECT_LT(html.find("softgrip "), html.find(">Fit<"));
+}
+
+Chart noisy_chart(int samples) {
+  Chart chart;
+  Series series;
+  for (int i = 0; i < samples; ++i) {
+    series.x.push_back(i);
+    series.y.push_back((i * 7919) % 1013);
+  }
+  chart.series = {series};
+  return chart;
+}
+
+TEST(Page, FiguresAreNumberedInTurnAndCanBeKeptAsFiles) {
+  Page page("T", "V", Tone::good);
+  for (const std::string name : {"error over time, tp1", "", "loops"})
+    page.figure({name, "What it shows.", {{noisy_chart(100)}}});
+  const std::string html = page.to_html();
+  std::size_t at = 0;
+  for (const std::string number : {"1", "2", "3"}) {
+    const std::size_t next = html.find("<figcaption><b>Figure " + number + ".</b> What it shows.", at);
+    ASSERT_NE(next, std::string::npos) << number;
+    at = next;
+  }
+  EXPECT_NE(html.find("download=\"figure-1-error-over-time-tp1.svg\" href=\"data:image/svg+xml,%3Csvg"),
+            std::string::npos);
+  EXPECT_EQ(page.figures().size(), 3U);
+  EXPECT_EQ(figure_stem(2, ""), "figure-2");
+}
+
+TEST(Page, StaysBelowItsBoundHoweverManyFigures) {
+  Page page("T", "V", Tone::good);
+  for (int i = 0; i < 100; ++i) page.figure({"loops", "Loops.", {{noisy_chart(20'000)}}});
+  const std::string html = page.to_html();
+  EXPECT_LT(html.size(), Page::most_bytes);
+  EXPECT_NE(html.find("Figure 100. Loops. It is left out"), std::string::npos);
+  EXPECT_EQ(page.figures().size(), 100U) << "they are still there to be written";
+}
+
+TEST(Page, BothColourSchemesAndAPageBreakBeforeTheAppendix) {
+  Page page("T", "V", Tone::good);
+  for (const char* title : {"a", "b", "c"}) page.section(title);
+  EXPECT_EQ(page.to_html().find("<nav>"), std::string::npos);
+  page.appendix("f");
+  const std::string html = page.to_html();
+  EXPECT_NE(html.find("@media screen and (prefers-color-scheme:dark){:root{--measured"), std::string::npos);
+  EXPECT_NE(html.find("<a href=\"#s4\">f</a>"), std::string::npos);
+  EXPECT_NE(html.find("<h2 id=\"s4\" class=\"appendix\">f</h2>"), std::string::npos);
+  EXPECT_NE(html.find(".appendix{break-before:page}"), std::string::npos);
 }
 
 }  // namespace

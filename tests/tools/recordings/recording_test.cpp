@@ -64,7 +64,7 @@ TEST_F(RecordingTest, SplitsChannelsAndKeepsWhatHappened) {
   EXPECT_EQ(tracking_of(recording->channels[1]).free_samples, 1U)
       << "a sample without a reading does not count";
 
-  const std::string picture = picture_of(*recording);
+  const std::string picture = sysid::svg_file_of(figure_of(*recording));
   EXPECT_EQ(picture.rfind("<svg", 0), 0U);
   EXPECT_NE(picture.find("HOLDING"), std::string::npos);
   EXPECT_NE(picture.find("right: displacement"), std::string::npos);
@@ -94,7 +94,7 @@ TEST_F(RecordingTest, WhatTheObjectTakesIsNoTrackingError) {
   EXPECT_NEAR(tracking.gripping_largest_mm, 4, 1e-12);
   EXPECT_EQ(to_text(tracking),
             "free motion: RMSE 0.354 mm, largest 0.4 mm; gripping: up to 4 mm short of the reference");
-  const std::string picture = picture_of(*recording);
+  const std::string picture = sysid::svg_file_of(figure_of(*recording));
   EXPECT_NE(picture.find("in free motion RMSE 0.354 mm, largest 0.4 mm"), std::string::npos);
   EXPECT_NE(picture.find(">gripping<"), std::string::npos);
 }
@@ -121,7 +121,7 @@ TEST_F(RecordingTest, OneThatWasCutOffStillOpens) {
   ASSERT_TRUE(recording);
   EXPECT_EQ(recording->channels[0].size(), 3U);
   EXPECT_TRUE(recording->events.empty());
-  EXPECT_NE(picture_of(*recording).find("left: pressure"), std::string::npos);
+  EXPECT_NE(sysid::svg_file_of(figure_of(*recording)).find("left: pressure"), std::string::npos);
 }
 
 TEST_F(RecordingTest, APlainLogHasAPictureToo) {
@@ -129,7 +129,7 @@ TEST_F(RecordingTest, APlainLogHasAPictureToo) {
   document::Problems problems;
   const auto recording = read_recording(folder / "run.csv", problems);
   ASSERT_TRUE(recording);
-  EXPECT_NE(picture_of(*recording).find("displacement [mm]"), std::string::npos);
+  EXPECT_NE(sysid::svg_file_of(figure_of(*recording)).find("displacement in millimetres"), std::string::npos);
 }
 
 TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {

@@ -71,7 +71,7 @@ TEST(ControlStudy, EveryLoopKeepsTheMargin) {
 TEST(ControlStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
   const auto json = nlohmann::json::parse(control_json(quick_study()));
   EXPECT_EQ(json.at("schemes").size(), quick_study().schemes.size());
-  const std::string page = control_html(quick_study());
+  const std::string page = control_page(quick_study()).to_html();
   EXPECT_NE(page.find("<svg"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_LT(page.size(), 1500000U);

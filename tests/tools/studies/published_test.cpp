@@ -113,7 +113,7 @@ TEST(PublishedStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
   EXPECT_EQ(json.at("hidden_latency").size(), 3U);
   EXPECT_EQ(json.at("hidden_latency")[1].at("ratio").get<double>(), quick_study().latency[1].ratio);
   EXPECT_EQ(json.at("inverse").size(), quick_study().inverses.size());
-  const std::string page = published_html(quick_study());
+  const std::string page = published_page(quick_study()).to_html();
   EXPECT_LT(page.size(), 1500000U);
   EXPECT_NE(page.find("<svg"), std::string::npos);
   EXPECT_EQ(page.find("<script"), std::string::npos);

@@ -1,0 +1,114 @@
+#include "sysid/diagnosis/report/report_appendix.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/numbers.h"
+#include "model/catalogue.h"
+#include "model/file/model_file.h"
+#include "sysid/diagnosis/evidence/clear.h"
+#include "sysid/diagnosis/report/report_figures.h"
+#include "sysid/diagnosis/report/report_tables.h"
+#include "sysid/pages/provenance.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// Logs whose figures are shown, with that of the first part.
+constexpr std::size_t logs_shown = 3;
+
+void add_other_logs(Page& page, const Diagnosis& d) {
+  const std::vector<std::size_t> order = logs_by_gain(d);
+  for (std::size_t i = 1; i < std::min(logs_shown, order.size()); ++i) {
+    page.figure(error_figure(d, order[i]));
+    page.figure(loops_figure(d, order[i]));
+  }
+  if (order.size() > logs_shown)
+    page.paragraph("Shown are the " + std::to_string(logs_shown) + " logs on which most was gained, of " +
+                   std::to_string(order.size()) + ".");
+}
+
+void add_candidates(Page& page, const Diagnosis& d) {
+  for (const auto* list : {&d.causes, &d.partial}) {
+    for (const NamedCause& named : *list) {
+      if (!named.candidates.empty())
+        page.table(candidate_table(named.candidates, &named, d.extended_rmse_mm,
+                                   "Tried in the place of " + std::string(named.cause.id)));
+    }
+  }
+  if (!d.rejected.empty())
+    page.table(candidate_table(d.rejected, nullptr, d.extended_rmse_mm,
+                               d.causes.empty() && d.partial.empty() ? "No cause gained anything"
+                                                                     : "One more cause gained nothing"));
+}
+
+void add_conditions(Page& page, const Diagnosis& d) {
+  if (!d.evidence) return;
+  const ResidualEvidence& e = d.evidence->recalibrated;
+  page.subsection("Conditions");
+  page.table(condition_table(*d.evidence, is_extended(d)));
+  page.paragraph("The errors resemble each other over " + significant(e.memory_s, 2) +
+                 " s; the tests therefore give random signs to whole blocks of " + significant(e.block_s, 3) +
+                 " s (" + std::to_string(e.blocks) +
+                 " of them) and ask how often means would differ as much. Shares are judged on blocks "
+                 "outside the means and "
+                 "overlap: conditions that go together share what they explain. Clear is what chance would "
+                 "show less than once "
+                 "in fifty and what is worth a twentieth of the structure.");
+  if (e.spectrum.why_not.empty() && !is_clear(e.spectrum.p_value, e.spectrum.share_percent))
+    page.figure(spectrum_figure(d));
+}
+
+void add_model(Page& page, const DiagnosisReport& report) {
+  const Diagnosis& d = report.result;
+  page.subsection("Parameters");
+  page.table(moved_table(d, report.given));
+  if (!d.causes.empty() || !d.partial.empty())
+    page.table(cause_parameter_table(d, std::numeric_limits<std::size_t>::max()));
+  for (const auto* list : {&d.causes, &d.partial}) {
+    for (const NamedCause& named : *list) {
+      const model::BlockInfo& info = model::catalogue()[named.block_type].info;
+      page.paragraph(std::string(info.title) + ":");
+      page.code(info.equation);
+    }
+  }
+  page.paragraph("The model file of " + d.extended_model.name + ":");
+  page.code(model::to_yaml(d.extended_model));
+}
+
+void add_sources(Page& page, const DiagnosisReport& report) {
+  const Diagnosis& d = report.result;
+  page.subsection("Sources");
+  Terms terms = provenance_of(
+      report.logs, {{"given model", &report.given},
+                    {is_extended(d) ? "extended model" : "recalibrated model", &d.extended_model}});
+  terms.emplace_back("verdict", name_of(d.verdict));
+  terms.emplace_back("seed", std::to_string(report.seed));
+  terms.emplace_back("time taken", significant(d.wall_s, 3) + " s");
+  page.terms(terms);
+  std::vector<std::string> notes;
+  for (const Log& log : report.logs) {
+    for (const LogNote& note : log.notes)
+      notes.push_back(log.name + (note.line > 0 ? ", line " + std::to_string(note.line) : "") + ": " +
+                      note.text);
+  }
+  page.list(notes);
+}
+
+}  // namespace
+
+void add_appendix(Page& page, const DiagnosisReport& report) {
+  page.appendix("Appendix");
+  add_candidates(page, report.result);
+  add_conditions(page, report.result);
+  add_model(page, report);
+  add_sources(page, report);
+  if (report.result.records.size() > 1) page.subsection("The other logs");
+  add_other_logs(page, report.result);
+}
+
+}  // namespace softgrip::sysid

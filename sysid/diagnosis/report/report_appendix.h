@@ -1,0 +1,12 @@
+#pragma once
+// What those read who check a diagnosis: the other logs, candidates, conditions, equations, parameters,
+// hashes.
+
+#include "sysid/diagnosis/report/report.h"
+#include "sysid/pages/page.h"
+
+namespace softgrip::sysid {
+
+void add_appendix(Page& page, const DiagnosisReport& report);
+
+}  // namespace softgrip::sysid

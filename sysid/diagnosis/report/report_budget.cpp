@@ -1,0 +1,128 @@
+#include "sysid/diagnosis/report/report_budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "base/numbers.h"
+#include "sysid/diagnosis/verdict/budget.h"
+#include "sysid/pages/canvas.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double left = 10;
+constexpr double right = 750;
+constexpr double bar_px = 30;
+constexpr double line_px = 19;
+
+std::string letter(std::size_t i) {
+  return {static_cast<char>('A' + static_cast<char>(i))};
+}
+
+std::string amount(double mm2, double whole_mm2) {
+  return significant(mm2, 3) + " mm\xc2\xb2, " + fixed(100 * mm2 / whole_mm2, 1) + " %";
+}
+
+/// The given model's misfit, and the part of it that the bar below shows enlarged. Returns where that begins.
+double given_bar(Canvas& canvas, const Budget& budget, double top) {
+  const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
+  const double split = right - kept * (right - left);
+  canvas.words({left, top - 6}, Anchor::start,
+               "Given model, mean square error " + significant(budget.as_given, 3) +
+                   " mm\xc2\xb2: new numbers " + "for its parameters take " + fixed(100 * (1 - kept), 0) +
+                   " %");
+  canvas.box(left, top, split - left, bar_px / 2, Colour::grid);
+  canvas.box(split, top, right - split, bar_px / 2, Colour::axis);
+  return split;
+}
+
+void parts_bar(Canvas& canvas, const std::vector<BudgetPart>& parts, double whole, double top) {
+  double x = left;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double width = parts[i].mm2 / whole * (right - left);
+    canvas.framed_box(x, top, width, bar_px, parts[i].colour, Colour::paper);
+    if (width > 14)
+      canvas.words({x + width / 2, top + bar_px / 2 + 4}, Anchor::middle, letter(i), Colour::paper,
+                   " font-weight=\"600\"");
+    x += width;
+  }
+}
+
+void key(Canvas& canvas, const std::vector<BudgetPart>& parts, double whole, double top) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double y = top + line_px * static_cast<double>(i);
+    canvas.box(left, y - 10, 12, 12, parts[i].colour);
+    canvas.words({left + 20, y}, Anchor::start, letter(i) + "  " + parts[i].name);
+    canvas.words({left + 360, y}, Anchor::start, amount(parts[i].mm2, whole));
+    if (!parts[i].interval.empty())
+      canvas.words({left + 520, y}, Anchor::start, "95 % interval " + parts[i].interval, Colour::muted);
+  }
+}
+
+}  // namespace
+
+std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
+  const Budget budget = budget_of(d);
+  const double taken = std::max(0.0, budget.recalibrated - budget.extended);
+  double one_by_one = 0;
+  for (const NamedCause& named : d.causes) one_by_one += std::max(0.0, named.gain_mm2.value);
+  const double scale = one_by_one > taken && one_by_one > 0 ? taken / one_by_one : 1;
+  constexpr Colour colours[]{Colour::model, Colour::good, Colour::other};
+  std::vector<BudgetPart> parts;
+  for (const NamedCause& named : d.causes) {
+    const Spread& gain = named.gain_mm2;
+    parts.push_back({std::string(named.cause.title), scale * std::max(0.0, gain.value),
+                     colours[std::min<std::size_t>(parts.size(), 2)],
+                     significant(gain.lower, 3) + " to " + significant(gain.upper, 3)});
+  }
+  const double together = taken - scale * one_by_one;
+  // Below a thousandth nothing could be seen.
+  if (together > 1e-3 * budget.recalibrated)
+    parts.push_back({d.causes.empty() ? (d.base.empty() ? "Part of it, not named" : "Another structure")
+                                      : "These together only",
+                     together, Colour::muted, ""});
+  const double noise = std::min(budget.noise, budget.recalibrated - taken);
+  parts.push_back({"Left unexplained", budget.recalibrated - taken - noise, Colour::error, ""});
+  parts.push_back({"Noise of the readings", noise, Colour::faint, ""});
+  std::erase_if(parts, [](const BudgetPart& part) { return !(part.mm2 > 0); });
+  return parts;
+}
+
+Figure budget_figure(const Diagnosis& d) {
+  const Budget budget = budget_of(d);
+  const std::vector<BudgetPart> parts = budget_parts(d);
+  const bool moved = std::isfinite(budget.as_given) && budget.as_given > 1.02 * budget.recalibrated;
+  Drawing drawing;
+  Canvas canvas;
+  double top = 24;
+  if (moved) {
+    const double split = given_bar(canvas, budget, top);
+    const double below = top + bar_px / 2;
+    canvas.line({split, below}, {left, below + 40}, Colour::axis, " stroke-dasharray=\"2 3\"");
+    canvas.line({right, below}, {right, below + 40}, Colour::axis, " stroke-dasharray=\"2 3\"");
+    top = below + 40;
+  }
+  canvas.words_on_curve({left, top - 6}, Anchor::start,
+                        std::string(moved ? "Recalibrated model" : "Model") + ", mean square error " +
+                            significant(budget.recalibrated, 3) + " mm\xc2\xb2");
+  parts_bar(canvas, parts, budget.recalibrated, top);
+  key(canvas, parts, budget.recalibrated, top + bar_px + 20);
+  drawing.markup = canvas.markup();
+  drawing.height = static_cast<int>(top + bar_px + 20 + line_px * static_cast<double>(parts.size()));
+  drawing.header = {"part", "mean square [mm^2]", "share of the recalibrated model's [%]",
+                    "95 % interval [mm^2]"};
+  if (moved) drawing.rows.push_back({"given model", shortest(budget.as_given), "", ""});
+  drawing.rows.push_back({"recalibrated model", shortest(budget.recalibrated), "100", ""});
+  for (const BudgetPart& part : parts)
+    drawing.rows.push_back(
+        {part.name, shortest(part.mm2), fixed(100 * part.mm2 / budget.recalibrated, 2), part.interval});
+  return {"budget of the misfit",
+          std::string("Where the misfit goes, in mean squares of readings that were held out.") +
+              (d.causes.empty() ? ""
+                                : " What a cause takes is measured by leaving it out of the extended model."),
+          {},
+          std::move(drawing)};
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,125 @@
+#include "sysid/diagnosis/report/report_forest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/numbers.h"
+#include "sysid/pages/canvas.h"
+#include "sysid/pages/chart_scale.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double label_px = 12;
+constexpr double plot_left = 240;
+constexpr double plot_right = 520;
+constexpr double number_px = 540;
+constexpr double inclusion_px = 742;
+constexpr double row_px = 24;
+constexpr double top_px = 34;
+
+/// A line of the plot.
+struct Row {
+  std::string name;
+  bool rival = false;
+  const Spread* gain = nullptr;  ///< none: no command tells it from the cause above
+  double inclusion = 0;
+};
+
+const Spread* gain_of(const NamedCause& named, const Cause& rival) {
+  for (const CandidateScore& c : named.candidates) {
+    if (c.cause == rival && std::isfinite(c.heldout_rmse_mm) && c.gain_percent.upper > c.gain_percent.lower)
+      return &c.gain_percent;
+  }
+  return nullptr;
+}
+
+std::vector<Row> rows_of(const Diagnosis& d) {
+  std::vector<Row> rows;
+  for (const auto* list : {&d.causes, &d.partial}) {
+    for (const NamedCause& named : *list) {
+      rows.push_back({std::string(named.cause.title), false, &named.heldout_gain_percent, named.inclusion});
+      for (const Cause& rival : named.rivals)
+        rows.push_back({"or " + std::string(rival.title), true, gain_of(named, rival)});
+    }
+  }
+  return rows;
+}
+
+std::string range(const Spread& s) {
+  return fixed(s.value, 1) + " (" + fixed(s.lower, 1) + " to " + fixed(s.upper, 1) + ")";
+}
+
+void draw_interval(Canvas& canvas, const Row& row, const Scale& x, double y) {
+  const Spread& gain = *row.gain;
+  const Colour colour = row.rival ? Colour::muted : Colour::model;
+  canvas.line({x.px(gain.lower), y}, {x.px(gain.upper), y}, colour, " stroke-width=\"2\"");
+  for (const double end : {gain.lower, gain.upper})
+    canvas.line({x.px(end), y - 4}, {x.px(end), y + 4}, colour, " stroke-width=\"1.4\"");
+  canvas.framed_box(x.px(gain.value) - 4, y - 4, 8, 8, row.rival ? Colour::paper : colour, colour,
+                    " stroke-width=\"1.4\"");
+}
+
+}  // namespace
+
+Figure forest_figure(const Diagnosis& d) {
+  const std::vector<Row> rows = rows_of(d);
+  double lowest = 0;
+  double highest = 0;
+  for (const Row& row : rows) {
+    if (row.gain == nullptr) continue;
+    lowest = std::min(lowest, row.gain->lower);
+    highest = std::max(highest, row.gain->upper);
+  }
+  const Axis axis;
+  const Scale x(axis, lowest, highest, plot_left, plot_right, true);
+  const double bottom = top_px + row_px * static_cast<double>(rows.size());
+  Canvas canvas;
+  constexpr std::string_view bold = " font-weight=\"600\"";
+  canvas.words({label_px, 18}, Anchor::start, "Cause", Colour::text, bold);
+  canvas.words({number_px, 18}, Anchor::start, "gain (95 % interval)", Colour::text, bold);
+  canvas.words({inclusion_px, 18}, Anchor::end, "inclusion", Colour::text, bold);
+  for (const Tick& tick : x.ticks(5)) {
+    canvas.line({x.px(tick.at), top_px - 6}, {x.px(tick.at), bottom},
+                tick.at == 0 ? Colour::axis : Colour::grid);
+    canvas.words({x.px(tick.at), bottom + 14}, Anchor::middle, tick.text);
+  }
+  canvas.words({(plot_left + plot_right) / 2, bottom + 31}, Anchor::middle, "held-out gain in per cent");
+  Drawing drawing;
+  drawing.header = {"cause", "rival of it", "gain [%]", "lower 95 % [%]", "upper 95 % [%]", "inclusion"};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    const double y = top_px + row_px * (static_cast<double>(i) + 0.5);
+    canvas.words({label_px + (row.rival ? 14 : 0), y + 4}, Anchor::start, row.name,
+                 row.rival ? Colour::muted : Colour::text);
+    if (row.gain != nullptr) {
+      draw_interval(canvas, row, x, y);
+      canvas.words({number_px, y + 4}, Anchor::start, range(*row.gain),
+                   row.rival ? Colour::muted : Colour::text);
+    } else {
+      canvas.words({number_px, y + 4}, Anchor::start, "the same to every command", Colour::muted);
+    }
+    if (!row.rival) canvas.words({inclusion_px, y + 4}, Anchor::end, fixed(row.inclusion, 2));
+    std::vector<std::string> cells{
+        row.name, row.rival ? "yes" : "no", "", "", "", row.rival ? "" : fixed(row.inclusion, 4)};
+    if (row.gain != nullptr) {
+      cells[2] = shortest(row.gain->value);
+      cells[3] = shortest(row.gain->lower);
+      cells[4] = shortest(row.gain->upper);
+    }
+    drawing.rows.push_back(std::move(cells));
+  }
+  drawing.markup = canvas.markup();
+  drawing.height = static_cast<int>(bottom) + 40;
+  const bool rivals = std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.rival; });
+  return {"causes and their gains",
+          std::string("How much the held-out error falls with each cause, against the model without it. ") +
+              "Inclusion: how often, over resampled blocks of the logs, the structures that contain it win." +
+              (rivals ? " Hollow: what these logs cannot tell from the cause above it, in its place." : ""),
+          {},
+          std::move(drawing)};
+}
+
+}  // namespace softgrip::sysid

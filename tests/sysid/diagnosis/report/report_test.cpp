@@ -1,0 +1,188 @@
+#include "sysid/diagnosis/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/catalogue.h"
+#include "sysid/diagnosis/report/report_appendix.h"
+#include "sysid/diagnosis/report/report_budget.h"
+#include "sysid/diagnosis/report/report_chain.h"
+#include "sysid/diagnosis/report/report_figures.h"
+#include "sysid/diagnosis/report/report_forest.h"
+#include "sysid/diagnosis/report/report_gauge.h"
+#include "sysid/diagnosis/report/report_reached.h"
+#include "sysid/diagnosis/report/report_tables.h"
+#include "sysid/fitting/trajectory.h"
+#include "tests/sysid/diagnosis/campaign.h"
+#include "tests/sysid/simulated.h"
+
+namespace softgrip::sysid {
+namespace {
+
+StructureFit fit_of(const model::Model& model, const std::vector<Record>& records) {
+  StructureFit fit;
+  fit.point = {model, std::vector<StartState>(records.size())};
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    fit.residual_mm.push_back(records[k].reading_mm);
+    const std::vector<double> predicted = predict(model, records[k], fit.point.starts[k]);
+    for (std::size_t i = 0; i < predicted.size(); ++i) fit.residual_mm.back()[i] -= predicted[i];
+  }
+  return fit;
+}
+
+NamedCause named(const char* id, double gain_mm2) {
+  NamedCause cause;
+  cause.cause = *find_cause(id);
+  cause.block_type = *model::find_block(id);
+  cause.parameters = {{"time_constant_s", "s", 0.08, {0.07, 0.09}, true}};
+  cause.heldout_gain_percent = {40, 5, 30, 50};
+  cause.gain_mm2 = {gain_mm2, 0.001, 0.9 * gain_mm2, 1.1 * gain_mm2};
+  cause.inclusion = 0.97;
+  return cause;
+}
+
+/// The twin diagnosed with the published model, as if a lag had been found.
+Diagnosis a_diagnosis(const model::Model& given) {
+  Diagnosis d;
+  d.verdict = Verdict::ambiguous;
+  d.records = known_campaign(2);
+  d.as_given = fit_of(given, d.records);
+  d.recalibrated = fit_of(given, d.records);
+  d.recalibrated_model = d.extended_model = loaded("bench_twin");
+  d.recalibrated_model.name = "zhang2025_recalibrated";
+  d.extended_model.name = "zhang2025_extended";
+  d.extended = fit_of(d.extended_model, d.records);
+  d.causes = {named("valve_lag", 0.05)};
+  d.causes.front().rivals = {*find_cause("sensor_lag")};
+  CandidateScore rival;
+  rival.cause = *find_cause("sensor_lag");
+  rival.heldout_rmse_mm = 0.21;
+  rival.gain_percent = {38, 5, 28, 48};
+  d.causes.front().candidates = {rival};
+  d.extended.causes = {d.causes.front().cause};
+  d.as_given_rmse_mm = 0.5;
+  d.recalibrated_rmse_mm = 0.3;
+  d.extended_rmse_mm = 0.2;
+  d.noise_mm = 0.1;
+  return d;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+class ReportTest : public testing::Test {
+ protected:
+  model::Model given = loaded("zhang2025");
+  Diagnosis diagnosis = a_diagnosis(given);
+  std::vector<Log> logs;
+
+  [[nodiscard]] Page page() const { return diagnosis_page({diagnosis, logs, given, 1, {}, {}, {}}); }
+};
+
+TEST_F(ReportTest, TheBudgetAddsUpToWhatRecalibrationLeaves) {
+  const std::vector<BudgetPart> parts = budget_parts(diagnosis);
+  ASSERT_EQ(parts.size(), 3U) << "what the lag takes, what is left, noise";
+  double sum = 0;
+  for (const BudgetPart& part : parts) sum += part.mm2;
+  EXPECT_NEAR(sum, 0.09, 1e-12);
+  EXPECT_NEAR(parts.front().mm2, 0.05, 1e-12);
+  EXPECT_NEAR(parts[1].mm2, 0.04 - 0.01, 1e-12);
+}
+
+TEST_F(ReportTest, WhatCausesTakeTogetherOnlyIsAPartOfTheBudget) {
+  diagnosis.causes = {named("valve_lag", 0.02), named("transport_delay", 0.01)};
+  const std::vector<BudgetPart> parts = budget_parts(diagnosis);
+  ASSERT_EQ(parts.size(), 5U);
+  EXPECT_EQ(parts[2].name, "These together only");
+  EXPECT_NEAR(parts[2].mm2, 0.02, 1e-12);
+}
+
+TEST_F(ReportTest, CausesThatOverlapTakeNoMoreThanTogether) {
+  diagnosis.causes = {named("valve_lag", 0.05), named("transport_delay", 0.05)};
+  const std::vector<BudgetPart> parts = budget_parts(diagnosis);
+  ASSERT_EQ(parts.size(), 4U);
+  EXPECT_NEAR(parts[0].mm2, 0.025, 1e-12);
+  EXPECT_NEAR(parts[1].mm2, 0.025, 1e-12);
+}
+
+TEST_F(ReportTest, TheForestHasARowForEachCauseAndEachRival) {
+  const Figure forest = forest_figure(diagnosis);
+  ASSERT_TRUE(forest.drawing);
+  ASSERT_EQ(forest.drawing->rows.size(), 2U);
+  EXPECT_EQ(forest.drawing->rows[0][2], "40");
+  EXPECT_EQ(forest.drawing->rows[1][1], "yes");
+  EXPECT_EQ(forest.drawing->rows[1][3], "28");
+  EXPECT_NE(forest.drawing->markup.find("38.0 (28.0 to 48.0)"), std::string::npos);
+  EXPECT_NE(forest.drawing->markup.find("0.97"), std::string::npos);
+}
+
+TEST_F(ReportTest, TheChainMarksWhatTheGivenModelLacks) {
+  const Figure chain = chain_figure(diagnosis.extended_model, given);
+  EXPECT_EQ(count(chain.drawing->markup, ", added<"), 2U) << "delay and lag";
+  EXPECT_NE(chain.drawing->markup.find("time constant = 0.044 s"), std::string::npos);
+  EXPECT_NE(chain.drawing->markup.find("alpha = 0.211 mm/kPa"), std::string::npos);
+  EXPECT_NE(chain.drawing->markup.find("gamma = 0.0163 1/kPa"), std::string::npos);
+  EXPECT_EQ(count(chain_figure(given, given).drawing->markup, ", added<"), 0U);
+}
+
+TEST_F(ReportTest, OpensWithTheVerdictAndEndsWithWhatOnlyThoseReadWhoCheck) {
+  const std::string html = page().to_html();
+  std::size_t at = 0;
+  for (const char* part : {"The model lacks", "What was found", "budget of the misfit",
+                           "causes and their gains", "What the causes are worth", "chain with its numbers",
+                           "error over time", "loops log_", "How it was reached", "class=\"appendix\"",
+                           "Tried in the place of", "name: &quot;zhang2025_extended"}) {
+    const std::size_t next = html.find(part, at);
+    ASSERT_NE(next, std::string::npos) << part;
+    at = next;
+  }
+  EXPECT_LT(html.size(), Page::most_bytes);
+}
+
+TEST_F(ReportTest, EveryFigureHasACaptionANumberAndData) {
+  const Page report = page();
+  const std::string html = report.to_html();
+  ASSERT_GE(report.figures().size(), 5U);
+  for (std::size_t i = 0; i < report.figures().size(); ++i) {
+    const Figure& figure = report.figures()[i];
+    EXPECT_GT(figure.caption.size(), 20U) << figure.name;
+    EXPECT_GT(count(csv_of(figure), "\n"), 1U) << figure.name;
+    EXPECT_NE(html.find("<b>Figure " + std::to_string(i + 1) + ".</b>"), std::string::npos) << figure.name;
+  }
+}
+
+// Where the models have one name, nobody can tell whose figure it is.
+TEST_F(ReportTest, TheModelsHaveNamesOfTheirOwn) {
+  const std::string html = page().to_html();
+  for (const char* name : {">given model<", ">recalibrated model<", ">extended model<", "zhang2025_extended"})
+    EXPECT_NE(html.find(name), std::string::npos) << name;
+}
+
+TEST_F(ReportTest, WhatIsNotClearIsNotDrawn) {
+  diagnosis.evidence.emplace();
+  ConditionEvidence rate;
+  rate.condition.id = "rate";
+  rate.condition.axis = "rate of the pressure [kPa/s]";
+  rate.bins = {{1, "", 0, 30, 0.1, 0.05, 0.15, 0.1}, {9, "", 0, 30, -0.1, -0.15, -0.05, 0.1}};
+  diagnosis.evidence->recalibrated.conditions = {rate};
+  diagnosis.evidence->recalibrated.spectrum.why_not = "too short";
+  EXPECT_EQ(page().to_html().find("error by condition"), std::string::npos);
+  diagnosis.evidence->recalibrated.conditions.front().clear = true;
+  EXPECT_NE(page().to_html().find("rate of the pressure in kilopascals per second"), std::string::npos);
+}
+
+TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {
+  ClosedLoopCurves curves{"13 +- 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"simulated"}};
+  curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}, {"extended model", 0.02, {13, 20, 13.01}}};
+  const Figure figure = closed_loop_figure(curves);
+  ASSERT_EQ(figure.charts.size(), 2U);
+  EXPECT_EQ(figure.charts[1].front().series.front().y[1], -2) << "displacement minus reference";
+  EXPECT_NE(figure.caption.find("PID alone 1.5 mm, extended model 0.02 mm"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

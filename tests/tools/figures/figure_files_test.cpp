@@ -1,0 +1,41 @@
+#include "tools/figures/figure_files.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "base/files.h"
+
+namespace softgrip::tools {
+namespace {
+
+TEST(FigureFiles, EachFigureIsThereThreeTimes) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("softgrip_figures_" + std::to_string(::getpid()));
+  sysid::Chart chart;
+  chart.x.label = "time [s]";
+  chart.y.label = "error [mm]";
+  chart.series = {sysid::Series{.label = "model", .x = {0, 1}, .y = {0.5, 0.25}, .y_upper = {}}};
+  sysid::Drawing drawing;
+  drawing.header = {"cause", "gain"};
+  drawing.rows = {{"Valve lag, first order", "61"}};
+  const std::vector<sysid::Figure> figures{{"error over time", "", {{chart}}}, {"forest", "", {}, drawing}};
+  ASSERT_TRUE(write_figures(folder.string(), figures));
+  for (const std::string stem : {"figure-1-error-over-time", "figure-2-forest"}) {
+    for (const char* ending : {".svg", ".pdf", ".csv"})
+      EXPECT_TRUE(std::filesystem::is_regular_file(folder / (stem + ending))) << stem << ending;
+  }
+  EXPECT_EQ(*read_file((folder / "figure-1-error-over-time.csv").string(), 10000),
+            "time [s],model: error [mm]\n0,0.5\n1,0.25\n");
+  EXPECT_EQ(*read_file((folder / "figure-2-forest.csv").string(), 10000),
+            "cause,gain\n\"Valve lag, first order\",61\n");
+  std::filesystem::remove_all(folder);
+}
+
+TEST(FigureFiles, NoFolderNoFiles) {
+  EXPECT_TRUE(write_figures("", {sysid::Figure{}}));
+}
+
+}  // namespace
+}  // namespace softgrip::tools
