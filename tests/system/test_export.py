@@ -168,12 +168,6 @@ class Signals(bench.BenchTest):
         self.assertFalse((self.folder / "x.csv").exists())
         self.assertTrue(self.export("-", "--format", "csv").stdout.startswith("time_s,left_"))
 
-    def test_plot_obeys_the_ending_or_refuses(self):
-        for name in ("picture.png", "picture.pdf", "picture"):
-            self.assertIn("does not end in .svg", self.softgrip("plot", "run", "--out", name, expect=2).stderr)
-            self.assertFalse((self.folder / name).exists())
-        self.assertTrue(self.softgrip("plot", "run", "--out", "-").stdout.startswith("<svg"))
-
 
 class PerLog(bench.BenchTest):
 

@@ -64,9 +64,11 @@ class Figures(unittest.TestCase):
             picture = self.folder / f"picture{ending}"
             self.softgrip("plot", first, "--out", picture)
             self.assertTrue(picture.read_bytes().startswith(begins), ending)
-        refused = self.softgrip("plot", first, "--out", self.folder / "x.bmp", expect=2)
-        self.assertIn("svg, pdf, png or html", refused.stderr)
-        self.assertFalse((self.folder / "x.bmp").exists())
+        for name in ("x.bmp", "x"):
+            refused = self.softgrip("plot", first, "--out", self.folder / name, expect=2)
+            self.assertIn("svg, pdf, png or html", refused.stderr)
+            self.assertFalse((self.folder / name).exists())
+        self.assertTrue(self.softgrip("plot", first, "--out", "-").stdout.startswith("<svg"))
         self.softgrip("plot", first, "--channel", "left", "--out", self.folder / "x.svg", expect=2)
         self.softgrip("plot", first, "--from", 1000, "--out", self.folder / "x.svg", expect=2)
 

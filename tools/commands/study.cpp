@@ -31,7 +31,7 @@ ExitCode write_all(const Output& output, const std::string& json_name, const std
                    const sysid::Page& page, const std::string& text) {
   const std::filesystem::path folder(output.out);
   for (const auto& [name, content] :
-       {std::pair<std::string, const std::string&>{json_name, json}, {"report.html", page.to_html()}}) {
+       {std::pair<std::string, std::string>{json_name, json}, {"report.html", page.to_html()}}) {
     if (const auto written = write_file((folder / name).string(), content); !written) {
       return fail(ExitCode::io, written.error());
     }
