@@ -27,6 +27,7 @@ softgrip_room(control/tuning USES base model control/elements control/feedforwar
 # Boards.
 softgrip_room(drivers/board USES base model)
 softgrip_room(drivers/modbus USES base drivers/board LIBRARIES PkgConfig::modbus)
+softgrip_room(drivers/modbus_server USES base drivers/modbus)
 softgrip_room(drivers/iio USES base drivers/board)
 softgrip_room(drivers/gpio USES base model LIBRARIES PkgConfig::gpiod)
 if(gpiod_VERSION VERSION_GREATER_EQUAL 2)
@@ -35,7 +36,8 @@ endif()
 
 # What stands in for the rig.
 softgrip_room(simulation/plant USES base document model drivers/board)
-softgrip_room(simulation/emulator USES base document model drivers/board drivers/modbus simulation/plant)
+softgrip_room(simulation/emulator
+  USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
 # The rig file.
 softgrip_room(rig
@@ -131,6 +133,6 @@ softgrip_room(tools/commands
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)
 softgrip_program(softgrip-rig "tools/programs/softgrip_rig.cpp;tools/programs/softgrip_rig_options.cpp" tools
-  ROOM simulation/emulator USES base document model model/file drivers/board drivers/modbus simulation/plant
+  ROOM simulation/emulator USES base document model model/file drivers/board drivers/modbus drivers/modbus_server simulation/plant
        simulation/emulator rig tools/command_line
   LIBRARIES CLI11::CLI11)

@@ -9,7 +9,7 @@
 
 #include "drivers/board/board_map.h"
 #include "model/reading.h"
-#include "simulation/emulator/registers.h"
+#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 

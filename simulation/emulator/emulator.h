@@ -12,8 +12,7 @@
 #include "simulation/emulator/emulated_board.h"
 #include "simulation/emulator/fault_schedule.h"
 #include "simulation/emulator/finger.h"
-#include "simulation/emulator/reply.h"
-#include "simulation/emulator/requests.h"
+#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 

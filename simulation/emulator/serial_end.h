@@ -7,7 +7,7 @@
 
 #include "base/descriptor.h"
 #include "drivers/modbus/modbus_address.h"
-#include "simulation/emulator/connection.h"
+#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 

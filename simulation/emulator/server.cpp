@@ -11,8 +11,8 @@
 #include <ctime>
 #include <vector>
 
+#include "drivers/modbus_server/listener.h"
 #include "simulation/emulator/control.h"
-#include "simulation/emulator/listener.h"
 
 namespace softgrip::simulation {
 namespace {
@@ -109,7 +109,7 @@ void Server::serve(Client& client, short events, bool& open) {
 }
 
 void Server::accept_modbus(std::size_t link) {
-  Descriptor client = accept_client(sockets_.modbus[link]);
+  Descriptor client = modbus::accept_client(sockets_.modbus[link]);
   // While the cable is cut, and beyond what poll() should watch, a client is let in and shown out.
   if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
     clients_.push_back({Connection(std::move(client)), link});
@@ -117,7 +117,7 @@ void Server::accept_modbus(std::size_t link) {
 }
 
 void Server::accept_control() {
-  Descriptor client = accept_client(sockets_.control);
+  Descriptor client = modbus::accept_client(sockets_.control);
   if (client && control_clients_.size() < max_control_clients) {
     control_clients_.push_back({std::move(client), {}, true});
   }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/descriptor.h"
-#include "simulation/emulator/connection.h"
 #include "simulation/emulator/emulator.h"
 #include "simulation/emulator/serial_end.h"
+#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 

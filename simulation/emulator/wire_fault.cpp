@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "simulation/emulator/registers.h"
+#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 namespace {

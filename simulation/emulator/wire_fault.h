@@ -2,8 +2,7 @@
 // What the faults of the wire make of a good reply.
 
 #include "simulation/emulator/fault.h"
-#include "simulation/emulator/reply.h"
-#include "simulation/emulator/requests.h"
+#include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {
 

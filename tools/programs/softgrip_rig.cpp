@@ -14,7 +14,7 @@
 #include <string>
 
 #include "base/version.h"
-#include "simulation/emulator/listener.h"
+#include "drivers/modbus_server/listener.h"
 #include "simulation/emulator/server.h"
 #include "simulation/emulator/truth_log.h"
 #include "tools/command_line/command.h"
@@ -127,7 +127,7 @@ ExitCode listen(const Setup& setup, simulation::ServerSockets& sockets, std::str
     return ExitCode::done;
   }
   for (const softgrip::drivers::TcpAddress& address : setup.addresses) {
-    auto listener = simulation::listen_tcp(address.host, address.port);
+    auto listener = modbus::listen_tcp(address.host, address.port);
     if (!listener) return fail(ExitCode::io, listener.error());
     told += "listening on " + address.host + ":" + std::to_string(listener->port) + "\n";
     sockets.modbus.push_back(std::move(listener->socket));
@@ -144,7 +144,7 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
   sockets.standard_input = options.control == "-";
   const bool control_socket = !options.control.empty() && !sockets.standard_input;
   if (control_socket) {
-    auto control = simulation::listen_unix(options.control);
+    auto control = modbus::listen_unix(options.control);
     if (!control) return fail(ExitCode::io, control.error());
     sockets.control = std::move(*control);
   }
@@ -161,7 +161,7 @@ ExitCode serve(const Options& options, const Setup& setup, simulation::Emulator&
 }
 
 ExitCode run(const Options& options) {
-  if (!simulation::is_loopback(options.bind) && !options.allow_network) {
+  if (!modbus::is_loopback(options.bind) && !options.allow_network) {
     return fail(ExitCode::usage, "others could reach " + options.bind +
                                      ", and Modbus knows no password: add --allow-network if that is wanted");
   }

@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "drivers/modbus/serial_port.h"
+#include "drivers/modbus_server/listener.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_file.h"
 #include "simulation/emulator/control.h"
-#include "simulation/emulator/listener.h"
 #include "simulation/emulator/wiring.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
@@ -144,7 +144,7 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
     line.turnaround_s = options.turnaround_s.value_or(line.turnaround_s);
     // One line, whatever hosts the rig file may have had.
     for (simulation::EmulatedModule& module : setup.emulator.modules) module.link = 0;
-    setup.emulator.wire = simulation::Wire::rtu;
+    setup.emulator.wire = modbus::Wire::rtu;
     return std::nullopt;
   }
   setup.line.reset();
@@ -152,7 +152,7 @@ std::optional<ExitCode> place(const Options& options, Setup& setup) {
   for (std::size_t i = 0; i < setup.addresses.size(); ++i) {
     drivers::TcpAddress& address = setup.addresses[i];
     // Several hosts of a rig are several addresses of this machine, where they can be.
-    if (setup.addresses.size() == 1 || !simulation::is_loopback(address.host)) address.host = options.bind;
+    if (setup.addresses.size() == 1 || !modbus::is_loopback(address.host)) address.host = options.bind;
     if (options.port) address.port = static_cast<std::uint16_t>(*options.port == 0 ? 0 : *options.port + i);
   }
   return std::nullopt;

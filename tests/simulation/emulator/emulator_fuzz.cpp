@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <span>
 
+#include "drivers/modbus_server/requests.h"
 #include "rig/board_map_file.h"
 #include "simulation/emulator/emulated_board.h"
-#include "simulation/emulator/requests.h"
 
 namespace {
 
@@ -33,7 +33,7 @@ drivers::BoardMap sim_board() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const drivers::BoardMap map = sim_board();
   simulation::EmulatedBoard board(map);
-  simulation::RequestStream stream;
+  modbus::RequestStream stream;
   std::span<const std::uint8_t> bytes(data, size);
   Nanoseconds now = 0;
   while (!bytes.empty()) {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "simulation/emulator/listener.h"
+#include "drivers/modbus_server/listener.h"
 
 namespace softgrip::tools {
 namespace {
@@ -22,7 +22,7 @@ class ScriptedDaemon {
       : folder_(std::filesystem::temp_directory_path() / ("softgrip_client_" + std::to_string(::getpid()))),
         reply_(std::move(reply)) {
     std::filesystem::create_directories(folder_);
-    listener_ = std::move(*simulation::listen_unix(path()));
+    listener_ = std::move(*modbus::listen_unix(path()));
     thread_ = std::thread([this] { serve(); });
   }
   ScriptedDaemon(const ScriptedDaemon&) = delete;
@@ -40,7 +40,7 @@ class ScriptedDaemon {
   void serve() {
     Descriptor client;
     while (!client) {
-      client = simulation::accept_client(listener_);
+      client = modbus::accept_client(listener_);
       if (!client) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     char byte = 0;
@@ -79,7 +79,7 @@ TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {
       std::filesystem::temp_directory_path() / ("softgrip_left_over_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   const std::string path = folder / "left.sock";
-  { const auto listener = simulation::listen_unix(path); }
+  { const auto listener = modbus::listen_unix(path); }
   const auto left_over = DaemonClient::connect(path);
   ASSERT_FALSE(left_over);
   EXPECT_NE(left_over.error().message.find("nobody listens"), std::string::npos);

@@ -1,11 +1,11 @@
-#include "simulation/emulator/registers.h"
+#include "drivers/modbus_server/registers.h"
 
 #include <gtest/gtest.h>
 #include <modbus/modbus.h>
 
 #include <array>
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 namespace {
 
 /// Holding 0-3 (2 and 3 writable), input 10-11, coil 5.
@@ -100,4 +100,4 @@ TEST_F(RegistersTest, SaysWhetherItWrote) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

@@ -11,7 +11,7 @@
 #include "drivers/modbus/big_endian.h"
 #include "drivers/modbus/modbus_request.h"
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 
 using Bytes = std::vector<std::uint8_t>;
 using Clock = std::chrono::steady_clock;
@@ -65,4 +65,4 @@ inline void append_word(Bytes& bytes, std::uint16_t word) {
   bytes.push_back(static_cast<std::uint8_t>(word & 0xffU));
 }
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

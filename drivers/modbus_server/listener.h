@@ -8,7 +8,7 @@
 
 #include "base/descriptor.h"
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 
 struct Listener {
   Descriptor socket;
@@ -27,4 +27,4 @@ struct Listener {
 /// The next client, not blocking and closed on exec; empty if there is none.
 [[nodiscard]] Descriptor accept_client(const Descriptor& listener);
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

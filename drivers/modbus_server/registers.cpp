@@ -1,9 +1,9 @@
-#include "simulation/emulator/registers.h"
+#include "drivers/modbus_server/registers.h"
 
 #include <modbus/modbus.h>
 #include <algorithm>
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 namespace {
 
 using drivers::max_fc23_write_registers;
@@ -183,4 +183,4 @@ void Registers::store(std::uint16_t first, std::span<const std::uint8_t> data) {
   }
 }
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

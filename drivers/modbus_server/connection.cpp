@@ -1,4 +1,4 @@
-#include "simulation/emulator/connection.h"
+#include "drivers/modbus_server/connection.h"
 
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <cerrno>
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 namespace {
 
 // A client that does not read its replies is cut off before they pile up.
@@ -87,4 +87,4 @@ std::optional<Clock::time_point> Connection::next_due() const {
   return outgoing_.front().due;
 }
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

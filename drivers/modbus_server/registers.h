@@ -8,9 +8,9 @@
 #include <set>
 #include <span>
 
-#include "simulation/emulator/requests.h"
+#include "drivers/modbus_server/requests.h"
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 
 /// The reply that reports an exception.
 [[nodiscard]] Bytes exception_reply(std::uint8_t function, std::uint8_t code);
@@ -71,4 +71,4 @@ class Registers {
   std::set<std::uint8_t> functions_;
 };
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <vector>
 
-#include "simulation/emulator/requests.h"
+#include "drivers/modbus_server/requests.h"
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 
 /// Bytes that leave `after` their request came in.
 struct Piece {
@@ -20,4 +20,4 @@ struct Reply {
   bool disconnect = false;  ///< close the connection once all pieces are out
 };
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

@@ -1,8 +1,8 @@
-#include "simulation/emulator/requests.h"
+#include "drivers/modbus_server/requests.h"
 
 #include <gtest/gtest.h>
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 namespace {
 
 const Bytes read_four{0x00, 0x07, 0x00, 0x00, 0x00, 0x06, 0x01, 0x03, 0x00, 0x00, 0x00, 0x04};
@@ -79,4 +79,4 @@ TEST(Frame, IsWhatTheStreamReads) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "base/descriptor.h"
-#include "simulation/emulator/reply.h"
-#include "simulation/emulator/requests.h"
+#include "drivers/modbus_server/reply.h"
+#include "drivers/modbus_server/requests.h"
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 
 /// What bytes take on a serial line that a pseudo-terminal hands over at once.
 struct WireTime {
@@ -59,4 +59,4 @@ class Connection {
   bool blocked_ = false;
 };
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

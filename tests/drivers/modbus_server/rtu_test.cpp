@@ -1,10 +1,10 @@
-#include "simulation/emulator/requests.h"
+#include "drivers/modbus_server/requests.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -82,4 +82,4 @@ TEST(RtuRequestStream, NoiseNeverHarms) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

@@ -1,4 +1,4 @@
-#include "simulation/emulator/listener.h"
+#include "drivers/modbus_server/listener.h"
 
 #include <arpa/inet.h>
 #include <netdb.h>
@@ -13,7 +13,7 @@
 #include <cstring>
 #include <memory>
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 namespace {
 
 constexpr int backlog = 16;
@@ -94,4 +94,4 @@ Descriptor accept_client(const Descriptor& listener) {
   return client;
 }
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus

@@ -1,4 +1,4 @@
-#include "simulation/emulator/requests.h"
+#include "drivers/modbus_server/requests.h"
 
 #include <modbus/modbus.h>
 
@@ -7,7 +7,7 @@
 #include "drivers/modbus/mbap.h"
 #include "drivers/modbus/rtu_frame.h"
 
-namespace softgrip::simulation {
+namespace softgrip::modbus {
 namespace {
 
 using drivers::mbap_size;
@@ -110,4 +110,4 @@ Bytes frame_on(Wire wire, std::uint16_t transaction, std::uint8_t unit, std::spa
   return frame;
 }
 
-}  // namespace softgrip::simulation
+}  // namespace softgrip::modbus
