@@ -39,10 +39,13 @@ softgrip_room(simulation/plant USES base document model drivers/board)
 softgrip_room(simulation/emulator
   USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
+# The file of softgrip-plc, which `softgrip check` reads too.
+softgrip_room(gateways/plc_file USES document drivers/modbus_server)
+
 # The rig file.
 softgrip_room(rig
   USES base document model/file control/feedforward control/tick control/sequences drivers/board drivers/modbus
-       drivers/iio drivers/gpio simulation/plant)
+       drivers/iio drivers/gpio simulation/plant gateways/plc_file)
 
 # The daemon.
 softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig LIBRARIES spdlog::spdlog)
@@ -97,6 +100,9 @@ softgrip_room(tools/command_line USES base document model model/file sysid/logs 
   LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
 softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
+# What stands in front of the daemon's socket, in processes of their own.
+softgrip_room(gateways/plc USES base drivers/modbus_server gateways/plc_file tools/client
+  LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/figures USES base sysid/pages)
@@ -135,4 +141,7 @@ softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)
 softgrip_program(softgrip-rig "tools/programs/softgrip_rig.cpp;tools/programs/softgrip_rig_options.cpp" tools
   ROOM simulation/emulator USES base document model model/file drivers/board drivers/modbus drivers/modbus_server simulation/plant
        simulation/emulator rig tools/command_line
+  LIBRARIES CLI11::CLI11)
+softgrip_program(softgrip-plc tools/programs/softgrip_plc.cpp tools
+  ROOM gateways/plc USES base drivers/modbus_server gateways/plc_file tools/command_line
   LIBRARIES CLI11::CLI11)

@@ -9,6 +9,7 @@
 
 #include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
+#include "gateways/plc_file/settings.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
 #include "rig/rig_comparison.h"
@@ -24,8 +25,8 @@ struct Signature {
   std::vector<std::string> keys;
 };
 
-const std::array<Signature, 4>& signatures() {
-  static const std::array<Signature, 4> all{
+const std::array<Signature, 5>& signatures() {
+  static const std::array<Signature, 5> all{
       Signature{FileKind::rig,
                 {"board", "channels", "channel_defaults", "safety", "faults", "rate_hz", "plausibility",
                  "detection", "rest", "model_health", "real_time", "recorder", "socket", "loop"}},
@@ -34,6 +35,7 @@ const std::array<Signature, 4>& signatures() {
                  "read_back", "watchdog", "setup"}},
       Signature{FileKind::model, {"valve", "actuator", "load", "sensor"}},
       Signature{FileKind::sequence, {"steps", "about", "interlock", "channels", "parameters"}},
+      Signature{FileKind::plc, {"socket", "listen", "master", "recipes", "registers"}},
   };
   return all;
 }
@@ -97,6 +99,9 @@ void read_as(const document::Document& document, bool parsed, std::span<const co
       if (sequence) read.sequences.push_back(std::move(*sequence));
       break;
     }
+    case FileKind::plc:
+      file.name = plc::read_settings(document, problems).name;
+      break;
     case FileKind::unknown:
       break;
   }
@@ -197,7 +202,8 @@ std::size_t count_of(const std::vector<document::Problem>& list, const std::stri
 }  // namespace
 
 std::string_view name_of(FileKind kind) noexcept {
-  constexpr std::array<std::string_view, 5> names{"unknown", "rig", "board map", "model", "sequence"};
+  constexpr std::array<std::string_view, 6> names{"unknown", "rig",      "board map",
+                                                  "model",   "sequence", "PLC gateway"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -1,0 +1,123 @@
+#include "gateways/plc/process_image.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::plc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Settings shipped() {
+  document::Problems problems;
+  return *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
+}
+
+class ProcessImage : public ::testing::Test {
+ protected:
+  std::uint16_t value(Name name) const { return registers_.holding(settings_.registers.at(name)); }
+  std::uint16_t value(Name name, std::size_t finger) const {
+    return registers_.holding(settings_.registers.at(name, finger));
+  }
+  void set(Name name, std::uint16_t value) { registers_.set_holding(settings_.registers.at(name), value); }
+
+  Settings settings_ = shipped();
+  modbus::Registers registers_ = make_registers(settings_.registers);
+};
+
+Json status() {
+  return Json::parse(R"({
+    "state": "running", "result": "PART LOST", "fault": {"code": "F202"},
+    "sequence": {"step": 2, "ended": null},
+    "channels": [
+      {"result": "HOLDING", "displacement_mm": 12.345, "pressure_kpa": null, "command_kpa": 20.5,
+       "squeeze_kpa": -0.5, "validity": "valid"},
+      {"result": "PART LOST", "displacement_mm": null, "pressure_kpa": 1e6, "command_kpa": 0,
+       "squeeze_kpa": null, "validity": "stale"}]})");
+}
+
+TEST_F(ProcessImage, AStatusStandsInItsRegisters) {
+  show_status(status(), settings_.registers, registers_);
+  EXPECT_EQ(value(Name::map_version), version_of_map);
+  EXPECT_EQ(value(Name::state), 4);
+  EXPECT_EQ(value(Name::result), 3);
+  EXPECT_EQ(value(Name::fault), 202);
+  EXPECT_EQ(value(Name::step), 3);
+  EXPECT_EQ(value(Name::fingers), 2);
+  EXPECT_EQ(value(Name::finger_result, 0), 1);
+  EXPECT_EQ(value(Name::finger_displacement, 0), 1235);
+  EXPECT_EQ(value(Name::finger_pressure, 0), no_value);
+  EXPECT_EQ(value(Name::finger_command, 0), 2050);
+  EXPECT_EQ(static_cast<std::int16_t>(value(Name::finger_squeeze, 0)), -50);
+  EXPECT_EQ(value(Name::finger_valid, 0), 1);
+  EXPECT_EQ(value(Name::finger_displacement, 1), no_value);
+  EXPECT_EQ(value(Name::finger_pressure, 1), 32767);
+  EXPECT_EQ(value(Name::finger_valid, 1), 0);
+}
+
+TEST_F(ProcessImage, WithoutADaemonNothingOfItIsLeft) {
+  show_status(status(), settings_.registers, registers_);
+  show_no_daemon(settings_.registers, registers_);
+  EXPECT_EQ(value(Name::state), 0);
+  EXPECT_EQ(value(Name::fingers), 0);
+  EXPECT_EQ(value(Name::finger_result, 0), 0);
+  EXPECT_EQ(value(Name::finger_displacement, 0), no_value);
+}
+
+TEST_F(ProcessImage, ACommandBecomesARequest) {
+  set(Name::command, 1);
+  set(Name::recipe, 1);
+  EXPECT_EQ(request_of(settings_, registers_)->dump(), R"({"command":"start","sequence":"pick_stone"})");
+  set(Name::squeeze, 425);
+  set(Name::speed, 500);  // recipe 1 has no parameter for it
+  EXPECT_EQ((*request_of(settings_, registers_))["parameters"].dump(), R"({"squeeze_kpa":4.25})");
+  set(Name::recipe, 99);
+  EXPECT_EQ(request_of(settings_, registers_).error(), Reason::no_such_recipe);
+  set(Name::command, 3);
+  EXPECT_EQ(request_of(settings_, registers_)->dump(), R"({"command":"vent"})");
+  for (const int wrong : {0, 6, 65535}) {
+    set(Name::command, static_cast<std::uint16_t>(wrong));
+    EXPECT_EQ(request_of(settings_, registers_).error(), Reason::no_such_command);
+  }
+}
+
+TEST_F(ProcessImage, ARefusalKeepsItsNumber) {
+  EXPECT_EQ(static_cast<int>(reason_of({{"code", "refused"}, {"refusal", {{"code", "R06"}}}})), 106);
+  EXPECT_EQ(reason_of({{"code", "sequence_refused"}}), Reason::sequence_refused);
+  EXPECT_EQ(reason_of({{"code", "owned"}}), Reason::not_allowed);
+  EXPECT_EQ(reason_of({{"code", "busy"}}), Reason::busy);
+}
+
+TEST_F(ProcessImage, TheMasterWritesCommandsAndNothingElse) {
+  const auto written = [this](std::uint16_t address) {
+    const modbus::Bytes pdu{6, static_cast<std::uint8_t>(address >> 8U), static_cast<std::uint8_t>(address),
+                            0, 1};
+    return registers_.answer(pdu).wrote;
+  };
+  EXPECT_TRUE(written(settings_.registers.at(Name::command)));
+  EXPECT_FALSE(written(settings_.registers.at(Name::state)));
+  EXPECT_FALSE(written(settings_.registers.at(Name::finger_result, 0)));
+  EXPECT_FALSE(written(50));
+}
+
+TEST(Writes, KnowsWhichRegistersARequestReaches) {
+  const modbus::Bytes single{6, 0, 5, 0, 1};
+  EXPECT_TRUE(writes(single, 5));
+  EXPECT_FALSE(writes(single, 4));
+  const modbus::Bytes several{16, 0, 2, 0, 3, 6, 0, 0, 0, 0, 0, 0};
+  EXPECT_TRUE(writes(several, 2));
+  EXPECT_TRUE(writes(several, 4));
+  EXPECT_FALSE(writes(several, 5));
+  const modbus::Bytes both{23, 0, 100, 0, 1, 0, 7, 0, 1, 2, 0, 0};
+  EXPECT_TRUE(writes(both, 7));
+  EXPECT_FALSE(writes(both, 100));
+  EXPECT_FALSE(writes(modbus::Bytes{3, 0, 5, 0, 1}, 5));
+  EXPECT_FALSE(writes(modbus::Bytes{6}, 0));
+}
+
+}  // namespace
+}  // namespace softgrip::plc

@@ -1,0 +1,76 @@
+#include "gateways/plc_file/settings.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace softgrip::plc {
+namespace {
+
+std::string shipped() {
+  std::ifstream file(SOFTGRIP_SOURCE_DIR "/config/plc.yaml");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// What is said of the shipped file with one text in the place of another.
+std::string said_of(const std::string& was, const std::string& is) {
+  std::string text = shipped();
+  const std::size_t at = text.find(was);
+  EXPECT_NE(at, std::string::npos) << was;
+  text.replace(at, was.size(), is);
+  const auto path = std::filesystem::temp_directory_path() / ("plc_" + std::to_string(::getpid()) + ".yaml");
+  std::ofstream(path) << text;
+  document::Problems problems;
+  const auto settings = load_settings(path, problems);
+  std::filesystem::remove(path);
+  EXPECT_EQ(settings.has_value(), problems.empty());
+  return problems.format();
+}
+
+TEST(PlcSettings, TheShippedFileIsRead) {
+  document::Problems problems;
+  const auto settings = load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
+  ASSERT_TRUE(settings) << problems.format();
+  EXPECT_EQ(settings->address, "127.0.0.1");
+  EXPECT_EQ(settings->allow, std::vector<std::string>{"127.0.0.1"});
+  EXPECT_EQ(settings->when_silent, Reaction::stop);
+  ASSERT_GE(settings->recipes.size(), 2U);
+  EXPECT_EQ(settings->recipes[0].squeeze, "squeeze_kpa");
+  EXPECT_EQ(settings->registers.at(Name::done_counter), 101);
+  EXPECT_EQ(settings->registers.at(Name::finger_displacement, 1), 131);
+  EXPECT_DOUBLE_EQ(settings->registers.of_one(Name::squeeze), 0.01);
+}
+
+TEST(PlcSettings, SaysWhatIsWrongAndWhere) {
+  EXPECT_NE(said_of("address: 101", "address: 100").find("is that of 'map_version' and of 'done_counter'"),
+            std::string::npos);
+  EXPECT_NE(said_of("first: 120", "first: 100").find("address 100"), std::string::npos);
+  EXPECT_NE(said_of("name: recipe", "name: receipt").find("recipe"), std::string::npos);
+  EXPECT_NE(said_of("name: heartbeat", "name: fingers").find("stands twice"), std::string::npos);
+  EXPECT_NE(said_of("unit: 0.01 kPa", "unit: 0.01 bar").find("not what one count stands for"),
+            std::string::npos);
+  EXPECT_NE(said_of("squeeze: squeeze_kpa", "squeeze: squeeze_mm").find("ends with `_kpa`"),
+            std::string::npos);
+  EXPECT_NE(said_of("number: 2", "number: 1").find("there is a recipe 1 already"), std::string::npos);
+  EXPECT_NE(said_of("address: 127.0.0.1 ", "address: localhost ").find("no numeric address"),
+            std::string::npos);
+  EXPECT_NE(said_of("when_silent: stop", "when_silent: hope").find("vent"), std::string::npos);
+  EXPECT_NE(said_of("silence_s", "silence_ms").find("silence_s"), std::string::npos);
+}
+
+TEST(PlcSettings, BeyondThisMachineMastersAreNamed) {
+  const std::string said = said_of(
+      "address: 127.0.0.1            # loopback; for a PLC the address of this computer in "
+      "the machine's network\n  port: 502\n  allow: [127.0.0.1]",
+      "address: 192.168.1.5\n  port: 502\n  allow: []");
+  EXPECT_NE(said.find("nobody may command the gripper who is not named"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace softgrip::plc

@@ -1,0 +1,162 @@
+"""A PLC grips through softgrip-plc: counters, registers, a master that falls silent, daemons that come and go."""
+
+import socket
+import time
+
+import bench
+import plc
+
+
+class Gateway(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        self.board = self.emulator("--object", "stone")
+        self.rig_path = self.rig(self.board.port)
+        self.softgripd = self.daemon(self.rig_path)
+        self.softgripd.wait_for_state("idle")
+
+    def gateway(self, **keys):
+        process = plc.Plc(self.folder, **keys)
+        self.processes.append(process)
+        return process
+
+    def master(self, gateway):
+        master = plc.Master(gateway)
+        self.addCleanup(master.close)
+        master.wait("state", plc.IDLE)
+        return master
+
+    def test_a_grip_with_a_squeeze_of_its_own(self):
+        master = self.master(self.gateway())
+        self.assertEqual(master.read("map_version"), 1)
+        self.assertEqual(master.command(plc.START, recipe=1, squeeze=425), (plc.ACCEPTED, 0))
+        master.wait("result", plc.HOLDING)
+        self.assertEqual(self.softgripd.status()["sequence"]["parameters"]["squeeze_kpa"], 4.25)
+        self.assertEqual(master.read("state"), plc.RUNNING)
+        self.assertEqual(master.read("fingers"), 2)
+        for finger in (0, 1):
+            self.assertEqual(master.finger(finger, "result"), plc.HOLDING)
+            self.assertAlmostEqual(master.finger(finger, "displacement") / 100, 12.3, delta=1)
+            self.assertEqual(master.finger(finger, "valid"), 1)
+        self.assertEqual(master.command(plc.RELEASE), (plc.ACCEPTED, 0))
+        master.wait("result", plc.RELEASED)
+        master.wait("state", plc.IDLE)
+        self.assertEqual(len(plc.started(self.softgripd)), 1)
+
+    def test_a_counter_that_is_written_again_starts_nothing(self):
+        master = self.master(self.gateway())
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+        for _ in range(50):
+            master.write("command_counter", master.counter, plc.START, 1)
+        self.assertEqual(master.command(plc.STOP)[0], plc.ACCEPTED)
+        self.softgripd.wait_for_state("idle")
+        for _ in range(50):
+            master.write("command_counter", master.counter, plc.START, 1)
+        self.assertEqual(len(plc.started(self.softgripd)), 1)
+        self.assertEqual(self.softgripd.status()["state"], "idle")
+
+    def test_what_is_refused_says_why(self):
+        master = self.master(self.gateway())
+        self.assertEqual(master.command(9), (plc.REFUSED, plc.NO_SUCH_COMMAND))
+        self.assertEqual(master.command(plc.START, recipe=77), (plc.REFUSED, plc.NO_SUCH_RECIPE))
+        self.assertEqual(master.command(plc.START, recipe=1, squeeze=3000), (plc.REFUSED, 7))  # beyond its range
+        self.assertEqual(master.command(plc.STOP), (plc.REFUSED, 107))  # R07: nothing to stop
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+        self.assertEqual(master.command(plc.START, recipe=1), (plc.REFUSED, 102))  # R02: not idle
+        self.assertEqual(len(plc.started(self.softgripd)), 1)
+
+    def test_a_gateway_that_comes_back_does_not_take_an_old_command_for_a_new_one(self):
+        gateway = self.gateway()
+        master = self.master(gateway)
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+        counter = master.counter
+        self.assertEqual(master.command(plc.STOP)[0], plc.ACCEPTED)
+        self.softgripd.wait_for_state("idle")
+        gateway.kill()
+        again = plc.Plc(self.folder, name="softgrip-plc-again")
+        self.processes.append(again)
+        # A PLC that writes its block every cycle, without having noticed.
+        cyclic = plc.Master(again, synchronise=False)
+        self.addCleanup(cyclic.close)
+        for _ in range(20):
+            cyclic.write("command_counter", counter, plc.START, 1)
+        self.assertEqual(cyclic.done(counter), (plc.REFUSED, plc.FIRST_AFTER_START))
+        time.sleep(0.3)
+        self.assertEqual(len(plc.started(self.softgripd)), 1)
+        cyclic.wait("state", plc.IDLE)
+        cyclic.counter = counter
+        self.assertEqual(cyclic.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+
+    def test_a_master_that_falls_silent_is_noticed_and_the_rig_stops(self):
+        master = self.master(self.gateway(changes=((r"silence_s: 2", "silence_s: 0.5"),)))
+        self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
+        time.sleep(0.8)  # who never beat is not watched
+        self.assertEqual((master.read("master"), self.softgripd.status()["state"]), (0, "running"))
+        master.beat_until(lambda: master.read("result") == plc.HOLDING)
+        self.assertEqual(master.read("master"), 1)
+        ended = self.softgripd.wait_for_event("sequence_finished")
+        self.assertEqual(ended["code"], "stopped")
+        self.assertEqual(master.read("master"), 2)
+        self.assertEqual(master.command(plc.START, recipe=1), (plc.REFUSED, plc.MASTER_SILENT))
+        self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
+        self.softgripd.wait_for_state("idle")
+        master.beat()
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+
+    def test_without_a_daemon_everything_is_refused_and_with_the_next_one_all_is_well(self):
+        master = self.master(self.gateway())
+        self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
+        self.softgripd.kill()
+        master.wait("state", plc.NO_DAEMON_STATE)
+        self.assertEqual((master.read("fingers"), master.finger(0, "displacement")), (0, plc.NOT_GIVEN))
+        self.assertEqual(master.command(plc.VENT), (plc.REFUSED, plc.NO_DAEMON))
+        before = master.read("heartbeat")
+        bench.wait_for("its heartbeat", lambda: master.read("heartbeat") != before)
+        again = self.daemon(self.rig_path)
+        master.wait("state", plc.IDLE)
+        self.assertEqual(plc.started(again), [])
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+
+    def test_masters_are_few_and_known(self):
+        gateway = self.gateway(changes=((r"max_masters: 4", "max_masters: 2"), (r"idle_s: 60", "idle_s: 5")))
+        master = self.master(gateway)
+        other = socket.create_connection(("127.0.0.1", gateway.port))
+        self.addCleanup(other.close)
+        bench.wait_for("its place", lambda: master.read("map_version") == 1)
+        crowd = [socket.create_connection(("127.0.0.1", gateway.port)) for _ in range(50)]
+        for client in crowd:
+            client.settimeout(bench.PATIENCE_S)
+            self.assertEqual(client.recv(1), b"")
+            client.close()
+            master.read("state")  # who asks keeps its own place
+
+        def others_place():
+            master.read("state")
+            other.settimeout(0.05)
+            try:
+                return other.recv(1) == b""
+            except TimeoutError:
+                return False
+        bench.wait_for("the end of one that says nothing", others_place)
+        self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
+
+    def test_who_is_not_on_the_list_is_shown_out(self):
+        gateway = self.gateway(changes=((r"allow: \[127.0.0.1\]", "allow: [127.0.0.2]"),))
+        with socket.create_connection(("127.0.0.1", gateway.port)) as client:
+            client.settimeout(bench.PATIENCE_S)
+            self.assertEqual(client.recv(1), b"")
+
+    def test_bytes_that_are_no_request_end_the_connection_and_nothing_else(self):
+        gateway = self.gateway()
+        master = self.master(gateway)
+        for data in (b"GET / HTTP/1.1\r\n\r\n", b"\xff" * 5000, bytes([0, 1, 0, 0, 0, 0, 1, 3])):
+            with socket.create_connection(("127.0.0.1", gateway.port)) as client:
+                client.settimeout(bench.PATIENCE_S)
+                client.sendall(data)
+                with bench.contextlib.suppress(ConnectionResetError):
+                    self.assertEqual(client.recv(1), b"")
+        self.assertEqual(master.read("state"), plc.IDLE)
+
+
+if __name__ == "__main__":
+    bench.main()

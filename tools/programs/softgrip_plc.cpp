@@ -1,0 +1,89 @@
+// softgrip-plc: softgripd for PLCs and robot controllers, on Modbus TCP.
+
+#include <sys/signalfd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "base/version.h"
+#include "drivers/modbus_server/listener.h"
+#include "gateways/plc/server.h"
+#include "tools/command_line/command.h"
+#include "tools/command_line/configuration.h"
+#include "tools/command_line/usage.h"
+
+namespace softgrip::plc {
+namespace {
+
+struct Options {
+  std::string config;
+  std::string socket;
+  std::optional<std::uint16_t> port;
+  bool check = false;
+};
+
+void add_options(CLI::App& program, Options& options) {
+  options.config = tools::configuration_path("plc.yaml");
+  program.set_version_flag("--version", std::string{"softgrip-plc "}.append(software_version()));
+  program.add_option("--config", options.config, "What is offered to whom, and the register map")
+      ->capture_default_str();
+  program.add_option("--socket", options.socket, "The daemon's socket, in the place of the file's");
+  program.add_option("--port", options.port, "In the place of the file's; 0 takes a free one");
+  program.add_flag("--check", options.check, "Read the file, say what is wrong with it, and end");
+  program.footer("Ready once 'listening on ADDRESS:PORT' is printed.");
+}
+
+/// Blocked for the whole process, as a descriptor.
+Descriptor take_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
+}
+
+ExitCode run(const Options& options) {
+  if (const auto code = tools::unreadable(options.config)) return *code;
+  document::Problems problems;
+  auto settings = load_settings(options.config, problems);
+  if (!settings) return tools::refuse(problems);
+  if (!options.socket.empty()) settings->socket = options.socket;
+  if (options.port) settings->port = *options.port;
+  if (options.check) return ExitCode::done;
+  Descriptor signals = take_signals();
+  auto listener = modbus::listen_tcp(settings->address, settings->port);
+  if (!listener) return tools::fail(ExitCode::io, listener.error());
+  std::printf("listening on %s:%u\n", settings->address.c_str(), unsigned{listener->port});
+  std::fflush(stdout);
+  Gateway gateway(*settings);
+  Server(*settings, gateway, std::move(listener->socket), std::move(signals)).run();
+  return ExitCode::done;
+}
+
+}  // namespace
+}  // namespace softgrip::plc
+
+int main(int argc, char** argv) {
+  using namespace softgrip;
+  try {
+    CLI::App program{"softgripd for PLCs and robot controllers: a Modbus TCP server in front of its socket.",
+                     "softgrip-plc"};
+    plc::Options options;
+    plc::add_options(program, options);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return tools::end_of(program, error, argc, argv);
+    }
+    return static_cast<int>(plc::run(options));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softgrip-plc: %s\n", error.what());
+  }
+  return static_cast<int>(ExitCode::failed);
+}
