@@ -1,7 +1,6 @@
 """softgrip export, read back by programs of other people, and what identify, validate and diagnose write per log."""
 
 import csv
-import importlib.util
 import json
 import math
 import shutil
@@ -14,10 +13,6 @@ import foreign_files
 import mcap_reading
 
 MODEL = "config/models/bench_twin.yaml"
-
-
-def has(module):
-    return importlib.util.find_spec(module) is not None
 
 
 # By the index, and once more from the beginning with every checksum.
@@ -84,7 +79,6 @@ class Signals(bench.BenchTest):
         self.assertEqual([float(row["right_displacement_mm"]) for row in rows],
                          [float(repr(0.1 * tip)) for tip in foreign_files.TIP])
 
-    @unittest.skipUnless(has("pandas"), "python3-pandas is not installed")
     def test_wide_csv_is_read_by_pandas(self):
         import pandas
         self.export("wide.csv")
@@ -93,14 +87,12 @@ class Signals(bench.BenchTest):
         self.assertTrue(math.isnan(frame["left_displacement_mm"][0]))
         self.assertEqual(frame["left_displacement_mm"][1:].tolist(), foreign_files.TIP[1:])
 
-    @unittest.skipUnless(has("numpy"), "python3-numpy is not installed")
     def test_wide_csv_is_read_by_numpy(self):
         import numpy
         self.export("wide.csv")
         table = numpy.genfromtxt(self.folder / "wide.csv", delimiter=",", names=True, usecols=(0, 1))
         self.assertEqual(table["left_pressure_command_kpa"].tolist(), foreign_files.COMMAND)
 
-    @unittest.skipUnless(has("scipy"), "python3-scipy is not installed")
     def test_mat_is_read_by_scipy(self):
         import scipy.io
         done = self.export("run.mat", "--json")
@@ -112,13 +104,6 @@ class Signals(bench.BenchTest):
         self.assertEqual(mat["left_displacement_mm"][1:].tolist(), foreign_files.TIP[1:])
         self.export("again.mat")
         self.assertEqual((self.folder / "run.mat").read_bytes(), (self.folder / "again.mat").read_bytes())
-
-    @unittest.skipUnless(shutil.which("octave-cli"), "octave is not installed")
-    def test_mat_is_read_by_octave(self):
-        self.export("run.mat")
-        done = subprocess.run(["octave-cli", "--eval", "load run.mat; printf('%.17g\\n', left_pressure_kpa)"],
-                              cwd=self.folder, capture_output=True, text=True, check=True, timeout=120)
-        self.assertEqual([float(line) for line in done.stdout.split()], foreign_files.PRESSURE)
 
     def test_mat_is_imported_again(self):
         self.export("run.mat")

@@ -1,0 +1,212 @@
+#!/usr/bin/python3
+"""The demo's identification in Octave and in Python with SciPy, beside softgrip, on one page.
+
+    bench/beside.py [--build build/release] [--page docs/explanation/beside-octave-and-scipy.md] [--runs 3]
+
+Needs Debian's octave, octave-optim, liboctave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests benchmarks).
+Octave's and SciPy's programs stand in bench/beside; the simulator that both drive is compiled C. Every number of the page
+is measured by this run. Exit codes: 0 the page is written, 1 a program failed or what was exported was not read back.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import resource
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BESIDE = ROOT / "bench/beside"
+SIGNALS = ("tp1", "steps", "sp2")
+TRUTH = ROOT / "config/models/bench_twin.yaml"
+PUBLISHED = ROOT / "config/models/zhang2025.yaml"
+SIMULATOR, MEX = ROOT / "bench/sysid_peer_simulator.c", ROOT / "bench/sysid_peer_mex.c"
+
+
+def said(words, folder):
+    """A program's standard output, and the processor time that it took on all cores: others run beside it."""
+    began = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([str(word) for word in words], cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, words))}:\n{done.stdout}{done.stderr}")
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return done.stdout, used.ru_utime + used.ru_stime - began.ru_utime - began.ru_stime
+
+
+def repeated(runs, words, folder):
+    """The first run's output and the median processor time of `runs`."""
+    outputs = [said(words, folder) for _ in range(runs)]
+    return outputs[0][0], statistics.median(seconds for _, seconds in outputs)
+
+
+def lines_of(*files):
+    """Lines that are neither empty nor a comment."""
+    comment = ("#", "%", "/*", "*", "//", '"""')
+    return sum(bool(line.strip()) and not line.strip().startswith(comment)
+               for file in files for line in file.read_text().splitlines())
+
+
+def mm(value):
+    return f"{value:.3f}"
+
+
+def table(head, rows):
+    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head),
+            *("| " + " | ".join(map(str, row)) + " |" for row in rows), ""]
+
+
+class Study:
+    def __init__(self, build, runs, folder):
+        self.softgrip, self.runs, self.folder = build / "tools/softgrip", runs, folder
+        self.octave = ["octave-cli", "--quiet", "--no-history", "--norc", "--eval"]
+
+    def prepare(self):
+        for signal in SIGNALS:
+            said([self.softgrip, "simulate", "--model", TRUTH, "--input", signal, "--out", f"{signal}.csv",
+                  "--noise-mm", 0.05, "--seed", 3, "--rate-hz", 100], self.folder)
+        for file in (*BESIDE.iterdir(), SIMULATOR, MEX):
+            if file.is_file():
+                shutil.copy(file, self.folder)
+        said(["cc", "-O2", "-shared", "-fPIC", "-o", "simulator.so", SIMULATOR.name, "-lm"], self.folder)
+        said(["mkoctfile", "-O2", "--mex", "-o", "simulate.mex", MEX.name, SIMULATOR.name], self.folder)
+
+    def peers(self):
+        logs = [f"{signal}.csv" for signal in SIGNALS]
+        text, seconds = repeated(self.runs, ["/usr/bin/python3", "identify.py", *logs], self.folder)
+        self.scipy = {**json.loads(text), "processor_s": seconds}
+        call = "identify('.', " + ", ".join(f"'{log}'" for log in logs) + ")"
+        text, seconds = repeated(self.runs, [*self.octave, call], self.folder)
+        self.octave_result = {**json.loads(text), "processor_s": seconds}
+
+    def ours(self):
+        words = [self.softgrip, "identify", "--start", PUBLISHED, "--data", "tp1.csv", "--validate", "steps.csv",
+                 "sp2.csv", "--out", "identified"]
+        _, self.identify_s = repeated(self.runs, words, self.folder)
+        self.identified = json.loads((self.folder / "identified/identify.json").read_text())
+        _, self.diagnose_s = said([self.softgrip, "diagnose", "--model", PUBLISHED, "--data", "tp1.csv", "--out",
+                                   "diagnosis", "--no-closed-loop"], self.folder)
+        self.diagnosis = json.loads((self.folder / "diagnosis/diagnosis.json").read_text())
+        said([self.softgrip, "validate", "--model", "diagnosis/model.yaml", "--data", "steps.csv", "sp2.csv", "--out",
+              "extended"], self.folder)
+        self.extended = json.loads((self.folder / "extended/validate.json").read_text())["rmse_mm"]
+
+    def exports(self):
+        """The largest difference between what was exported and what each reader makes of it [mm]."""
+        import pandas
+        import scipy.io
+        said([self.softgrip, "export", "tp1.csv", "--out", "out.mat"], self.folder)
+        said([self.softgrip, "export", "tp1.csv", "--out", "wide.csv"], self.folder)
+        with open(self.folder / "tp1.csv", newline="") as file:
+            was = [float(row["displacement_mm"]) for row in csv.DictReader(file)]
+        by_octave, _ = said([*self.octave, "load out.mat; printf('%.17g\\n', displacement_mm)"], self.folder)
+        read = {"Octave, `load out.mat`": [float(line) for line in by_octave.split()],
+                "SciPy, `scipy.io.loadmat`":
+                    scipy.io.loadmat(self.folder / "out.mat", squeeze_me=True)["displacement_mm"].tolist(),
+                "pandas, `read_csv` of the wide CSV":
+                    pandas.read_csv(self.folder / "wide.csv", float_precision="round_trip")["displacement_mm"].tolist()}
+        self.readers = []
+        for reader, values in read.items():
+            if len(values) != len(was):
+                sys.exit(f"{reader}: {len(values)} values of {len(was)}")
+            self.readers.append((reader, len(values), max(abs(a - b) for a, b in zip(values, was))))
+        if any(difference > 0 for _, _, difference in self.readers):
+            sys.exit(f"what was exported is not what was read back: {self.readers}")
+
+    def summary_rows(self):
+        ours = self.identified
+        held_out = ours["validation"]["rmse_mm"]
+        rows = [("Octave, `lsqcurvefit`", lines_of(BESIDE / "identify.m") + lines_of(SIMULATOR, MEX),
+                 f"{self.octave_result['processor_s']:.1f}", mm(self.octave_result["rmse_mm"]),
+                 *map(mm, self.octave_result["held_out_rmse_mm"]), f"{self.octave_result['reached']} of 20"),
+                ("Python, `scipy.optimize.least_squares`", lines_of(BESIDE / "identify.py") + lines_of(SIMULATOR),
+                 f"{self.scipy['processor_s']:.1f}", mm(self.scipy["rmse_mm"]), *map(mm, self.scipy["held_out_rmse_mm"]),
+                 f"{self.scipy['reached']} of 20"),
+                ("`softgrip identify`", 0, f"{self.identify_s:.1f}", mm(ours["rmse_mm"]["tp1"]), mm(held_out["steps"]),
+                 mm(held_out["sp2"]), f"{ours['multistart']['share_reached_best'] * ours['multistart']['starts']:.0f} of "
+                 f"{ours['multistart']['starts']}"),
+                ("`softgrip diagnose`, on `tp1` alone", 0, f"{self.diagnose_s:.1f}", "-", mm(self.extended["steps"]),
+                 mm(self.extended["sp2"]), "-")]
+        return rows
+
+    def unsaid_rows(self):
+        beta = self.identified["parameters"]["bouc_wen.beta_mm_per_kpa"]
+        half = (beta["ci95"][1] - beta["ci95"][0]) / 2 if beta["ci95"] else float("nan")
+        causes = ", ".join(
+            f"{cause['id']} (" + ", ".join(f"{name} {value['value']:.3g}" for name, value in cause["parameters"].items())
+            + ")" for cause in self.diagnosis["causes"])
+        residuals = self.identified["residuals"]
+        return [
+            ("how well beta is known (95 %)",
+             f"± {self.scipy['beta_ci95']:.2g} mm/kPa from the Jacobian, as if every sample were independent",
+             f"± {half:.2g} mm/kPa: the residuals resemble each other (lag-1 correlation "
+             f"{residuals['lag1_correlation']:.2f}), {residuals['effective_samples']:.0f} independent samples' worth"),
+            ("that the model has no inverse", f"nothing: beta {self.scipy['beta']:.3f}, alpha {self.scipy['alpha']:.3f} mm/kPa "
+             "are printed side by side", next((w for w in self.identified["warnings"] if "wrong way" in w), "-")),
+            ("why", "nothing: the error is small", f"{self.diagnosis['verdict']}: {causes or '-'}"),
+            ("what naming it gains", "-", f"held out, steps {mm(self.identified['validation']['rmse_mm']['steps'])} → "
+             f"{mm(self.extended['steps'])} mm, sp2 {mm(self.identified['validation']['rmse_mm']['sp2'])} → "
+             f"{mm(self.extended['sp2'])} mm"),
+            ("a log in the wrong unit, upside down, swapped", "a fit, or one that does not converge",
+             "named with the number that gave it away ([how](../how-to/import.md#what-is-doubted))"),
+            ("whether the numbers come out again", "whatever was kept by hand",
+             "`softgrip report --verify`: hashes, call and every number ([how](../how-to/identify.md))")]
+
+    def page(self):
+        return "\n".join([
+            "# Beside Octave and SciPy",
+            "",
+            "The demo's identification three times: in Octave with `lsqcurvefit` (the paper used MATLAB's), in Python with SciPy,",
+            "and with `softgrip`. One log is fitted (`tp1`), two are foretold (`steps`, `sp2`); 20 starts each. This page is",
+            "written by `bench/beside.py`, with every number in it; it needs `scripts/packages.sh tests benchmarks`.",
+            "",
+            "## Steps",
+            "",
+            *table(["", "Octave", "SciPy", "softgrip"], [
+                ("read the log", "`csvread`, columns by number", "`genfromtxt`, columns by name",
+                 "`--data`; what is no log is refused with its line, or [imported](../how-to/import.md)"),
+                ("simulate the model", f"{SIMULATOR.name}, {lines_of(SIMULATOR)} lines of C, and {lines_of(MEX)} to call it",
+                 "the same C, by ctypes", "there"),
+                ("parametrise, bound, start", "logarithms and bounds by hand, 20 starts in a loop",
+                 "the same", "`--starts 20`"),
+                ("fit", "`lsqcurvefit`", "`least_squares`", "`softgrip identify`"),
+                ("intervals", "from the Jacobian by hand", "from the Jacobian by hand", "in the report"),
+                ("foretell the other logs", "by hand", "by hand", "`--validate`"),
+                ("figures, series, report", "by hand", "by hand", "`report.html`, `series.csv`")]),
+            "## Lines, time, errors",
+            "",
+            *table(["", "lines to write", "processor time [s]", "fitted: tp1 [mm]", "held out: steps [mm]", "held out: sp2 [mm]",
+                    "starts that reached the best"], self.summary_rows()),
+            f"Lines without blank ones and comments, the simulator's among them. Processor time is that of the",
+            f"whole program on all cores, median of {self.runs} runs; of a diagnosis, one run. The three fits are the same fit: the",
+            "problem is small, and with a compiled simulator any of these optimisers solves it.",
+            "",
+            "## What neither of them says",
+            "",
+            *table(["", "Octave and SciPy", "softgrip"], self.unsaid_rows()),
+            "## What comes out can be read",
+            "",
+            "`softgrip export tp1.csv` as .mat and as wide CSV, read back:",
+            "",
+            *table(["reader", "values", "largest difference [mm]"],
+                   [(reader, count, f"{difference:g}") for reader, count, difference in self.readers])])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/explanation/beside-octave-and-scipy.md")
+    parser.add_argument("--runs", type=int, default=3)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        study = Study(options.build.resolve(), options.runs, pathlib.Path(folder))
+        for step in (study.prepare, study.peers, study.ours, study.exports):
+            step()
+        options.page.write_text(study.page(), encoding="utf-8")
+    print(options.page)
+
+
+if __name__ == "__main__":
+    main()
