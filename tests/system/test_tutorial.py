@@ -1,0 +1,124 @@
+"""docs/tutorial carried out from the words of its pages: what stands in a fence is what is run."""
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+import bench
+
+FENCE = re.compile(r"^```\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def fences(page):
+    """The page's commands, fence by fence."""
+    return FENCE.findall((bench.SOURCE / "docs/tutorial" / page).read_text(encoding="utf-8"))
+
+
+class FirstRun(bench.BenchTest):
+    """docs/tutorial/first-run.md. Of its words only the port, the socket and the folder of runs are changed: other
+    tests run beside it; and the bounds of time are those of a busy machine."""
+
+    def setUp(self):
+        super().setUp()
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self.rig(port).rename(self.folder / "config/rig_tcp.yaml")
+        self.build, self.rig_words, self.daemon_words, self.session, self.desk = fences("first-run.md")
+        self.environment = {
+            **os.environ, "PATH": f"{bench.BUILD}/tools:{bench.BUILD}/daemon:{os.environ['PATH']}",
+            "SOFTGRIP_SOCKET": f"{self.folder}/softgripd.sock"}
+
+    def said(self, words):
+        return words.replace("/tmp/softgrip.sock", f"{self.folder}/softgripd.sock").replace(
+            "/tmp/softgrip-runs", f"{self.folder}/runs")
+
+    def beside(self, name, words):
+        """What the page runs in a terminal of its own."""
+        line = f"PATH={self.environment['PATH']}; exec {self.said(words).strip()}"
+        process = bench.Process(name, ["bash", "-c", line], self.folder)
+        self.processes.append(process)
+        return process
+
+    def shell(self, words, timeout_s=bench.PATIENCE_S):
+        done = subprocess.run(["bash", "-euo", "pipefail", "-c", self.said(words)], cwd=self.folder, text=True,
+                              capture_output=True, timeout=timeout_s, env=self.environment)
+        self.assertEqual(done.returncode, 0, f"{words}\n{done.stdout}\n{done.stderr}")
+        return done.stdout
+
+    def status(self):
+        """Nothing while the daemon does not listen yet."""
+        done = subprocess.run([bench.SOFTGRIP, "status", "--json"], cwd=self.folder, text=True, capture_output=True,
+                              env=self.environment)
+        return json.loads(done.stdout) if done.returncode == 0 else {}
+
+    def state(self):
+        return self.status().get("state")
+
+    def wait_for_state(self, state):
+        bench.wait_for(f"state {state}", lambda: self.state() == state)
+
+    def test_a_grip(self):
+        self.assertIn("export PATH=$PWD/build/release/tools", self.build)
+        rig = self.beside("softgrip-rig", self.rig_words)
+        bench.wait_for("the rig", lambda: "listening" in rig.output())
+        self.beside("softgripd", self.daemon_words)
+        self.wait_for_state("idle")
+        said = self.shell(self.session)
+        for word in re.search(r"# (\w+), then (\w+)", self.session).groups():
+            self.assertIn(word, said, "the page says so beside `softgrip start`")
+        self.assertTrue((self.folder / "pick.svg").read_text().startswith("<svg"))
+        rig.end(signal.SIGINT)
+        self.wait_for_state("faulted")
+        rig = self.beside("softgrip-rig-again", self.rig_words)
+        bench.wait_for("the rig", lambda: "listening" in rig.output())
+        bench.wait_for("the session", lambda: "The board answers again" in self.shell("softgrip events"))
+        time.sleep(1)  # what a hand on a keyboard takes, at least
+        self.assertEqual(self.state(), "faulted", "nothing moves before somebody says so")
+        self.shell("softgrip acknowledge")
+        self.wait_for_state("idle")
+
+    def test_a_diagnosis(self):
+        began = time.monotonic()
+        self.shell(self.desk, timeout_s=170)
+        print(f"identified and diagnosed in {time.monotonic() - began:.0f} s")
+        identified = json.loads((self.folder / "identified/identify.json").read_text())
+        self.assertLess(identified["rmse_percent_of_span"]["tp1"], 1, "it fits well")
+        self.assertTrue(any("wrong way" in warning for warning in identified["warnings"]), identified["warnings"])
+        diagnosis = json.loads((self.folder / "diagnosis/diagnosis.json").read_text())
+        self.assertEqual({cause["id"] for cause in diagnosis["causes"]}, {"transport_delay", "valve_lag"})
+        rig = self.folder / "config/rig_tcp.yaml"
+        rig.write_text(rig.read_text().replace("model: models/bench_twin.yaml", "model: ../diagnosis/model.yaml"))
+        self.softgrip("check", rig)
+
+
+class ForeignLog(bench.BenchTest):
+    """docs/tutorial/foreign-log.ipynb: its cells, one after the other, in one Python. That is what a kernel does with
+    cells without magic, and it needs none of the fifty packages of a kernel."""
+
+    def test_the_notebook_goes_from_a_foreign_file_to_a_figure(self):
+        notebook = json.loads((bench.SOURCE / "docs/tutorial/foreign-log.ipynb").read_text(encoding="utf-8"))
+        self.assertEqual(notebook["nbformat"], 4)
+        cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+        self.assertFalse(any(cell["outputs"] for cell in notebook["cells"] if cell["cell_type"] == "code"),
+                         "outputs are made where it is run, not kept")
+        program = self.write("cells.py", "\n\n".join(cells))
+        done = subprocess.run([sys.executable, program], cwd=self.folder, text=True, capture_output=True, timeout=170,
+                              env={**os.environ, "MPLBACKEND": "Agg", "PATH": f"{bench.BUILD}/tools:{os.environ['PATH']}"})
+        self.assertEqual(done.returncode, 0, f"{done.stdout}\n{done.stderr}")
+        difference_mm = float(re.search(r"(\S+) mm is the largest difference", done.stdout).group(1))
+        self.assertLess(difference_mm, 1e-9)
+        self.assertIn("['transport_delay', 'valve_lag']", done.stdout)
+        rmse = {name: float(value) for name, value in re.findall(r"residual_(\w+)_mm\s+(\S+)", done.stdout)}
+        self.assertLess(rmse["extended"], rmse["recalibrated"])
+        self.assertIn("error [mm]", (self.folder / "figure.svg").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
