@@ -40,7 +40,7 @@ softgrip_room(simulation/emulator
   USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
 # The file of softgrip-plc, which `softgrip check` reads too.
-softgrip_room(gateways/plc_file USES document drivers/modbus_server)
+softgrip_room(gateways/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt)
 
 # The rig file.
 softgrip_room(rig

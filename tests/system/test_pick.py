@@ -39,7 +39,8 @@ class Pick(bench.BenchTest):
         for channel in ("left", "right"):
             rows = self.rows(recording, channel)
             self.assertGreater(len(rows), 500)
-            held = [row for row in rows if row["result"] == "HOLDING"]
+            held = [row for row in rows if row["result"] == "holding"]
+            self.assertGreater(len(held), 200)
             # The stone: 12 mm, and a tenth of the way to where the free finger would be.
             for row in held[50:-50]:
                 self.assertTrue(11.5 < float(row["displacement_mm"]) < 13.5, row)
