@@ -148,10 +148,21 @@ Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_
     channel.resynchronise = still && follows;
     const bool too_far =
         (sequence.needs_detection & bit(i)) != 0 && std::abs(channel.controller.offset_mm()) > margin_mm_;
-    all = all && still && (!follows || (seen.synchronised && !too_far));
+    const bool off_model = follows && (!seen.synchronised || too_far);
+    channel.lack = !still ? RestLack::moves : off_model ? RestLack::off_model : RestLack::none;
+    all = all && channel.lack == RestLack::none;
   }
   if (all) return Rest::at_rest;
   return time_s - seeking_since_s_ >= rest_timeout_s_ ? Rest::timed_out : Rest::pending;
+}
+
+void RigController::tell_lacks(std::uint32_t channels) noexcept {
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const Channel& channel = channels_[i];
+    if ((channels & bit(i)) != 0 && channel.lack != RestLack::none)
+      output_.events.add_of_channel(i, Event::Kind::not_at_rest, channel.lack, 0,
+                                    channel.controller.offset_mm());
+  }
 }
 
 void RigController::carry_out(const Orders& orders, double time_s) noexcept {
@@ -159,7 +170,10 @@ void RigController::carry_out(const Orders& orders, double time_s) noexcept {
   if (orders.interrupt) player_.interrupt(*orders.interrupt, supervisor_.venting(), events);
   if (orders.acknowledged_by) player_.acknowledge(*orders.acknowledged_by, events);
   if (orders.vented != 0) player_.vented(orders.vented, events);
-  if (orders.no_rest != 0) player_.refuse(orders.no_rest, events);
+  if (orders.no_rest != 0) {
+    tell_lacks(orders.no_rest);
+    player_.refuse(orders.no_rest, events);
+  }
   if (orders.seek_rest) {
     seeking_since_s_ = time_s;
     for (Channel& channel : channels_) channel.rest.start();

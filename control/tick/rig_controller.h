@@ -50,11 +50,13 @@ class RigController {
     bool valid_before = true;
     bool unsteady_before = false;
     bool resynchronise = false;
+    RestLack lack = RestLack::none;  ///< what the finger lacked when rest was last looked for
   };
 
   [[nodiscard]] Facts facts(const TickInput& input, double time_s) noexcept;
   Rest look_for_rest(const PreparedSequence& sequence, double time_s) noexcept;
   void carry_out(const Orders& orders, double time_s) noexcept;
+  void tell_lacks(std::uint32_t channels) noexcept;
   void play(double time_s) noexcept;
   void release(double time_s) noexcept;
   void conclude_sequence(const SequencePlayer::Outcome& outcome, Phase phase) noexcept;

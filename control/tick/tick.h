@@ -39,6 +39,9 @@ enum class State : std::uint8_t {
   return state == State::resynchronising || state == State::running;
 }
 
+/// Why a finger is not at rest where a start needs it: it moves, or rests elsewhere than its model.
+enum class RestLack : std::uint8_t { none, moves, off_model };
+
 /// How a sequence ended.
 enum class SequenceEnd : std::uint8_t { done, failed, stopped, faulted };
 [[nodiscard]] std::string_view name_of(SequenceEnd end) noexcept;
@@ -151,11 +154,12 @@ struct Event {
     reading_unsteady,  ///< the reading jumps there and back, again and again
     reading_steady,    ///< it has been calm for a while
     start_checked,     ///< a start would be accepted now
+    not_at_rest,  ///< why a start found no rest: detail: RestLack; value: how far off its model it is [mm]
   };
   Kind kind = Kind::state_changed;
   std::uint8_t channel = whole_rig;
-  /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity, SequenceEnd, OnContact or
-  /// BindingLimit, by kind.
+  /// State, FaultCode, GripResult, step, RefusalCode, HealthState, Validity, SequenceEnd, OnContact,
+  /// BindingLimit or RestLack, by kind.
   std::uint16_t detail = 0;
   std::uint32_t request = 0;  ///< the id of the request it answers, or 0
   double value = 0;           ///< a number that goes with it (a deficit, an age, where a contact was), or 0

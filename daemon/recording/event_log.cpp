@@ -209,12 +209,23 @@ void describe_check(const Event&, const Sequence*, EventEntry& entry) {
   entry.text = "A start was checked: it would be accepted now.";
 }
 
+void describe_lack(const Event& event, const Sequence*, EventEntry& entry) {
+  const bool moves = static_cast<control::RestLack>(event.detail) == control::RestLack::moves;
+  entry.code = moves ? "moves" : "off_model";
+  entry.text = moves ? std::string("The finger did not come to rest: nothing was started.")
+                     : fmt::format(
+                           "The finger rests {:.1f} mm off its model: nothing was started. Creep that a grip "
+                           "left is gone after a minute or two; what stays is the sensor's zero.",
+                           event.value);
+  entry.severity = Severity::warning;
+}
+
 struct Telling {
   std::string_view kind;
   void (*describe)(const Event& event, const Sequence* sequence, EventEntry& entry);
 };
 /// In the order of control::Event::Kind.
-constexpr std::array<Telling, 18> tellings{{
+constexpr std::array<Telling, 19> tellings{{
     {"state_changed", describe_state},
     {"fault_latched", describe_fault},
     {"fault_acknowledged", describe_acknowledged},
@@ -233,8 +244,9 @@ constexpr std::array<Telling, 18> tellings{{
     {"reading_unsteady", describe_unsteady},
     {"reading_steady", describe_unsteady},
     {"start_checked", describe_check},
+    {"not_at_rest", describe_lack},
 }};
-static_assert(static_cast<std::size_t>(Kind::start_checked) + 1 == tellings.size());
+static_assert(static_cast<std::size_t>(Kind::not_at_rest) + 1 == tellings.size());
 
 }  // namespace
 

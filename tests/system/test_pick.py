@@ -39,7 +39,7 @@ class Pick(bench.BenchTest):
         for channel in ("left", "right"):
             rows = self.rows(recording, channel)
             self.assertGreater(len(rows), 500)
-            held = [row for row in rows if row["result"] == "holding"]
+            held = [row for row in rows if row["result"] == "holding" and row["step"] == "2"]
             self.assertGreater(len(held), 200)
             # The stone: 12 mm, and a tenth of the way to where the free finger would be.
             for row in held[50:-50]:

@@ -98,8 +98,11 @@ class Python(bench.BenchTest):
         again.wait_for_state("idle")
         gripper.reconnect()
         self.assertEqual(gripper.wait(timeout_s=PATIENCE_S), softgrip.SequenceEnd.FAULTED)
+        # The finger has been squeezing until now: what creeps back would look like a part.
         gripper.start("pick_stone")
-        gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
+        with self.assertRaises(softgrip.GripFailed):
+            gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
+        self.assertEqual({event["code"] for event in again.events() if event["kind"] == "not_at_rest"}, {"off_model"})
 
     def test_tasks_share_one_connection(self):
         async def work():

@@ -201,6 +201,10 @@ TEST_F(Requests, AFingerThatDoesNotComeToRestIsNotStarted) {
   EXPECT_EQ(rig.output().state, State::idle);
   EXPECT_EQ(rig.result(0), GripResult::error);
   EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
+  const auto why = std::ranges::find(rig.events, Event::Kind::not_at_rest, &Event::kind);
+  ASSERT_NE(why, rig.events.end());
+  EXPECT_EQ(why->channel, 0);
+  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(RestLack::moves));
 }
 
 TEST_F(Requests, AHeldFingerMustBeAtRestToo) {
@@ -229,6 +233,11 @@ TEST_F(Requests, AGripThatNeedsTheModelIsNotStartedWhereTheModelIsFarOff) {
   rig.run(settings.rest_timeout_s + 1);
   EXPECT_EQ(rig.output().state, State::idle);
   EXPECT_EQ(rig.result(0), GripResult::error);
+  const auto why = std::ranges::find(rig.events, Event::Kind::not_at_rest, &Event::kind);
+  ASSERT_NE(why, rig.events.end());
+  EXPECT_EQ(why->channel, 0);
+  EXPECT_EQ(why->detail, static_cast<std::uint16_t>(RestLack::off_model));
+  EXPECT_NEAR(why->value, 1.5 * settings.detection.margin_mm, 0.1);
   const PreparedSequence track = example_sequence("track_sine", settings);
   rig.request(Request::Kind::start, &track);
   EXPECT_TRUE(rig.run_until(State::running, 2)) << "a study does not need it";
