@@ -40,12 +40,12 @@ softgrip_room(simulation/emulator
   USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
 # The file of softgrip-plc, which `softgrip check` reads too.
-softgrip_room(gateways/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt)
+softgrip_room(rig/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt)
 
 # The rig file.
 softgrip_room(rig
   USES base document model/file control/feedforward control/tick control/sequences drivers/board drivers/modbus
-       drivers/iio drivers/gpio simulation/plant gateways/plc_file)
+       drivers/iio drivers/gpio simulation/plant rig/plc_file)
 
 # The daemon.
 softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig LIBRARIES spdlog::spdlog)
@@ -101,7 +101,7 @@ softgrip_room(tools/command_line USES base document model model/file sysid/logs 
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
 softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 # What stands in front of the daemon's socket, in processes of their own.
-softgrip_room(gateways/plc USES base drivers/modbus_server gateways/plc_file tools/client
+softgrip_room(tools/plc USES base drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
@@ -143,5 +143,5 @@ softgrip_program(softgrip-rig "tools/programs/softgrip_rig.cpp;tools/programs/so
        simulation/emulator rig tools/command_line
   LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip-plc tools/programs/softgrip_plc.cpp tools
-  ROOM gateways/plc USES base drivers/modbus_server gateways/plc_file tools/command_line
+  ROOM tools/plc USES base drivers/modbus_server rig/plc_file tools/command_line
   LIBRARIES CLI11::CLI11)

@@ -9,9 +9,9 @@
 
 #include "control/sequences/prepare_sequence.h"
 #include "control/sequences/sequence_file.h"
-#include "gateways/plc_file/settings.h"
 #include "model/file/model_file.h"
 #include "rig/board_map_file.h"
+#include "rig/plc_file/settings.h"
 #include "rig/rig_comparison.h"
 #include "rig/rig_file.h"
 

@@ -12,10 +12,10 @@
 
 #include "base/version.h"
 #include "drivers/modbus_server/listener.h"
-#include "gateways/plc/server.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/usage.h"
+#include "tools/plc/server.h"
 
 namespace softgrip::plc {
 namespace {

@@ -1,4 +1,4 @@
-#include "gateways/plc/process_image.h"
+#include "tools/plc/process_image.h"
 
 #include <modbus/modbus.h>
 

@@ -1,4 +1,4 @@
-#include "gateways/plc_file/register_map.h"
+#include "rig/plc_file/register_map.h"
 
 #include <algorithm>
 #include <charconv>

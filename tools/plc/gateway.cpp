@@ -1,11 +1,11 @@
-#include "gateways/plc/gateway.h"
+#include "tools/plc/gateway.h"
 
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "base/grid.h"
-#include "gateways/plc/process_image.h"
+#include "tools/plc/process_image.h"
 
 namespace softgrip::plc {
 

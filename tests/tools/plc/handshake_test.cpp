@@ -1,8 +1,8 @@
-#include "gateways/plc/handshake.h"
+#include "tools/plc/handshake.h"
 
 #include <gtest/gtest.h>
 
-#include "gateways/plc/master_watch.h"
+#include "tools/plc/master_watch.h"
 
 namespace softgrip::plc {
 namespace {

@@ -10,10 +10,10 @@
 #include "base/time.h"
 #include "drivers/modbus_server/registers.h"
 #include "drivers/modbus_server/reply.h"
-#include "gateways/plc/handshake.h"
-#include "gateways/plc/master_watch.h"
-#include "gateways/plc_file/settings.h"
+#include "rig/plc_file/settings.h"
 #include "tools/client/daemon_client.h"
+#include "tools/plc/handshake.h"
+#include "tools/plc/master_watch.h"
 
 namespace softgrip::plc {
 

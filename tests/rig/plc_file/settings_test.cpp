@@ -1,4 +1,4 @@
-#include "gateways/plc_file/settings.h"
+#include "rig/plc_file/settings.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "gateways/plc/gateway.h"
+#include "tools/plc/gateway.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -8,7 +8,7 @@
 
 #include "base/grid.h"
 #include "drivers/modbus_server/listener.h"
-#include "gateways/plc/server.h"
+#include "tools/plc/server.h"
 
 namespace softgrip::plc {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "document/node.h"
 #include "document/problem.h"
-#include "gateways/plc_file/register_map.h"
+#include "rig/plc_file/register_map.h"
 
 namespace softgrip::plc {
 

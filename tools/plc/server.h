@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "base/descriptor.h"
 #include "drivers/modbus_server/connection.h"
-#include "gateways/plc/gateway.h"
+#include "tools/plc/gateway.h"
 
 namespace softgrip::plc {
 

@@ -1,4 +1,4 @@
-#include "gateways/plc/server.h"
+#include "tools/plc/server.h"
 
 #include <netdb.h>
 #include <poll.h>

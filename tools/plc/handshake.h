@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "gateways/plc/codes.h"
+#include "tools/plc/codes.h"
 
 namespace softgrip::plc {
 

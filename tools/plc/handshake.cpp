@@ -1,4 +1,4 @@
-#include "gateways/plc/handshake.h"
+#include "tools/plc/handshake.h"
 
 namespace softgrip::plc {
 

@@ -10,8 +10,8 @@
 #include <tl/expected.hpp>
 
 #include "drivers/modbus_server/registers.h"
-#include "gateways/plc/codes.h"
-#include "gateways/plc_file/settings.h"
+#include "rig/plc_file/settings.h"
+#include "tools/plc/codes.h"
 
 namespace softgrip::plc {
 
