@@ -1,8 +1,10 @@
 #include "sysid/identification/estimates.h"
+#include "base/numbers.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/numbers.h"
 #include "sysid/identification/combinations.h"
 
 namespace softgrip::sysid {
@@ -38,6 +40,12 @@ Estimate estimate_of(const FittedPoint& fit, std::size_t index) {
 }
 
 }  // namespace
+
+std::string text_of(const Interval& interval, double value, std::string_view between) {
+  constexpr double loose = 20;
+  if (interval.upper - interval.lower > loose * std::abs(value)) return "not determined by these logs";
+  return significant(interval.lower, 4) + std::string(between) + significant(interval.upper, 4);
+}
 
 std::vector<Estimate> parameter_estimates(const FittedPoint& fit) {
   const FitSpace& space = fit.residuals.space();

@@ -23,6 +23,10 @@ struct Interval {
   double upper = 0;
 };
 
+/// "0.127 .. 0.133" with `between` " .. "; of an interval more than twenty times as wide as the value, that
+/// these logs do not determine it.
+[[nodiscard]] std::string text_of(const Interval& interval, double value, std::string_view between);
+
 /// One number that was estimated, or kept.
 struct Estimate {
   std::string name;  ///< "kelvin_voigt.k1_kpa_per_mm", "tp1: offset_mm", "instantaneous_gain_mm_per_kpa"

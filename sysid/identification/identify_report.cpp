@@ -38,9 +38,8 @@ std::string logs_in_words(const Identification& r) {
   return r.scores.size() == 1 ? r.scores.front().name : std::to_string(r.scores.size()) + " logs";
 }
 
-std::string range(const std::optional<Interval>& interval, int digits) {
-  if (!interval) return "";
-  return significant(interval->lower, digits) + " to " + significant(interval->upper, digits);
+std::string range(const std::optional<Interval>& interval, double value) {
+  return interval ? text_of(*interval, value, " to ") : "";
 }
 
 Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
@@ -58,8 +57,8 @@ Table estimate_table(const std::vector<Estimate>& list, std::string caption) {
   }
   table.header.insert(table.header.end(), {"unit", "identified", formulas ? "what it is" : "note"});
   for (const Estimate& e : list) {
-    std::vector<std::string> row{e.name, significant(e.value, 5), range(e.ci95, 4)};
-    if (profiled) row.push_back(range(e.profile95, 4));
+    std::vector<std::string> row{e.name, significant(e.value, 5), range(e.ci95, e.value)};
+    if (profiled) row.push_back(range(e.profile95, e.value));
     const std::string identified = e.identifiable ? "yes" : e.free || !e.formula.empty() ? "no" : "";
     row.insert(row.end(), {e.unit, identified, formulas && e.note.empty() ? e.formula : e.note});
     table.rows.push_back(std::move(row));

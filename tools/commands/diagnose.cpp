@@ -66,12 +66,7 @@ void print_cause(const sysid::NamedCause& named) {
               fixed(named.heldout_gain_percent.lower, 1).c_str(),
               fixed(named.heldout_gain_percent.upper, 1).c_str());
   for (const sysid::CauseParameter& p : named.parameters) {
-    // An interval many times the value says that the logs do not determine it.
-    const bool loose = p.ci95.upper - p.ci95.lower > 20 * std::abs(p.value);
-    const std::string interval =
-        p.has_interval && loose ? "(not determined by these logs)"
-        : p.has_interval ? "(" + significant(p.ci95.lower, 4) + " .. " + significant(p.ci95.upper, 4) + ")"
-                         : "";
+    const std::string interval = p.has_interval ? "(" + sysid::text_of(p.ci95, p.value, " .. ") + ")" : "";
     std::printf("      %-22s %s %s\n", p.name.c_str(), significant(p.value, 5).c_str(), interval.c_str());
   }
   for (const sysid::Cause& rival : named.rivals) {

@@ -88,10 +88,7 @@ std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const
 
 void print_estimates(const std::vector<sysid::Estimate>& list) {
   for (const sysid::Estimate& e : list) {
-    std::string range;
-    if (e.ci95) {
-      range = significant(e.ci95->lower, 4) + " .. " + significant(e.ci95->upper, 4);
-    }
+    const std::string range = e.ci95 ? sysid::text_of(*e.ci95, e.value, " .. ") : "";
     std::printf("  %-34s %12s  %-26s %s\n", e.name.c_str(), significant(e.value, 5).c_str(), range.c_str(),
                 e.note.c_str());
   }

@@ -123,10 +123,8 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
   table.header = {"cause", "parameter", "value", "95 % interval", "unit"};
   table.numeric = {false, false, true, true, false};
   const auto row = [](const NamedCause& named, const CauseParameter& p) -> std::vector<std::string> {
-    return {
-        std::string(named.cause.title), p.name, significant(p.value, 4),
-        p.has_interval ? significant(p.ci95.lower, 4) + " to " + significant(p.ci95.upper, 4) : "not fitted",
-        p.unit};
+    return {std::string(named.cause.title), p.name, significant(p.value, 4),
+            p.has_interval ? text_of(p.ci95, p.value, " to ") : "not fitted", p.unit};
   };
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {

@@ -40,6 +40,13 @@ std::vector<Log> two_logs(const Model& truth, double rate_hz = 50, double noise_
           simulated(truth, SignalName::sp2, rate_hz, noise_mm, 12)};
 }
 
+TEST(IntervalText, SaysWhereLogsDetermineNothing) {
+  EXPECT_EQ(text_of({0.127, 0.133}, 0.13, " .. "), "0.127 .. 0.133");
+  EXPECT_EQ(text_of({-1, 1}, 0.2, " to "), "-1 to 1");
+  EXPECT_EQ(text_of({1e-191, 1e187}, 0.015, " .. "), "not determined by these logs");
+  EXPECT_EQ(text_of({-3, 3}, 0.2, " .. "), "not determined by these logs");
+}
+
 TEST(Identify, FindsTheBaseChainFromNothingButTheData) {
   const Model truth = scattered(loaded("zhang2025"), 0.05, 1);
   const auto logs = two_logs(truth);
