@@ -64,9 +64,11 @@ def rounded(text):
 
 def sentences(page):
     """What --check compares: numbers are #; where lines break, what is left out, in which part of an exchange a
-    connection broke and how much was seen of a model so far do not count."""
+    connection broke, which of two guards said so last and how much was seen of a model so far do not count."""
     text = re.sub(r"-?\d+(\.\d+)?", "#", page.replace("[...]", ""))
     text = re.sub(r"disconnected:[^.]*", "disconnected", " ".join(text.split()))
+    text = text.replace("watchdog_tripped: no good exchange for # s: the board's own watchdog acts after # s",
+                        "disconnected")
     text = re.sub(r"model (unknown|healthy|suspect)", "model", text)
     return re.split(r"(?<=[.:]) ", text)
 
