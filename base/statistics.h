@@ -2,6 +2,7 @@
 // Statistics that several rooms need.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -16,6 +17,31 @@ template <class T>
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
+
+/// What a straight line through pairs of values needs, gathered pair by pair; those that are not finite are
+/// passed over. Variances and covariance are times the count squared.
+struct PairSums {
+  double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
+
+  void add(double a, double b) {
+    if (!std::isfinite(a) || !std::isfinite(b)) return;
+    count += 1;
+    x += a;
+    y += b;
+    xx += a * a;
+    yy += b * b;
+    xy += a * b;
+  }
+  [[nodiscard]] double variance_x() const { return count * xx - x * x; }
+  [[nodiscard]] double covariance() const { return count * xy - x * y; }
+  /// Of y over x, by least squares; meaningless where x does not vary.
+  [[nodiscard]] double slope() const { return covariance() / variance_x(); }
+  /// 0 where either does not vary.
+  [[nodiscard]] double correlation() const {
+    const double product = variance_x() * (count * yy - y * y);
+    return product > 0 ? covariance() / std::sqrt(product) : 0;
+  }
+};
 
 /// Quantile of Student's t for a two-sided 95 % interval, by Cornish's and Fisher's expansion (Abramowitz and
 /// Stegun 26.7.5); the error at 3 degrees of freedom is below 1 %.

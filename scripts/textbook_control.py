@@ -111,10 +111,9 @@ def errors_mm(recording, names, frequencies_hz):
     return errors
 
 
-def followed(build, work, finger, gains, frequencies_hz):
+def followed(build, work, finger, span_mm, gains, frequencies_hz):
     """The errors of so many controllers on as many equal fingers, side by side."""
     make, seed = finger
-    span_mm = span_of(work)
     mean_mm, amplitude_mm = 0.45 * span_mm, 0.25 * span_mm
     low = f"  - move: {{displacement_mm: {mean_mm - amplitude_mm:.3f}, speed_mm_per_s: 5, settle_s: 3, on_contact: ignore}}\n"
     steps = "".join(low + f"  - track: {{mean_mm: {mean_mm:.3f}, amplitude_mm: {amplitude_mm:.3f}, frequency_hz: {hz:g}, "
@@ -148,10 +147,11 @@ def follow(build, work, finger, frequencies_hz):
         run(build / "tools/softgrip", "identify", "--structure", structure, "--data", *sorted((work / "logs").glob("*.csv")),
             "--out", work / structure, "--threads", 1)
     gains = tuned(build / "tools/softgrip", work)
-    trial = followed(build, work, finger, {name: gains[name] for name in PIDS}, TRIAL_HZ)
+    span_mm = span_of(work)
+    trial = followed(build, work, finger, span_mm, {name: gains[name] for name in PIDS}, TRIAL_HZ)
     pids = sorted(PIDS, key=lambda name: trial[TRIAL_HZ[0], name])[:2]
-    errors = followed(build, work, finger, {name: gains[name] for name in (*OTHERS, *pids)}, frequencies_hz)
-    return {"make": make, "seed": seed, "span_mm": span_of(work), "pids": pids, "errors_mm": errors}
+    errors = followed(build, work, finger, span_mm, {name: gains[name] for name in (*OTHERS, *pids)}, frequencies_hz)
+    return {"make": make, "seed": seed, "span_mm": span_mm, "pids": pids, "errors_mm": errors}
 
 
 def beyond_noise(error_mm):

@@ -121,23 +121,20 @@ RefusalCode Supervisor::refusal_of_start(const TickInput& input, const Facts& fa
   return RefusalCode::none;
 }
 
-void Supervisor::answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept {
+bool Supervisor::refuses_start(const TickInput& input, const Facts& facts, EventList& events) const noexcept {
   const RefusalCode refusal = refusal_of_start(input, facts);
-  if (refusal == RefusalCode::none) {
-    events.add(Event::Kind::start_checked, 0, input.request.id);
-  } else {
-    events.add(Event::Kind::request_refused, refusal, input.request.id);
-  }
+  if (refusal != RefusalCode::none) events.add(Event::Kind::request_refused, refusal, input.request.id);
+  return refusal != RefusalCode::none;
+}
+
+void Supervisor::answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept {
+  if (!refuses_start(input, facts, events)) events.add(Event::Kind::start_checked, 0, input.request.id);
 }
 
 void Supervisor::answer_start(const TickInput& input, const Facts& facts, Orders& orders,
                               EventList& events) noexcept {
+  if (refuses_start(input, facts, events)) return;
   const Request& request = input.request;
-  const RefusalCode refusal = refusal_of_start(input, facts);
-  if (refusal != RefusalCode::none) {
-    events.add(Event::Kind::request_refused, refusal, request.id);
-    return;
-  }
   sequence_ = request.sequence;
   start_request_ = request.id;
   orders.seek_rest = true;

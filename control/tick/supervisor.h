@@ -65,6 +65,9 @@ class Supervisor {
   void answer(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
   void answer_start(const TickInput& input, const Facts& facts, Orders& orders, EventList& events) noexcept;
   [[nodiscard]] RefusalCode refusal_of_start(const TickInput& input, const Facts& facts) const noexcept;
+  /// Tells a refusal.
+  [[nodiscard]] bool refuses_start(const TickInput& input, const Facts& facts,
+                                   EventList& events) const noexcept;
   void answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept;
   void answer_vent(const Request& request, Orders& orders, EventList& events) noexcept;
   void answer_release(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;

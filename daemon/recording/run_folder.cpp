@@ -26,6 +26,10 @@ std::string csv_in(const std::string& path) {
   return path + "/run.csv";
 }
 
+std::string there_already(const std::string& csv) {
+  return csv + " exists already; a recording is never overwritten";
+}
+
 /// All of `text`, or the errno of what stopped it.
 int write_all(int descriptor, std::string_view text) {
   while (!text.empty()) {
@@ -43,7 +47,7 @@ int write_all(int descriptor, std::string_view text) {
 std::string recorded_already(const std::string& path) {
   std::error_code ignored;
   if (path.empty() || !std::filesystem::exists(csv_in(path), ignored)) return {};
-  return csv_in(path) + " exists already; a recording is never overwritten";
+  return there_already(csv_in(path));
 }
 
 tl::expected<RunFolder, std::string> RunFolder::create(const std::string& path, std::string_view header,
@@ -53,7 +57,7 @@ tl::expected<RunFolder, std::string> RunFolder::create(const std::string& path, 
   if (error) return tl::unexpected(fmt::format("{}: {}", path, error.message()));
   const std::string file = csv_in(path);
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, file_mode);
-  if (descriptor < 0 && errno == EEXIST) return tl::unexpected(recorded_already(path));
+  if (descriptor < 0 && errno == EEXIST) return tl::unexpected(there_already(file));
   if (descriptor < 0) return tl::unexpected(sentence(file, errno));
   RunFolder folder(path, descriptor, durable);
   if (!folder.append(header)) {

@@ -1,5 +1,5 @@
 #pragma once
-// Listening sockets of the emulator.
+// Listening sockets.
 
 #include <cstdint>
 #include <string>

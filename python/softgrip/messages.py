@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 import enum
 from collections.abc import Mapping
-from typing import Any, Optional
+from typing import Any, Optional, TypeVar
+
+T = TypeVar("T")
 
 
 class Result(str, enum.Enum):
@@ -40,6 +42,14 @@ def _taken(cls: Any, json: Mapping[str, Any]) -> dict[str, Any]:
     return {field.name: json[field.name] for field in dataclasses.fields(cls) if field.name in json}
 
 
+class _AsSaid:
+    """Its fields are the keys of the JSON."""
+
+    @classmethod
+    def of(cls: type[T], json: Mapping[str, Any]) -> T:
+        return cls(**_taken(cls, json))
+
+
 @dataclasses.dataclass(frozen=True)
 class Hello:
     api: int
@@ -56,17 +66,13 @@ class Hello:
 
 
 @dataclasses.dataclass(frozen=True)
-class Fault:
+class Fault(_AsSaid):
     code: str  # "F202"
     name: str
     meaning: str
     remedy: str
     channel: Optional[str]  # None: the whole rig
     next: str  # what clears it
-
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Fault:
-        return cls(**_taken(cls, json))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -145,7 +151,7 @@ class Status:
 
 
 @dataclasses.dataclass(frozen=True)
-class Event:
+class Event(_AsSaid):
     id: int
     time_s: float
     at: str  # UTC
@@ -159,13 +165,9 @@ class Event:
     value: Optional[float] = None
     parameters: Optional[Mapping[str, float]] = None
 
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Event:
-        return cls(**_taken(cls, json))
-
 
 @dataclasses.dataclass(frozen=True)
-class Parameter:
+class Parameter(_AsSaid):
     name: str
     unit: str
     lower: float
@@ -173,13 +175,9 @@ class Parameter:
     default: float
     about: str
 
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Parameter:
-        return cls(**_taken(cls, json))
-
 
 @dataclasses.dataclass(frozen=True)
-class Problem:
+class Problem(_AsSaid):
     """What is wrong with a sequence, and where."""
 
     file: str
@@ -188,10 +186,6 @@ class Problem:
     line_text: str
     message: str
     hint: str
-
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Problem:
-        return cls(**_taken(cls, json))
 
     def __str__(self) -> str:
         where = f"{self.file}:{self.line}:{self.column}" if self.line_text else self.file

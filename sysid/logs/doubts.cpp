@@ -25,28 +25,8 @@ constexpr double clear_correlation = 0.5;
 /// Loops that run backwards by more than this share are no drift of the sensor.
 constexpr double clear_loop_backwards = -0.02;
 
-struct Sums {
-  double count = 0, x = 0, y = 0, xx = 0, yy = 0, xy = 0;
-
-  void add(double a, double b) {
-    if (!std::isfinite(a) || !std::isfinite(b)) return;
-    count += 1;
-    x += a;
-    y += b;
-    xx += a * a;
-    yy += b * b;
-    xy += a * b;
-  }
-  [[nodiscard]] double variance_x() const { return count * xx - x * x; }
-  [[nodiscard]] double covariance() const { return count * xy - x * y; }
-  [[nodiscard]] double correlation() const {
-    const double product = variance_x() * (count * yy - y * y);
-    return product > 0 ? covariance() / std::sqrt(product) : 0;
-  }
-};
-
-Sums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
-  Sums sums;
+PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
+  PairSums sums;
   for (std::size_t i = 0; i < x.size() && i < y.size(); ++i) sums.add(x[i], y[i]);
   return sums;
 }
@@ -79,7 +59,7 @@ int best_lag(const std::vector<double>& earlier, const std::vector<double>& late
   double best = 0;
   int lag = 0;
   for (int shift = -farthest; shift <= farthest; ++shift) {
-    Sums sums;
+    PairSums sums;
     for (std::size_t i = 0; i < a.size(); ++i) {
       const auto at = static_cast<std::ptrdiff_t>(i) + shift;
       if (at >= 0 && at < static_cast<std::ptrdiff_t>(b.size()))
@@ -94,7 +74,7 @@ int best_lag(const std::vector<double>& earlier, const std::vector<double>& late
 
 void doubt_measured_pressure(const Log& log, std::vector<std::string>& doubts) {
   if (log.pressure_kpa.empty() || log.pressure_kpa == log.pressure_command_kpa) return;
-  const Sums sums = sums_of(log.pressure_command_kpa, log.pressure_kpa);
+  const PairSums sums = sums_of(log.pressure_command_kpa, log.pressure_kpa);
   if (sums.correlation() < -clear_correlation) {
     doubts.push_back("the measured pressure falls when the command rises (correlation " +
                      significant(sums.correlation(), 3) +
@@ -102,7 +82,7 @@ void doubt_measured_pressure(const Log& log, std::vector<std::string>& doubts) {
     return;
   }
   if (sums.correlation() < clear_correlation) return;
-  const double slope = sums.covariance() / sums.variance_x();
+  const double slope = sums.slope();
   if (const std::string units = pressure_units_apart(slope); !units.empty())
     doubts.push_back("the measured pressure is " + significant(slope, 3) + " times the command, as " + units +
                      " are: is the unit of one of them another? `softgrip import --unit` says it");
@@ -211,8 +191,8 @@ std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
   for (const Log& log : logs) {
     for (const std::string& doubt : doubts_about(log))
       doubts.push_back(logs.size() > 1 ? log.name + ": " + doubt : doubt);
-    const Sums sums = sums_of(drive_of(log), log.displacement_mm);
-    gains.push_back(sums.correlation() > clear_correlation ? sums.covariance() / sums.variance_x() : 0);
+    const PairSums sums = sums_of(drive_of(log), log.displacement_mm);
+    gains.push_back(sums.correlation() > clear_correlation ? sums.slope() : 0);
   }
   std::vector<double> clear = gains;
   std::erase(clear, 0);
@@ -229,9 +209,9 @@ std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
 
 std::string doubt_about_scale(const std::string& log_name, const std::vector<double>& prediction_mm,
                               const std::vector<double>& reading_mm) {
-  const Sums sums = sums_of(prediction_mm, reading_mm);
+  const PairSums sums = sums_of(prediction_mm, reading_mm);
   if (sums.correlation() < clear_correlation) return {};
-  const double factor = sums.covariance() / sums.variance_x();
+  const double factor = sums.slope();
   const std::string mistake = mistaken_unit(factor);
   if (mistake.empty()) return {};
   return log_name + ": the readings are " + significant(factor, 3) +

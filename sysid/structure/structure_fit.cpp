@@ -303,17 +303,13 @@ std::vector<Record> without_wandering(std::vector<Record> records, BaseStructure
   structure.wandering = true;
   const FittedStructure fit = fit_form(records, structure, grid_for(records), options);
   const ColumnLayout layout(fit.structure, fit.grid, records);
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const double first_s = records[r].time_s.front();
-    const auto at_knot_mm = [&](std::size_t knot) {
-      return knot == 0 ? 0 : fit.weights(layout.wandering(r) + static_cast<Eigen::Index>(knot) - 1);
-    };
-    for (std::size_t i = 0; i < records[r].size(); ++i) {
-      const double place = (records[r].time_s[i] - first_s) / ColumnLayout::knot_interval_s;
-      const auto knot = std::min(static_cast<std::size_t>(place), layout.knots(r) - 1);
-      const double part = place - static_cast<double>(knot);
-      records[r].reading_mm[i] -= (1 - part) * at_knot_mm(knot) + part * at_knot_mm(knot + 1);
-    }
+  const Eigen::MatrixXd columns = structure_columns(records, fit.structure, fit.grid, fit.numbers);
+  Eigen::Index row = 0;
+  for (const RowPlace& place : rows_of(records)) {
+    const Eigen::Index first = layout.wandering(place.record);
+    const auto knots = static_cast<Eigen::Index>(layout.knots(place.record));
+    records[place.record].reading_mm[place.sample] -=
+        columns.row(row++).segment(first, knots).dot(fit.weights.segment(first, knots));
   }
   return records;
 }

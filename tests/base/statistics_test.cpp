@@ -1,6 +1,7 @@
 #include "base/statistics.h"
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,6 +16,21 @@ TEST(Median, IsTheUpperOneOfTwoInTheMiddle) {
   EXPECT_EQ(median_of(std::span(none)), 0);
   std::array<int, 4> part{7, 8, 9, -1};
   EXPECT_EQ(median_of(std::span(part).first(3)), 8);
+}
+
+TEST(PairSums, FindTheLineAndPassOverWhatIsNoNumber) {
+  PairSums sums, still;
+  for (const double x : {1.0, 2.0, 4.0}) {
+    sums.add(x, 3 - 2 * x);
+    still.add(5, x);
+  }
+  sums.add(std::nan(""), 100);
+  sums.add(100, std::nan(""));
+  EXPECT_EQ(sums.count, 3);
+  EXPECT_NEAR(sums.slope(), -2, 1e-12);
+  EXPECT_NEAR(sums.correlation(), -1, 1e-12);
+  EXPECT_EQ(still.variance_x(), 0);
+  EXPECT_EQ(still.correlation(), 0);
 }
 
 TEST(TQuantile, MatchesTables) {

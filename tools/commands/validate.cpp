@@ -69,15 +69,16 @@ ExitCode run(const Options& options, const std::vector<std::string>& call) {
   v.at_most_percent = options.at_most_percent;
   v.call = call;
   const std::string json = sysid::validate_json(v, *logs);
-  if (!options.figures.empty()) {
-    const sysid::Page page = sysid::validate_page(v, *logs);
-    if (const auto written = write_figures(options.figures, page.figures()); !written)
+  std::optional<sysid::Page> page;
+  if (!options.figures.empty() || !options.out.empty()) page = sysid::validate_page(v, *logs);
+  if (page) {
+    if (const auto written = write_figures(options.figures, page->figures()); !written)
       return fail(ExitCode::io, written.error());
   }
   if (!options.out.empty()) {
     const std::filesystem::path out(options.out);
-    for (const auto& [name, text] : {std::pair<const char*, std::string>{"validate.json", json},
-                                     {"report.html", sysid::validate_page(v, *logs).to_html()}}) {
+    for (const auto& [name, text] :
+         {std::pair<const char*, std::string>{"validate.json", json}, {"report.html", page->to_html()}}) {
       if (const auto written = write_file((out / name).string(), text); !written) {
         return fail(ExitCode::io, written.error());
       }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
 
 namespace softgrip::tools {
 namespace {
@@ -40,22 +41,10 @@ Played of_waveform(const sysid::Waveform& waveform) {
   return asked;
 }
 
-/// Readings over predictions within a band of predictions: the slope of a straight line.
-class Slope {
- public:
-  void add(double x, double y) {
-    count_ += 1;
-    x_ += x;
-    y_ += y;
-    xx_ += x * x;
-    xy_ += x * y;
-  }
-  [[nodiscard]] bool known() const { return count_ >= 10 && count_ * xx_ - x_ * x_ > 0; }
-  [[nodiscard]] double value() const { return (count_ * xy_ - x_ * y_) / (count_ * xx_ - x_ * x_); }
-
- private:
-  double count_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
-};
+/// Whether so many readings over predictions say how steep they are.
+bool is_known(const PairSums& sums) {
+  return sums.count >= 10 && sums.variance_x() > 0;
+}
 
 }  // namespace
 
@@ -82,7 +71,7 @@ std::optional<std::string> touched(const sysid::Validation& predicted, const sys
   for (std::size_t i = 0; i < log.size(); ++i) {
     if (log.pressure_command_kpa[i] <= known_kpa) highest_mm = std::max(highest_mm, free_mm[i]);
   }
-  Slope lower, upper;
+  PairSums lower, upper;
   double stopped_at_mm = 0, deficit_mm = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
     const double reading_mm = log.displacement_mm[i];
@@ -93,9 +82,9 @@ std::optional<std::string> touched(const sysid::Validation& predicted, const sys
     deficit_mm = std::max(deficit_mm, free_mm[i] - reading_mm);
     stopped_at_mm = std::max(stopped_at_mm, reading_mm);
   }
-  if (!lower.known() || !upper.known()) return std::nullopt;
+  if (!is_known(lower) || !is_known(upper)) return std::nullopt;
   // Half as steep, and a tenth of the stroke short: no error of a model that fitted the campaign so far.
-  const bool stopped = upper.value() < 0.5 * lower.value() && deficit_mm > 0.1 * highest_mm;
+  const bool stopped = upper.slope() < 0.5 * lower.slope() && deficit_mm > 0.1 * highest_mm;
   if (!stopped) return std::nullopt;
   return "the finger touched something: it stopped at " + significant(stopped_at_mm, 3) + " mm, " +
          significant(deficit_mm, 2) + " mm short of its free motion; clear its way and start again";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/numbers.h"
+#include "sysid/diagnosis/report/report_tables.h"
 #include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_scale.h"
 
@@ -46,10 +47,6 @@ std::vector<Row> rows_of(const Diagnosis& d) {
     }
   }
   return rows;
-}
-
-std::string range(const Spread& s) {
-  return fixed(s.value, 1) + " (" + fixed(s.lower, 1) + " to " + fixed(s.upper, 1) + ")";
 }
 
 void draw_interval(Canvas& canvas, const Row& row, const Scale& x, double y) {
@@ -96,7 +93,7 @@ Figure forest_figure(const Diagnosis& d) {
                  row.rival ? Colour::muted : Colour::text);
     if (row.gain != nullptr) {
       draw_interval(canvas, row, x, y);
-      canvas.words({number_px, y + 4}, Anchor::start, range(*row.gain),
+      canvas.words({number_px, y + 4}, Anchor::start, percent_range(*row.gain),
                    row.rival ? Colour::muted : Colour::text);
     } else {
       canvas.words({number_px, y + 4}, Anchor::start, "the same to every command", Colour::muted);

@@ -12,10 +12,6 @@ namespace {
 
 constexpr const char* dash = "\xe2\x80\x93";
 
-std::string percent_range(const Spread& s) {
-  return fixed(s.value, 1) + " (" + fixed(s.lower, 1) + " to " + fixed(s.upper, 1) + ")";
-}
-
 std::string p_text(double p) {
   return p < 0.001 ? "< 0.001" : fixed(p, 3);
 }
@@ -47,6 +43,10 @@ std::string value_at(const model::Model& model, const std::string& path) {
 }
 
 }  // namespace
+
+std::string percent_range(const Spread& share) {
+  return fixed(share.value, 1) + " (" + fixed(share.lower, 1) + " to " + fixed(share.upper, 1) + ")";
+}
 
 Table rmse_table(const Diagnosis& d) {
   Table table;

@@ -10,6 +10,8 @@
 
 namespace softgrip::sysid {
 
+/// "41.2 (33.6 to 46.6)": a share in per cent with its interval.
+[[nodiscard]] std::string percent_range(const Spread& share);
 /// Errors of the three models: all readings, blocks held out, logs held out.
 [[nodiscard]] Table rmse_table(const Diagnosis& diagnosis);
 /// Share and p-value of every condition, for the models that there are.
