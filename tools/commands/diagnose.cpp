@@ -129,7 +129,7 @@ std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& co
        {std::pair<const char*, const ClosedLoopScheme*>{"PID alone", &gain.pid_alone},
         {"recalibrated model", &gain.recalibrated},
         {"extended model", &gain.extended}}) {
-    if (scheme->refused.empty())
+    if (scheme == &gain.pid_alone || scheme->feedforward != control::FeedforwardKind::none)
       curves.schemes.push_back({name, scheme->rmse_mm, scheme->trace.displacement_mm});
   }
   return curves;

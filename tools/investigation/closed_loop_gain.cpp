@@ -59,6 +59,18 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
+  /// With the inverse of the whole model; without one, with a plan by it.
+  [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
+    ClosedLoopScheme scheme = measured(believed, FeedforwardKind::full_model);
+    if (scheme.refused.empty()) return scheme;
+    ClosedLoopScheme planned = measured(believed, FeedforwardKind::planned);
+    if (planned.refused.empty()) {
+      planned.refused = scheme.refused;
+      return planned;
+    }
+    return scheme;
+  }
+
   [[nodiscard]] ClosedLoopScheme measured(const model::Model& believed, FeedforwardKind kind) const {
     ClosedLoopScheme scheme;
     control::TrackingRun run = run_of(body_of(believed), kind);
@@ -67,6 +79,12 @@ class Rigs {
         !accepted) {
       scheme.refused = accepted.error().text;
       return scheme;
+    }
+    scheme.feedforward = kind;
+    control::PressurePlan plan;
+    if (kind == FeedforwardKind::planned) {
+      plan = control::plan_for(run);
+      run.plan = &plan;
     }
     scheme.pid =
         control::search_gains([&](const control::PidSettings& pid) { return cost(run, pid); }, gain_search);
@@ -122,11 +140,10 @@ class Rigs {
 };
 
 Json scheme_json(const ClosedLoopScheme& scheme) {
-  Json json{{"kp_kpa_per_mm", scheme.pid.kp_kpa_per_mm},
-            {"ki_kpa_per_mm_s", scheme.pid.ki_kpa_per_mm_s},
-            {"kd_kpa_s_per_mm", scheme.pid.kd_kpa_s_per_mm}};
-  json["feedforward"] = scheme.refused.empty() ? "full_model" : "none";
-  return json;
+  return {{"kp_kpa_per_mm", scheme.pid.kp_kpa_per_mm},
+          {"ki_kpa_per_mm_s", scheme.pid.ki_kpa_per_mm_s},
+          {"kd_kpa_s_per_mm", scheme.pid.kd_kpa_s_per_mm},
+          {"feedforward", control::name_of(scheme.feedforward)}};
 }
 
 }  // namespace
@@ -139,9 +156,12 @@ std::string ClosedLoopGain::reference() const {
 std::vector<std::string> ClosedLoopGain::notes() const {
   std::vector<std::string> notes;
   const auto refused = [&](const char* which, const ClosedLoopScheme& scheme) {
-    if (scheme.refused.empty()) return;
+    if (scheme.feedforward == FeedforwardKind::full_model) return;
+    const bool planned = scheme.feedforward == FeedforwardKind::planned;
     notes.push_back(std::string("the ") + which +
-                    " model gives no feedforward, so its number is the PID alone: " + scheme.refused);
+                    (planned ? " model is not undone tick by tick, its feedforward is a plan made ahead: "
+                             : " model gives no feedforward, so its number is the PID alone: ") +
+                    scheme.refused);
   };
   refused("recalibrated", recalibrated);
   refused("extended", extended);
@@ -160,24 +180,24 @@ ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question) {
   gain.frequency_hz = question.frequency_hz;
   gain.rig_scatter = question.rig_scatter;
   gain.rigs = judged_rigs;
-  auto recalibrated = std::async(
-      std::launch::async, [&] { return rigs.measured(question.recalibrated, FeedforwardKind::full_model); });
-  gain.extended = rigs.measured(question.extended, FeedforwardKind::full_model);
+  auto recalibrated = std::async(std::launch::async, [&] { return rigs.with_model(question.recalibrated); });
+  gain.extended = rigs.with_model(question.extended);
   gain.pid_alone = rigs.measured(question.extended, FeedforwardKind::none);
   gain.recalibrated = recalibrated.get();
   for (ClosedLoopScheme* scheme : {&gain.recalibrated, &gain.extended}) {
-    if (scheme->refused.empty()) continue;
-    scheme->rmse_mm = gain.pid_alone.rmse_mm;
-    scheme->pid = gain.pid_alone.pid;
-    scheme->trace = gain.pid_alone.trace;
+    const bool stands =
+        scheme->feedforward == FeedforwardKind::full_model ||
+        (scheme->feedforward == FeedforwardKind::planned && scheme->rmse_mm < gain.pid_alone.rmse_mm);
+    if (stands) continue;
+    std::string refused = std::move(scheme->refused);
+    *scheme = gain.pid_alone;
+    scheme->refused = std::move(refused);
   }
   gain.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   return gain;
 }
 
 void add_closed_loop(Json& json, const ClosedLoopGain& gain) {
-  Json pid = scheme_json(gain.pid_alone);
-  pid["feedforward"] = "none";
   json["closed_loop"] = {{"recalibrated_rmse_mm", gain.recalibrated.rmse_mm},
                          {"extended_rmse_mm", gain.extended.rmse_mm},
                          {"pid_alone_rmse_mm", gain.pid_alone.rmse_mm},
@@ -185,7 +205,7 @@ void add_closed_loop(Json& json, const ClosedLoopGain& gain) {
                          {"gains",
                           {{"recalibrated", scheme_json(gain.recalibrated)},
                            {"extended", scheme_json(gain.extended)},
-                           {"pid_alone", std::move(pid)}}},
+                           {"pid_alone", scheme_json(gain.pid_alone)}}},
                          {"notes", gain.notes()},
                          {"wall_s", gain.wall_s}};
 }

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "control/elements/feedforward.h"
 #include "control/elements/pid.h"
 #include "control/tuning/tracking_run.h"
 #include "model/model.h"
@@ -30,7 +31,10 @@ struct ClosedLoopQuestion {
 struct ClosedLoopScheme {
   double rmse_mm = 0;  ///< median over rigs
   control::PidSettings pid;
-  std::string refused;           ///< why its feedforward does not exist; then this is the PID alone
+  /// full_model; where the model cannot be undone tick by tick, planned; where that serves no better than the
+  /// PID alone, none: then the numbers are the PID's.
+  control::FeedforwardKind feedforward = control::FeedforwardKind::none;
+  std::string refused;           ///< why it is not full_model
   control::TrackingTrace trace;  ///< on the rig of that median
 };
 

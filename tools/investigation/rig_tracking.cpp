@@ -10,8 +10,6 @@
 namespace softgrip::tools {
 namespace {
 
-using control::FeedforwardKind;
-
 constexpr int settling_cycles = 1;
 constexpr int measured_cycles = 3;
 /// Index of the track step in the sequence below.
@@ -34,7 +32,7 @@ tl::expected<ExperimentRig, NotPlayed> with_scheme(ExperimentRig rig, const mode
   control::ChannelSettings& channel = rig.rig.settings.channels[rig.channel];
   channel.model = model;
   channel.pid = scheme.pid;
-  channel.feedforward.kind = scheme.refused.empty() ? FeedforwardKind::full_model : FeedforwardKind::none;
+  channel.feedforward.kind = scheme.feedforward;
   const auto accepted = control::check_feedforward(channel.model, channel.feedforward, channel.limits,
                                                    1 / rig.rig.settings.rate_hz);
   if (!accepted) return tl::unexpected(NotPlayed{false, accepted.error().text});
