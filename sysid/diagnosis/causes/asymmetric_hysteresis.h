@@ -10,6 +10,7 @@ namespace softgrip::sysid::causes {
 struct AsymmetricHysteresis {
   static constexpr std::string_view id = "asymmetric_hysteresis";
   static constexpr std::string_view title = "Asymmetric hysteresis";
+  static constexpr bool is_own_law = true;
 
   /// An element that takes another way up than down.
   struct OwnLoop : FormOf<model::DuhemHysteresis> {

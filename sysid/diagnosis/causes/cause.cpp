@@ -115,6 +115,7 @@ constexpr Cause cause() {
   if constexpr (requires { C::counterparts; }) cause.counterparts = C::counterparts;
   if constexpr (requires { C::confounded_with; }) cause.confounded_with = C::confounded_with;
   if constexpr (requires { C::is_stop; }) cause.is_stop = C::is_stop;
+  if constexpr (requires { C::is_own_law; }) cause.is_own_law = C::is_own_law;
   if constexpr (requires { C::parts_twins; }) cause.parts_twins = C::parts_twins;
   if constexpr (requires { C::sensor_shape; }) cause.sensor_shape = C::sensor_shape;
   return cause;

@@ -48,6 +48,7 @@ struct Cause {
   std::span<const std::string_view> counterparts;
   std::span<const std::string_view> confounded_with;
   bool is_stop = false;
+  bool is_own_law = false;
   bool parts_twins = false;
   std::string_view sensor_shape;  ///< empty: no sensor without memory
 

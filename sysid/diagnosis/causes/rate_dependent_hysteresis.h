@@ -11,6 +11,7 @@ namespace softgrip::sysid::causes {
 struct RateDependentHysteresis {
   static constexpr std::string_view id = "rate_dependent_hysteresis";
   static constexpr std::string_view title = "Rate-dependent hysteresis";
+  static constexpr bool is_own_law = true;
 
   /// A loop of its own that relaxes.
   struct Relaxing : FormOf<model::RelaxingFriction> {

@@ -34,8 +34,11 @@ constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
 constexpr double least_inclusion = 0.95;
 /// Causes that a named one does not clearly beat.
 constexpr std::size_t most_undecided = 2;
-/// Of what the base leaves beyond the noise, as a mean square.
+/// What a further cause must take, as mean squares beyond the noise: of what the base left, and of what was
+/// left before it. A cause whose law is not quite the finger's leaves a part of itself, and any second block
+/// takes some of that; a second effect is met by its own cause nearly whole.
 constexpr double one_more_share = 0.05;
+constexpr double most_of_the_rest = 0.6;
 constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
 
 /// Residuals over the numbers of one cause, less what the base could take away of them.
@@ -161,12 +164,13 @@ class SelectorUpon {
   [[nodiscard]] FitPoint settled(Start best, const std::vector<Cause>& causes) const {
     if (!options_.base_again) return best.point;
     const Cause& cause = causes.back();
+    const std::vector<Cause> others(causes.begin(), causes.end() - 1);
     for (int turn = 0; turn < turns; ++turn) {
       const model::Model& model = best.point.model;
       FitPoint again = options_.base_again(without_effects(data_.records, best.point, causes));
-      for (const Cause& one : result_.extended.causes)
+      for (const Cause& one : others)
         again.model = model::with_block(again.model, model.blocks[*position_of(model, one)]);
-      const Scan scan(data_.thinned, result_.extended.causes, again);
+      const Scan scan(data_.thinned, others, again);
       if (!scan.usable()) break;
       again.model = model::with_block(again.model, model.blocks[*position_of(model, cause)]);
       const Look look = look_from(data_.thinned, scan, cause, again);
@@ -208,8 +212,23 @@ class SelectorUpon {
     result_.last_candidates = describe(scored, result_.extended_losses, options_.seed);
     if (scored.empty()) return false;
     const ScoredCandidate& best = scored.front();
-    const Spread gain = mean_difference(result_.extended_losses, best.losses, options_.seed);
-    if (!(gain.lower > 0 && gain.value > worth_mm2())) return false;
+    const double worth_mm2 = std::max(this->worth_mm2(), least_of(best.candidate.cause));
+    if (!is_gain(result_.extended_losses, best.losses, worth_mm2)) return false;
+    const BlockLosses before = result_.extended_losses;
+    if (!take(scored)) return false;
+    if (result_.chosen.size() > 1) return first_is_worth_its_place(before);
+    in_first_place_ = std::move(scored);
+    return true;
+  }
+
+  [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, double worth_mm2) const {
+    const Spread gain = mean_difference(before, after, options_.seed);
+    return gain.lower > 0 && gain.value > worth_mm2;
+  }
+
+  /// The best of what was tried in one place, if it stands there.
+  bool take(const std::vector<ScoredCandidate>& scored) {
+    const ScoredCandidate& best = scored.front();
     ChosenCause chosen =
         weigh(best.candidate.cause,
               {*best.candidate.fit, best.losses, result_.extended_losses, noise_mm_, options_.seed}, scored);
@@ -221,18 +240,55 @@ class SelectorUpon {
     return true;
   }
 
-  /// What one more cause must take of the mean square. The first may be small; what comes after it makes up
-  /// for the form of its equation as well.
+  /// The first cause was chosen while the second was missing. Where the second leaves less alone than the
+  /// first did, it comes first, and the other has to be worth its place beside it. False: it is not, and is
+  /// gone.
+  bool first_is_worth_its_place(const BlockLosses& beside_the_first) {
+    const Cause first = result_.extended.causes.front();
+    const std::vector<Cause> second{result_.extended.causes.back()};
+    FitPoint rest = result_.extended.point;
+    rest.model = without(std::move(rest.model), first);
+    ScoredCandidate alone;
+    alone.candidate.cause = second.front();
+    alone.candidate.fit = fit_structure(data_.records, second,
+                                        settled(start_at(data_.thinned, std::move(rest)), second), finish);
+    alone.losses = linear_held_out_losses(data_.records, division_, *alone.candidate.fit);
+    if (rmse_mm(alone.losses) >= rmse_mm(beside_the_first)) return true;
+    const double worth_mm2 = std::max(further_worth_mm2(alone.losses), least_of(first));
+    if (is_gain(alone.losses, result_.extended_losses, worth_mm2)) return true;
+    std::erase_if(in_first_place_, [&](const auto& one) { return one.candidate.cause == second.front(); });
+    in_first_place_.insert(in_first_place_.begin(), std::move(alone));
+    result_.extended = result_.base;
+    result_.extended_losses = result_.base_losses;
+    result_.left = result_.base_structure;
+    result_.chosen.clear();
+    take(in_first_place_);
+    return false;
+  }
+
+  /// A base has the form of the finger's loop but for a rest about as large as the noise (textbook worlds
+  /// without an effect): the causes that are such a form by themselves must take more.
+  [[nodiscard]] double least_of(const Cause& cause) const {
+    return cause.is_own_law ? noise_mm_ * noise_mm_ : 0;
+  }
+
+  /// What one more cause must take of the mean square. The first may be small.
   [[nodiscard]] double worth_mm2() const {
-    const double least = 0.01 * noise_mm_ * noise_mm_;
-    if (result_.chosen.empty()) return least;
-    return std::max(least, one_more_share * std::pow(result_.base_structure.excess_mm, 2));
+    return result_.chosen.empty() ? least_worth_mm2() : further_worth_mm2(result_.extended_losses);
+  }
+  [[nodiscard]] double least_worth_mm2() const { return 0.01 * noise_mm_ * noise_mm_; }
+  [[nodiscard]] double further_worth_mm2(const BlockLosses& before) const {
+    return std::max({least_worth_mm2(), one_more_share * std::pow(result_.base_structure.excess_mm, 2),
+                     most_of_the_rest * beyond_noise_mm2(before)});
+  }
+
+  [[nodiscard]] double beyond_noise_mm2(const BlockLosses& losses) const {
+    return std::pow(rmse_mm(losses), 2) - noise_mm_ * noise_mm_;
   }
 
   /// No cause takes what is not there.
   [[nodiscard]] bool more_can_be_worth() const {
-    const double left_mm = rmse_mm(result_.extended_losses);
-    return left_mm * left_mm - noise_mm_ * noise_mm_ > worth_mm2();
+    return beyond_noise_mm2(result_.extended_losses) > worth_mm2();
   }
 
   /// By itself or as one of a few: what it does not clearly beat is a rival. More than a few settle nothing.
@@ -259,6 +315,7 @@ class SelectorUpon {
   const SelectionOptions& options_;
   Scales scales_;
   Selection result_;
+  std::vector<ScoredCandidate> in_first_place_;  ///< what was tried there
 };
 
 }  // namespace

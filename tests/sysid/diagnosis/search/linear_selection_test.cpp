@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/backlash.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/sensor_lag.h"
@@ -81,6 +82,30 @@ TEST(LinearSelection, FindsNothingWhereTheBaseHolds) {
   const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
   EXPECT_TRUE(found.chosen.empty());
   EXPECT_EQ(found.extended.mean_square_mm2, c.base.mean_square_mm2);
+}
+
+TEST(LinearSelection, FindsBothOfTwo) {
+  model::Model truth = model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.4}}));
+  truth = model::with_block(truth, model::block_of<model::SensorLag>({{"time_constant_s", 0.15}}));
+  const Campaign c = campaign_of(truth);
+  const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
+  ASSERT_EQ(found.chosen.size(), 2U);
+  EXPECT_TRUE(position_of(found.extended.point.model, *find_cause("backlash")));
+  EXPECT_TRUE(position_of(found.extended.point.model, *find_cause("sensor_lag")));
+}
+
+/// A base that has the form of the loop but for less than the noise may be any finger's.
+TEST(LinearSelection, ARestOfTheLoopsFormIsNoCause) {
+  for (const bool clear : {false, true}) {
+    const Campaign c = campaign_of(model::with_block(
+        finger(), model::block_of<model::AsymmetricBoucWen>({{"beta_share", clear ? 0.08 : 0.02}})));
+    const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, {});
+    ASSERT_TRUE(found.base_structure.present);
+    EXPECT_EQ(found.base_structure.excess_mm > 0.03, clear) << found.base_structure.excess_mm;
+    ASSERT_FALSE(found.last_candidates.empty() && found.chosen.empty());
+    EXPECT_EQ(found.chosen.size(), clear ? 1U : 0U);
+    for (const ChosenCause& one : found.chosen) EXPECT_EQ(one.cause.id, "asymmetric_hysteresis");
+  }
 }
 
 TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
