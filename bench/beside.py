@@ -3,7 +3,7 @@
 
     bench/beside.py [--build build/release] [--page docs/explanation/beside-octave-and-scipy.md] [--runs 3]
 
-Needs Debian's octave, octave-optim, liboctave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests benchmarks).
+Needs Debian's octave, octave-optim, liboctave-dev, python3-scipy and python3-pandas (scripts/packages.sh tests readers benchmarks).
 Octave's and SciPy's programs stand in bench/beside; the simulator that both drive is compiled C. Every number of the page
 is measured by this run. Exit codes: 0 the page is written, 1 a program failed or what was exported was not read back.
 """
@@ -160,7 +160,7 @@ class Study:
             "",
             "The demo's identification three times: in Octave with `lsqcurvefit` (the paper used MATLAB's), in Python with SciPy,",
             "and with `softgrip`. One log is fitted (`tp1`), two are foretold (`steps`, `sp2`); 20 starts each. This page is",
-            "written by `bench/beside.py`, with every number in it; it needs `scripts/packages.sh tests benchmarks`.",
+            "written by `bench/beside.py`, with every number in it; it needs `scripts/packages.sh tests readers benchmarks`.",
             "",
             "## Steps",
             "",

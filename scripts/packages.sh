@@ -14,8 +14,12 @@ for section in "$@"; do
   wanted+=("${names[@]}")
 done
 
+# Also what another package stands for: node of other archives is npm, too.
+provided=" $(dpkg-query -W -f='${Status} ${Provides}\n' | sed -n 's/^install ok installed //p' | sed 's/([^)]*)//g' |
+  tr ',\n' '  ') "
 missing=()
 for name in "${wanted[@]}"; do
+  [[ $provided == *" $name "* ]] && continue
   dpkg-query -W -f='${Status}' "$name" 2>/dev/null | grep -q 'install ok installed' || missing+=("$name")
 done
 [ ${#missing[@]} -eq 0 ] && exit 0

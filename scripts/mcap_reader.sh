@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Installs the reader of MCAP files that tests/system/test_export.py asks into build/mcap, by npm, in the versions and with
+# the hashes of tests/system/mcap/package-lock.json. One that is there already needs no network.
+# A machine may reach Debian's packages and no registry of npm's: that is said, and kept in build/mcap/unreachable for the
+# test, which then leaves this one reader out. Whatever else goes wrong fails; in CI ($CI) that does, too.
+set -euo pipefail
+cd "$(dirname "$(realpath "$0")")/.."
+
+pinned=tests/system/mcap folder=build/mcap
+mkdir -p "$folder"
+rm -f "$folder/unreachable"
+if [ -d "$folder/node_modules/@mcap/core" ] && cmp -s "$pinned/package-lock.json" "$folder/package-lock.json"; then
+  exit 0
+fi
+rm -rf "$folder/node_modules"
+# node trusts what it brings along; a network with an authority of its own has it among the system's.
+system_authorities=/etc/ssl/certs/ca-certificates.crt
+[ ! -r $system_authorities ] || export NODE_EXTRA_CA_CERTS=${NODE_EXTRA_CA_CERTS:-$system_authorities}
+cp "$pinned/package.json" "$pinned/package-lock.json" "$folder/"
+if (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 --fetch-retry-mintimeout=1000 \
+  --fetch-timeout=60000) >"$folder/npm.log" 2>&1; then
+  exit 0
+fi
+rm -rf "$folder/node_modules" "$folder/package-lock.json"
+code=$(sed -nE 's/^npm (ERR!|error) code ([A-Z_]+)$/\2/p' "$folder/npm.log" | head -n 1)
+case $code in
+  ENOTFOUND | EAI_AGAIN | ECONNREFUSED | ECONNRESET | ETIMEDOUT | ENETUNREACH | EHOSTUNREACH | ERR_SOCKET_TIMEOUT | \
+    SELF_SIGNED_CERT_IN_CHAIN | UNABLE_TO_GET_ISSUER_CERT_LOCALLY | UNABLE_TO_VERIFY_LEAF_SIGNATURE)
+    if [ -z "${CI:-}" ]; then
+      echo "npm reaches no registry ($code): @mcap/core is not installed" >"$folder/unreachable"
+      echo "NOT TESTED: MCAP by its own reader, for $(cat "$folder/unreachable")" >&2
+      exit 0
+    fi
+    ;;
+esac
+tail -n 20 "$folder/npm.log" >&2
+echo "mcap_reader.sh: npm did not install @mcap/core (all of it: $folder/npm.log)" >&2
+exit 1
