@@ -1,5 +1,5 @@
-// How well the twin is tracked: 13 +- 7 mm sines at 0.05, 0.1 and 0.2 Hz, 200 Hz loop, sensor noise 0.03 mm,
-// the controller's model off by +-5 %. Every scheme gets its gains from the same search. Prints a table.
+// How well the twin is tracked: 13 ± 7 mm sines at 0.05, 0.1 and 0.2 Hz, 200 Hz loop, sensor noise 0.03 mm,
+// the controller's model off by ±5 %. Every scheme gets its gains from the same search. Prints a table.
 //
 //   tracking_study [--draws N] [--search-draws N] [--seed S] [--latency-ms L] [--quantised]
 //   [--max-sensitivity M]
@@ -214,7 +214,7 @@ int main(int argc, char** argv) {
   const model::Model twin = model_named("bench_twin");
   const model::Model published = model_named("zhang2025");
   std::printf(
-      "bench_twin, 13 +- 7 mm, 200 Hz, noise 0.03 mm%s, exchange %.1f ms; model off by +-5 %%: median [5 %%, "
+      "bench_twin, 13 ± 7 mm, 200 Hz, noise 0.03 mm%s, exchange %.1f ms; model off by ±5 %%: median [5 %%, "
       "95 %%] "
       "of %d draws, seed %llu; gains by one search on %d other draws, Ms <= %.2f\n",
       options.quantised ? ", quantised" : "", options.latency_ms, options.draws,

@@ -14,7 +14,7 @@ class Outliers {
  public:
   static constexpr BlockInfo info =
       block_info("outliers", Station::sensor, Kind::reading, Inverse::ignored, "Outliers",
-                 "Isolated wrong samples.", "z = y +- size with the given probability");
+                 "Isolated wrong samples.", "z = y ± size with the given probability");
   static constexpr std::array parameters{
       parameter("probability", "", "share of the readings that are wrong", Typical{0.01}, Within{0.0, 1.0},
                 Scale{0.01}, Neutral{0.0}),

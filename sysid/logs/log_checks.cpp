@@ -145,7 +145,7 @@ class Check {
                         " s; the command is taken to go straight across them");
     }
     if (sampling_.jitter_s > 0.01 * sampling_.median_interval_s) {
-      note(log_.size(), "irregular sampling: " + significant(1e3 * sampling_.median_interval_s) + " ms +- " +
+      note(log_.size(), "irregular sampling: " + significant(1e3 * sampling_.median_interval_s) + " ms ± " +
                             significant(1e3 * sampling_.jitter_s) + " ms; used as it is, not resampled");
     }
   }

@@ -66,6 +66,14 @@ bool has_unicode() {
   return utf8;
 }
 
+std::string on_screen(std::string text) {
+  constexpr std::string_view plus_minus = "±";
+  if (has_unicode()) return text;
+  for (std::size_t at = 0; (at = text.find(plus_minus, at)) != std::string::npos;)
+    text.replace(at, plus_minus.size(), "+-");
+  return text;
+}
+
 std::size_t terminal_columns() {
   return window().ws_col;
 }

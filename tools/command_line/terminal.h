@@ -16,6 +16,8 @@ namespace softgrip::tools {
 [[nodiscard]] bool wants_colour();
 /// True if the locale's character encoding is UTF-8.
 [[nodiscard]] bool has_unicode();
+/// What of a text is no ASCII and has a usual stand-in, by it where the locale is not UTF-8: +- for ±.
+[[nodiscard]] std::string on_screen(std::string text);
 /// Columns and rows of the standard output, or 80 and 24.
 [[nodiscard]] std::size_t terminal_columns();
 [[nodiscard]] std::size_t terminal_rows();

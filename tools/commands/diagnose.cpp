@@ -19,6 +19,7 @@
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
 #include "tools/figures/figure_files.h"
@@ -173,7 +174,7 @@ ExitCode run(Options options, const std::vector<std::string>& call) {
     std::fputs(json->c_str(), stdout);
   } else {
     print_summary(*result, options.out);
-    std::fputs(text_of(consequences, options.out).c_str(), stdout);
+    std::fputs(on_screen(text_of(consequences, options.out)).c_str(), stdout);
   }
   return ExitCode::done;
 }

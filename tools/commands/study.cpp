@@ -12,6 +12,7 @@
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
 #include "tools/figures/figure_files.h"
@@ -38,7 +39,7 @@ ExitCode write_all(const Output& output, const std::string& json_name, const std
   }
   if (const auto written = write_figures(output.figures, page.figures()); !written)
     return fail(ExitCode::io, written.error());
-  std::fputs(output.json ? json.c_str() : text.c_str(), stdout);
+  std::fputs(output.json ? json.c_str() : on_screen(text).c_str(), stdout);
   if (!output.json) std::printf("report: %s\n", (folder / "report.html").c_str());
   return ExitCode::done;
 }

@@ -16,6 +16,7 @@
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -79,7 +80,7 @@ std::string snippet(const Options& options, const control::TuneTask& task, const
           std::to_string(task.draws) + " fingers, seed " + std::to_string(task.seed) + ".\n";
   text += "# Worst Ms " + significant(tuned.sensitivity, 3) + " (bound " +
           significant(task.most_sensitivity, 3) + "), crossover " + significant(tuned.crossover_hz, 3) +
-          " Hz; RMSE " + significant(tuned.rmse_mm, 3) + " mm on " + significant(task.mean_mm, 3) + " +- " +
+          " Hz; RMSE " + significant(tuned.rmse_mm, 3) + " mm on " + significant(task.mean_mm, 3) + " ± " +
           significant(task.amplitude_mm, 3) + " mm at";
   for (const double frequency : task.frequencies_hz) text += " " + significant(frequency);
   text += " Hz.\n# Limited by " + tuned.limited_by + ".\n";
@@ -152,7 +153,7 @@ ExitCode run(Options& options) {
   if (options.json) {
     std::fputs(json_of(options, task, tuned).c_str(), stream);
   } else if (options.out != "-") {
-    std::fputs(text.c_str(), stream);
+    std::fputs(on_screen(text).c_str(), stream);
   }
   if (tuned.sensitivity > task.most_sensitivity) {
     return fail(ExitCode::not_acceptable, "no gains keep the margin");

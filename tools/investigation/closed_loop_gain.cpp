@@ -149,7 +149,7 @@ Json scheme_json(const ClosedLoopScheme& scheme) {
 }  // namespace
 
 std::string ClosedLoopGain::reference() const {
-  return significant(mean_mm, 3) + " +- " + significant(amplitude_mm, 3) + " mm at " +
+  return significant(mean_mm, 3) + " ± " + significant(amplitude_mm, 3) + " mm at " +
          significant(frequency_hz, 3) + " Hz";
 }
 

@@ -20,7 +20,7 @@ struct ClosedLoopQuestion {
   model::Model recalibrated;
   model::Model extended;  ///< also the rig, with other parameters within `rig_scatter`
   double noise_mm = 0.03;
-  double span_mm = 0;  ///< of the logs: the reference is scaled to it where 13 +- 7 mm is too much
+  double span_mm = 0;  ///< of the logs: the reference is scaled to it where 13 ± 7 mm is too much
   double pressure_max_kpa = 60;
   double frequency_hz = 0.2;
   double rig_scatter = 0.02;  ///< no model is exact: the rig's parameters differ from the extended model's
@@ -49,7 +49,7 @@ struct ClosedLoopGain {
   int rigs = 0;
   double wall_s = 0;
 
-  [[nodiscard]] std::string reference() const;           ///< "13 +- 7 mm at 0.2 Hz"
+  [[nodiscard]] std::string reference() const;           ///< "13 ± 7 mm at 0.2 Hz"
   [[nodiscard]] std::vector<std::string> notes() const;  ///< what must be known beside the numbers
 };
 

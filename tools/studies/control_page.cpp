@@ -75,7 +75,7 @@ sysid::Chart chart_of(const ControlStudy& study, double mismatch) {
 
 sysid::Table table_of(const ControlScheme& scheme) {
   sysid::Table table;
-  table.header = {"f [Hz]",      "+- [mm]", "off by [%]",       "RMSE [mm]",  "90 % of draws",
+  table.header = {"f [Hz]",      "± [mm]",  "off by [%]",       "RMSE [mm]",  "90 % of draws",
                   "% of stroke", "largest", "mean, most [kPa]", "kp, ki, kd", "Ms"};
   table.numeric = {true, true, true, true, true, true, true, true, false, true};
   for (const ControlFigure& f : scheme.figures) {
@@ -101,7 +101,7 @@ sysid::Page control_page(const ControlStudy& study) {
       {{"Software", sysid::software_and_version()},
        {"Command", "softgrip study control --draws " + std::to_string(options.draws) + " --seed " +
                        std::to_string(options.seed)},
-       {"Reference", significant(options.mean_mm) + " +- " + significant(options.amplitude_mm) +
+       {"Reference", significant(options.mean_mm) + " ± " + significant(options.amplitude_mm) +
                          " mm, less where the finger cannot follow; stroke: twice the amplitude"},
        {"Loop",
         significant(options.rate_hz) + " Hz, noise " + significant(options.noise_mm) + " mm, 0 to 60 kPa"},

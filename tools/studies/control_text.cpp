@@ -51,7 +51,7 @@ Json figure_json(const ControlFigure& figure) {
 
 std::string control_text(const ControlStudy& study) {
   std::string text =
-      "Twin, " + significant(study.options.mean_mm) + " +- " + significant(study.options.amplitude_mm) +
+      "Twin, " + significant(study.options.mean_mm) + " ± " + significant(study.options.amplitude_mm) +
       " mm, " + significant(study.options.rate_hz) + " Hz, noise " + significant(study.options.noise_mm) +
       " mm, " + std::to_string(study.options.draws) +
       " fingers; RMSE: median [5 %, 95 %]; gains: same tuner, Ms <= " +
@@ -63,7 +63,7 @@ std::string control_text(const ControlStudy& study) {
     text += scheme.id + ": " + scheme.about + "\n";
     if (!scheme.refusal.empty()) text += "   refused: " + scheme.refusal + "\n";
     for (const ControlFigure& f : scheme.figures) {
-      text += "   " + cell(fixed(f.frequency_hz, 2), 4) + " Hz, " + significant(f.amplitude_mm) + " mm  +-" +
+      text += "   " + cell(fixed(f.frequency_hz, 2), 4) + " Hz, " + significant(f.amplitude_mm) + " mm  ±" +
               cell(fixed(100 * f.mismatch, 0), 2) + " %  RMSE " + cell(fixed(f.rmse_mm.median, 4), 7) + " [" +
               fixed(f.rmse_mm.low, 4) + ", " + fixed(f.rmse_mm.high, 4) + "] mm " +
               cell(fixed(f.percent_of_stroke, 2), 6) + " % of stroke  largest " +

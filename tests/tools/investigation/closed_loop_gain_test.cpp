@@ -27,7 +27,7 @@ TEST(ClosedLoopGain, TheTwinsExtensionBeatsTheModelThatHidesItsLatency) {
   EXPECT_LT(gain.recalibrated.rmse_mm, gain.pid_alone.rmse_mm);
   EXPECT_TRUE(gain.extended.refused.empty()) << gain.extended.refused;
   EXPECT_LT(gain.extended.rmse_mm, 0.5 * gain.recalibrated.rmse_mm);
-  EXPECT_EQ(gain.reference(), "13 +- 7 mm at 0.2 Hz");
+  EXPECT_EQ(gain.reference(), "13 ± 7 mm at 0.2 Hz");
   nlohmann::ordered_json json{{"schema", 1}};
   add_closed_loop(json, gain);
   EXPECT_EQ(json["schema"], 1);
@@ -68,7 +68,7 @@ TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {
 TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing) {
   ClosedLoopQuestion question;
   question.recalibrated = question.extended = loaded("bench_twin");
-  question.span_mm = 11;  // half of what 13 +- 7 mm needs
+  question.span_mm = 11;  // half of what 13 ± 7 mm needs
   const ClosedLoopGain one = measure_closed_loop(question);
   const ClosedLoopGain two = measure_closed_loop(question);
   EXPECT_EQ(one.extended.rmse_mm, two.extended.rmse_mm);
