@@ -21,6 +21,7 @@
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/gauge_by_hand.h"
 #include "tools/investigation/experiment_rig.h"
@@ -113,7 +114,7 @@ tl::expected<Playground, ExitCode> playground_of(const Options& options, const C
     return tl::unexpected(
         fail(ExitCode::usage, "this would move a rig and there is nobody to ask: --yes allows it"));
   }
-  ground.limits = rig->limits(scales.gain_mm_per_kpa);
+  ground.limits = rig->limits(scales.gain_mm_per_kpa, scales.largest_kpa);
   ground.channel = rig->channel_name();
   ground.name = options.rig;
   ground.rig = *rig;
@@ -154,7 +155,7 @@ void print_end(const Investigation& investigation, const std::optional<ClosedLoo
               significant(investigation.spent_minutes, 3).c_str(),
               significant(investigation.budget_minutes, 3).c_str(), investigation.why.empty() ? "" : ": ",
               investigation.why.c_str());
-  if (gain) std::fputs(text_of({{}, gain}, out).c_str(), stdout);
+  if (gain) std::fputs(on_screen(text_of({{}, gain}, out)).c_str(), stdout);
   std::printf("report: %s\n", (std::filesystem::path(out) / "report.html").c_str());
 }
 

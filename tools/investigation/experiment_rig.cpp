@@ -20,8 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the displacement range, what the finger may reach as the logs' gain predicts.
-constexpr double range_share = 0.95;
+/// Of the displacement range, what the finger may reach as the logs' gain predicts: where logs have been, and
+/// beyond, where creep and softening come on top of it.
+constexpr double known_range_share = 0.95;
+constexpr double predicted_range_share = 0.85;
 
 tl::unexpected<NotPlayed> failed(std::string why) {
   return tl::unexpected(NotPlayed{false, std::move(why)});
@@ -87,11 +89,14 @@ std::string command_csv(const sysid::Waveform& waveform, double interval_s) {
 
 }  // namespace
 
-sysid::RigLimits ExperimentRig::limits(double gain_mm_per_kpa) const {
+sysid::RigLimits ExperimentRig::limits(double gain_mm_per_kpa, double known_kpa) const {
   const control::LimitSettings& own = rig.settings.channels[channel].limits;
   double largest_kpa = std::min(own.pressure_max_kpa, rig.valves[channel].range_max_kpa);
-  if (gain_mm_per_kpa > 0)
-    largest_kpa = std::min(largest_kpa, range_share * own.displacement_max_mm / gain_mm_per_kpa);
+  if (gain_mm_per_kpa > 0) {
+    const double range_kpa = own.displacement_max_mm / gain_mm_per_kpa;
+    const double known_share_kpa = std::min(known_kpa, known_range_share * range_kpa);
+    largest_kpa = std::min(largest_kpa, std::max(known_share_kpa, predicted_range_share * range_kpa));
+  }
   return {largest_kpa, std::min(own.slew_up_kpa_per_s, own.slew_down_kpa_per_s)};
 }
 
@@ -124,15 +129,18 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   options.sequence = std::move(*sequence);
   options.record_folder = (fs::path(folder) / name).string();
   options.listen = false;
-  options.on_event = [](const daemon::EventEntry&) {};
+  std::string fault;  // the first one
+  options.on_event = [&fault](const daemon::EventEntry& event) {
+    if (fault.empty() && event.severity == daemon::Severity::error) fault = event.text;
+  };
   auto daemon = daemon::Daemon::create(rig.rig, options);
   if (!daemon) return failed(daemon.error());
   const daemon::Outcome outcome = (*daemon)->run();
   if (outcome.ending == daemon::Ending::asked) return stopped("stopped by the user; the rig is vented");
   if (outcome.ending != daemon::Ending::sequence_ended || !outcome.sequence_end ||
       *outcome.sequence_end != control::SequenceEnd::done) {
-    return failed("the experiment did not run to its end" +
-                  (outcome.message.empty() ? std::string() : ": " + outcome.message));
+    const std::string& why = outcome.message.empty() ? fault : outcome.message;
+    return failed("the experiment did not run to its end" + (why.empty() ? std::string() : ": " + why));
   }
   if (!outcome.left_safely) return failed("the board did not confirm the safe outputs");
   return options.record_folder;

@@ -21,8 +21,10 @@ struct ExperimentRig {
   bool simulated = false;  ///< in process: nothing moves, time is virtual
 
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
-  /// What the menu may ask of it. @param gain_mm_per_kpa  keeps the finger inside its displacement range.
-  [[nodiscard]] sysid::RigLimits limits(double gain_mm_per_kpa) const;
+  /// What the menu may ask of it. @param gain_mm_per_kpa  of the logs, keeps the finger inside its
+  /// displacement range; 0: unknown. @param known_kpa  the largest pressure of the logs, beyond which less of
+  /// it is used.
+  [[nodiscard]] sysid::RigLimits limits(double gain_mm_per_kpa, double known_kpa) const;
 };
 
 /// The channel of that name, the only one where none is named, or a sentence.

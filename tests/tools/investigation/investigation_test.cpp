@@ -141,11 +141,27 @@ TEST(ExperimentRig, PlaysOnASimulatedBoardWithoutAskingAndReturnsItsLog) {
   fs::remove_all(folder);
 }
 
+TEST(ExperimentRig, AFaultThatEndsTheExperimentIsNamed) {
+  const fs::path folder = fs::temp_directory_path() / ("softgrip_rig_fault_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  ExperimentRig rig = simulated_rig();
+  rig.rig.settings.channels[rig.channel].limits.displacement_max_mm = 3;
+  rig.rig.settings.channels[rig.channel].limits.displacement_margin_mm = 1;
+  const auto log = rig_player(rig, {})(small_experiment(), folder.string());
+  ASSERT_FALSE(log);
+  EXPECT_FALSE(log.error().stopped);
+  EXPECT_NE(log.error().why.find("F206 displacement_beyond_limits"), std::string::npos) << log.error().why;
+  fs::remove_all(folder);
+}
+
 TEST(ExperimentRig, KeepsWithinTheChannelsLimitsAndItsDisplacementRange) {
   const ExperimentRig rig = simulated_rig();
-  EXPECT_EQ(rig.limits(0).pressure_max_kpa, 60);
-  EXPECT_EQ(rig.limits(0).slew_kpa_per_s, 300);
-  EXPECT_LT(rig.limits(1).pressure_max_kpa, 35);
+  EXPECT_EQ(rig.limits(0, 0).pressure_max_kpa, 60);
+  EXPECT_EQ(rig.limits(0, 0).slew_kpa_per_s, 300);
+  EXPECT_EQ(rig.limits(0.5, 30).pressure_max_kpa, 0.85 * 35 / 0.5)
+      << "further than the logs went: with a margin";
+  EXPECT_EQ(rig.limits(0.7, 45).pressure_max_kpa, 45) << "as far as the logs went";
+  EXPECT_EQ(rig.limits(1, 35).pressure_max_kpa, 0.95 * 35) << "never to the end of its range";
   document::Problems problems;
   auto file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems);
   EXPECT_FALSE(experiment_rig(*file, "")) << "two channels: one must be named";

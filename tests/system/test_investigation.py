@@ -1,0 +1,107 @@
+"""softgrip investigate where the experiment is not what it takes it for: a finger that touches something, a rig that plays
+something else. Both end it with exit code 6, and what was recorded is no evidence."""
+
+import json
+import shlex
+import sys
+
+import bench
+
+GIVEN = "config/models/bench_twin.yaml"
+FINGER = "config/models/finger.yaml"
+# Up and down, once. The finger is softer after it, its sensor may as well have drifted, and the scale may be bent.
+CORNERS = ((0, 0), (1, 0), (7, 45), (13, 0), (16, 0))
+RATE_HZ, NOISE_MM, NOISES, LONGEST_MINUTES = 25, "0.15", range(1, 17), 1
+# The rig behind --rig-command: a finger, and a regulator that changes the command before it reaches it.
+PLAYER = """
+import csv, subprocess, sys
+with open(sys.argv[1], newline="") as file:
+    rows = [(float(row["time_s"]), float(row["pressure_command_kpa"])) for row in csv.DictReader(file)]
+rows = (CHANGE)(rows)
+with open("played.csv", "w") as file:
+    file.write("time_s,pressure_command_kpa\\n" + "".join(f"{t!r},{p!r}\\n" for t, p in rows))
+sys.exit(subprocess.run([SOFTGRIP, "simulate", "--model", MODEL, "--input", "played.csv", "--out", sys.argv[2],
+                         "--noise-mm", "0.04", "--seed", "7"], stdout=subprocess.DEVNULL).returncode)
+"""
+
+
+class Investigation(bench.BenchTest):
+
+    def setUp(self):
+        super().setUp()
+        softer = "actuator:\n  - stress_softening: {softening_per_kpa: 0.004, levelling_per_kpa: 0}\n"
+        self.write(FINGER, (self.folder / GIVEN).read_text().replace("actuator:\n", softer))
+        rows = ["time_s,pressure_command_kpa"]
+        for (begin, low), (end, high) in zip(CORNERS, CORNERS[1:]):
+            count = RATE_HZ * (end - begin)
+            rows += [f"{begin + i / RATE_HZ:.2f},{low + (high - low) * i / count:.6g}" for i in range(count)]
+        self.write("load.csv", "\n".join(rows) + "\n")
+        self.assertTrue(any(map(self.asks, NOISES)), "of none of these logs an experiment would tell more")
+
+    def asks(self, seed):
+        """Writes log.csv with this noise. True where a short experiment would tell its rivals apart."""
+        self.softgrip("simulate", "--model", FINGER, "--input", "load.csv", "--out", "log.csv", "--noise-mm", NOISE_MM,
+                      "--seed", seed)
+        told = json.loads(self.softgrip("diagnose", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out",
+                                        "asked", "--json").stdout)["next_experiment"]
+        return told and told["minutes"] < LONGEST_MINUTES
+
+    def investigated(self, *arguments, expect=6):
+        done = self.softgrip("investigate", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out", "found",
+                             *arguments, expect=expect, timeout_s=170)
+        told = json.loads((self.folder / "found/investigation.json").read_text())
+        self.assertIn(told["why"], done.stdout)
+        return told
+
+    def check(self, told, end, why):
+        self.assertEqual(told["end"], end, told)
+        self.assertRegex(told["why"], why)
+        self.assertEqual([bool(step["experiment"]) for step in told["steps"]], [True], "one was played")
+        self.assertEqual([log["path"] for log in told["logs"]], ["log.csv"], "what was recorded is no evidence")
+        page = (self.folder / "found/report.html").read_text()
+        self.assertIn(told["why"], page)
+
+    def simulated(self, about):
+        """The rig of config/rig.yaml with that finger. The stones that stand in its file give way to `about`."""
+        text = (self.folder / "config/rig.yaml").read_text()
+        stone = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
+        self.assertIn(stone, text)
+        return self.write("config/simulated.yaml", text.replace(stone, about).replace(
+            f"model: {GIVEN.removeprefix('config/')}", f"model: {FINGER.removeprefix('config/')}", 1))
+
+    def test_a_finger_that_touches_something_ends_it(self):
+        rig = self.simulated("\n        object: {position_mm: 12, yielding: 0.1}")
+        self.check(self.investigated("--rig", rig, "--rig-channel", "left"), "contact",
+                   r"the finger touched something: it stopped at 1[2-5](\.\d)? mm, .* mm short of its free motion")
+
+    def test_the_same_finger_with_a_free_way_is_not_stopped(self):
+        told = self.investigated("--rig", self.simulated(""), "--rig-channel", "left", expect=None)
+        self.assertNotIn(told["end"], ("contact", "not_as_asked", "failed", "stopped"), told)
+        self.assertEqual(told["logs"][1]["path"], "found/step_1/recording/run.csv")
+
+    def test_over_modbus_in_real_time_it_is_noticed_too(self):
+        rig = self.emulator("--model", self.folder / FINGER, "--object", "stone")
+        self.check(self.investigated("--rig", self.rig(rig.port), "--rig-channel", "left", "--yes"), "contact",
+                   "the finger touched something")
+        self.assertLess(max(rig.pressures_kpa()), 5, "and it is vented")
+
+    def test_a_rig_that_plays_something_else_ends_it(self):
+        for change, why in (("lambda rows: rows", None),
+                            ("lambda rows: [(t, min(p, 30.0)) for t, p in rows]",
+                             "the rig did not play what was asked: its command went to 30 instead of 45 kPa"),
+                            ("lambda rows: rows[:len(rows) * 2 // 3]", r"it took [\d.]+ instead of [\d.]+ s"),
+                            ("lambda rows: [(t, p if t < rows[-1][0] / 2 else 0.0) for t, p in rows]", "its command travelled")):
+            with self.subTest(change):
+                player = self.write("player.py", PLAYER.replace("CHANGE", change).replace(
+                    "SOFTGRIP", repr(str(bench.SOFTGRIP))).replace("MODEL", repr(FINGER)))
+                told = self.investigated("--rig-command", shlex.join([sys.executable, str(player)]), "--yes",
+                                         expect=6 if why else None)
+                if why:
+                    self.check(told, "not_as_asked", why)
+                else:
+                    self.assertNotEqual(told["end"], "not_as_asked")
+                    self.assertEqual(len(told["logs"]), 2, "what was played as asked is evidence")
+
+
+if __name__ == "__main__":
+    bench.main()
