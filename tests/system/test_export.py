@@ -155,6 +155,11 @@ class Signals(bench.BenchTest):
         for arguments in (("run.xlsx",), ("run",), ("run.csv2",), ("-", "--format", "mat"), ("x.csv", "--format", "tdms")):
             self.export(*arguments, expect=2)
         self.export("absent.csv", source="absent", expect=4)
+        self.assertIn("a model becomes .c", self.export("m.csv", source=MODEL, expect=2).stderr)
+        self.assertIn("keep their own times", self.export("run.mat", "--rate-hz", "100", expect=2).stderr)
+        before = (self.folder / "run/run.csv").read_bytes()
+        self.assertIn("not written over", self.export("run/run.csv", source="run/run.csv", expect=2).stderr)
+        self.assertEqual((self.folder / "run/run.csv").read_bytes(), before)
         self.write("nothing.csv", "a,b\n1,2\n2,3\n")
         self.assertIn("neither a log nor a series", self.export("x.csv", source="nothing.csv", expect=3).stderr)
         self.assertFalse((self.folder / "x.csv").exists())

@@ -58,6 +58,15 @@ class Import(bench.BenchTest):
         self.assertIn("Write log.csv so?", output)
         self.assertTrue((self.folder / "log.csv").exists())
 
+    def test_nobody_is_asked_to_agree_to_what_would_be_refused(self):
+        path = self.write("no_unit.csv", "time,p_kPa,tip_mm\n" + "".join(f"{0.1 * i:.1f},{i},{0.5 * i}\n" for i in range(60)))
+        code, output = self.answered(b"y\n", path, "--out", "log.csv")
+        self.assertEqual(code, 3, output)
+        self.assertIn("--unit time=s", output)
+        self.assertIn("time (no unit)", output)
+        self.assertNotIn("Write log.csv so?", output)
+        self.imported(path, "--out", "log.csv", "--unit", "time=s", "--yes")
+
     def test_the_mapping_that_is_kept_gives_the_same_bytes(self):
         path = self.foreign("volts.csv")
         self.imported(path, "--out", "a.csv", "--yes", "--scale", "command=25", "--scale", "displacement=-2.5", "--zero",

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
 #include <optional>
 #include <string_view>
@@ -81,8 +80,10 @@ std::function<void(const std::string&)> ProgressLine::show() {
 std::string ProgressLine::latest() const {
   const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   std::string line = seconds_text(now_s) + ": " + text_;
-  // What has passed since the text came has passed of the rest, too.
-  if (left_s_ >= 0) line += ", about " + seconds_text(std::max(0.0, left_s_ - (now_s - said_s_))) + " left";
+  // What has passed since the text came has passed of the rest, too; nobody is told again and again that
+  // nothing is left.
+  const double rest_s = left_s_ - (now_s - said_s_);
+  if (rest_s >= 1) line += ", about " + seconds_text(rest_s) + " left";
   return line;
 }
 

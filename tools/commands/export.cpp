@@ -92,11 +92,30 @@ ExitCode export_c(const Options& options) {
   return ExitCode::done;
 }
 
+bool is_yaml(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending == ".yaml" || ending == ".yml";
+}
+
+/// What was asked for and makes no sense.
+std::optional<ExitCode> refused(const Options& options, const std::string& format) {
+  std::error_code error;
+  if (std::filesystem::equivalent(options.input, options.out, error))
+    return fail(ExitCode::usage, options.out + " is the file that is exported: it is not written over");
+  if (format == "c") return std::nullopt;
+  if (is_yaml(options.input))
+    return fail(ExitCode::usage, options.input + " is no recording, log or series: a model becomes .c");
+  if (options.rate_hz)
+    return fail(ExitCode::usage, "--rate-hz goes with --format c: samples keep their own times");
+  return std::nullopt;
+}
+
 ExitCode run(const Options& options) {
   const std::string format = format_of(options);
   if (format.empty())
     return fail(ExitCode::usage,
                 "the ending of " + options.out + " says no format: --format csv, mat, mcap or c");
+  if (const auto code = refused(options, format)) return *code;
   if (format == "c") return export_c(options);
   if (format == "mat" && is_stream(options.out))
     return fail(ExitCode::usage, "a .mat is written into a file, not into " + options.out);

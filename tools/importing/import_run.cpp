@@ -21,6 +21,7 @@
 #include "sysid/logs/log.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/output.h"
+#include "tools/command_line/terminal.h"
 
 namespace softgrip::tools {
 namespace {
@@ -91,16 +92,25 @@ std::string command_line(const Job& job, const ImportOptions& options) {
          sysid::shell_word(options.out);
 }
 
-/// True if what was guessed may be used.
-bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
+/// Shows which column was guessed to be what. False where nothing was guessed.
+bool show_guesses(const std::vector<Job>& jobs) {
   bool guessed = false;
   for (const Job& job : jobs) {
     if (job.guessed.empty()) continue;
     guessed = true;
-    std::fprintf(stderr, "%s: %s\n%s  that is: %s\n", job.file.c_str(), job.table.format.c_str(),
-                 sysid::mapping_table(job.table, job.mapping).c_str(), command_line(job, options).c_str());
+    std::fprintf(stderr, "%s: %s\n%s", job.file.c_str(), job.table.format.c_str(),
+                 sysid::mapping_table(job.table, job.mapping).c_str());
   }
-  if (!guessed || options.yes) return true;
+  return guessed;
+}
+
+/// True if what was guessed may be used.
+bool agreed(const std::vector<Job>& jobs, const ImportOptions& options) {
+  if (!show_guesses(jobs)) return true;
+  for (const Job& job : jobs) {
+    if (!job.guessed.empty()) std::fprintf(stderr, "  that is: %s\n", command_line(job, options).c_str());
+  }
+  if (options.yes) return true;
   if (::isatty(STDIN_FILENO) == 0) {
     std::fputs("not written: nobody is here to agree. Give these options, or --yes\n", stderr);
     return false;
@@ -169,7 +179,7 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
     logs.push_back(json_of(job));
     if (options.json) continue;
     for (const std::string& note : notes_of(job))
-      std::fprintf(stream, "%s: %s\n", job.file.c_str(), note.c_str());
+      std::fprintf(stream, "%s: %s\n", job.file.c_str(), on_screen(note).c_str());
     std::fprintf(stream, "%s (%s): %zu samples, %s s -> %s\n", job.file.c_str(), job.table.format.c_str(),
                  job.result.log.size(), significant(job.result.log.time_s.back(), 6).c_str(),
                  job.out.c_str());
@@ -203,10 +213,11 @@ ExitCode run_import(const ImportOptions& options) {
     jobs[i].out = (*targets)[i];
     (void)prepare(jobs[i], *mapping, problems, unreadable_file);
   }
-  if (problems.empty() && !agreed(jobs, options)) return ExitCode::usage;
+  // Nobody is asked to agree to what would be refused.
   for (Job& job : jobs) {
-    if (problems.empty()) (void)finish(job, problems);
+    if (problems.empty() && !finish(job, problems)) (void)show_guesses(jobs);
   }
+  if (problems.empty() && !agreed(jobs, options)) return ExitCode::usage;
   if (!problems.empty()) {
     const ExitCode refused = refuse(problems);
     return unreadable_file ? ExitCode::io : refused;

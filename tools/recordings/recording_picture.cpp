@@ -222,9 +222,10 @@ tl::expected<Recording, std::string> part_of(const Recording& recording, const s
     const auto first = std::lower_bound(log.time_s.begin(), log.time_s.end(), from_s);
     const auto last = std::upper_bound(log.time_s.begin(), log.time_s.end(), to_s);
     if (last - first < 2)
-      return tl::unexpected(recording.name + " has nothing from " + significant(from_s) + " to " +
-                            significant(to_s) + " s: it lasts from " + significant(log.time_s.front()) +
-                            " to " + significant(log.time_s.back()) + " s");
+      return tl::unexpected(recording.name + " has nothing from " + significant(from_s) +
+                            (std::isfinite(to_s) ? " to " + significant(to_s) + " s" : " s on") +
+                            ": it lasts from " + significant(log.time_s.front()) + " to " +
+                            significant(log.time_s.back()) + " s");
     sysid::Log cut = sysid::slice(log, static_cast<std::size_t>(first - log.time_s.begin()),
                                   static_cast<std::size_t>(last - log.time_s.begin()));
     cut.time_s.assign(first, last);
