@@ -81,10 +81,14 @@ double beta_over_gain(const model::Model& model) {
 }
 
 std::string wrong_way_sentence(double beta_over_gain) {
-  return "beta / (alpha + 1/k0) = " + significant(beta_over_gain, 3) +
-         " is above 1: the model moves the wrong way first and cannot be inverted; a latency in the data is "
-         "the "
-         "usual cause";
+  // Where alpha and 1/k0 have gone to zero the figure says no more than that.
+  constexpr double largest_told = 1000;
+  const std::string ratio = beta_over_gain < largest_told
+                                ? "= " + significant(beta_over_gain, 3) + " is above 1"
+                                : "is above 1, by far";
+  return "beta / (alpha + 1/k0) " + ratio +
+         ": the model moves the wrong way first and cannot be inverted; a latency in the data is the usual "
+         "cause";
 }
 
 }  // namespace softgrip::sysid

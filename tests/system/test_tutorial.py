@@ -1,5 +1,6 @@
 """docs/tutorial carried out from the words of its pages: what stands in a fence is what is run."""
 
+import html
 import json
 import os
 import re
@@ -11,6 +12,7 @@ import time
 import unittest
 
 import bench
+import printing
 
 FENCE = re.compile(r"^```\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -96,6 +98,21 @@ class FirstRun(bench.BenchTest):
         rig = self.folder / "config/rig_tcp.yaml"
         rig.write_text(rig.read_text().replace("model: models/bench_twin.yaml", "model: ../diagnosis/model.yaml"))
         self.softgrip("check", rig)
+        self.check_on_paper(self.folder / "diagnosis/report.html")
+
+    def check_on_paper(self, page):
+        """It is the demo's report, too."""
+        text = page.read_text(encoding="utf-8")
+        self.assertLess(len(text.encode()), 1_500_000)
+        sheets = printing.sheets(page, self.folder)
+        self.assertLessEqual(printing.before_appendix(sheets), 4)
+        verdict = html.unescape(re.search(r'<p class="verdict \w+">(.*?)</p>', text)[1])
+        first = " ".join(sheets[0].split())
+        self.assertIn(verdict, first)
+        self.assertIn("Figure 1.", first)
+        captions = re.findall(r"<figcaption><b>(Figure \d+\.)</b>", text)
+        self.assertGreater(len(captions), 5)
+        self.assertEqual([caption for caption in captions if sum(caption in sheet for sheet in sheets) != 1], [])
 
 
 class ForeignLog(bench.BenchTest):

@@ -49,6 +49,20 @@ std::vector<Cause> next_best(const NamedCause& named) {
   return causes;
 }
 
+/// Why there is no pair to be told apart.
+std::string without_pairs(const Diagnosis& d) {
+  std::string open;
+  for (const NamedCause& named : d.causes) {
+    if (named.rivals.empty()) continue;
+    open += (open.empty() ? "" : ", ") + std::string(named.cause.id);
+    for (const Cause& rival : named.rivals) open += " or " + std::string(rival.id);
+  }
+  if (open.empty()) return "there are no two explanations to tell apart";
+  return "no experiment is designed for " + open +
+         ": that stands upon another base than the given model's, and experiments are predicted from the "
+         "given one";
+}
+
 class Designer {
  public:
   Designer(const Diagnosis& diagnosis, const ExperimentOptions& options) : d_(diagnosis), options_(options) {}
@@ -57,7 +71,7 @@ class Designer {
     if (d_.verdict != Verdict::ambiguous && !options_.always) return {};
     prepare();
     if (pairs_.empty()) {
-      result_.advice.emplace_back("there are no two explanations to tell apart");
+      result_.advice.push_back(without_pairs(d_));
       return std::move(result_);
     }
     judge();

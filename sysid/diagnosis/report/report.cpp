@@ -77,11 +77,11 @@ void add_found(Page& page, const DiagnosisReport& report) {
   if (!d.base.empty())
     page.paragraph("The given base does not hold; the extended model's is: " + d.base + ".");
   page.figure(chain_figure(d.extended_model, report.given));
-  const std::size_t shown = logs_by_gain(d).front();
-  page.figure(error_figure(d, shown));
-  page.figure(loops_figure(d, shown));
+  page.figure(error_figure(d, logs_by_gain(d).front()));
+  if (const auto looped = first_with_loops(d)) page.figure(loops_figure(d, *looped));
   if (!report.closed_loop) return;
-  page.figure(closed_loop_figure(*report.closed_loop));
+  // The PID alone says nothing of the models.
+  if (report.closed_loop->schemes.size() > 1) page.figure(closed_loop_figure(*report.closed_loop));
   page.list(report.closed_loop->notes);
 }
 

@@ -25,7 +25,8 @@ void add_other_logs(Page& page, const Diagnosis& d) {
   const std::vector<std::size_t> order = logs_by_gain(d);
   for (std::size_t i = 1; i < std::min(logs_shown, order.size()); ++i) {
     page.figure(error_figure(d, order[i]));
-    page.figure(loops_figure(d, order[i]));
+    if (has_loops(d.records[order[i]]) && order[i] != first_with_loops(d))
+      page.figure(loops_figure(d, order[i]));
   }
   if (order.size() > logs_shown)
     page.paragraph("Shown are the " + std::to_string(logs_shown) + " logs on which most was gained, of " +

@@ -15,6 +15,7 @@ constexpr double left = 10;
 constexpr double right = 750;
 constexpr double bar_px = 30;
 constexpr double line_px = 19;
+constexpr double fan_px = 22;
 
 std::string letter(std::size_t i) {
   return {static_cast<char>('A' + static_cast<char>(i))};
@@ -24,17 +25,23 @@ std::string amount(double mm2, double whole_mm2) {
   return significant(mm2, 3) + " mm\xc2\xb2, " + fixed(100 * mm2 / whole_mm2, 1) + " %";
 }
 
-/// The given model's misfit, and the part of it that the bar below shows enlarged. Returns where that begins.
+/// The given model's misfit, and the part of it that the bar below shows enlarged. Returns where that bar
+/// begins; above it there is room for its title, within the lines that lead to it.
 double given_bar(Canvas& canvas, const Budget& budget, double top) {
   const double kept = std::clamp(budget.recalibrated / budget.as_given, 0.0, 1.0);
   const double split = right - kept * (right - left);
   canvas.words({left, top - 6}, Anchor::start,
                "Given model, mean square error " + significant(budget.as_given, 3) +
-                   " mm\xc2\xb2: new numbers " + "for its parameters take " + fixed(100 * (1 - kept), 0) +
-                   " %");
+                   " mm\xc2\xb2: new numbers " + "for its parameters take " +
+                   fixed(100 * (1 - kept), kept < 0.01 ? 1 : 0) + " %");
   canvas.box(left, top, split - left, bar_px / 2, Colour::grid);
   canvas.box(split, top, right - split, bar_px / 2, Colour::axis);
-  return split;
+  const double below = top + bar_px / 2, spread = below + fan_px, bar = spread + line_px + 4;
+  constexpr std::string_view dotted = " stroke-dasharray=\"2 3\"";
+  canvas.line({split, below}, {left, spread}, Colour::axis, dotted);
+  canvas.line({left, spread}, {left, bar}, Colour::axis, dotted);
+  canvas.line({right, below}, {right, bar}, Colour::axis, dotted);
+  return bar;
 }
 
 void parts_bar(Canvas& canvas, const std::vector<BudgetPart>& parts, double whole, double top) {
@@ -96,16 +103,10 @@ Figure budget_figure(const Diagnosis& d) {
   Drawing drawing;
   Canvas canvas;
   double top = 24;
-  if (moved) {
-    const double split = given_bar(canvas, budget, top);
-    const double below = top + bar_px / 2;
-    canvas.line({split, below}, {left, below + 40}, Colour::axis, " stroke-dasharray=\"2 3\"");
-    canvas.line({right, below}, {right, below + 40}, Colour::axis, " stroke-dasharray=\"2 3\"");
-    top = below + 40;
-  }
-  canvas.words_on_curve({left, top - 6}, Anchor::start,
-                        std::string(moved ? "Recalibrated model" : "Model") + ", mean square error " +
-                            significant(budget.recalibrated, 3) + " mm\xc2\xb2");
+  if (moved) top = given_bar(canvas, budget, top);
+  canvas.words({moved ? left + 8 : left, top - 6}, Anchor::start,
+               std::string(moved ? "Recalibrated model" : "Model") + ", mean square error " +
+                   significant(budget.recalibrated, 3) + " mm\xc2\xb2");
   parts_bar(canvas, parts, budget.recalibrated, top);
   key(canvas, parts, budget.recalibrated, top + bar_px + 20);
   drawing.markup = canvas.markup();

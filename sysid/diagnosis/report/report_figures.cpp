@@ -196,6 +196,24 @@ std::vector<std::size_t> logs_by_gain(const Diagnosis& d) {
   return order;
 }
 
+bool has_loops(const Record& record) {
+  constexpr double least_share = 0.1, slowest_per_s = 0.01;
+  double moving_s = 0;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double interval_s = record.time_s[i] - record.time_s[i - 1];
+    const double change_kpa = std::abs(record.drive_kpa[i] - record.drive_kpa[i - 1]);
+    if (change_kpa > slowest_per_s * record.largest_kpa * interval_s) moving_s += interval_s;
+  }
+  return moving_s >= least_share * record.length_s();
+}
+
+std::optional<std::size_t> first_with_loops(const Diagnosis& d) {
+  for (const std::size_t k : logs_by_gain(d)) {
+    if (has_loops(d.records[k])) return k;
+  }
+  return std::nullopt;
+}
+
 Figure error_figure(const Diagnosis& d, std::size_t k) {
   const Record& record = d.records[k];
   // The curve of a model that is far off would press the others flat.

@@ -3,6 +3,7 @@
 // extended one solid.
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "sysid/diagnosis/report/report.h"
@@ -13,6 +14,10 @@ namespace softgrip::sysid {
 
 /// The logs' indices: those first of which extending (or recalibrating, where nothing was added) takes most.
 [[nodiscard]] std::vector<std::size_t> logs_by_gain(const Diagnosis& diagnosis);
+/// Whether the pressure is on its way for a tenth of the time: from stair to stair there are no loops to see.
+[[nodiscard]] bool has_loops(const Record& record);
+/// The first of logs_by_gain that has loops.
+[[nodiscard]] std::optional<std::size_t> first_with_loops(const Diagnosis& diagnosis);
 
 /// Measured and the models over time, and on the same axis the errors before and after.
 [[nodiscard]] Figure error_figure(const Diagnosis& diagnosis, std::size_t record);

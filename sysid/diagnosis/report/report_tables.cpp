@@ -129,8 +129,14 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
   for (const auto* list : {&d.causes, &d.partial}) {
     for (const NamedCause& named : *list) {
       const std::size_t size = named.parameters.size();
-      const std::size_t shown = size > most ? most - 1 : size;
-      for (std::size_t i = 0; i < shown; ++i) table.rows.push_back(row(named, named.parameters[i]));
+      const bool short_enough = size <= most;
+      std::size_t shown = 0;
+      for (const CauseParameter& p : named.parameters) {
+        // Of many, those that were measured.
+        if (!short_enough && (!p.has_interval || shown + 1 >= most)) continue;
+        table.rows.push_back(row(named, p));
+        ++shown;
+      }
       if (shown < size)
         table.rows.push_back({std::string(named.cause.title),
                               "and " + std::to_string(size - shown) + " more, in the appendix"});

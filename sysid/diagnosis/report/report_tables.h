@@ -20,7 +20,8 @@ namespace softgrip::sysid {
 /// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
 [[nodiscard]] Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                                     double chosen_rmse_mm, std::string caption);
-/// The numbers of all causes with their intervals; of a cause with more than `most`, the first ones.
+/// The numbers of all causes with their intervals; of a cause with more than `most`, the first ones
+/// of those that have an interval.
 [[nodiscard]] Table cause_parameter_table(const Diagnosis& diagnosis, std::size_t most);
 /// Parameters as given, recalibrated and extended.
 [[nodiscard]] Table moved_table(const Diagnosis& diagnosis, const model::Model& given);

@@ -40,6 +40,12 @@ std::string staircase_sentence(const Diagnosis& d, const std::string& before, co
          significant(d.staircase->heldout_rmse_mm, 2) + " mm.";
 }
 
+/// ": with them the held-out error falls from 2 mm to 1 mm"
+std::string with_them(const Diagnosis& d, const std::string& before, const std::string& after) {
+  return std::string(": with ") + (d.causes.size() > 1 ? "them" : "it") + " the held-out error falls from " +
+         before + " to " + after;
+}
+
 std::string unexplained_sentence(const Diagnosis& d, const std::string& before, const std::string& after) {
   if (d.partial.empty()) return "Something is wrong that no known cause explains.";
   if (d.null_calibration && d.null_calibration->reach_the_gain()) {
@@ -67,14 +73,13 @@ std::string sentence_of_logs(const Diagnosis& d) {
     case Verdict::cause_found:
       if (!is_extended(d)) return outlier_sentence(d);
       if (d.staircase) return staircase_sentence(d, before, after);
-      return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
-             " to " + after + ".";
+      return "The model lacks " + listed(d.causes) + with_them(d, before, after) + ".";
     case Verdict::ambiguous:
-      return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) +
-             "): with it the held-out error falls from " + before + " to " + after + ".";
+      return "The model lacks something that these logs cannot tell apart (" + listed(d.causes) + ")" +
+             with_them(d, before, after) + ".";
     case Verdict::partly_explained:
-      return "The model lacks " + listed(d.causes) + ": with it the held-out error falls from " + before +
-             " to " + after + "; " + significant(d.structure_left.excess_mm, 2) + " mm of structure stays, " +
+      return "The model lacks " + listed(d.causes) + with_them(d, before, after) + "; " +
+             significant(d.structure_left.excess_mm, 2) + " mm of structure stays, " +
              significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
     case Verdict::unexplained:
       return unexplained_sentence(d, before, after);

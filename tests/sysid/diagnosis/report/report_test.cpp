@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <string>
+#include <vector>
 
 #include "model/catalogue.h"
 #include "sysid/diagnosis/report/report_appendix.h"
@@ -14,6 +16,7 @@
 #include "sysid/diagnosis/report/report_reached.h"
 #include "sysid/diagnosis/report/report_tables.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/pages/canvas.h"
 #include "tests/sysid/diagnosis/campaign.h"
 #include "tests/sysid/simulated.h"
 
@@ -74,6 +77,28 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
+/// The words of a drawing, set flush left, through which a straight line goes.
+std::vector<std::string> crossed_words(const std::string& markup) {
+  const std::regex words(R"re(<text x="([0-9.]+)" y="([0-9.]+)" text-anchor="start"[^>]*>([^<]+))re");
+  const std::regex line(R"re(<path d="M(-?[0-9.]+) ?(-?[0-9.]+)l(-?[0-9.]+) ?(-?[0-9.]+)")re");
+  std::vector<std::string> crossed;
+  for (std::sregex_iterator word(markup.begin(), markup.end(), words), end; word != end; ++word) {
+    const double left = std::stod((*word)[1]), baseline = std::stod((*word)[2]);
+    const double right = left + text_width((*word)[3].str());
+    for (std::sregex_iterator one(markup.begin(), markup.end(), line); one != end; ++one) {
+      const Pixel from{std::stod((*one)[1]), std::stod((*one)[2])};
+      for (int i = 0; i <= 100; ++i) {
+        const double x = from.x + 0.01 * i * std::stod((*one)[3]);
+        const double y = from.y + 0.01 * i * std::stod((*one)[4]);
+        if (x <= left || x >= right || y <= baseline - 10 || y >= baseline + 2) continue;
+        crossed.push_back((*word)[3]);
+        break;
+      }
+    }
+  }
+  return crossed;
+}
+
 class ReportTest : public testing::Test {
  protected:
   model::Model given = loaded("zhang2025");
@@ -107,6 +132,20 @@ TEST_F(ReportTest, CausesThatOverlapTakeNoMoreThanTogether) {
   ASSERT_EQ(parts.size(), 4U);
   EXPECT_NEAR(parts[0].mm2, 0.025, 1e-12);
   EXPECT_NEAR(parts[1].mm2, 0.025, 1e-12);
+}
+
+TEST_F(ReportTest, NoLineOfADrawingGoesThroughItsWords) {
+  Canvas canvas;
+  canvas.words({10, 50}, Anchor::start, "crossed");
+  canvas.words({10, 80}, Anchor::start, "not");
+  canvas.line({90, 40}, {0, 48}, Colour::axis);
+  EXPECT_EQ(crossed_words(canvas.markup()), std::vector<std::string>{"crossed"});
+  for (const double as_given_mm : {0.31, 0.4, 0.9, 20.0}) {
+    diagnosis.as_given_rmse_mm = as_given_mm;
+    EXPECT_EQ(crossed_words(budget_figure(diagnosis).drawing->markup), std::vector<std::string>{});
+  }
+  EXPECT_EQ(crossed_words(chain_figure(diagnosis.extended_model, given).drawing->markup),
+            std::vector<std::string>{});
 }
 
 TEST_F(ReportTest, TheForestHasARowForEachCauseAndEachRival) {
@@ -175,8 +214,41 @@ TEST_F(ReportTest, WhatIsNotClearIsNotDrawn) {
   EXPECT_NE(page().to_html().find("rate of the pressure in kilopascals per second"), std::string::npos);
 }
 
+TEST_F(ReportTest, LoopsAreDrawnOfALogThatHasSome) {
+  EXPECT_TRUE(has_loops(diagnosis.records.front()));
+  for (Record& record : diagnosis.records) {
+    for (std::size_t i = 0; i < record.size(); ++i) record.drive_kpa[i] = i < record.size() / 2 ? 0 : 40;
+  }
+  EXPECT_FALSE(has_loops(diagnosis.records.front())) << "a step";
+  EXPECT_EQ(page().to_html().find("\"loops log_"), std::string::npos);
+}
+
+TEST_F(ReportTest, AClosedLoopWithoutAnyModelIsNotDrawn) {
+  ClosedLoopCurves curves{
+      "13 ± 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"the extended model gives no feedforward"}};
+  curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}};
+  const std::string alone = diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html();
+  EXPECT_EQ(alone.find("In closed loop, "), std::string::npos);
+  EXPECT_NE(alone.find("the extended model gives no feedforward"), std::string::npos);
+  curves.schemes.push_back({"extended model", 0.02, {13, 20, 13.01}});
+  EXPECT_NE(diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html().find("In closed loop, "),
+            std::string::npos);
+}
+
+TEST_F(ReportTest, OfACauseWithManyParametersThoseThatWereMeasuredAreShown) {
+  NamedCause& many = diagnosis.causes.front();
+  many.parameters.clear();
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g"})
+    many.parameters.push_back({name, "mm", 1, {0.9, 1.1}, name[0] > 'b' && name[0] < 'e'});
+  const Table table = cause_parameter_table(diagnosis, 6);
+  ASSERT_EQ(table.rows.size(), 3U);
+  EXPECT_EQ(table.rows[0][1], "c");
+  EXPECT_EQ(table.rows[1][1], "d");
+  EXPECT_EQ(table.rows[2][1], "and 5 more, in the appendix");
+}
+
 TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {
-  ClosedLoopCurves curves{"13 +- 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"simulated"}};
+  ClosedLoopCurves curves{"13 ± 7 mm", {0, 1, 2}, {13, 20, 13}, {}, {"simulated"}};
   curves.schemes = {{"PID alone", 1.5, {12, 18, 14}}, {"extended model", 0.02, {13, 20, 13.01}}};
   const Figure figure = closed_loop_figure(curves);
   ASSERT_EQ(figure.charts.size(), 2U);

@@ -1,0 +1,24 @@
+"""A page as paper has it: printed by chromium, read by poppler."""
+
+import re
+import subprocess
+
+QUIET = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+         "--disable-background-networking", "--disable-component-update")
+
+
+def sheets(page, folder):
+    """The text of each printed page."""
+    paper = folder / "printed.pdf"
+    subprocess.run(["chromium", *QUIET, f"--user-data-dir={folder / 'chromium'}", "--no-pdf-header-footer",
+                    f"--print-to-pdf={paper}", page.resolve().as_uri()], check=True, capture_output=True, timeout=120)
+    text = subprocess.run(["pdftotext", "-layout", paper, "-"], check=True, capture_output=True, text=True, timeout=60).stdout
+    found = text.split("\f")[:-1]
+    told = subprocess.run(["pdfinfo", paper], check=True, capture_output=True, text=True, timeout=60).stdout
+    assert re.search(rf"^Pages: +{len(found)}$", told, re.MULTILINE) and "(A4)" in told, told
+    return found
+
+
+def before_appendix(printed):
+    """How many sheets those read who do not check."""
+    return next(i for i, sheet in enumerate(printed) if sheet.lstrip().startswith("Appendix"))
