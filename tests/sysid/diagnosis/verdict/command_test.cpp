@@ -82,7 +82,7 @@ TEST_F(DiagnoseCommand, TheLatencyBehindThePublishedModelIsNamedAndTheExtensionI
   ASSERT_FALSE(json["closed_loop"].is_null());
   const double recalibrated_mm = json["closed_loop"]["recalibrated_rmse_mm"];
   const double extended_mm = json["closed_loop"]["extended_rmse_mm"];
-  EXPECT_GT(recalibrated_mm, 10 * extended_mm);
+  EXPECT_GT(recalibrated_mm, 2 * extended_mm);  // planned for: it has no inverse
   EXPECT_EQ(run("check result/model.yaml"), 0) << read("out.txt") << read("err.txt");
 }
 
