@@ -302,6 +302,9 @@ std::string_view name_of(Severity severity) noexcept {
 std::uint64_t EventLog::add(EventEntry entry) {
   const std::scoped_lock lock(mutex_);
   entry.id = ++last_id_;
+  // Whoever starts sequences chooses their names: counted by them, the counts would grow without end.
+  const bool named = entry.kind == "sequence_started" || entry.kind == "step_started";
+  ++counts_[{entry.kind, named ? std::string() : entry.code, entry.channel}];
   entries_.push_back(std::move(entry));
   if (entries_.size() > capacity_) entries_.pop_front();
   return last_id_;
@@ -325,6 +328,16 @@ std::uint64_t EventLog::newest() const {
 std::uint64_t EventLog::oldest() const {
   const std::scoped_lock lock(mutex_);
   return entries_.empty() ? 0 : entries_.front().id;
+}
+
+std::vector<EventCount> EventLog::counts() const {
+  const std::scoped_lock lock(mutex_);
+  std::vector<EventCount> counts;
+  counts.reserve(counts_.size());
+  for (const auto& [sort, count] : counts_) {
+    counts.push_back({std::get<0>(sort), std::get<1>(sort), std::get<2>(sort), count});
+  }
+  return counts;
 }
 
 }  // namespace softgrip::daemon

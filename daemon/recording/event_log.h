@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "control/tick/parameter.h"
@@ -51,7 +53,15 @@ struct EventEntry {
 [[nodiscard]] std::string sentences_of(control::RefusalCode refusal, const control::Fault& cause,
                                        const std::vector<std::string>& channel_names);
 
-/// The newest events, for all threads but the loop.
+/// How often something has happened since the daemon's start.
+struct EventCount {
+  std::string kind;
+  std::string code;     ///< left out of kinds whose codes are names or numbers of a sequence
+  std::string channel;  ///< empty for the whole rig
+  std::uint64_t count = 0;
+};
+
+/// The newest events, for all threads but the loop, and how many of each sort there were.
 class EventLog {
  public:
   explicit EventLog(std::size_t capacity) : capacity_(capacity) {}
@@ -64,12 +74,17 @@ class EventLog {
   [[nodiscard]] std::uint64_t newest() const;
   /// The id of the oldest that is kept; 0 if there is none.
   [[nodiscard]] std::uint64_t oldest() const;
+  /// By kind, code and channel; those that never happened are not there.
+  [[nodiscard]] std::vector<EventCount> counts() const;
 
  private:
+  using Sort = std::tuple<std::string, std::string, std::string>;  // kind, code, channel
+
   mutable std::mutex mutex_;
   std::size_t capacity_;
   std::uint64_t last_id_ = 0;
   std::deque<EventEntry> entries_;
+  std::map<Sort, std::uint64_t> counts_;
 };
 
 }  // namespace softgrip::daemon

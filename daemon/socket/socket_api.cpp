@@ -96,7 +96,7 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       tell_events(client, *request, now);
       break;
     case Command::statistics:
-      ok(client, request->id, statistics_json(sources_, request->histograms));
+      ok(client, request->id, statistics_json(sources_, events_.counts(), request->histograms));
       break;
     case Command::sequences:
       list_sequences(client, request->id);

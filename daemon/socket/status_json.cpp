@@ -179,6 +179,18 @@ Json json_of(const Histogram& histogram, bool with_bins) {
   return json;
 }
 
+Json json_of(const std::vector<EventCount>& events) {
+  Json list = Json::array();
+  for (const EventCount& event : events) {
+    Json json{{"kind", event.kind}};
+    if (!event.code.empty()) json["code"] = event.code;
+    if (!event.channel.empty()) json["channel"] = event.channel;
+    json["count"] = event.count;
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 }  // namespace
 
 Json fault_title_json(const control::Fault& fault, const std::vector<std::string>& channel_names) {
@@ -220,7 +232,8 @@ Json status_json(const StatusSources& sources) {
   return json;
 }
 
-Json statistics_json(const StatusSources& sources, bool with_histograms) {
+Json statistics_json(const StatusSources& sources, const std::vector<EventCount>& events,
+                     bool with_histograms) {
   const LoopStatistics& loop = sources.loop;
   const BusStatistics& bus = sources.bus;
   return {{"loop",
@@ -236,7 +249,8 @@ Json statistics_json(const StatusSources& sources, bool with_histograms) {
             {"sessions", bus.sessions.value()},
             {"slips", bus.slips.value()},
             {"wake_up", json_of(bus.wake_up, with_histograms)},
-            {"exchange", json_of(bus.exchange, with_histograms)}}}};
+            {"exchange", json_of(bus.exchange, with_histograms)}}},
+          {"events", json_of(events)}};
 }
 
 Json event_json(const EventEntry& event) {

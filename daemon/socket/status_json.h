@@ -9,6 +9,7 @@
 #include "control/tick/settings.h"
 #include "daemon/loop/real_time.h"
 #include "daemon/loop/statistics.h"
+#include "daemon/recording/event_log.h"
 #include "daemon/recording/provenance.h"
 #include "daemon/recording/recorder.h"
 #include "daemon/socket/service.h"
@@ -35,7 +36,9 @@ struct StatusSources {
 [[nodiscard]] nlohmann::ordered_json fault_title_json(const control::Fault& fault,
                                                       const std::vector<std::string>& channel_names);
 [[nodiscard]] nlohmann::ordered_json status_json(const StatusSources& sources);
-[[nodiscard]] nlohmann::ordered_json statistics_json(const StatusSources& sources, bool with_histograms);
+[[nodiscard]] nlohmann::ordered_json statistics_json(const StatusSources& sources,
+                                                     const std::vector<EventCount>& events,
+                                                     bool with_histograms);
 [[nodiscard]] nlohmann::ordered_json event_json(const EventEntry& event);
 
 /// One line; bytes that are no UTF-8 are replaced.

@@ -50,6 +50,33 @@ TEST(EventLog, IdsHaveNoGapsAndTheOldestGo) {
   EXPECT_TRUE(ids(99, 10).empty());
 }
 
+TEST(EventLog, CountsOutliveTheEntriesAndDoNotGrowWithNames) {
+  EventLog log(2);
+  EventEntry result;
+  result.kind = "grip_result";
+  result.code = "HOLDING";
+  result.channel = "left";
+  for (int i = 0; i < 5; ++i) log.add(result);
+  result.channel = "right";
+  log.add(result);
+  for (const char* name : {"a", "b", "c"}) {
+    EventEntry start;
+    start.kind = "sequence_started";
+    start.code = name;
+    log.add(start);
+  }
+  const std::vector<EventCount> counts = log.counts();
+  ASSERT_EQ(counts.size(), 3U);
+  EXPECT_EQ(counts[0].channel, "left");
+  EXPECT_EQ(counts[0].code, "HOLDING");
+  EXPECT_EQ(counts[0].count, 5U);
+  EXPECT_EQ(counts[1].channel, "right");
+  EXPECT_EQ(counts[1].count, 1U);
+  EXPECT_EQ(counts[2].kind, "sequence_started");
+  EXPECT_EQ(counts[2].code, "");
+  EXPECT_EQ(counts[2].count, 3U);
+}
+
 TEST(RunJson, HoldsWhatTheSequenceRanWith) {
   auto loaded = std::make_shared<LoadedSequence>();
   loaded->prepared.name = "pick_stone";
