@@ -41,11 +41,13 @@ softgrip_room(simulation/emulator
 
 # The file of softgrip-plc, which `softgrip check` reads too.
 softgrip_room(rig/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt)
+# The file of softgrip-web, the same.
+softgrip_room(rig/web_file USES document drivers/modbus_server)
 
 # The rig file.
 softgrip_room(rig
   USES base document model/file control/feedforward control/tick control/sequences drivers/board drivers/modbus
-       drivers/iio drivers/gpio simulation/plant rig/plc_file)
+       drivers/iio drivers/gpio simulation/plant rig/plc_file rig/web_file)
 
 # The daemon.
 softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig LIBRARIES spdlog::spdlog)
@@ -103,6 +105,15 @@ softgrip_room(tools/client USES base document control/tick rig tools/command_lin
 # What stands in front of the daemon's socket, in processes of their own.
 softgrip_room(tools/plc USES base drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/web/metrics USES base LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/web/access USES base drivers/modbus_server rig/web_file LIBRARIES fmt::fmt)
+softgrip_room(tools/web FOLDERS tools/web/page
+  USES base drivers/modbus_server rig/web_file tools/client tools/web/metrics tools/web/access
+  LIBRARIES nlohmann_json::nlohmann_json fmt::fmt PkgConfig::httplib)
+softgrip_page_files(tools/web/page)
+if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
+  target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_HTTPLIB_ADDRESSES=1)
+endif()
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/figures USES base sysid/pages)
@@ -144,4 +155,7 @@ softgrip_program(softgrip-rig "tools/programs/softgrip_rig.cpp;tools/programs/so
   LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip-plc tools/programs/softgrip_plc.cpp tools
   ROOM tools/plc USES base drivers/modbus_server rig/plc_file tools/command_line
+  LIBRARIES CLI11::CLI11)
+softgrip_program(softgrip-web tools/programs/softgrip_web.cpp tools
+  ROOM tools/web USES base drivers/modbus_server rig/web_file tools/command_line
   LIBRARIES CLI11::CLI11)

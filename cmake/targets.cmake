@@ -62,6 +62,17 @@ function(softgrip_arrows target folders uses)
   add_dependencies(${target} ${target}_arrows)
 endfunction()
 
+# softgrip_page_files(FOLDER)  the page of the folder (page.html, page.css, page.js) becomes part of the last room
+function(softgrip_page_files folder)
+  foreach(ending IN ITEMS html css js)
+    set(file ${PROJECT_SOURCE_DIR}/${folder}/page.${ending})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    file(READ ${file} page_${ending})
+  endforeach()
+  configure_file(${PROJECT_SOURCE_DIR}/${folder}/page_files.cpp.in ${CMAKE_BINARY_DIR}/page_files.cpp @ONLY)
+  target_sources(${softgrip_room_target} PRIVATE ${CMAKE_BINARY_DIR}/page_files.cpp)
+endfunction()
+
 # softgrip_flags_of(ROOM FLAG FILES...)  compile options of some files of a room
 function(softgrip_flags_of folder flag)
   list(TRANSFORM ARGN PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)

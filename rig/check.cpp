@@ -14,6 +14,7 @@
 #include "rig/plc_file/settings.h"
 #include "rig/rig_comparison.h"
 #include "rig/rig_file.h"
+#include "rig/web_file/settings.h"
 
 namespace softgrip::rig {
 
@@ -25,8 +26,8 @@ struct Signature {
   std::vector<std::string> keys;
 };
 
-const std::array<Signature, 5>& signatures() {
-  static const std::array<Signature, 5> all{
+const std::array<Signature, 6>& signatures() {
+  static const std::array<Signature, 6> all{
       Signature{FileKind::rig,
                 {"board", "channels", "channel_defaults", "safety", "faults", "rate_hz", "plausibility",
                  "detection", "rest", "model_health", "real_time", "recorder", "socket", "loop"}},
@@ -36,6 +37,7 @@ const std::array<Signature, 5>& signatures() {
       Signature{FileKind::model, {"valve", "actuator", "load", "sensor"}},
       Signature{FileKind::sequence, {"steps", "about", "interlock", "channels", "parameters"}},
       Signature{FileKind::plc, {"socket", "listen", "master", "recipes", "registers"}},
+      Signature{FileKind::web, {"daemon", "listen", "access", "recordings"}},
   };
   return all;
 }
@@ -101,6 +103,9 @@ void read_as(const document::Document& document, bool parsed, std::span<const co
     }
     case FileKind::plc:
       file.name = plc::read_settings(document, problems).name;
+      break;
+    case FileKind::web:
+      file.name = web::read_settings(document, problems).name;
       break;
     case FileKind::unknown:
       break;
@@ -202,8 +207,8 @@ std::size_t count_of(const std::vector<document::Problem>& list, const std::stri
 }  // namespace
 
 std::string_view name_of(FileKind kind) noexcept {
-  constexpr std::array<std::string_view, 6> names{"unknown", "rig",      "board map",
-                                                  "model",   "sequence", "PLC gateway"};
+  constexpr std::array<std::string_view, 7> names{"unknown",  "rig",         "board map", "model",
+                                                  "sequence", "PLC gateway", "page"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -12,8 +12,8 @@
 
 namespace softgrip::rig {
 
-enum class FileKind : std::uint8_t { unknown, rig, board_map, model, sequence, plc };
-/// "rig", "board map", "model", "sequence", "PLC gateway"; "unknown"
+enum class FileKind : std::uint8_t { unknown, rig, board_map, model, sequence, plc, web };
+/// "rig", "board map", "model", "sequence", "PLC gateway", "page"; "unknown"
 [[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
 
 /// What a document is, by the keys at its top; misspelt ones count too, but less. A document without any is a

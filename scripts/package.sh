@@ -9,7 +9,7 @@ revision=${2:-1}
 bash scripts/packages.sh build package
 cmake --preset release -DSOFTGRIP_PACKAGE_RELEASE="$revision" >/dev/null
 . scripts/build.sh
-build release softgripd softgrip softgrip-rig softgrip-plc man_pages
+build release softgripd softgrip softgrip-rig softgrip-plc softgrip-web man_pages
 mkdir -p "$out"
 log=$(mktemp) && trap 'rm -f "$log"' EXIT
 (cd build/release && cpack -B "$out" >"$log" 2>&1) || { cat "$log" >&2; exit 1; }

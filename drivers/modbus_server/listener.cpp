@@ -45,6 +45,12 @@ std::uint16_t port_of(int socket) {
 
 }  // namespace
 
+bool is_numeric(const std::string& address) {
+  in6_addr bytes{};
+  return ::inet_pton(AF_INET, address.c_str(), &bytes) == 1 ||
+         ::inet_pton(AF_INET6, address.c_str(), &bytes) == 1;
+}
+
 bool is_loopback(const std::string& address) {
   in_addr four{};
   if (::inet_pton(AF_INET, address.c_str(), &four) == 1) return ntohl(four.s_addr) >> 24U == 127;

@@ -15,6 +15,9 @@ struct Listener {
   std::uint16_t port = 0;
 };
 
+/// Whether it is an IPv4 or IPv6 address in numbers.
+[[nodiscard]] bool is_numeric(const std::string& address);
+
 /// True for 127.0.0.0/8 and ::1.
 [[nodiscard]] bool is_loopback(const std::string& address);
 

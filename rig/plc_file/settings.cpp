@@ -1,7 +1,5 @@
 #include "rig/plc_file/settings.h"
 
-#include <arpa/inet.h>
-
 #include <algorithm>
 #include <string_view>
 
@@ -17,12 +15,6 @@ using document::MapReader;
 using document::Node;
 
 constexpr std::string_view numeric_hint = "an IPv4 or IPv6 address in numbers: 192.168.1.20";
-
-bool is_numeric(const std::string& address) {
-  in6_addr bytes{};
-  return ::inet_pton(AF_INET, address.c_str(), &bytes) == 1 ||
-         ::inet_pton(AF_INET6, address.c_str(), &bytes) == 1;
-}
 
 class Reader {
  public:
@@ -45,12 +37,12 @@ class Reader {
   void listen(const Node& node) {
     MapReader reader(document_, node, problems_, "listen");
     settings_.address = reader.text("address");
-    if (reader.good("address") && !is_numeric(settings_.address))
+    if (reader.good("address") && !modbus::is_numeric(settings_.address))
       reader.report("address", "this is no numeric address", std::string(numeric_hint));
     settings_.port = static_cast<std::uint16_t>(reader.integer("port", 0, 65535));
     for (const Node* const item : reader.sequence("allow", true)) {
       settings_.allow.push_back(item->scalar);
-      if (item->kind != Node::Kind::scalar || !is_numeric(item->scalar))
+      if (item->kind != Node::Kind::scalar || !modbus::is_numeric(item->scalar))
         problems_.add(document_.problem(item->at, "this is no numeric address", std::string(numeric_hint)));
     }
     settings_.max_masters =

@@ -1,0 +1,53 @@
+#include "rig/web_file/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "base/files.h"
+#include "document/node.h"
+
+namespace softgrip::web {
+namespace {
+
+/// What is said of the shipped file with one text in the place of another.
+std::string said_of(const std::string& was, const std::string& is) {
+  std::string text = *read_file(SOFTGRIP_SOURCE_DIR "/config/web.yaml", 65536);
+  const std::size_t at = text.find(was);
+  EXPECT_NE(at, std::string::npos) << was;
+  text.replace(at, was.size(), is);
+  document::Problems problems;
+  const document::Document document = document::parse("web.yaml", text, problems);
+  static_cast<void>(read_settings(document, problems));
+  return problems.format();
+}
+
+TEST(WebSettings, TheShippedFileIsReadAndLetsNobodyOperate) {
+  document::Problems problems;
+  const auto settings = load_settings(SOFTGRIP_SOURCE_DIR "/config/web.yaml", problems);
+  ASSERT_TRUE(settings) << problems.format();
+  EXPECT_EQ(settings->address, "127.0.0.1");
+  EXPECT_EQ(settings->port, 8017);
+  EXPECT_EQ(settings->without_token, Role::look);
+  EXPECT_EQ(settings->tokens, "");
+  EXPECT_EQ(settings->recordings, "/var/lib/softgrip/runs");
+}
+
+TEST(WebSettings, BeyondThisMachineThereAreTokensAndNothingWithoutThem) {
+  const std::string said = said_of("address: 127.0.0.1", "address: 0.0.0.0");
+  EXPECT_NE(said.find("nobody may see anything without a token"), std::string::npos) << said;
+  EXPECT_NE(said.find("there must be tokens"), std::string::npos) << said;
+  EXPECT_EQ(said_of("address: 127.0.0.1", "address: \"::1\""), "");
+}
+
+TEST(WebSettings, WhatIsWrongIsSaidWhereItStands) {
+  EXPECT_NE(said_of("address: 127.0.0.1", "address: gripper").find("no numeric address"), std::string::npos);
+  EXPECT_NE(said_of("hosts: []", "hosts: ['http://gripper']").find("no name of a computer"),
+            std::string::npos);
+  EXPECT_NE(said_of("port: 8017", "port: 70000").find("port"), std::string::npos);
+  EXPECT_NE(said_of("without_token: look", "without_token: all").find("operate"), std::string::npos);
+  EXPECT_NE(said_of("session_idle_s", "session_idle").find("session_idle_s"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::web

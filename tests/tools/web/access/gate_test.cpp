@@ -1,0 +1,122 @@
+#include "tools/web/access/gate.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tools/web/access/origin.h"
+
+namespace softgrip::web {
+namespace {
+
+const std::string look(24, 'a');
+const std::string operate(24, 'b');
+
+TEST(OwnHost, IsANumberOrAKnownName) {
+  const std::vector<std::string> names{"gripper.example.org"};
+  for (const char* own : {"localhost", "LOCALHOST:8017", "127.0.0.1", "127.0.0.1:8017", "[::1]:8017", "[::1]",
+                          "192.168.1.20:80", "gripper.example.org", "Gripper.Example.org:8017"})
+    EXPECT_TRUE(is_own_host(own, names)) << own;
+  for (const char* other :
+       {"", "evil.example", "localhost.evil.example", "127.0.0.1.evil.example", "127.0.0.1:", "127.0.0.1:80a",
+        "[::1", "[::1]x", "[evil]", "gripper.example.org:8017:1", "localhost:123456"})
+    EXPECT_FALSE(is_own_host(other, names)) << other;
+}
+
+TEST(OwnOrigin, IsThePageOfTheSameHostAndPort) {
+  EXPECT_TRUE(is_own_origin("http://127.0.0.1:8017", "127.0.0.1:8017"));
+  EXPECT_TRUE(is_own_origin("https://gripper", "GRIPPER"));
+  for (const char* other : {"http://127.0.0.1:8018", "http://127.0.0.1", "null", "", "127.0.0.1:8017",
+                            "ftp://127.0.0.1:8017", "http://127.0.0.1:8017/", "http://evil/127.0.0.1:8017"})
+    EXPECT_FALSE(is_own_origin(other, "127.0.0.1:8017")) << other;
+}
+
+TEST(Headers, ACookieAndABearer) {
+  EXPECT_EQ(cookie_of("a=1; softgrip=xyz; b=2", "softgrip"), "xyz");
+  EXPECT_EQ(cookie_of("softgrip=xyz", "softgrip"), "xyz");
+  EXPECT_EQ(cookie_of("notsoftgrip=xyz; softgripx=1", "softgrip"), "");
+  EXPECT_EQ(cookie_of("", "softgrip"), "");
+  EXPECT_EQ(bearer_of("Bearer abc"), "abc");
+  EXPECT_EQ(bearer_of("Basic abc"), "");
+}
+
+class GateTest : public ::testing::Test {
+ protected:
+  Gate gate(Role without_token) {
+    settings_.without_token = without_token;
+    settings_.session_idle_s = 10;
+    settings_.session_s = 100;
+    return Gate(settings_, *Tokens::parse("look " + look + "\noperate " + operate));
+  }
+  static Credentials page() { return {"localhost:8017", "http://localhost:8017", "same-origin", "", ""}; }
+  static int status(const tl::expected<Role, Refusal>& said) { return said ? 0 : said.error().status; }
+
+  Settings settings_;
+};
+
+TEST_F(GateTest, ForgedOriginsAndStrangeNamesAreTurnedAway) {
+  Gate gate = this->gate(Role::operate);
+  Credentials forged = page();
+  EXPECT_EQ(gate.admit(forged, true, 0), Role::operate);
+  forged.origin = "http://evil.example";
+  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403);
+  EXPECT_EQ(status(gate.admit(forged, false, 0)), 403);
+  forged = page();
+  forged.fetch_site = "cross-site";
+  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403);
+  forged.origin.clear();
+  EXPECT_EQ(gate.admit(forged, false, 0), Role::operate) << "a link to the page may be followed";
+  forged.fetch_site.clear();
+  EXPECT_EQ(status(gate.admit(forged, true, 0)), 403) << "who changes something says where he comes from";
+  forged.host = "evil.example:8017";
+  forged.origin = "http://evil.example:8017";
+  EXPECT_EQ(status(gate.admit(forged, false, 0)), 421) << "a name that was made to point here";
+}
+
+TEST_F(GateTest, ATokenInAHeaderNeedsNoPage) {
+  Gate gate = this->gate(Role::none);
+  Credentials collector{"localhost", "", "", "", "Bearer " + look};
+  EXPECT_EQ(gate.admit(collector, false, 0), Role::look);
+  collector.authorization = "Bearer " + operate;
+  EXPECT_EQ(gate.admit(collector, true, 0), Role::operate);
+  collector.authorization = "Bearer " + std::string(24, 'c');
+  EXPECT_EQ(gate.admit(collector, false, 0), Role::none);
+}
+
+TEST_F(GateTest, SessionsEndAndTokensDecideWhatTheyMay) {
+  Gate gate = this->gate(Role::none);
+  EXPECT_EQ(gate.open("nobody's", 0).error().status, 401);
+  const std::string id = *gate.open(operate, 0);
+  EXPECT_EQ(id.size(), 64U);
+  EXPECT_NE(id, *gate.open(operate, 0));
+  Credentials browser = page();
+  EXPECT_EQ(gate.admit(browser, true, 0), Role::none);
+  browser.cookie = "softgrip=" + id;
+  for (int s = 0; s < 100; s += 9) EXPECT_EQ(gate.admit(browser, true, s * ns_per_s), Role::operate) << s;
+  EXPECT_EQ(gate.admit(browser, true, 101 * ns_per_s), Role::none) << "however busy it was";
+
+  const std::string idle = *gate.open(look, 0);
+  browser.cookie = "softgrip=" + idle;
+  EXPECT_EQ(gate.admit(browser, false, 9 * ns_per_s), Role::look);
+  EXPECT_EQ(gate.admit(browser, false, 20 * ns_per_s), Role::none);
+
+  const std::string left = *gate.open(look, 0);
+  browser.cookie = "softgrip=" + left;
+  gate.close(browser.cookie);
+  EXPECT_EQ(gate.admit(browser, false, 0), Role::none);
+}
+
+TEST(Sessions, AreFewAndTheIdlestGoes) {
+  Sessions sessions(100, 1000);
+  const std::string first = sessions.open(Role::look, 0);
+  const std::string second = sessions.open(Role::look, 1);
+  for (std::size_t i = 2; i < Sessions::most; ++i) static_cast<void>(sessions.open(Role::look, 2));
+  EXPECT_EQ(sessions.role_of(first, 3), Role::look);
+  static_cast<void>(sessions.open(Role::look, 4));
+  EXPECT_EQ(sessions.size(), Sessions::most);
+  EXPECT_EQ(sessions.role_of(second, 5), Role::none);
+  EXPECT_EQ(sessions.role_of(first, 5), Role::look);
+}
+
+}  // namespace
+}  // namespace softgrip::web

@@ -1,0 +1,106 @@
+#include "tools/web/client.h"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <string>
+#include <utility>
+
+namespace softgrip::web {
+namespace {
+
+using Phase = Client::Phase;
+
+class ClientTest : public ::testing::Test {
+ protected:
+  static std::pair<Descriptor, Descriptor> connected() {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends.data()), 0);
+    return {Descriptor(ends[0]), Descriptor(ends[1])};
+  }
+  explicit ClientTest(std::pair<Descriptor, Descriptor> ends = connected())
+      : client_(std::move(ends.first), 0), other_(std::move(ends.second)) {}
+  void say(const std::string& text) {
+    ASSERT_EQ(::send(other_.get(), text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
+  }
+  std::string heard() {
+    std::string text(1U << 21U, '\0');
+    const ssize_t count = ::recv(other_.get(), text.data(), text.size(), 0);
+    text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+    return text;
+  }
+
+  Client client_;
+  Descriptor other_;
+};
+
+TEST_F(ClientTest, AsksInPiecesAndGetsOneAnswer) {
+  say("GET / ");
+  EXPECT_TRUE(client_.receive());
+  say("HTTP/1.1\r\n\r\n");
+  EXPECT_TRUE(client_.receive());
+  EXPECT_EQ(client_.request(), "GET / HTTP/1.1\r\n\r\n");
+  client_.answer("good", false, 1);
+  EXPECT_FALSE(client_.send_on(1)) << "that is all";
+  EXPECT_EQ(heard(), "good");
+}
+
+TEST_F(ClientTest, WhoHasGoneIsNoticed) {
+  other_.reset();
+  EXPECT_FALSE(client_.receive());
+}
+
+TEST_F(ClientTest, KeepsNoMoreOfAQuestionThanThereMayBe) {
+  for (int i = 0; i < 100; ++i) {
+    say(std::string(4000, 'x'));
+    EXPECT_TRUE(client_.receive());
+  }
+  EXPECT_LT(client_.request().size(), 40000U);
+}
+
+TEST_F(ClientTest, WhoIsSlowIsLate) {
+  EXPECT_FALSE(client_.late(Client::longest_question));
+  EXPECT_TRUE(client_.late(Client::longest_question + 1));
+  client_.wait_for(7);
+  EXPECT_EQ(client_.phase(), Phase::waiting);
+  EXPECT_FALSE(client_.late(100 * ns_per_s)) << "the daemon's time is not his";
+  client_.answer(std::string(1U << 22U, 'x'), false, 0);
+  EXPECT_TRUE(client_.send_on(0));
+  EXPECT_TRUE(client_.has_to_send());
+  EXPECT_TRUE(client_.late(Client::longest_pause + 1));
+}
+
+TEST_F(ClientTest, WhoTakesATrickleIsLateInTheEnd) {
+  client_.answer(std::string(1U << 24U, 'x'), false, 0);
+  Nanoseconds now = 0;
+  for (; !client_.late(now) && now < 200 * ns_per_s; now += ns_per_s) {
+    ASSERT_TRUE(client_.send_on(now));
+    std::string little(100'000, '\0');
+    EXPECT_GT(::recv(other_.get(), little.data(), little.size(), 0), 0);
+  }
+  EXPECT_GT(now, Client::longest_pause) << "he does take some";
+  EXPECT_LE(now, Client::longest_answer + 2 * ns_per_s);
+}
+
+TEST_F(ClientTest, AStreamThatIsNotReadHasABound) {
+  client_.answer("hello", true, 0);
+  EXPECT_EQ(client_.phase(), Phase::following);
+  EXPECT_TRUE(client_.send_on(0));
+  const std::string message(10000, 'm');
+  int kept = 0;
+  for (; kept < 1000 && client_.add(message); ++kept) EXPECT_TRUE(client_.send_on(0));
+  EXPECT_LT(kept, 200) << "the socket's own buffer and 1 MB";
+  EXPECT_TRUE(client_.late(Client::longest_pause + 1));
+}
+
+TEST_F(ClientTest, AStreamEndsBehindWhatStillWaits) {
+  client_.answer("hello", true, 0);
+  client_.finish();
+  EXPECT_TRUE(client_.add("!"));
+  EXPECT_FALSE(client_.send_on(0));
+  EXPECT_EQ(heard(), "hello!");
+}
+
+}  // namespace
+}  // namespace softgrip::web

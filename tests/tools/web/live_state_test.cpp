@@ -1,0 +1,64 @@
+#include "tools/web/live_state.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace softgrip::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json status_at(double time_s) {
+  return {{"time_s", time_s},
+          {"channels", {{{"name", "left"}, {"command_kpa", 1}, {"displacement_mm", time_s}}}}};
+}
+
+Json greeting_of(const LiveState& state) {
+  const std::string text = state.greeting();
+  constexpr std::string_view begin = "event: hello\ndata: ";
+  EXPECT_TRUE(text.starts_with(begin) && text.ends_with("\n\n"));
+  return Json::parse(text.substr(begin.size()));
+}
+
+TEST(LiveState, KeepsTheLastMinute) {
+  LiveState state;
+  for (int i = 0; i <= 500; ++i) state.take_status(status_at(i * 0.2));
+  const Json trend = greeting_of(state)["trend"];
+  EXPECT_EQ(trend.front()[0], 40.0);
+  EXPECT_EQ(trend.back()[0], 100.0);
+  EXPECT_EQ(trend.back()[1], Json({1, nullptr, 100.0, nullptr}));
+  state.take_status(status_at(0.5));
+  EXPECT_EQ(greeting_of(state)["trend"].size(), 1U) << "another daemon";
+}
+
+TEST(LiveState, NewsAreToldOnceAndDoNotGrowUnread) {
+  LiveState state;
+  EXPECT_EQ(state.take_news(), "");
+  state.take_status(status_at(1));
+  state.take_event({{"id", 1}, {"text", "a\nb"}});
+  const std::string news = state.take_news();
+  EXPECT_TRUE(news.starts_with("event: state\ndata: {\"time_s\":1.0")) << news;
+  EXPECT_TRUE(news.ends_with("event: happened\ndata: {\"id\":1,\"text\":\"a\\nb\"}\n\n")) << news;
+  EXPECT_EQ(state.take_news(), "");
+  for (int i = 0; i < 100000; ++i) state.take_event({{"id", i}, {"text", std::string(50, 'x')}});
+  EXPECT_LT(state.take_news().size(), 2U << 20U);
+  EXPECT_EQ(greeting_of(state)["events"].size(), LiveState::events_kept);
+}
+
+TEST(LiveState, WithoutADaemonNothingOfItIsKnown) {
+  LiveState state;
+  state.take_status(status_at(1));
+  state.take_statistics({{"loop", {}}});
+  state.take_event({{"id", 1}});
+  static_cast<void>(state.take_news());
+  state.lose();
+  EXPECT_EQ(state.take_news(), "event: state\ndata: null\n\n");
+  EXPECT_TRUE(state.statistics().is_null());
+  EXPECT_EQ(greeting_of(state)["events"].size(), 1U) << "what happened has happened";
+  state.lose();
+  EXPECT_EQ(state.take_news(), "");
+}
+
+}  // namespace
+}  // namespace softgrip::web

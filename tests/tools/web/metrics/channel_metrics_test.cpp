@@ -1,0 +1,40 @@
+#include "tools/web/metrics/channel_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tools/web/metrics/json_member.h"
+
+namespace softgrip::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+TEST(ChannelMetrics, EveryFingerHasItsOwn) {
+  MetricText metrics;
+  tell_channels(
+      Json::parse(R"([{"name": "left", "pressure_kpa": 1.5, "validity": "valid", "limit": "rig_pressure"},
+                                {"name": "right", "pressure_kpa": 2, "validity": "frozen", "limit": null}])"),
+      metrics);
+  for (const char* line :
+       {"softgrip_pressure_pascals{channel=\"left\"} 1500\nsoftgrip_pressure_pascals{channel=\"right\"} "
+        "2000\n",
+        "softgrip_reading_valid{channel=\"left\"} 1\nsoftgrip_reading_valid{channel=\"right\"} 0\n",
+        "softgrip_pressure_limited{channel=\"left\"} 1\nsoftgrip_pressure_limited{channel=\"right\"} 0\n"})
+    EXPECT_NE(metrics.text().find(line), std::string::npos) << line << metrics.text();
+}
+
+TEST(JsonMember, WhatIsMissingOrOfAnotherTypeIsNotKnown) {
+  const Json object = Json::parse(R"({"a": 1.5, "b": true, "c": "x", "d": null})");
+  EXPECT_EQ(number(object, "a"), 1.5);
+  EXPECT_EQ(flag(object, "b"), 1);
+  EXPECT_EQ(text(object, "c"), "x");
+  for (const char* key : {"b", "c", "d", "e"}) EXPECT_NE(number(object, key), number(object, key)) << key;
+  EXPECT_NE(flag(object, "a"), flag(object, "a"));
+  EXPECT_EQ(text(object, "a"), "");
+  EXPECT_TRUE(member(Json("no object"), "a").is_null());
+}
+
+}  // namespace
+}  // namespace softgrip::web

@@ -1,0 +1,33 @@
+#include "tools/web/metrics/event_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+TEST(EventMetrics, EveryResultIsThereBeforeItHappens) {
+  MetricText metrics;
+  tell_events(Json::array(), Json::parse(R"([{"name": "left"}])"), metrics);
+  for (const char* result : {"holding", "no_part", "part_lost", "released", "error"}) {
+    const std::string label = std::string("result=\"") + result + "\"} 0\n";
+    EXPECT_NE(metrics.text().find("softgrip_grip_results_total{channel=\"left\"," + label),
+              std::string::npos);
+    EXPECT_NE(metrics.text().find("softgrip_results_total{" + label), std::string::npos);
+  }
+  EXPECT_NE(metrics.text().find("softgrip_sequences_started_total 0\n"), std::string::npos);
+}
+
+TEST(EventMetrics, NothingIsToldOfEventsThatAreNotKnown) {
+  MetricText metrics;
+  tell_events(nullptr, Json::array(), metrics);
+  EXPECT_EQ(metrics.text(), "");
+}
+
+}  // namespace
+}  // namespace softgrip::web

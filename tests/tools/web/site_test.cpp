@@ -1,0 +1,156 @@
+// The site as a function from requests to answers.
+
+#include "tools/web/site.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace softgrip::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+const std::string look(24, 'a');
+const std::string operate(24, 'b');
+
+class SiteTest : public ::testing::Test {
+ protected:
+  SiteTest() {
+    fs::create_directories(folder_ / "run-1");
+    std::ofstream(folder_ / "run-1" / "picture.svg") << "<svg/>";
+    std::ofstream(folder_ / "run-1" / "secret.txt") << "secret";
+    std::ofstream(folder_ / "outside.svg") << "secret";
+    fs::create_symlink(folder_ / "outside.svg", folder_ / "run-1" / "link.svg");
+  }
+  ~SiteTest() override { fs::remove_all(folder_); }
+  SiteTest(const SiteTest&) = delete;
+  SiteTest& operator=(const SiteTest&) = delete;
+  SiteTest(SiteTest&&) = delete;
+  SiteTest& operator=(SiteTest&&) = delete;
+
+  Outcome get(const std::string& path, const std::string& token = {}) { return ask("GET", path, token); }
+  Outcome ask(const std::string& method, const std::string& path, const std::string& token,
+              const std::string& body = {}, const Json* answer = nullptr) {
+    std::string request = method + " " + path + " HTTP/1.1\r\nHost: localhost:1\r\n";
+    if (!token.empty()) request += "Authorization: Bearer " + token + "\r\n";
+    if (!body.empty()) {
+      request += "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n";
+    }
+    return site_.serve(request + "\r\n" + body, 0, answer);
+  }
+
+  static Settings settings_of(const fs::path& folder) {
+    Settings settings;
+    settings.without_token = Role::none;
+    settings.operate_socket = "somewhere";
+    settings.recordings = folder;
+    return settings;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("site_" + std::to_string(::getpid()));
+  Settings settings_ = settings_of(folder_);
+  Gate gate_{settings_, *Tokens::parse("look " + look + "\noperate " + operate)};
+  LiveState state_;
+  OwnCounts counts_;
+  Site site_{settings_, gate_, state_, counts_, "draw()"};
+};
+
+TEST_F(SiteTest, ThePageIsThereForEverybodyAndWhatItShowsIsNot) {
+  const Outcome page = get("/");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_NE(page.bytes.find("Content-Security-Policy: default-src 'none'"), std::string::npos);
+  EXPECT_NE(page.bytes.find("X-Frame-Options: DENY"), std::string::npos);
+  for (const char* path : {"/page.css", "/page.js", "/chart.js", "/api/session"})
+    EXPECT_EQ(get(path).status, 200) << path;
+  for (const char* path :
+       {"/metrics", "/api/status", "/api/stream", "/api/recordings", "/recordings/run-1/picture.svg"})
+    EXPECT_EQ(get(path).status, 401) << path;
+}
+
+TEST_F(SiteTest, WhoLooksSeesAndWhoOperatesMoves) {
+  EXPECT_EQ(get("/metrics", look).status, 200);
+  EXPECT_EQ(get("/api/status", look).status, 503) << "no daemon";
+  state_.take_status({{"time_s", 1.0}, {"state", "idle"}});
+  EXPECT_EQ(get("/api/status", look).status, 200);
+  const Outcome refused = ask("POST", "/api/command", look, R"({"command":"stop"})");
+  EXPECT_EQ(refused.status, 403);
+  EXPECT_FALSE(refused.command);
+  const Outcome asked = ask("POST", "/api/command", operate, R"({"command":"stop"})");
+  ASSERT_TRUE(asked.command);
+  EXPECT_EQ((*asked.command)["command"], "stop");
+}
+
+TEST_F(SiteTest, TheDaemonsAnswerIsTheAnswer) {
+  const Json good{{"ok", true}, {"result", {{"request", 7}}}};
+  const Outcome accepted = ask("POST", "/api/command", operate, R"({"command":"stop"})", &good);
+  EXPECT_EQ(accepted.status, 200);
+  EXPECT_NE(accepted.bytes.find(R"({"request":7})"), std::string::npos);
+  const Json bad{{"ok", false}, {"error", {{"code", "refused"}, {"message", "not now"}}}};
+  const Outcome refused = ask("POST", "/api/command", operate, R"({"command":"stop"})", &bad);
+  EXPECT_EQ(refused.status, 409);
+  EXPECT_NE(refused.bytes.find("not now"), std::string::npos);
+}
+
+TEST_F(SiteTest, OnlyTheFilesOfARecordingThatAreShown) {
+  const Outcome picture = get("/recordings/run-1/picture.svg", look);
+  EXPECT_EQ(picture.status, 200);
+  EXPECT_NE(picture.bytes.find("<svg/>"), std::string::npos);
+  EXPECT_NE(picture.bytes.find("sandbox"), std::string::npos);
+  for (const char* path :
+       {"/recordings/run-1/secret.txt", "/recordings/run-1/link.svg", "/recordings/../outside.svg",
+        "/recordings/run-1/../outside.svg", "/recordings/%2e%2e/outside.svg",
+        "/recordings/run-1/..%2foutside.svg", "/recordings/run-1%2f../outside.svg",
+        "/recordings//outside.svg", "/recordings/run-1/picture.svg%00.txt", "/recordings/run-1/",
+        "/recordings/run-1", "/recordings/.svg/x.svg", "/../outside.svg", "/outside.svg"}) {
+    const Outcome refused = get(path, look);
+    EXPECT_EQ(refused.status, 404) << path;
+    EXPECT_EQ(refused.bytes.find("secret"), std::string::npos) << path;
+  }
+  EXPECT_NE(
+      get("/api/recordings", look).bytes.find(R"([{"name":"run-1","files":["link.svg","picture.svg"]}])"),
+      std::string::npos);
+}
+
+TEST_F(SiteTest, AStreamBeginsWithAllThatThereIs) {
+  state_.take_status({{"time_s", 1.0}, {"state", "idle"}});
+  const Outcome stream = get("/api/stream", look);
+  EXPECT_EQ(stream.status, 200);
+  ASSERT_TRUE(stream.follower);
+  EXPECT_EQ(stream.follower->role, Role::look);
+  EXPECT_NE(stream.bytes.find("Content-Type: text/event-stream"), std::string::npos);
+  EXPECT_NE(stream.bytes.find("\r\n\r\nevent: hello\ndata: {\"status\":{\"time_s\":1.0"), std::string::npos)
+      << stream.bytes;
+  EXPECT_EQ(stream.bytes.find("Content-Length"), std::string::npos);
+}
+
+TEST_F(SiteTest, SessionsAreOpenedByTokensAndClosed) {
+  EXPECT_EQ(ask("POST", "/api/session", {}, R"({"token":"x"})").status, 403) << "from no page";
+  const auto post = [&](const std::string& body) {
+    return site_.serve(
+        "POST /api/session HTTP/1.1\r\nHost: localhost:1\r\nOrigin: http://localhost:1\r\n"
+        "Content-Type: application/json\r\nContent-Length: " +
+            std::to_string(body.size()) + "\r\n\r\n" + body,
+        0);
+  };
+  EXPECT_EQ(post(R"({"token":"wrong"})").status, 401);
+  EXPECT_EQ(post("x").status, 400);
+  const Outcome opened = post(R"({"token":")" + operate + "\"}");
+  EXPECT_EQ(opened.status, 200);
+  EXPECT_NE(opened.bytes.find("HttpOnly; SameSite=Strict"), std::string::npos);
+}
+
+TEST_F(SiteTest, PartsOfAFileAreNotOffered) {
+  std::string ranges = "0-0";
+  while (ranges.size() < 7000) ranges += ",0-1";
+  const Outcome answered =
+      site_.serve("GET /chart.js HTTP/1.1\r\nHost: localhost\r\nRange: bytes=" + ranges + "\r\n\r\n", 0);
+  EXPECT_LT(answered.bytes.size(), 1000U);
+}
+
+}  // namespace
+}  // namespace softgrip::web

@@ -1,0 +1,119 @@
+// softgrip-web: softgripd for browsers and for Prometheus, over HTTP.
+
+#include <sys/signalfd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/files.h"
+#include "base/version.h"
+#include "drivers/modbus_server/listener.h"
+#include "tools/command_line/command.h"
+#include "tools/command_line/configuration.h"
+#include "tools/command_line/usage.h"
+#include "tools/web/server.h"
+
+namespace softgrip::web {
+namespace {
+
+/// As the package libjs-chart.js installs it.
+constexpr const char* chart_path = "/usr/share/javascript/chart.js/chart.min.js";
+constexpr std::size_t largest_chart = std::size_t{4} << 20U;
+
+struct Options {
+  std::string config;
+  std::string socket;
+  std::optional<std::uint16_t> port;
+  std::string recordings;
+  bool operate = false;
+  bool check = false;
+};
+
+void add_options(CLI::App& program, Options& options) {
+  options.config = tools::configuration_path("web.yaml");
+  program.set_version_flag("--version", std::string{"softgrip-web "}.append(software_version()));
+  program.add_option("--config", options.config, "What is offered to whom")->capture_default_str();
+  program.add_option("--socket", options.socket, "The daemon's socket, in the place of both of the file's");
+  program.add_option("--port", options.port, "In the place of the file's; 0 takes a free one");
+  program.add_option("--recordings", options.recordings, "Folder of recordings, in the place of the file's");
+  program.add_flag("--operate", options.operate,
+                   "Whoever reaches the page may move the gripper; on loopback only");
+  program.add_flag("--check", options.check, "Read the file, say what is wrong with it, and end");
+  program.footer("Ready once 'listening on http://ADDRESS:PORT/' is printed.");
+}
+
+/// What the command line says in the place of the file.
+void put_in_place(const Options& options, Settings& settings) {
+  if (!options.socket.empty()) settings.look_socket = settings.operate_socket = options.socket;
+  if (options.port) settings.port = *options.port;
+  if (!options.recordings.empty()) settings.recordings = options.recordings;
+  if (options.operate) settings.without_token = Role::operate;
+}
+
+/// Blocked for the whole process, as a descriptor.
+Descriptor take_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return Descriptor{signalfd(-1, &set, SFD_CLOEXEC)};
+}
+
+ExitCode run(const Options& options) {
+  if (const auto code = tools::unreadable(options.config)) return *code;
+  document::Problems problems;
+  auto settings = load_settings(options.config, problems);
+  if (!settings) return tools::refuse(problems);
+  put_in_place(options, *settings);
+  if (options.operate && !modbus::is_loopback(settings->address))
+    return tools::fail(ExitCode::usage, "--operate is for loopback: beyond it a token is needed");
+  Tokens tokens;
+  if (!settings->tokens.empty()) {
+    auto loaded = Tokens::load(settings->tokens);
+    if (!loaded) return tools::fail(ExitCode::input_refused, loaded.error());
+    tokens = std::move(*loaded);
+  }
+  if (options.check) return ExitCode::done;
+  Descriptor signals = take_signals();
+  auto listener = modbus::listen_tcp(settings->address, settings->port);
+  if (!listener) return tools::fail(ExitCode::io, listener.error());
+  const bool six = settings->address.find(':') != std::string::npos;
+  std::printf("listening on http://%s%s%s:%u/\n", six ? "[" : "", settings->address.c_str(), six ? "]" : "",
+              unsigned{listener->port});
+  std::fflush(stdout);
+  // Without it the page shows no curves, and says which package draws them.
+  auto chart = read_file(chart_path, largest_chart);
+  Server(*settings, std::move(tokens), chart ? std::move(*chart) : std::string(), std::move(listener->socket),
+         std::move(signals))
+      .run();
+  return ExitCode::done;
+}
+
+}  // namespace
+}  // namespace softgrip::web
+
+int main(int argc, char** argv) {
+  using namespace softgrip;
+  try {
+    CLI::App program{"softgripd for browsers and for Prometheus: an HTTP server in front of its socket.",
+                     "softgrip-web"};
+    web::Options options;
+    web::add_options(program, options);
+    try {
+      program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return tools::end_of(program, error, argc, argv);
+    }
+    return static_cast<int>(web::run(options));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "softgrip-web: %s\n", error.what());
+  }
+  return static_cast<int>(ExitCode::failed);
+}

@@ -1,0 +1,57 @@
+#include "tools/web/access/sessions.h"
+
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+namespace softgrip::web {
+
+namespace {
+
+std::string random_id() {
+  std::array<unsigned char, 32> bytes{};
+  // So few bytes come whole, or not at all.
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw std::system_error(errno, std::generic_category(), "getrandom");
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string id;
+  for (const unsigned char byte : bytes) {
+    id += digits[byte >> 4U];
+    id += digits[byte & 15U];
+  }
+  return id;
+}
+
+}  // namespace
+
+std::string Sessions::open(Role role, Nanoseconds now) {
+  std::erase_if(sessions_, [&](const auto& entry) { return ended(entry.second, now); });
+  if (sessions_.size() >= most) {
+    sessions_.erase(std::min_element(
+        sessions_.begin(), sessions_.end(),
+        [](const auto& one, const auto& other) { return one.second.seen < other.second.seen; }));
+  }
+  std::string id = random_id();
+  sessions_[id] = {role, now, now};
+  return id;
+}
+
+Role Sessions::role_of(std::string_view id, Nanoseconds now) {
+  const auto found = sessions_.find(id);
+  if (found == sessions_.end()) return Role::none;
+  if (ended(found->second, now)) {
+    sessions_.erase(found);
+    return Role::none;
+  }
+  found->second.seen = now;
+  return found->second.role;
+}
+
+void Sessions::close(std::string_view id) {
+  if (const auto found = sessions_.find(id); found != sessions_.end()) sessions_.erase(found);
+}
+
+}  // namespace softgrip::web

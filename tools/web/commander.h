@@ -1,0 +1,53 @@
+#pragma once
+// The connection over which browsers command the daemon.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+#include <tl/expected.hpp>
+
+#include "base/time.h"
+#include "tools/client/daemon_client.h"
+
+namespace softgrip::web {
+
+/// The request that a browser's body stands for: one of start, stop, vent, release, acknowledge, with what a
+/// start has and nothing else. The error is a sentence.
+[[nodiscard]] tl::expected<nlohmann::ordered_json, std::string> command_in(std::string_view body);
+
+class Commander {
+ public:
+  static constexpr std::size_t most_waiting = 32;
+
+  /// `socket` is the daemon's for operating, and outlives this.
+  explicit Commander(const std::string& socket) : socket_(socket) {}
+
+  /// Sends it and returns the number under which its answer comes; or what the daemon would say: why not.
+  [[nodiscard]] tl::expected<std::uint64_t, nlohmann::ordered_json> send(nlohmann::ordered_json request,
+                                                                         Nanoseconds now);
+  /// The daemon's whole answer, once; nothing while it is waited for. Without the daemon the answer says so.
+  [[nodiscard]] std::optional<nlohmann::ordered_json> take_answer(std::uint64_t number, Nanoseconds now);
+  /// Nobody waits for it any more.
+  void forget(std::uint64_t number) { waiting_.erase(number); }
+  /// To be called when the descriptor can be read, and several times a second.
+  void look_after();
+  /// -1 if there is no connection.
+  [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
+
+ private:
+  struct Waiting {
+    Nanoseconds give_up = 0;
+    std::optional<nlohmann::ordered_json> answer;
+  };
+  void lose();
+
+  const std::string& socket_;
+  std::optional<tools::DaemonClient> daemon_;
+  std::uint64_t last_ = 0;
+  std::map<std::uint64_t, Waiting> waiting_;
+};
+
+}  // namespace softgrip::web

@@ -1,0 +1,90 @@
+#include "tools/web/daemon_watch.h"
+
+#include <string>
+#include <utility>
+
+#include "tools/web/metrics/json_member.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double watch_rate_hz = 5;
+constexpr Nanoseconds retry_pause = ns_per_s / 4;
+/// A daemon that says nothing for so long is none.
+constexpr Nanoseconds longest_silence = 3 * ns_per_s / 2;
+constexpr Nanoseconds statistics_period = 2 * ns_per_s;
+constexpr Nanoseconds sequences_period = 10 * ns_per_s;
+
+/// Ids of requests, by what they ask for.
+enum Asked : std::uint64_t { hello = 1, watch, subscribe, statistics, sequences };
+
+}  // namespace
+
+void DaemonWatch::look_after(Nanoseconds now) {
+  if (!daemon_) connect(now);
+  while (daemon_) {
+    auto line = daemon_->next_line(std::chrono::milliseconds(0));
+    if (!line) {
+      daemon_.reset();
+    } else if (*line) {
+      take(std::move(**line), now);
+    } else {
+      break;
+    }
+  }
+  if (daemon_ && now - heard_at_ > longest_silence) daemon_.reset();
+  if (daemon_) {
+    ask_what_is_due(now);
+  } else {
+    state_.lose();
+  }
+}
+
+void DaemonWatch::connect(Nanoseconds now) {
+  if (tried_at_ != 0 && now - tried_at_ < retry_pause) return;
+  tried_at_ = now;
+  auto daemon = tools::DaemonClient::connect(socket_);
+  if (!daemon) return;
+  daemon_.emplace(std::move(*daemon));
+  heard_at_ = now;
+  statistics_due_ = sequences_due_ = now;
+  daemon_->send({{"id", Asked::hello}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
+  daemon_->send({{"id", Asked::watch}, {"command", "watch"}, {"rate_hz", watch_rate_hz}});
+  Json request{{"id", Asked::subscribe}, {"command", "subscribe"}, {"since", last_event_}};
+  if (!started_at_.empty()) request["started_at"] = started_at_;
+  daemon_->send(request);
+}
+
+void DaemonWatch::ask_what_is_due(Nanoseconds now) {
+  if (now >= statistics_due_) {
+    statistics_due_ = now + statistics_period;
+    daemon_->send({{"id", Asked::statistics}, {"command", "statistics"}});
+  }
+  if (now >= sequences_due_) {
+    sequences_due_ = now + sequences_period;
+    daemon_->send({{"id", Asked::sequences}, {"command", "sequences"}});
+  }
+}
+
+void DaemonWatch::take(Json line, Nanoseconds now) {
+  if (line.contains("watch")) {
+    heard_at_ = now;
+    state_.take_status(std::move(line["watch"]));
+  } else if (line.contains("event")) {
+    last_event_ = static_cast<std::uint64_t>(number(line["event"], "id"));
+    state_.take_event(std::move(line["event"]));
+  } else if (line.value("ok", false) && member(line, "id").is_number_unsigned()) {
+    take_result(line["id"].get<std::uint64_t>(), std::move(line["result"]));
+  }
+}
+
+void DaemonWatch::take_result(std::uint64_t id, Json result) {
+  if (id == Asked::subscribe) started_at_ = text(result, "started_at");
+  if (id == Asked::statistics) state_.take_statistics(std::move(result));
+  if (id == Asked::sequences) state_.take_sequences(std::move(result["sequences"]));
+}
+
+}  // namespace softgrip::web

@@ -1,0 +1,56 @@
+#include "tools/web/http_engine.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace softgrip::web {
+
+namespace {
+
+/// A connection whose client has said all and hears the rest later.
+class MemoryStream final : public httplib::Stream {
+ public:
+  explicit MemoryStream(std::string_view request) : unread_(request) {}
+
+  [[nodiscard]] bool is_readable() const override { return !unread_.empty(); }
+  [[nodiscard]] bool is_writable() const override { return true; }
+  ssize_t read(char* bytes, size_t size) override {
+    const std::size_t count = std::min(size, unread_.size());
+    std::memcpy(bytes, unread_.data(), count);
+    unread_.remove_prefix(count);
+    return static_cast<ssize_t>(count);
+  }
+  ssize_t write(const char* bytes, size_t size) override {
+    written_.append(bytes, size);
+    return static_cast<ssize_t>(size);
+  }
+  void get_remote_ip_and_port(std::string&, int&) const override {}
+  void get_local_ip_and_port(std::string&, int&) const override {}
+  [[nodiscard]] socket_t socket() const override { return -1; }
+
+  [[nodiscard]] std::string take() { return std::move(written_); }
+
+ private:
+  std::string_view unread_;
+  std::string written_;
+};
+
+/// Parts of an answer are not offered: overlapping ones would make a large answer of a small file.
+void forget_ranges(httplib::Request& request) {
+  request.ranges.clear();
+}
+
+}  // namespace
+
+std::string HttpEngine::answer(std::string_view request) {
+  MemoryStream stream(request);
+  bool closed = false;
+#if SOFTGRIP_HTTPLIB_ADDRESSES
+  process_request(stream, {}, 0, {}, 0, true, closed, forget_ranges);
+#else
+  process_request(stream, true, closed, forget_ranges);
+#endif
+  return stream.take();
+}
+
+}  // namespace softgrip::web

@@ -1,0 +1,87 @@
+#include "tools/web/live_state.h"
+
+#include <utility>
+
+#include "tools/web/metrics/json_member.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Nobody needs more of what was not taken for so long than the newest.
+constexpr std::size_t longest_news = std::size_t{1} << 20U;
+
+Json list_of(const std::deque<Json>& items) {
+  Json list = Json::array();
+  for (const Json& item : items) list.push_back(item);
+  return list;
+}
+
+}  // namespace
+
+std::string message_of(std::string_view kind, const Json& data) {
+  // JSON has no line breaks of its own, so that one line of data holds it.
+  return "event: " + std::string(kind) +
+         "\ndata: " + data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
+}
+
+void LiveState::take_status(Json status) {
+  // Another daemon counts its time anew.
+  if (number(status, "time_s") < number(status_, "time_s")) trend_.clear();
+  status_ = std::move(status);
+  note_trend();
+  if (news_.size() < longest_news) news_ += message_of("state", status_);
+}
+
+void LiveState::note_trend() {
+  const double now_s = number(status_, "time_s");
+  Json sample = Json::array({now_s});
+  for (const Json& channel : member(status_, "channels")) {
+    sample.push_back({member(channel, "command_kpa"), member(channel, "pressure_kpa"),
+                      member(channel, "displacement_mm"), member(channel, "reference_mm")});
+  }
+  trend_.push_back(std::move(sample));
+  while (trend_.front()[0].is_number() && trend_.front()[0].get<double>() < now_s - trend_s)
+    trend_.pop_front();
+}
+
+void LiveState::take_event(Json event) {
+  if (news_.size() < longest_news) news_ += message_of("happened", event);
+  events_.push_back(std::move(event));
+  if (events_.size() > events_kept) events_.pop_front();
+}
+
+void LiveState::take_statistics(Json statistics) {
+  statistics_ = std::move(statistics);
+  if (news_.size() < longest_news) news_ += message_of("statistics", statistics_);
+}
+
+void LiveState::take_sequences(Json sequences) {
+  if (sequences == sequences_) return;
+  sequences_ = std::move(sequences);
+  if (news_.size() < longest_news) news_ += message_of("sequences", sequences_);
+}
+
+void LiveState::lose() {
+  if (status_.is_null()) return;
+  status_ = nullptr;
+  statistics_ = nullptr;
+  trend_.clear();
+  news_ += message_of("state", status_);
+}
+
+std::string LiveState::greeting() const {
+  return message_of("hello", {{"status", status_},
+                              {"statistics", statistics_},
+                              {"sequences", sequences_},
+                              {"events", list_of(events_)},
+                              {"trend", list_of(trend_)}});
+}
+
+std::string LiveState::take_news() {
+  return std::exchange(news_, {});
+}
+
+}  // namespace softgrip::web

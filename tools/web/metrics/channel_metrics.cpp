@@ -1,0 +1,82 @@
+#include "tools/web/metrics/channel_metrics.h"
+
+#include <nlohmann/json.hpp>
+
+#include "tools/web/metrics/json_member.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using enum MetricText::Type;
+
+constexpr double kpa_per_pa = 1e-3;
+constexpr double mm_per_m = 1e3;
+
+/// A number of the status, in base units.
+struct Quantity {
+  const char* name;
+  const char* key;
+  double units_per_base_unit;  // of the status
+  const char* help;
+};
+constexpr Quantity quantities[] = {
+    {"softgrip_reading_age_seconds", "age_s", 1, "Age of the displacement reading."},
+    {"softgrip_displacement_meters", "displacement_mm", mm_per_m, "Measured displacement."},
+    {"softgrip_reference_meters", "reference_mm", mm_per_m, "Displacement that is asked for."},
+    {"softgrip_pressure_pascals", "pressure_kpa", kpa_per_pa, "Measured pressure, where it is measured."},
+    {"softgrip_pressure_command_pascals", "command_kpa", kpa_per_pa, "Pressure that is asked of the valve."},
+    {"softgrip_squeeze_pascals", "squeeze_kpa", kpa_per_pa, "By how much of it the finger presses."},
+    {"softgrip_model_residual_meters", "residual_mm", mm_per_m,
+     "Displacement beside what the running model says of the free finger."},
+    {"softgrip_model_residual_rms_meters", "health_rms_mm", mm_per_m,
+     "Root mean square of the residual by which the model is judged."},
+};
+
+void tell_each(const Json& channels, MetricText& metrics, const auto& value_of) {
+  for (const Json& channel : channels)
+    metrics.sample({{"channel", text(channel, "name")}}, value_of(channel));
+}
+
+/// How much of the pressure that the finger may have is asked for.
+double pressure_use(const Json& channel) {
+  const Json& limits = member(channel, "limits");
+  const double lowest = number(limits, "pressure_min_kpa");
+  return (number(channel, "command_kpa") - lowest) / (number(limits, "pressure_max_kpa") - lowest);
+}
+
+void tell_one_of(const Json& channels, MetricText& metrics, const char* key,
+                 std::initializer_list<const char*> names) {
+  for (const Json& channel : channels) {
+    for (const char* name : names)
+      metrics.sample({{"channel", text(channel, "name")}, {key, name}}, text(channel, key) == name ? 1 : 0);
+  }
+}
+
+}  // namespace
+
+void tell_channels(const Json& channels, MetricText& metrics) {
+  if (!channels.is_array()) return;
+  for (const Quantity& quantity : quantities) {
+    metrics.family(quantity.name, gauge, quantity.help);
+    tell_each(channels, metrics, [&](const Json& channel) {
+      return number(channel, quantity.key) / quantity.units_per_base_unit;
+    });
+  }
+  metrics.family("softgrip_pressure_use_ratio", gauge,
+                 "Pressure that is asked for, from 0 at the finger's lowest limit to 1 at its highest.");
+  tell_each(channels, metrics, pressure_use);
+  metrics.family("softgrip_reading_valid", gauge, "1 while the displacement reading is good.");
+  tell_each(channels, metrics,
+            [](const Json& channel) { return text(channel, "validity") == "valid" ? 1.0 : 0.0; });
+  metrics.family("softgrip_pressure_limited", gauge,
+                 "1 while a limit keeps the pressure from what is wanted.");
+  tell_each(channels, metrics,
+            [](const Json& channel) { return member(channel, "limit").is_string() ? 1.0 : 0.0; });
+  metrics.family("softgrip_model_health", gauge,
+                 "1 for what the daemon says of the finger's running model, 0 for the others.");
+  tell_one_of(channels, metrics, "health", {"unknown", "healthy", "suspect", "unfit"});
+}
+
+}  // namespace softgrip::web

@@ -1,0 +1,13 @@
+#pragma once
+// What Prometheus is told of each finger.
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tools/web/metrics/metric_text.h"
+
+namespace softgrip::web {
+
+/// `channels`: of a status of the socket API.
+void tell_channels(const nlohmann::ordered_json& channels, MetricText& metrics);
+
+}  // namespace softgrip::web

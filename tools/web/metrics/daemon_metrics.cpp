@@ -1,0 +1,132 @@
+#include "tools/web/metrics/daemon_metrics.h"
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/web/metrics/channel_metrics.h"
+#include "tools/web/metrics/event_metrics.h"
+#include "tools/web/metrics/json_member.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using enum MetricText::Type;
+
+constexpr double us_per_s = 1e6;
+
+void tell_one(MetricText& metrics, std::string_view name, MetricText::Type type, std::string_view help,
+              double value) {
+  metrics.family(name, type, help);
+  metrics.sample(value);
+}
+
+void tell_state(const Json& status, MetricText& metrics) {
+  metrics.family("softgrip_build_info", gauge, "Always 1: version of softgripd and name of the rig.");
+  metrics.sample({{"version", status.value("version", "")}, {"rig", status.value("rig", "")}}, 1);
+  tell_one(metrics, "softgrip_simulated", gauge, "1 where there is no board and everything is computed.",
+           flag(status, "simulated"));
+  tell_one(metrics, "softgrip_uptime_seconds", gauge, "Since the daemon's start.", number(status, "time_s"));
+  metrics.family("softgrip_state", gauge, "1 for the state that the rig is in, 0 for the others.");
+  const std::string state = status.value("state", "");
+  for (const char* name : {"starting", "idle", "resynchronising", "running", "stopping", "faulted"})
+    metrics.sample({{"state", name}}, state == name ? 1 : 0);
+  metrics.family("softgrip_fault", gauge, "1 for the fault that is latched; no sample without one.");
+  if (const Json& fault = member(status, "fault"); fault.is_object()) {
+    const std::string channel = fault.contains("channel") && fault["channel"].is_string()
+                                    ? fault["channel"].get<std::string>()
+                                    : std::string();
+    metrics.sample(
+        {{"code", fault.value("code", "")}, {"name", fault.value("name", "")}, {"channel", channel}}, 1);
+  }
+  tell_one(metrics, "softgrip_under_pressure", gauge,
+           "1 where nothing moves and fingers are under pressure all the same.",
+           member(status, "under_pressure").is_object() ? 1 : 0);
+}
+
+void tell_lines(const Json& status, MetricText& metrics) {
+  const Json& lines = member(status, "gpio");
+  if (!lines.is_object()) return;
+  tell_one(metrics, "softgrip_emergency_stop", gauge, "1 while the emergency stop is pressed.",
+           flag(lines, "emergency_stop"));
+  tell_one(metrics, "softgrip_digital_lines_lost", gauge,
+           "1 where the digital lines cannot be read any more.", flag(lines, "lost"));
+}
+
+/// Durations since the daemon's start.
+void tell_durations(MetricText& metrics, const std::string& name, std::string_view help,
+                    const Json& histogram) {
+  if (!histogram.is_object()) return;
+  metrics.family(name, summary, help);
+  const double count = number(histogram, "count");
+  if (count > 0) {
+    for (const auto& [quantile, key] : {std::pair{"0.5", "p50_us"}, std::pair{"0.99", "p99_us"},
+                                        std::pair{"0.999", "p999_us"}, std::pair{"1", "max_us"}})
+      metrics.sample({{"quantile", quantile}}, number(histogram, key) / us_per_s);
+  }
+  metrics.sample({}, number(histogram, "mean_us") * count / us_per_s, "_sum");
+  metrics.sample({}, count, "_count");
+}
+
+void tell_loop(const Json& loop, MetricText& metrics) {
+  tell_one(metrics, "softgrip_loop_ticks_total", counter, "Ticks of the control loop.",
+           number(loop, "ticks"));
+  metrics.family("softgrip_loop_overruns_total", counter,
+                 "Periods of the loop's grid in which no tick began, by cause.");
+  metrics.sample({{"cause", "woken_late"}}, number(loop, "slips_woken_late"));
+  metrics.sample({{"cause", "took_long"}}, number(loop, "slips_took_long"));
+  tell_durations(metrics, "softgrip_loop_wake_up_seconds", "From the grid's time to the tick's beginning.",
+                 member(loop, "wake_up"));
+  tell_durations(metrics, "softgrip_loop_compute_seconds", "Duration of a tick.", member(loop, "compute"));
+  tell_durations(metrics, "softgrip_loop_reading_age_seconds",
+                 "Age of the oldest reading at the tick that uses it.", member(loop, "reading_age"));
+}
+
+void tell_bus(const Json& bus, MetricText& metrics) {
+  tell_one(metrics, "softgrip_bus_exchanges_total", counter, "Exchanges with the board, good and failed.",
+           number(bus, "exchanges"));
+  tell_one(metrics, "softgrip_bus_errors_total", counter,
+           "Exchanges with the board that failed, and failed attempts to connect.", number(bus, "failures"));
+  tell_one(metrics, "softgrip_bus_sessions_total", counter, "Sessions that were begun with the board.",
+           number(bus, "sessions"));
+  tell_one(metrics, "softgrip_bus_overruns_total", counter,
+           "Periods of the bus' grid in which no exchange began.", number(bus, "slips"));
+  tell_durations(metrics, "softgrip_bus_exchange_seconds", "Duration of good exchanges.",
+                 member(bus, "exchange"));
+}
+
+void tell_recorder(const Json& recording, MetricText& metrics) {
+  tell_one(metrics, "softgrip_recorder_active", gauge, "1 while a recording is written.",
+           flag(recording, "active"));
+  tell_one(metrics, "softgrip_recorder_failed", gauge, "1 where the last recording could not be written.",
+           member(recording, "error").is_string() ? 1 : 0);
+  tell_one(metrics, "softgrip_recorder_dropped_rows_total", counter,
+           "Rows that recordings lack because the disk did not keep up.", number(recording, "dropped_rows"));
+}
+
+}  // namespace
+
+void tell_daemon(const Json& status, const Json& statistics, MetricText& metrics) {
+  tell_one(metrics, "softgrip_up", gauge, "1 where softgripd answers.", status.is_object() ? 1 : 0);
+  if (!status.is_object()) return;
+  tell_state(status, metrics);
+  tell_lines(status, metrics);
+  tell_channels(member(status, "channels"), metrics);
+  tell_one(metrics, "softgrip_bus_connected", gauge, "1 while the board answers.",
+           flag(member(status, "bus"), "connected"));
+  tell_recorder(member(status, "recording"), metrics);
+  if (const Json& real_time = member(status, "real_time"); real_time.is_object())
+    tell_one(metrics, "softgrip_real_time_degraded", gauge,
+             "1 where the machine denied something that the loop's punctuality needs.",
+             flag(real_time, "degraded"));
+  if (!statistics.is_object()) return;
+  tell_loop(member(statistics, "loop"), metrics);
+  tell_bus(member(statistics, "bus"), metrics);
+  tell_events(member(statistics, "events"), member(status, "channels"), metrics);
+}
+
+}  // namespace softgrip::web

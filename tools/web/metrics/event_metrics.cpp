@@ -1,0 +1,98 @@
+#include "tools/web/metrics/event_metrics.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/web/metrics/json_member.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using enum MetricText::Type;
+
+/// "PART LOST" as labels have it: "part_lost".
+std::string label_of(std::string_view title) {
+  std::string label;
+  for (const char character : title) {
+    label += character == ' '
+                 ? '_'
+                 : static_cast<char>(character >= 'A' && character <= 'Z' ? character + 32 : character);
+  }
+  return label;
+}
+
+constexpr const char* results[] = {"HOLDING", "NO PART", "PART LOST", "RELEASED", "ERROR"};
+
+/// Counts by code and channel of one kind of event.
+class Counts {
+ public:
+  Counts(const Json& events, std::string_view kind) : events_(events), kind_(kind) {}
+
+  [[nodiscard]] double of(std::string_view code, std::string_view channel) const {
+    double count = 0;
+    for (const Json& event : events_) {
+      if (text(event, "kind") == kind_ && text(event, "code") == code && text(event, "channel") == channel)
+        count += number(event, "count");
+    }
+    return count;
+  }
+  /// By code, of all channels.
+  [[nodiscard]] std::map<std::string, double> by_code() const {
+    std::map<std::string, double> counts;
+    for (const Json& event : events_) {
+      if (text(event, "kind") == kind_) counts[text(event, "code")] += number(event, "count");
+    }
+    return counts;
+  }
+
+ private:
+  const Json& events_;
+  std::string_view kind_;
+};
+
+void tell_grips(const Json& events, const Json& channels, MetricText& metrics) {
+  const Counts grips(events, "grip_result");
+  metrics.family("softgrip_grip_results_total", counter, "Results of grips, by finger.");
+  for (const Json& channel : channels) {
+    const std::string name = text(channel, "name");
+    for (const char* result : results)
+      metrics.sample({{"channel", name}, {"result", label_of(result)}}, grips.of(result, name));
+  }
+  const Counts rigs(events, "overall_result");
+  metrics.family("softgrip_results_total", counter, "Results of all fingers of a sequence together.");
+  for (const char* result : results) metrics.sample({{"result", label_of(result)}}, rigs.of(result, {}));
+}
+
+void tell_by_code(const Json& events, MetricText& metrics, const char* kind, const char* name,
+                  const char* label, const char* help) {
+  metrics.family(name, counter, help);
+  for (const auto& [code, count] : Counts(events, kind).by_code()) metrics.sample({{label, code}}, count);
+}
+
+}  // namespace
+
+void tell_events(const Json& events, const Json& channels, MetricText& metrics) {
+  if (!events.is_array()) return;
+  tell_grips(events, channels, metrics);
+  const auto started = Counts(events, "sequence_started").by_code();
+  metrics.family("softgrip_sequences_started_total", counter, "Sequences that were started.");
+  metrics.sample(started.empty() ? 0 : started.begin()->second);
+  metrics.family("softgrip_sequences_ended_total", counter, "Sequences that ended, by how they did.");
+  for (const char* end : {"done", "failed", "stopped", "faulted"})
+    metrics.sample({{"end", end}}, Counts(events, "sequence_finished").of(end, {}));
+  tell_by_code(events, metrics, "fault_latched", "softgrip_faults_total", "code", "Faults that latched.");
+  tell_by_code(events, metrics, "request_refused", "softgrip_requests_refused_total", "code",
+               "Requests that the state did not allow.");
+  tell_by_code(events, metrics, "bus_failed", "softgrip_bus_failures_total", "cause",
+               "Times that the board stopped answering, by what failed.");
+  tell_by_code(events, metrics, "reading_invalid", "softgrip_readings_invalid_total", "validity",
+               "Times that a reading ceased to be good, by why.");
+}
+
+}  // namespace softgrip::web

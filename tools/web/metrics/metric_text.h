@@ -1,0 +1,32 @@
+#pragma once
+// Prometheus' text format, version 0.0.4.
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace softgrip::web {
+
+using Labels = std::vector<std::pair<std::string_view, std::string_view>>;
+
+/// Families one after the other, each with its samples. What is not finite is left out: a quantity that is
+/// not known has no sample.
+class MetricText {
+ public:
+  enum class Type : unsigned char { gauge, counter, summary };
+
+  /// Begins a family. Counters end with `_total`.
+  void family(std::string_view name, Type type, std::string_view help);
+  /// A sample of the family that was begun last. `suffix`: "_sum" or "_count" of a summary.
+  void sample(const Labels& labels, double value, std::string_view suffix = {});
+  void sample(double value) { sample({}, value); }
+
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+ private:
+  std::string text_;
+  std::string name_;
+};
+
+}  // namespace softgrip::web

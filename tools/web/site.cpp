@@ -1,0 +1,262 @@
+#include "tools/web/site.h"
+
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "tools/web/access/origin.h"
+#include "tools/web/commander.h"
+#include "tools/web/metrics/daemon_metrics.h"
+#include "tools/web/page/page_files.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using httplib::Request;
+using httplib::Response;
+
+constexpr const char* json_type = "application/json";
+/// Nothing but the page's own files, no frames, no forms that leave.
+constexpr const char* page_policy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// What a recording holds may be of others: it runs nothing and reaches nothing.
+constexpr const char* recording_policy =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; sandbox; frame-ancestors 'none'";
+
+/// Two fingers.
+constexpr std::string_view icon =
+    R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 16 16"><path fill="none" stroke="#0b57a4" stroke-width="3")"
+    R"( stroke-linecap="round" d="M5 2C1 6 2 11 6 14M11 2c4 4 3 9-1 12"/></svg>)";
+
+void put_json(Response& response, const Json& json, int status = 200) {
+  response.status = status;
+  response.set_content(json.dump(-1, ' ', false, Json::error_handler_t::replace), json_type);
+}
+
+void put_error(Response& response, int status, std::string_view message) {
+  put_json(response, {{"error", message}}, status);
+}
+
+/// Headers of the library are a multimap: a second value would stand beside the first.
+void replace_header(Response& response, const char* name, const char* value) {
+  response.headers.erase(name);
+  response.set_header(name, value);
+}
+
+/// Of "HTTP/1.1 200 OK..."; 0 where nothing was answered.
+int status_in(std::string_view answer) {
+  constexpr std::size_t at = 9;
+  int status = 0;
+  if (answer.size() > at) std::from_chars(answer.data() + at, answer.data() + answer.size(), status);
+  return status;
+}
+
+void put_file(Response& response, std::string_view text, const char* type) {
+  response.set_content(text.data(), text.size(), type);
+}
+
+}  // namespace
+
+std::string_view name_of(Role role) noexcept {
+  constexpr std::array<std::string_view, 3> names{"none", "look", "operate"};
+  return names[static_cast<std::size_t>(role)];
+}
+
+Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
+           std::string chart_js)
+    : settings_(settings),
+      gate_(gate),
+      state_(state),
+      counts_(counts),
+      chart_js_(std::move(chart_js)),
+      recordings_(settings.recordings) {
+  engine_.set_default_headers({{"Cache-Control", "no-store"},
+                               {"Content-Security-Policy", page_policy},
+                               {"Cross-Origin-Opener-Policy", "same-origin"},
+                               {"Cross-Origin-Resource-Policy", "same-origin"},
+                               {"Referrer-Policy", "no-referrer"},
+                               {"X-Content-Type-Options", "nosniff"},
+                               {"X-Frame-Options", "DENY"}});
+  engine_.set_pre_routing_handler([this](const Request& request, Response& response) {
+    return turn_away(request, response) ? httplib::Server::HandlerResponse::Handled
+                                        : httplib::Server::HandlerResponse::Unhandled;
+  });
+  engine_.set_error_handler([](const Request&, Response& response) {
+    if (response.body.empty()) put_error(response, response.status, "there is no such thing here");
+  });
+  engine_.set_exception_handler([](const Request&, Response& response, std::exception_ptr) {
+    put_error(response, 500, "the request could not be served");
+  });
+  add_page();
+  add_sessions();
+  add_data();
+  add_recordings();
+  add_commands();
+}
+
+Outcome Site::serve(std::string_view request, Nanoseconds now, const Json* answer) {
+  now_ = now;
+  answer_ = answer;
+  role_ = Role::none;
+  outcome_ = {};
+  outcome_.bytes = engine_.answer(request);
+  outcome_.status = status_in(outcome_.bytes);
+  if (outcome_.follower) outcome_.bytes += state_.greeting();
+  return std::move(outcome_);
+}
+
+std::string Site::refusal(int status) {
+  return fmt::format("HTTP/1.1 {} Refused\r\nConnection: close\r\nContent-Length: 0\r\n\r\n", status);
+}
+
+bool Site::turn_away(const Request& request, Response& response) {
+  credentials_ = {request.get_header_value("Host"), request.get_header_value("Origin"),
+                  request.get_header_value("Sec-Fetch-Site"), request.get_header_value("Cookie"),
+                  request.get_header_value("Authorization")};
+  const bool changes = request.method != "GET" && request.method != "HEAD";
+  const auto role = gate_.admit(credentials_, changes, now_);
+  if (!role) {
+    put_error(response, role.error().status, role.error().message);
+    return true;
+  }
+  role_ = *role;
+  return false;
+}
+
+bool Site::need(Role role, Response& response) const {
+  if (role_ >= role) return true;
+  if (role_ == Role::none) {
+    response.set_header("WWW-Authenticate", "Bearer");
+    put_error(response, 401, "show a token first");
+  } else {
+    put_error(response, 403, "who only looks may not do that");
+  }
+  return false;
+}
+
+void Site::add_page() {
+  engine_.Get("/", [](const Request&, Response& response) {
+    put_file(response, page_html(), "text/html; charset=utf-8");
+  });
+  engine_.Get("/icon.svg",
+              [](const Request&, Response& response) { put_file(response, icon, "image/svg+xml"); });
+  engine_.Get("/page.css", [](const Request&, Response& response) {
+    put_file(response, page_css(), "text/css; charset=utf-8");
+  });
+  engine_.Get("/page.js", [](const Request&, Response& response) {
+    put_file(response, page_js(), "text/javascript; charset=utf-8");
+  });
+  engine_.Get("/chart.js", [this](const Request&, Response& response) {
+    if (chart_js_.empty()) return put_error(response, 404, "the package libjs-chart.js is not installed");
+    replace_header(response, "Cache-Control", "max-age=3600");
+    put_file(response, chart_js_, "text/javascript; charset=utf-8");
+  });
+}
+
+void Site::add_sessions() {
+  const auto tell = [this](const Request&, Response& response) {
+    put_json(response, {{"role", name_of(role_)},
+                        {"tokens", gate_.has_tokens()},
+                        {"byToken", role_ > settings_.without_token},
+                        {"commands", !settings_.operate_socket.empty()}});
+  };
+  engine_.Get("/api/session", tell);
+  engine_.Post("/api/session", [this](const Request& request, Response& response) {
+    const Json body = Json::parse(request.body, nullptr, false);
+    if (!body.is_object() || !body.contains("token") || !body["token"].is_string())
+      return put_error(response, 400, "the body is {\"token\": \"...\"}");
+    const auto session = gate_.open(body["token"].get<std::string>(), now_);
+    if (!session) return put_error(response, session.error().status, session.error().message);
+    response.set_header("Set-Cookie",
+                        fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict", session_cookie, *session));
+    put_json(response, Json::object());
+  });
+  engine_.Delete("/api/session", [this](const Request& request, Response& response) {
+    gate_.close(request.get_header_value("Cookie"));
+    response.set_header("Set-Cookie",
+                        fmt::format("{}=; Path=/; HttpOnly; SameSite=Strict; Max-Age=0", session_cookie));
+    put_json(response, Json::object());
+  });
+}
+
+void Site::add_data() {
+  engine_.Get("/metrics", [this](const Request&, Response& response) {
+    if (need(Role::look, response))
+      response.set_content(metrics(), "text/plain; version=0.0.4; charset=utf-8");
+  });
+  engine_.Get("/api/status", [this](const Request&, Response& response) {
+    if (!need(Role::look, response)) return;
+    if (state_.status().is_null()) return put_error(response, 503, "softgripd does not answer");
+    put_json(response, state_.status());
+  });
+  engine_.Get("/api/stream", [this](const Request&, Response& response) { greet(response); });
+}
+
+/// The library writes the head and has no length to tell; all messages are written by whoever has the
+/// connection.
+void Site::greet(Response& response) {
+  if (!need(Role::look, response)) return;
+  outcome_.follower = Follower{credentials_, role_};
+  response.set_content_provider("text/event-stream", [](std::size_t, httplib::DataSink&) { return false; });
+}
+
+std::string Site::metrics() const {
+  MetricText metrics;
+  tell_daemon(state_.status(), state_.statistics(), metrics);
+  using enum MetricText::Type;
+  metrics.family("softgrip_web_connections", gauge, "Connections of browsers and collectors.");
+  metrics.sample(static_cast<double>(counts_.connections));
+  metrics.family("softgrip_web_pages", gauge, "Pages that are open.");
+  metrics.sample(static_cast<double>(counts_.followers));
+  metrics.family("softgrip_web_turned_away_total", counter, "Connections for which there was no place.");
+  metrics.sample(static_cast<double>(counts_.turned_away));
+  metrics.family("softgrip_web_answers_total", counter, "Answers by their status.");
+  for (const auto& [status, count] : counts_.answers)
+    metrics.sample({{"status", std::to_string(status)}}, static_cast<double>(count));
+  return metrics.text();
+}
+
+void Site::add_recordings() {
+  engine_.Get("/api/recordings", [this](const Request&, Response& response) {
+    if (need(Role::look, response)) put_json(response, {{"recordings", recordings_.list()}});
+  });
+  engine_.Get(R"(/recordings/([A-Za-z0-9._-]+)/([A-Za-z0-9._-]+))",
+              [this](const Request& request, Response& response) {
+                if (!need(Role::look, response)) return;
+                const std::string file = request.matches[2];
+                auto bytes = recordings_.read(request.matches[1].str(), file);
+                if (!bytes) return put_error(response, 404, "there is no such file");
+                replace_header(response, "Content-Security-Policy", recording_policy);
+                response.set_content(std::move(*bytes), std::string(content_type_of(file)));
+              });
+}
+
+void Site::add_commands() {
+  engine_.Post("/api/command",
+               [this](const Request& request, Response& response) { command(request, response); });
+}
+
+void Site::command(const Request& request, Response& response) {
+  if (!need(Role::operate, response)) return;
+  if (!request.get_header_value("Content-Type").starts_with(json_type))
+    return put_error(response, 415, "the body is JSON, and says so");
+  auto command = command_in(request.body);
+  if (!command) return put_error(response, 400, command.error());
+  if (answer_ == nullptr) {
+    outcome_.command = std::move(*command);
+    return;
+  }
+  if (answer_->value("ok", false)) return put_json(response, answer_->value("result", Json::object()));
+  const Json& error = answer_->contains("error") ? (*answer_)["error"] : *answer_;
+  const std::string code = error.value("code", "");
+  const bool gone = code == "no_daemon" || code == "no_answer";
+  put_json(response, {{"error", error.value("message", "")}, {"code", code}, {"details", error}},
+           gone ? 503 : 409);
+}
+
+}  // namespace softgrip::web
