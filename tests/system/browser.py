@@ -112,7 +112,8 @@ class Browser:
 
     def complaints(self):
         """What the browser wrote into its console: refused scripts, failed loads, exceptions."""
-        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+        return [entry["message"] for entry in self.driver.get_log("browser")
+                if entry["level"] in ("SEVERE", "WARNING") and entry["source"] != "rendering"]
 
     def nameless(self):
         """Roles of controls and pictures that a screen reader would have no name for."""

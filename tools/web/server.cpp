@@ -22,6 +22,7 @@ constexpr Nanoseconds quick_question = ns_per_s / 2;
 /// Taken from the queue of those who wait, in one turn: the others have theirs.
 constexpr int most_accepted = 32;
 constexpr int no_place = 503;
+constexpr int kept_by_system = 65536;
 
 using Phase = Client::Phase;
 
@@ -70,6 +71,8 @@ void Server::accept(Nanoseconds now) {
   for (int i = 0; i < most_accepted; ++i) {
     Descriptor socket = modbus::accept_client(listener_);
     if (!socket) return;
+    // The system would keep megabytes for who does not read.
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kept_by_system, sizeof kept_by_system);
     if (visitors_.size() < settings_.max_connections || make_place(now)) {
       visitors_.push_back({Client(std::move(socket), now), {}});
       continue;
