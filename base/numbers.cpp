@@ -38,8 +38,11 @@ std::string significant(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   if (value == 0) return "0";
   const double magnitude = std::abs(value);
-  if (magnitude < 1e-4 || magnitude >= 1e7)
-    return formatted(value, std::chars_format::scientific, digits - 1);
+  if (magnitude < 1e-4 || magnitude >= 1e7) {
+    const std::string text = formatted(value, std::chars_format::scientific, digits - 1);
+    const std::size_t exponent = text.find('e');
+    return without_trailing_zeros(text.substr(0, exponent)) + text.substr(exponent);
+  }
   const int leading = static_cast<int>(std::floor(std::log10(magnitude)));
   return without_trailing_zeros(
       formatted(value, std::chars_format::fixed, std::max(0, digits - 1 - leading)));

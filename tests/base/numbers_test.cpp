@@ -12,6 +12,8 @@ TEST(Numbers, ForPeopleHaveNoZerosThatSayNothing) {
   EXPECT_EQ(significant(0.07386, 3), "0.0739");
   EXPECT_EQ(significant(-0.0), "0");
   EXPECT_EQ(significant(1234.5, 3), "1234");
+  EXPECT_EQ(significant(5e-8), "5e-08");
+  EXPECT_EQ(significant(-1.25e9, 4), "-1.25e+09");
   EXPECT_EQ(fixed(-0.001, 2), "0.00");
 }
 

@@ -86,21 +86,16 @@ class Investigation(bench.BenchTest):
         self.assertLess(max(rig.pressures_kpa()), 5, "and it is vented")
 
     def test_a_rig_that_plays_something_else_ends_it(self):
-        for change, why in (("lambda rows: rows", None),
-                            ("lambda rows: [(t, min(p, 30.0)) for t, p in rows]",
+        for change, why in (("lambda rows: [(t, min(p, 30.0)) for t, p in rows]",
                              "the rig did not play what was asked: its command went to 30 instead of 45 kPa"),
                             ("lambda rows: rows[:len(rows) * 2 // 3]", r"it took [\d.]+ instead of [\d.]+ s"),
-                            ("lambda rows: [(t, p if t < rows[-1][0] / 2 else 0.0) for t, p in rows]", "its command travelled")):
+                            ("lambda rows: [(t, p if t < rows[-1][0] / 2 else 0.0) for t, p in rows]",
+                             "its command travelled")):
             with self.subTest(change):
                 player = self.write("player.py", PLAYER.replace("CHANGE", change).replace(
                     "SOFTGRIP", repr(str(bench.SOFTGRIP))).replace("MODEL", repr(FINGER)))
-                told = self.investigated("--rig-command", shlex.join([sys.executable, str(player)]), "--yes",
-                                         expect=6 if why else None)
-                if why:
-                    self.check(told, "not_as_asked", why)
-                else:
-                    self.assertNotEqual(told["end"], "not_as_asked")
-                    self.assertEqual(len(told["logs"]), 2, "what was played as asked is evidence")
+                self.check(self.investigated("--rig-command", shlex.join([sys.executable, str(player)]), "--yes"),
+                           "not_as_asked", why)
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ void add_found(Page& page, const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
   page.section("What was found");
   page.figure(budget_figure(d));
-  if (!d.causes.empty() || !d.partial.empty()) {
+  if (!shown_causes(d).empty()) {
     page.figure(forest_figure(d));
     page.table(cause_parameter_table(d, parameters_shown));
   }
@@ -81,7 +81,11 @@ void add_found(Page& page, const DiagnosisReport& report) {
   if (const auto looped = first_with_loops(d)) page.figure(loops_figure(d, *looped));
   if (!report.closed_loop) return;
   // The PID alone says nothing of the models.
-  if (report.closed_loop->schemes.size() > 1) page.figure(closed_loop_figure(*report.closed_loop));
+  if (report.closed_loop->schemes.size() > 1) {
+    page.figure(closed_loop_figure(*report.closed_loop));
+  } else {
+    page.paragraph("No model takes part in the closed loop (" + report.closed_loop->reference + "):");
+  }
   page.list(report.closed_loop->notes);
 }
 

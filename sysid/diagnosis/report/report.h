@@ -25,7 +25,7 @@ struct ProposedExperiment {
 /// The same reference tracked in simulation with each model in the feedforward.
 struct ClosedLoopCurves {
   struct Scheme {
-    std::string name;  ///< "PID alone", "extended model"
+    std::string name;  ///< "PID alone", "recalibrated model", "extended model": it says how it is drawn
     double rmse_mm = 0;
     std::vector<double> displacement_mm;  ///< by time_s
   };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 #include "base/numbers.h"
 #include "sysid/diagnosis/verdict/budget.h"
@@ -80,7 +81,7 @@ std::vector<BudgetPart> budget_parts(const Diagnosis& d) {
   for (const NamedCause& named : d.causes) {
     const Spread& gain = named.gain_mm2;
     parts.push_back({std::string(named.cause.title), scale * std::max(0.0, gain.value),
-                     colours[std::min<std::size_t>(parts.size(), 2)],
+                     colours[parts.size() % std::size(colours)],
                      significant(gain.lower, 3) + " to " + significant(gain.upper, 3)});
   }
   const double together = taken - scale * one_by_one;

@@ -298,8 +298,6 @@ Figure loops_figure(const Diagnosis& d, std::size_t k) {
 }
 
 Figure closed_loop_figure(const ClosedLoopCurves& curves) {
-  constexpr Colour colours[]{Colour::other, Colour::model, Colour::good};
-  constexpr Dash dashes[]{Dash::dotted, Dash::dashed, Dash::solid};
   Chart values, errors;
   values.title = "displacement";
   values.y.label = errors.y.label = "[mm]";
@@ -309,12 +307,13 @@ Figure closed_loop_figure(const ClosedLoopCurves& curves) {
   errors.height = 150;
   values.series.push_back(curve("reference", Colour::measured, 2.4, curves.time_s, curves.reference_mm));
   std::string numbers;
-  for (std::size_t i = 0; i < curves.schemes.size(); ++i) {
-    const ClosedLoopCurves::Scheme& scheme = curves.schemes[i];
-    const std::size_t look = i + 3 - std::min<std::size_t>(3, curves.schemes.size());
-    Series way = curve(scheme.name, colours[std::min<std::size_t>(look, 2)], 1.2, curves.time_s,
-                       scheme.displacement_mm);
-    way.dash = dashes[std::min<std::size_t>(look, 2)];
+  for (const ClosedLoopCurves::Scheme& scheme : curves.schemes) {
+    // A model looks as it does in the other figures, whichever of them are there.
+    const bool extended = scheme.name.starts_with("extended");
+    const bool recalibrated = scheme.name.starts_with("recalibrated");
+    const Colour colour = extended ? Colour::good : recalibrated ? Colour::model : Colour::other;
+    Series way = curve(scheme.name, colour, 1.2, curves.time_s, scheme.displacement_mm);
+    way.dash = extended ? Dash::solid : recalibrated ? Dash::dashed : Dash::dotted;
     Series error = way;
     error.label.clear();
     for (std::size_t t = 0; t < error.y.size(); ++t) error.y[t] -= curves.reference_mm[t];

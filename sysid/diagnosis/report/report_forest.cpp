@@ -39,12 +39,10 @@ const Spread* gain_of(const NamedCause& named, const Cause& rival) {
 
 std::vector<Row> rows_of(const Diagnosis& d) {
   std::vector<Row> rows;
-  for (const auto* list : {&d.causes, &d.partial}) {
-    for (const NamedCause& named : *list) {
-      rows.push_back({std::string(named.cause.title), false, &named.heldout_gain_percent, named.inclusion});
-      for (const Cause& rival : named.rivals)
-        rows.push_back({"or " + std::string(rival.title), true, gain_of(named, rival)});
-    }
+  for (const NamedCause* named : shown_causes(d)) {
+    rows.push_back({std::string(named->cause.title), false, &named->heldout_gain_percent, named->inclusion});
+    for (const Cause& rival : named->rivals)
+      rows.push_back({"or " + std::string(rival.title), true, gain_of(*named, rival)});
   }
   return rows;
 }

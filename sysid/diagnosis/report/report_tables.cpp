@@ -117,6 +117,15 @@ Table candidate_table(const std::vector<CandidateScore>& candidates, const Named
   return table;
 }
 
+std::vector<const NamedCause*> shown_causes(const Diagnosis& d) {
+  std::vector<const NamedCause*> causes;
+  for (const NamedCause& named : d.causes) causes.push_back(&named);
+  for (const NamedCause& named : d.partial) {
+    if (named.heldout_gain_percent.lower > 0) causes.push_back(&named);
+  }
+  return causes;
+}
+
 Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
   Table table;
   table.caption = "What the causes are worth in numbers";
@@ -126,21 +135,19 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
     return {std::string(named.cause.title), p.name, significant(p.value, 4),
             p.has_interval ? text_of(p.ci95, p.value, " to ") : "not fitted", p.unit};
   };
-  for (const auto* list : {&d.causes, &d.partial}) {
-    for (const NamedCause& named : *list) {
-      const std::size_t size = named.parameters.size();
-      const bool short_enough = size <= most;
-      std::size_t shown = 0;
-      for (const CauseParameter& p : named.parameters) {
-        // Of many, those that were measured.
-        if (!short_enough && (!p.has_interval || shown + 1 >= most)) continue;
-        table.rows.push_back(row(named, p));
-        ++shown;
-      }
-      if (shown < size)
-        table.rows.push_back({std::string(named.cause.title),
-                              "and " + std::to_string(size - shown) + " more, in the appendix"});
+  for (const NamedCause* named : shown_causes(d)) {
+    const std::size_t size = named->parameters.size();
+    const bool short_enough = size <= most;
+    std::size_t shown = 0;
+    for (const CauseParameter& p : named->parameters) {
+      // Of many, those that were measured.
+      if (!short_enough && (!p.has_interval || shown + 1 >= most)) continue;
+      table.rows.push_back(row(*named, p));
+      ++shown;
     }
+    if (shown < size)
+      table.rows.push_back({std::string(named->cause.title),
+                            "and " + std::to_string(size - shown) + " more, in the appendix"});
   }
   return table;
 }

@@ -20,7 +20,10 @@ namespace softgrip::sysid {
 /// @param chosen  the cause in whose place these were tried; nullptr: one more cause was looked for.
 [[nodiscard]] Table candidate_table(const std::vector<CandidateScore>& candidates, const NamedCause* chosen,
                                     double chosen_rmse_mm, std::string caption);
-/// The numbers of all causes with their intervals; of a cause with more than `most`, the first ones
+/// What the first part shows: the causes that are named, and those that explain a part where their gain's
+/// interval excludes zero.
+[[nodiscard]] std::vector<const NamedCause*> shown_causes(const Diagnosis& diagnosis);
+/// The numbers of these causes with their intervals; of a cause with more than `most`, the first ones
 /// of those that have an interval.
 [[nodiscard]] Table cause_parameter_table(const Diagnosis& diagnosis, std::size_t most);
 /// Parameters as given, recalibrated and extended.

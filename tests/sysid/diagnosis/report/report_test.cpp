@@ -159,6 +159,16 @@ TEST_F(ReportTest, TheForestHasARowForEachCauseAndEachRival) {
   EXPECT_NE(forest.drawing->markup.find("0.97"), std::string::npos);
 }
 
+TEST_F(ReportTest, APartThatMayBeNothingIsNotInTheForest) {
+  diagnosis.causes.clear();
+  diagnosis.partial = {named("valve_lag", 0.02), named("transport_delay", 0.01)};
+  diagnosis.partial.back().heldout_gain_percent = {7, 10, -8, 36};
+  EXPECT_EQ(forest_figure(diagnosis).drawing->rows.size(), 1U);
+  EXPECT_EQ(cause_parameter_table(diagnosis, 6).rows.size(), 1U);
+  diagnosis.partial.erase(diagnosis.partial.begin());
+  EXPECT_EQ(page().to_html().find("causes and their gains"), std::string::npos);
+}
+
 TEST_F(ReportTest, TheChainMarksWhatTheGivenModelLacks) {
   const Figure chain = chain_figure(diagnosis.extended_model, given);
   EXPECT_EQ(count(chain.drawing->markup, ", added<"), 2U) << "delay and lag";
@@ -230,6 +240,7 @@ TEST_F(ReportTest, AClosedLoopWithoutAnyModelIsNotDrawn) {
   const std::string alone = diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html();
   EXPECT_EQ(alone.find("In closed loop, "), std::string::npos);
   EXPECT_NE(alone.find("the extended model gives no feedforward"), std::string::npos);
+  EXPECT_NE(alone.find("No model takes part in the closed loop (13 ± 7 mm)"), std::string::npos);
   curves.schemes.push_back({"extended model", 0.02, {13, 20, 13.01}});
   EXPECT_NE(diagnosis_page({diagnosis, logs, given, 1, {}, {}, curves}).to_html().find("In closed loop, "),
             std::string::npos);
@@ -254,6 +265,10 @@ TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {
   ASSERT_EQ(figure.charts.size(), 2U);
   EXPECT_EQ(figure.charts[1].front().series.front().y[1], -2) << "displacement minus reference";
   EXPECT_NE(figure.caption.find("PID alone 1.5 mm, extended model 0.02 mm"), std::string::npos);
+  const std::vector<Series>& drawn = figure.charts[0].front().series;
+  EXPECT_EQ(drawn[1].colour, Colour::other) << "not the recalibrated model's, which is not there";
+  EXPECT_EQ(drawn[1].dash, Dash::dotted);
+  EXPECT_EQ(drawn[2].colour, Colour::good);
 }
 
 }  // namespace
