@@ -10,6 +10,10 @@ std::string configuration_path(const std::string& name) {
   return std::filesystem::exists(here) ? here : SOFTGRIP_CONFIG_DIR "/" + name;
 }
 
+std::string installed_configuration() {
+  return SOFTGRIP_CONFIG_DIR;
+}
+
 std::vector<std::string> document_names(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::error_code error;

@@ -17,6 +17,7 @@
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commissioning/daemon_examination.h"
+#include "tools/commissioning/gateway_examination.h"
 #include "tools/commissioning/machine.h"
 #include "tools/commissioning/rig_examination.h"
 
@@ -25,6 +26,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Where the system's service manager keeps what it starts.
+constexpr const char* enabled_units = "/etc/systemd/system/multi-user.target.wants";
 constexpr const char* daemon_holds_the_board =
     "softgripd runs and holds the board: stop it, or leave out --move";
 
@@ -39,7 +42,8 @@ bool is_simulated(const rig::RigFile& rig) {
   return std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
 }
 
-/// Asks the daemon; nothing is left to be looked at but the disk and the clock. Returns its status, or null.
+/// Asks the daemon, and looks at what stands in front of it; nothing is left to be looked at but the disk and
+/// the clock. Returns its status, or null.
 Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings& findings) {
   const auto status = client.ask({{"command", "status"}});
   const auto statistics = status ? client.ask({{"command", "statistics"}}) : status;
@@ -50,6 +54,7 @@ Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings&
     return nullptr;
   }
   doctor::examine_daemon(*status, *statistics, rig, findings);
+  doctor::examine_gateways(enabled_units, installed_configuration(), findings);
   return *status;
 }
 

@@ -1,0 +1,83 @@
+#include "tools/commissioning/gateway_examination.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/files.h"
+#include "drivers/modbus_server/listener.h"
+
+namespace softgrip::tools::doctor {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Gateways : public ::testing::Test {
+ protected:
+  Gateways() { fs::create_directories(folder_); }
+  ~Gateways() override { fs::remove_all(folder_); }
+  Gateways(const Gateways&) = delete;
+  Gateways& operator=(const Gateways&) = delete;
+  Gateways(Gateways&&) = delete;
+  Gateways& operator=(Gateways&&) = delete;
+
+  void enable(const std::string& program) {
+    fs::create_symlink("/nowhere", folder_ / (program + ".service"));
+  }
+  /// The shipped file with a port.
+  void configure(const std::string& name, const std::string& was, std::uint16_t port) {
+    std::string text = *read_file(SOFTGRIP_SOURCE_DIR "/config/" + name, 65536);
+    const std::size_t at = text.find(was);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, was.size(), "port: " + std::to_string(port));
+    ASSERT_TRUE(write_file(folder_ / name, text));
+  }
+  std::vector<Finding> found() const {
+    Findings findings;
+    examine_gateways(folder_, folder_, findings);
+    return findings.list();
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("gateways_" + std::to_string(::getpid()));
+};
+
+TEST_F(Gateways, NothingIsSaidOfWhatIsNotEnabled) {
+  configure("web.yaml", "port: 8017", 1);
+  EXPECT_TRUE(found().empty());
+}
+
+TEST_F(Gateways, WhoListensIsWell) {
+  const auto plc = modbus::listen_tcp("127.0.0.1", 0);
+  const auto web = modbus::listen_tcp("127.0.0.1", 0);
+  configure("plc.yaml", "port: 502", plc->port);
+  configure("web.yaml", "port: 8017", web->port);
+  enable("softgrip-plc");
+  enable("softgrip-web");
+  ASSERT_EQ(found().size(), 2U);
+  EXPECT_EQ(found()[0].name, "softgrip-plc");
+  EXPECT_EQ(found()[0].verdict, Verdict::ok);
+  EXPECT_EQ(found()[1].name, "softgrip-web");
+  EXPECT_EQ(found()[1].verdict, Verdict::ok);
+}
+
+TEST_F(Gateways, WhoShouldAndDoesNotIsAWarning) {
+  const std::uint16_t port = modbus::listen_tcp("127.0.0.1", 0)->port;
+  configure("web.yaml", "port: 8017", port);
+  enable("softgrip-web");
+  ASSERT_EQ(found().size(), 1U);
+  EXPECT_EQ(found()[0].verdict, Verdict::warn);
+  EXPECT_NE(found()[0].text.find("nobody listens on 127.0.0.1:" + std::to_string(port)), std::string::npos);
+}
+
+TEST_F(Gateways, AFileThatCannotBeUsedIsAWarning) {
+  enable("softgrip-plc");
+  ASSERT_EQ(found().size(), 1U);
+  EXPECT_EQ(found()[0].verdict, Verdict::warn);
+  EXPECT_NE(found()[0].text.find("plc.yaml cannot be used"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace softgrip::tools::doctor
