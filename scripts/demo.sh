@@ -4,14 +4,14 @@
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 out=$(realpath -m "${1:-demo-output}")
-# An existing build is brought up to date; otherwise the three programs alone, without debug information.
+# An existing build is brought up to date; otherwise the four programs alone, without debug information.
 build=build/release
 [ -f "$build/CMakeCache.txt" ] || build=build/demo
 
 bash scripts/packages.sh build
 echo "Building (a few minutes the first time) ..."
 [ -f "$build/CMakeCache.txt" ] || cmake --preset demo >/dev/null
-build() { cmake --build "$build" -j "$(nproc)" --target softgrip softgripd softgrip-rig; }
+build() { cmake --build "$build" -j "$(nproc)" --target softgrip softgripd softgrip-rig softgrip-web; }
 if [ -t 1 ]; then
   build  # ninja keeps its progress on one line of a terminal
 else
@@ -21,8 +21,17 @@ fi
 rm -rf "$out" && mkdir -p "$out/runs"
 work=$(mktemp -d) runs=$out/runs
 . scripts/rig_session.sh
-trap 'stop_daemon; stop_rig; rm -rf "$work"' EXIT
+web_pid=
+stop_web() { if [ -n "$web_pid" ]; then kill "$web_pid" 2>/dev/null; wait "$web_pid" 2>/dev/null; fi; web_pid=; }
+trap 'stop_web; stop_daemon; stop_rig; rm -rf "$work"' EXIT
 say() { printf '\n== %s\n' "$*"; }
+
+say "The operator's page, as long as the demo runs (softgrip-web)"
+"$build/tools/softgrip-web" --config config/web.yaml --socket "$work/sock" --recordings "$runs" --operate --port 0 \
+  >"$work/web.log" 2>&1 &
+web_pid=$!
+for _ in $(seq 50); do grep -q 'listening on' "$work/web.log" && break; sleep 0.1; done
+sed -n 's/^listening on /   /p' "$work/web.log"
 
 say "1. The rig: two fingers, a stone between them, behind a Modbus TCP board (softgrip-rig)"
 start_rig --object stone

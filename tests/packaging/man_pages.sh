@@ -12,4 +12,4 @@ for page in "$1"/*.gz; do
   count=$((count + 1))
 done
 echo "$count man pages without a warning"
-[ "$count" -eq 6 ]
+[ "$count" -eq 7 ]
