@@ -142,7 +142,7 @@ void study(const Scheme& scheme, const Options& options, const model::Model& fin
   const auto accepted = control::check_feedforward(scheme.believed, {scheme.kind, 0}, limits, tick_s);
   std::printf("\n%s\n", scheme.name.c_str());
   if (!accepted) {
-    std::printf("  refused: %s\n", accepted.error().text.c_str());
+    std::printf("  refused: %s\n", accepted.error().with_advice().c_str());
     return;
   }
   int refused = 0;

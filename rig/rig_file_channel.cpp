@@ -135,7 +135,7 @@ void check_feedforward_exists(Context& context, MapReader& reader, const control
                                              channel.feedforward.extra_latency_s};
   const bool plannable =
       control::check_feedforward(channel.model, planned, channel.limits, context.period_s()).has_value();
-  reader.report("feedforward", exists.error().text,
+  reader.report("feedforward", exists.error().with_advice(),
                 plannable ? "`planned` needs no inverse: sequences are planned before they start" : "");
 }
 

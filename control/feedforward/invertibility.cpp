@@ -28,14 +28,12 @@ using model::Inverse;
 using model::Kind;
 using model::Station;
 
-constexpr std::string_view usual_cause =
-    ": the model moves the wrong way first; a latency in the data is the usual cause, run `softgrip "
-    "diagnose`";
+constexpr std::string_view wrong_way_first = ": the model moves the wrong way first";
+constexpr std::string_view usual_cause = "a latency in the data is the usual cause, run `softgrip diagnose`";
 
 constexpr std::string_view creep_alone =
-    ": creep alone moves the model there, nothing elastic does (a play with threshold 0, a spring); "
-    "feedforward "
-    "`planned` needs none";
+    ": creep alone moves the model there, nothing elastic does (a play with threshold 0, a spring)";
+constexpr std::string_view planned_needs_none = "feedforward `planned` needs none";
 
 /// Below this nothing follows the pressure at once: a Kelvin-Voigt spring that does nothing still gives way
 /// by 1e-9 mm/kPa.
@@ -94,20 +92,21 @@ std::string wrong_way(const model::Chain<double>& chain, double stiff, std::stri
   if (beta < gain) return {};
   return "beta " + std::string(beta > gain ? ">" : "=") + " alpha" + std::string(stiff_name) + " (" +
          significant(beta) + (beta > gain ? " > " : " = ") + significant(gain) + " mm/kPa)" +
-         std::string(usual_cause);
+         std::string(wrong_way_first);
 }
 
 tl::expected<void, Refusal> check_gain(const model::Model& model, double pressure_max_kpa, double tick_s,
                                        double stiff, std::string_view stiff_name) {
   std::string text = wrong_way(model::Chain<double>(model), stiff, stiff_name);
-  if (!text.empty()) return tl::unexpected(Refusal{std::move(text)});
+  if (!text.empty()) return tl::unexpected(Refusal{std::move(text), usual_cause});
   const Worst worst = worst_gain(model, pressure_max_kpa, tick_s);
   if (worst.gain_mm_per_kpa >= least_gain_mm_per_kpa) return {};
-  const bool wrong_way_first = !(worst.gain_mm_per_kpa >= 0);
+  const bool backwards = !(worst.gain_mm_per_kpa >= 0);
   return tl::unexpected(Refusal{"the instantaneous gain is " + significant(worst.gain_mm_per_kpa) +
-                                " mm/kPa at " + significant(worst.pressure_kpa) + " kPa while the pressure " +
-                                (worst.rising ? "rises" : "falls") +
-                                std::string(wrong_way_first ? usual_cause : creep_alone)});
+                                    " mm/kPa at " + significant(worst.pressure_kpa) +
+                                    " kPa while the pressure " + (worst.rising ? "rises" : "falls") +
+                                    std::string(backwards ? wrong_way_first : creep_alone),
+                                backwards ? usual_cause : planned_needs_none});
 }
 
 /// The sensor does not move the finger and is left alone.
@@ -172,6 +171,10 @@ std::string not_undone(std::span<const BlockInfo> blocks) {
     if (!is_undone(block)) names += (names.empty() ? "`" : ", `") + std::string(block.id) + "`";
   }
   return names;
+}
+
+std::string Refusal::with_advice() const {
+  return advice.empty() ? text : text + "; " + std::string(advice);
 }
 
 tl::expected<void, Refusal> check_feedforward(const model::Model& model, const FeedforwardSettings& settings,

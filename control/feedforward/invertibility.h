@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include "control/elements/feedforward.h"
@@ -15,6 +16,9 @@ namespace softgrip::control {
 /// Why something is not done, in words for the user.
 struct Refusal {
   std::string text;
+  std::string_view advice = {};  ///< what to do about it; empty: the text says enough
+
+  [[nodiscard]] std::string with_advice() const;
 };
 
 /// Checks that `settings.kind` can be computed for `model` over the working range (0 to pressure_max_kpa,

@@ -137,7 +137,7 @@ ExitCode run(Options& options) {
   }
   const auto accepted =
       control::check_feedforward(*model, task.channel.feedforward, task.channel.limits, 1 / task.rate_hz);
-  if (!accepted) return fail(ExitCode::input_refused, options.model + ": " + accepted.error().text);
+  if (!accepted) return fail(ExitCode::input_refused, options.model + ": " + accepted.error().with_advice());
   if (const auto writable = prepare_parent(options.out); !writable)
     return fail(ExitCode::io, writable.error());
   task.channel.plausibility.max_speed_mm_per_s = 1e6;

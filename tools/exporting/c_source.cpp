@@ -311,7 +311,7 @@ std::string why_no_inverse(const model::Model& model, double tick_s, double pres
   control::LimitSettings limits;
   limits.pressure_max_kpa = pressure_max_kpa;
   const auto there = control::check_feedforward(model, settings, limits, tick_s);
-  return there ? std::string() : there.error().text;
+  return there ? std::string() : there.error().with_advice();
 }
 
 }  // namespace

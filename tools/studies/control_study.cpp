@@ -134,7 +134,7 @@ std::vector<ControlScheme> schemes_of(const ControlStudy& study) {
   for (ControlScheme& scheme : schemes) {
     const auto accepted =
         control::check_feedforward(scheme.believed, {scheme.kind, 0}, limits(), 1 / study.options.rate_hz);
-    if (!accepted) scheme.refusal = accepted.error().text;
+    if (!accepted) scheme.refusal = accepted.error().with_advice();
   }
   return schemes;
 }

@@ -43,7 +43,7 @@ control::LimitSettings working_range() {
 
 std::string refusal_of(const model::Model& model, control::FeedforwardKind kind, double tick_s) {
   const auto accepted = control::check_feedforward(model, {kind, 0}, working_range(), tick_s);
-  return accepted ? std::string() : accepted.error().text;
+  return accepted ? std::string() : accepted.error().with_advice();
 }
 
 /// Which branch of a two-branch element is the faster one: 1 or 2.

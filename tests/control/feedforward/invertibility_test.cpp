@@ -39,13 +39,13 @@ TEST(Invertibility, ThePublishedModelIsRefusedForBothKinds) {
   const auto full = check(published, FeedforwardKind::full_model);
   ASSERT_FALSE(full);
   EXPECT_EQ(
-      full.error().text,
+      full.error().with_advice(),
       "beta > alpha + 1/k0 (0.1721 > 0.07386 mm/kPa): the model moves the wrong way first; a latency in the "
       "data is the usual cause, run `softgrip diagnose`");
   const auto part = check(published, FeedforwardKind::bouc_wen);
   ASSERT_FALSE(part);
   EXPECT_EQ(
-      part.error().text,
+      part.error().with_advice(),
       "beta > alpha (0.1721 > 0.07079 mm/kPa): the model moves the wrong way first; a latency in the data is "
       "the usual cause, run `softgrip diagnose`");
   EXPECT_TRUE(check(published, FeedforwardKind::none));
@@ -63,7 +63,7 @@ TEST(Invertibility, PlaysAreAcceptedAsAWholeAlone) {
   const auto part = check(arm, FeedforwardKind::bouc_wen);
   ASSERT_FALSE(part);
   EXPECT_EQ(
-      part.error().text,
+      part.error().with_advice(),
       "the model has no `bouc_wen` block, which this feedforward is the inverse of; `full_model` is the "
       "inverse of the whole chain");
 }
