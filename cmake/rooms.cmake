@@ -87,6 +87,9 @@ softgrip_room(sysid/diagnosis/gauge
 softgrip_room(sysid/diagnosis/verdict
   USES base model sysid/logs sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
+softgrip_room(sysid/changes
+  USES base model sysid/logs sysid/fitting sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
+  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments
   USES base sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes sysid/diagnosis/search
        sysid/diagnosis/gauge sysid/diagnosis/verdict)
@@ -142,7 +145,7 @@ softgrip_room(tools/studies
        sysid/identification)
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
-       sysid/fitting sysid/identification sysid/structure sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
+       sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
        tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)

@@ -15,6 +15,7 @@
   X(export)                  \
   X(identify)                \
   X(validate)                \
+  X(baseline)                \
   X(diagnose)                \
   X(investigate)             \
   X(report)                  \

@@ -20,7 +20,9 @@
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/command_line/terminal.h"
+#include "tools/commands/baseline_folder.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/diagnose_change.h"
 #include "tools/commands/series_output.h"
 #include "tools/figures/figure_files.h"
 #include "tools/investigation/diagnosis_folder.h"
@@ -31,6 +33,8 @@ namespace {
 struct Options {
   std::string model;
   std::vector<std::string> data;
+  std::vector<std::string> healthy;
+  std::string baseline;
   std::string out;
   std::string figures;
   std::string gauge;
@@ -136,11 +140,31 @@ std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& co
   return curves;
 }
 
+/// What changed between the healthy logs and the others.
+ExitCode changed(const Options& options, const model::Model& model, const std::vector<sysid::Log>& logs,
+                 const std::vector<std::string>& call) {
+  const auto healthy = read_logs(options.healthy, options.logs);
+  if (!healthy) return healthy.error();
+  ChangeQuestion question{*healthy, logs, model, {}, options.out, call, options.json};
+  question.options.held = options.logs.held;
+  question.options.seed = options.diagnosis.seed;
+  question.options.threads = options.diagnosis.threads;
+  return run_change(std::move(question));
+}
+
 ExitCode run(Options options, const std::vector<std::string>& call) {
+  if (!options.baseline.empty()) {
+    const auto baseline = read_baseline(options.baseline);
+    if (!baseline) return fail(ExitCode::input_refused, baseline.error());
+    options.healthy = baseline->logs;
+    if (options.model.empty()) options.model = baseline->model;
+  }
+  if (options.model.empty()) return fail(ExitCode::usage, "--model is required where there is no --baseline");
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
+  if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {
     auto gauge = read_gauge(options.gauge);
@@ -184,10 +208,16 @@ ExitCode run(Options options, const std::vector<std::string>& call) {
 void add_diagnose(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("diagnose", "What a model gets wrong on measured data, and why");
-  command->add_option("--model", options->model, "Model file as it is used today")->required();
+  command->add_option("--model", options->model, "Model file as it is used today [the baseline's]");
   command
       ->add_option("--data", options->data, "Logs of one campaign, in order (CSV, or a recording's folder)")
       ->required();
+  command->add_option("--healthy", options->healthy,
+                      "Logs from when the finger was healthy: diagnose what changed since");
+  command
+      ->add_option("--baseline", options->baseline,
+                   "Folder of `softgrip baseline`: its logs are the healthy ones")
+      ->excludes("--healthy");
   command
       ->add_option(
           "--out", options->out,

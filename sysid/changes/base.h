@@ -1,0 +1,76 @@
+#pragma once
+// The base of a finger: what its healthy logs say it does, frozen, and how far that is to be trusted.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <tl/expected.hpp>
+
+#include "model/model.h"
+#include "sysid/changes/bins.h"
+#include "sysid/changes/echo.h"
+#include "sysid/changes/extension.h"
+#include "sysid/fitting/fit_space.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// Which column is judged. Of the pressure: command -> pressure_kpa, in the place of the displacement in
+/// every name below that ends with _mm (then kPa).
+enum class Judged { displacement, pressure };
+
+struct Base {
+  Judged judged = Judged::displacement;
+  Drive drive = Drive::command;
+  std::string description;  ///< of the model that was chosen
+  model::Model model;       ///< without blocks: the echo alone
+  EchoKind kind = EchoKind::finger;
+  double largest_kpa = 0;
+  Eigen::VectorXd echo_weights;
+  double temperature_c = 20;  ///< of the healthy logs, mean
+  double gain_per_c = 0;      ///< that the healthy logs show
+  double noise_mm = 0;        ///< of the readings, sample to sample
+  double left_mm = 0;         ///< what the base leaves on held-out blocks of the healthy logs
+  double span_mm = 0;
+  double gain_spread = 0;  ///< from log to log of the healthy ones, relative
+  double zero_spread_mm = 0;
+  double bin_s = 0.05;
+  Whitener whitener;
+  std::vector<Record> records;  ///< the healthy ones, thinned
+  Binned left;                  ///< residual of the healthy logs while held out
+};
+
+struct BaseOptions {
+  std::optional<model::Model> given;  ///< as it is used today: one of the models that may be the base
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  std::function<void(const std::string&)> progress;
+};
+
+/// @param records  healthy, at full rate.
+[[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
+                            const BaseOptions& options);
+
+/// What the echo adds to the model's prediction for a record, its drive unchanged.
+[[nodiscard]] Eigen::VectorXd echo_of(const Base& base, const Record& record);
+
+/// What the base, changed by `extension`, would read; without offset.
+/// @param echo  echo_of the record, where it is known already.
+[[nodiscard]] std::vector<double> predict_base(const Base& base, const Record& record,
+                                               const Extension& extension,
+                                               const Eigen::VectorXd* echo = nullptr);
+
+/// As a search for changes walks it: a valve answers sooner than a finger.
+[[nodiscard]] Record thinned_for(const Base& base, const Record& record);
+
+/// Reading minus prediction of the unchanged base, in bins. @param records  at full rate.
+[[nodiscard]] Binned residual_of(const Base& base, const std::vector<Record>& records);
+
+/// Records whose reading is the measured pressure [kPa] and whose drive the command.
+[[nodiscard]] std::vector<Record> pressure_records(const std::vector<Log>& logs, bool held);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,136 @@
+#include "sysid/changes/bins.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double memory_s = 0.5;
+/// Shares of all bins at which classes of haste end.
+constexpr std::array class_ends{0.4, 0.7, 0.9};
+
+/// The spread of what is left, by class of haste.
+void add_classes(const Binned& residual, const Binned& haste, Whitener& whitener) {
+  const WhiteRows rows(residual, haste, whitener);
+  const Eigen::VectorXd white = rows(residual);
+  std::vector<double> all;
+  for (const WhiteRows::Row& row : rows.rows()) all.push_back(haste[row.record][row.bin]);
+  if (all.empty()) return;
+  std::vector<double> sorted = all;
+  std::sort(sorted.begin(), sorted.end());
+  for (const double share : class_ends)
+    whitener.haste_kpa_per_s.push_back(
+        sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size()))]);
+  std::vector<double> sum(class_ends.size() + 1, 0), count(class_ends.size() + 1, 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::size_t c = whitener.class_of(all[i]);
+    sum[c] += std::pow(white(static_cast<Eigen::Index>(i)), 2);
+    count[c] += 1;
+  }
+  const double whole = std::sqrt(white.squaredNorm() / static_cast<double>(all.size()));
+  whitener.spread.clear();
+  constexpr double fewest = 30;
+  for (std::size_t c = 0; c < sum.size(); ++c)
+    whitener.spread.push_back(count[c] > fewest && sum[c] > 0 ? std::sqrt(sum[c] / count[c]) : whole);
+}
+
+}  // namespace
+
+std::size_t Whitener::class_of(double haste) const {
+  return static_cast<std::size_t>(std::lower_bound(haste_kpa_per_s.begin(), haste_kpa_per_s.end(), haste) -
+                                  haste_kpa_per_s.begin());
+}
+
+std::vector<double> haste_of(const Record& record, double bin_s) {
+  std::vector<double> haste(record.size(), 0);
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double dt = record.duration_s[i];
+    const double rate = dt > 0 ? std::abs(record.drive_kpa[i] - record.drive_kpa[i - 1]) / dt : 0;
+    haste[i] = std::max(rate, haste[i - 1] * std::exp(-dt / memory_s));
+  }
+  return binned(record, haste, bin_s);
+}
+
+double bin_s(const std::vector<Record>& records, double least_s) {
+  double longest_s = 0;
+  for (const Record& record : records) longest_s = std::max(longest_s, record.mean_interval_s());
+  return std::max(least_s, 2 * longest_s);
+}
+
+std::vector<double> binned(const Record& record, const std::vector<double>& series, double bin_s) {
+  const auto bins = static_cast<std::size_t>(record.length_s() / bin_s) + 1;
+  std::vector<double> sum(bins, 0), count(bins, 0);
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (!std::isfinite(series[i])) continue;
+    const auto bin = static_cast<std::size_t>((record.time_s[i] - record.time_s.front()) / bin_s + 1e-9);
+    sum[std::min(bin, bins - 1)] += series[i];
+    count[std::min(bin, bins - 1)] += 1;
+  }
+  for (std::size_t b = 0; b < bins; ++b)
+    sum[b] = count[b] > 0 ? sum[b] / count[b] : std::numeric_limits<double>::quiet_NaN();
+  return sum;
+}
+
+Whitener whitener_of(const Binned& residual, const Binned& haste, std::size_t order) {
+  Eigen::VectorXd correlation = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(order) + 1);
+  for (const std::vector<double>& series : residual) {
+    double mean = 0, count = 0;
+    for (const double v : series) {
+      if (!std::isfinite(v)) continue;
+      mean += v;
+      count += 1;
+    }
+    mean /= std::max(count, 1.0);
+    for (Eigen::Index lag = 0; lag < correlation.size(); ++lag) {
+      for (std::size_t i = static_cast<std::size_t>(lag); i < series.size(); ++i) {
+        const double product = (series[i] - mean) * (series[i - static_cast<std::size_t>(lag)] - mean);
+        if (std::isfinite(product)) correlation(lag) += product;
+      }
+    }
+  }
+  const auto n = static_cast<Eigen::Index>(order);
+  Eigen::MatrixXd toeplitz(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) toeplitz(i, j) = correlation(std::abs(i - j));
+  }
+  toeplitz.diagonal().array() += 1e-6 * correlation(0);
+  const Eigen::VectorXd weights = toeplitz.ldlt().solve(correlation.tail(n));
+  Whitener whitener;
+  whitener.before.assign(weights.begin(), weights.end());
+  whitener.spread = {1.0};
+  add_classes(residual, haste, whitener);
+  return whitener;
+}
+
+WhiteRows::WhiteRows(const Binned& residual, const Binned& haste, Whitener whitener)
+    : whitener_(std::move(whitener)) {
+  const std::size_t order = whitener_.before.size();
+  for (std::size_t r = 0; r < residual.size(); ++r) {
+    std::size_t finite = 0;
+    for (std::size_t b = 0; b < residual[r].size(); ++b) {
+      finite = std::isfinite(residual[r][b]) ? finite + 1 : 0;
+      if (finite > order) rows_.push_back({r, b, whitener_.spread_at(haste[r][b])});
+    }
+  }
+}
+
+Eigen::VectorXd WhiteRows::operator()(const Binned& series) const {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(rows_.size()));
+  Eigen::Index at = 0;
+  for (const auto& [r, b, spread] : rows_) {
+    double value = std::isfinite(series[r][b]) ? series[r][b] : 0;
+    for (std::size_t i = 0; i < whitener_.before.size(); ++i) {
+      const double earlier = series[r][b - 1 - i];
+      if (std::isfinite(earlier)) value -= whitener_.before[i] * earlier;
+    }
+    out(at++) = value / spread;
+  }
+  return out;
+}
+
+}  // namespace softgrip::sysid

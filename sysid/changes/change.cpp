@@ -1,0 +1,327 @@
+#include "sysid/changes/change.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "base/numbers.h"
+#include "sysid/changes/change_search.h"
+#include "sysid/changes/change_size.h"
+#include "sysid/diagnosis/residual/noise.h"
+#include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// A gain is a change where it passes so many times what the cause gains on the healthy logs while they are
+/// held out, and a little more.
+constexpr double chance_ratio = 2.0;
+constexpr double least_gain = 0.03;
+/// What one cause gains there another one of its kind may gain as well.
+constexpr double chance_of_others = 0.35;
+/// From here on the temperature is the finger's own.
+constexpr double own_temperature_gain = 0.05;
+/// A further cause takes at least this share of what is left.
+constexpr double further_share = 0.4;
+constexpr std::size_t most_causes = 3;
+/// Left beyond the healthy spread by more than this, in whitened mean squares: structure.
+constexpr double misfit_allowed = 1.35;
+/// A cause that gains less than this share of another one's, in the other reading, may follow from it: a base
+/// is less certain of a course that it never saw.
+constexpr double beside_another = 0.02;
+/// How often a cause must win against another one, blocks drawn anew, to stand alone.
+constexpr double wins_alone = 0.95;
+
+using Failure = tl::unexpected<std::string>;
+
+struct Prepared {
+  std::vector<Record> records;
+  OutlierEvidence outliers;
+};
+
+Prepared prepared(std::vector<Record> records) {
+  Prepared p{std::move(records), {}};
+  p.outliers = hide_outliers(p.records, measured_noise_mm(p.records));
+  return p;
+}
+
+LaterReadings readings_of(const Base& base, const std::vector<Record>& records) {
+  std::vector<Record> thinned;
+  for (const Record& record : records) thinned.push_back(thinned_for(base, record));
+  return {base, std::move(thinned), residual_of(base, records)};
+}
+
+std::vector<Line> lines_of(const Base& base, const std::vector<Record>& records) {
+  std::vector<std::vector<double>> left;
+  for (const Record& record : records) left.push_back(residual(record, predict_base(base, record, {})));
+  return spectrum_peaks(records, left);
+}
+
+double rms_of(const Binned& series, double zero) {
+  double sum = 0, count = 0;
+  for (const std::vector<double>& part : series) {
+    for (const double v : part) {
+      if (!std::isfinite(v)) continue;
+      sum += (v - zero) * (v - zero);
+      count += 1;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+Binned minus(Binned from, const Binned& what) {
+  for (std::size_t r = 0; r < from.size(); ++r) {
+    for (std::size_t b = 0; b < from[r].size(); ++b) from[r][b] -= what[r][b];
+  }
+  return from;
+}
+
+/// One reading from its healthy records to what it shows of the later ones.
+class Judge {
+ public:
+  Judge(Base base, const ChangeOptions& options, bool pressure_is_judged)
+      : base_(std::move(base)), options_(options), pressure_is_judged_(pressure_is_judged) {}
+
+  void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
+    learn_temperature();
+    say("what chance shows on the healthy logs");
+    const Chance chance = chance_of();
+    const LaterReadings readings = readings_of(base_, later);
+    const std::vector<Effect> effects =
+        effects_for(base_, later, lines_of(base_, later), pressure_is_judged_);
+    const auto bins = static_cast<double>(readings.rows().rows().size());
+    JudgedChange judged;
+    judged.judged = base_.judged;
+    judged.base = base_.description;
+    judged.noise_mm = base_.noise_mm;
+    judged.healthy_mm = base_.left_mm;
+    std::vector<FittedEffect> found;
+    judged.misfit_before = readings.white({}).squaredNorm() / bins;
+    for (std::size_t step = 0; step < most_causes; ++step) {
+      say("which changes the later logs show");
+      const std::vector<ScoredEffect> ranked =
+          ranked_effects(readings, effects, found, chance, options_.threads);
+      if (ranked.empty()) break;
+      if (step == 0) {
+        for (const ScoredEffect& each : ranked)
+          judged.tried.push_back(
+              {each.fit.fitted.effect.id, each.fit.fitted.effect.form, each.gain, each.chance});
+      }
+      if (!is_a_change(readings, ranked.front(), found)) break;
+      diagnosis.causes.push_back(cause_of(readings, ranked, found));
+      found.push_back(ranked.front().fit.fitted);
+      if (!(readings.white(found).squaredNorm() / bins > misfit_allowed)) break;
+    }
+    finish(readings, found, judged);
+    diagnosis.readings.push_back(std::move(judged));
+  }
+
+ private:
+  void say(const std::string& text) const {
+    if (options_.progress) options_.progress(text);
+  }
+
+  /// A gain that follows the temperature on the healthy logs already is the finger's own, on any day.
+  void learn_temperature() {
+    std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
+    std::erase_if(effects, [](const Effect& e) { return e.id != "thermal_gain"; });
+    if (effects.empty()) return;
+    const LaterReadings healthy(base_, base_.records, base_.left);
+    const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
+    if (!(ranked.front().gain > own_temperature_gain)) return;
+    base_.left = minus(std::move(base_.left), healthy.added({ranked.front().fit.fitted}));
+    base_.gain_per_c = ranked.front().fit.fitted.numbers.front();
+  }
+
+  /// The search on the healthy logs, their residual taken while they were held out.
+  [[nodiscard]] Chance chance_of() const {
+    const LaterReadings healthy(base_, base_.records, base_.left);
+    const std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
+    Chance chance;
+    double largest = 0;
+    for (const ScoredEffect& each : ranked_effects(healthy, effects, {}, {}, options_.threads)) {
+      chance[each.fit.fitted.effect.id] = std::max(0.0, each.gain);
+      largest = std::max(largest, each.gain);
+    }
+    for (auto& [id, gain] : chance) gain = std::max(gain, chance_of_others * largest);
+    return chance;
+  }
+
+  static bool stands_out(const ScoredEffect& scored) {
+    return scored.gain > least_gain + chance_ratio * scored.chance;
+  }
+
+  [[nodiscard]] bool is_a_change(const LaterReadings& readings, const ScoredEffect& best,
+                                 const std::vector<FittedEffect>& found) const {
+    if (!stands_out(best)) return false;
+    const std::vector<double> without = block_sums(readings, readings.white(found));
+    const std::vector<double> with = block_sums(readings, best.fit.white);
+    if (!(resampled(without, with, options_.seed).lower > 0)) return false;
+    if (found.empty()) return true;
+    const auto bins = static_cast<double>(readings.rows().rows().size());
+    const double left = readings.white(found).squaredNorm() / bins - 1;
+    return best.gain > further_share * left;
+  }
+
+  [[nodiscard]] ChangeCause cause_of(const LaterReadings& readings, const std::vector<ScoredEffect>& ranked,
+                                     const std::vector<FittedEffect>& found) const {
+    const FittedEffect& best = ranked.front().fit.fitted;
+    const auto bins = static_cast<double>(readings.rows().rows().size());
+    ChangeCause cause;
+    cause.id = best.effect.id;
+    cause.title = best.effect.title;
+    cause.station = best.effect.station;
+    cause.judged = base_.judged;
+    cause.fitted = best;
+    cause.gain = ranked.front().gain;
+    const std::vector<double> without = block_sums(readings, readings.white(found));
+    const std::vector<double> with = block_sums(readings, ranked.front().fit.white);
+    const Resampled spread = resampled(without, with, options_.seed);
+    cause.gain_lower = spread.lower / bins;
+    cause.gain_upper = spread.upper / bins;
+    for (std::size_t i = 1; i < ranked.size(); ++i) {
+      if (!stands_out(ranked[i])) continue;
+      const std::vector<double> other = block_sums(readings, ranked[i].fit.white);
+      if (resampled(other, with, options_.seed).share < wins_alone)
+        cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
+    }
+    const Binned added = readings.added({best});
+    cause.effect_mm = rms_of(added, 0);
+    cause.full_pressure_mm = at_full_pressure(readings, added);
+    cause.size = size_of(readings, best, cause.full_pressure_mm);
+    const double excess = readings.white({}).squaredNorm() / bins - 1;
+    cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
+    return cause;
+  }
+
+  void finish(const LaterReadings& readings, const std::vector<FittedEffect>& found,
+              JudgedChange& judged) const {
+    const auto bins = static_cast<double>(readings.rows().rows().size());
+    judged.misfit_left = readings.white(found).squaredNorm() / bins;
+    judged.left_over = judged.misfit_left > misfit_allowed;
+    const LaterReadings::Slack slack = readings.slack(found);
+    judged.zero_mm = slack.zero_mm;
+    judged.gain_percent = 100 * slack.gain;
+    judged.later_mm = rms_of(readings.left(), readings.slack({}).zero_mm);
+    judged.explained_mm = found.empty()
+                              ? judged.later_mm
+                              : rms_of(minus(readings.left(), readings.added(found)), slack.zero_mm);
+  }
+
+  Base base_;
+  const ChangeOptions& options_;
+  bool pressure_is_judged_;
+};
+
+bool has_pressure(const std::vector<Log>& logs) {
+  return std::all_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
+}
+
+std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>& later) {
+  if (healthy.empty() || later.empty()) return "A change needs healthy logs and later ones";
+  const auto samples = [](const std::vector<Log>& logs) {
+    std::size_t sum = 0;
+    for (const Log& log : logs) sum += log.size();
+    return sum;
+  };
+  constexpr std::size_t fewest = 400;
+  if (samples(healthy) < fewest || samples(later) < fewest)
+    return "A change needs " + std::to_string(fewest) + " samples of healthy logs and as many of later ones";
+  return {};
+}
+
+void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
+          std::vector<std::string>& warnings) {
+  const auto largest = [](const std::vector<Log>& logs) {
+    double p = 0;
+    for (const Log& log : logs)
+      p = std::max(p, *std::max_element(log.pressure_command_kpa.begin(), log.pressure_command_kpa.end()));
+    return p;
+  };
+  if (largest(later) > 1.05 * largest(healthy))
+    warnings.push_back("The later logs go to " + significant(largest(later), 3) +
+                       " kPa, the healthy ones to " + significant(largest(healthy), 3) +
+                       " kPa: beyond it the base only guesses");
+  if (has_pressure(healthy) != has_pressure(later))
+    warnings.emplace_back(
+        "pressure_kpa is recorded in one of the two only: the valve and the finger are judged as one");
+}
+
+/// Isolated wrong samples are counted, not fitted.
+void judge_outliers(const OutlierEvidence& healthy, const OutlierEvidence& later, double noise_mm,
+                    ChangeDiagnosis& diagnosis) {
+  if (!later.present || later.share_low <= healthy.share_high) return;
+  ChangeCause cause;
+  cause.id = "outliers";
+  cause.title = "Outliers";
+  cause.station = model::Station::sensor;
+  cause.size = {"wrong samples", 100 * later.share, "%"};
+  cause.effect_mm = later.excess_mm;
+  cause.share_percent = 100;
+  cause.gain = noise_mm > 0 ? std::pow(later.excess_mm / noise_mm, 2) : 0;
+  diagnosis.causes.push_back(std::move(cause));
+}
+
+ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
+  const bool left =
+      std::any_of(d.readings.begin(), d.readings.end(), [](const JudgedChange& j) { return j.left_over; });
+  const bool rivals =
+      std::any_of(d.causes.begin(), d.causes.end(), [](const ChangeCause& c) { return !c.rivals.empty(); });
+  if (d.causes.empty()) return left ? ChangeVerdict::unexplained : ChangeVerdict::unchanged;
+  if (left) return ChangeVerdict::partly_explained;
+  return rivals ? ChangeVerdict::ambiguous : ChangeVerdict::cause_found;
+}
+
+}  // namespace
+
+const char* name_of(ChangeVerdict verdict) {
+  switch (verdict) {
+    case ChangeVerdict::unchanged:
+      return "unchanged";
+    case ChangeVerdict::cause_found:
+      return "cause_found";
+    case ChangeVerdict::ambiguous:
+      return "ambiguous";
+    case ChangeVerdict::partly_explained:
+      return "partly_explained";
+    case ChangeVerdict::unexplained:
+      break;
+  }
+  return "unexplained";
+}
+
+tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log>& healthy,
+                                                           const std::vector<Log>& later,
+                                                           const ChangeOptions& options) {
+  const auto began = std::chrono::steady_clock::now();
+  if (const std::string objection = objection_to(healthy, later); !objection.empty())
+    return Failure(objection);
+  ChangeDiagnosis diagnosis;
+  warn(healthy, later, diagnosis.warnings);
+  const bool pressure = has_pressure(healthy) && has_pressure(later);
+  const RecordOptions record{.drive = pressure ? Drive::measured : Drive::command, .held = options.held};
+  const Prepared before = prepared(make_records(healthy, record));
+  const Prepared after = prepared(make_records(later, record));
+  judge_outliers(before.outliers, after.outliers, measured_noise_mm(after.records), diagnosis);
+  const BaseOptions base{options.given, options.seed, options.threads, options.progress};
+  if (pressure) {
+    Judge valve(fit_base(pressure_records(healthy, options.held), Judged::pressure, Drive::command, base),
+                options, true);
+    valve.judge(pressure_records(later, options.held), diagnosis);
+  }
+  Judge finger(fit_base(before.records, Judged::displacement, record.drive, base), options, pressure);
+  finger.judge(after.records, diagnosis);
+  std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),
+                   [](const ChangeCause& a, const ChangeCause& b) { return a.gain > b.gain; });
+  if (!diagnosis.causes.empty()) {
+    const double most = diagnosis.causes.front().gain;
+    std::erase_if(diagnosis.causes, [&](const ChangeCause& c) { return c.gain < beside_another * most; });
+  }
+  diagnosis.verdict = verdict_of(diagnosis);
+  diagnosis.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return diagnosis;
+}
+
+}  // namespace softgrip::sysid

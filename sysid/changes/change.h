@@ -1,0 +1,89 @@
+#pragma once
+// What became of a finger since it was healthy: a base from the healthy logs, frozen, and causes as changes.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "model/model.h"
+#include "sysid/changes/effect_fit.h"
+#include "sysid/logs/log.h"
+
+namespace softgrip::sysid {
+
+enum class ChangeVerdict { unchanged, cause_found, ambiguous, partly_explained, unexplained };
+[[nodiscard]] const char* name_of(ChangeVerdict verdict);
+
+struct ChangeOptions {
+  bool held = false;
+  std::optional<model::Model> given;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  std::function<void(const std::string&)> progress;
+};
+
+/// A size as a technician checks it.
+struct ChangeSize {
+  std::string what;  ///< "dead time", "gain"
+  double value = 0;
+  std::string unit;  ///< "s", "mm", "kPa", "%"
+};
+
+struct ChangeCause {
+  std::string id;
+  std::string title;
+  model::Station station = model::Station::actuator;
+  Judged judged = Judged::displacement;
+  FittedEffect fitted;
+  ChangeSize size;
+  double full_pressure_mm =
+      0;                     ///< what it does to the displacement at the highest pressures of the later logs
+  double effect_mm = 0;      ///< root mean square over the later logs
+  double share_percent = 0;  ///< of what its reading shows beyond the healthy spread
+  double gain = 0;           ///< per bin, in units of the healthy spread
+  double gain_lower = 0, gain_upper = 0;
+  std::vector<std::string> rivals;  ///< ids that explain as much
+};
+
+/// What was tried and not named.
+struct ChangeRival {
+  std::string id, form;
+  double gain = 0, healthy_gain = 0;
+};
+
+/// One reading: the displacement, or the pressure.
+struct JudgedChange {
+  Judged judged = Judged::displacement;
+  std::string base;                           ///< in words
+  double noise_mm = 0;                        ///< kPa of the pressure
+  double healthy_mm = 0;                      ///< what the base leaves of healthy readings, held out
+  double later_mm = 0;                        ///< what it leaves of the later ones, but for zero and gain
+  double explained_mm = 0;                    ///< with the causes
+  double misfit_before = 1, misfit_left = 1;  ///< mean squares, whitened; 1: as on the healthy logs
+  double zero_mm = 0;                         ///< by which the zero is another one
+  double gain_percent = 0;                    ///< within the healthy spread
+  bool left_over = false;
+  std::vector<ChangeRival> tried;
+};
+
+struct ChangeDiagnosis {
+  ChangeVerdict verdict = ChangeVerdict::unexplained;
+  std::vector<ChangeCause> causes;
+  std::vector<JudgedChange> readings;
+  std::vector<std::string> warnings;
+  double wall_s = 0;
+};
+
+/// Fails with a sentence where the logs cannot be compared.
+[[nodiscard]] tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log>& healthy,
+                                                                         const std::vector<Log>& later,
+                                                                         const ChangeOptions& options = {});
+
+/// The verdict in one sentence that a technician understands.
+[[nodiscard]] std::string change_sentence(const ChangeDiagnosis& diagnosis);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,39 @@
+#pragma once
+// Which effects one reading shows, one after the other, each against what chance shows on healthy logs.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sysid/changes/effect_fit.h"
+
+namespace softgrip::sysid {
+
+struct ScoredEffect {
+  EffectFit fit;
+  double gain = 0;    ///< whitened squares per row that it takes, less what its numbers cost
+  double chance = 0;  ///< what its cause took of the healthy logs while they were held out
+};
+
+/// Of every cause, what its best form takes of healthy logs that were held out: chance, and where the base is
+/// wrong.
+using Chance = std::map<std::string, double>;
+
+/// What takes most beyond chance first; one form per cause.
+[[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
+                                                       const std::vector<Effect>& effects,
+                                                       const std::vector<FittedEffect>& others,
+                                                       const Chance& chance, unsigned threads);
+
+/// Sums of whitened squares over blocks of some seconds.
+[[nodiscard]] std::vector<double> block_sums(const LaterReadings& readings, const Eigen::VectorXd& white);
+
+/// Of paired sums: how often, blocks drawn anew, `worse` is the larger, and the interval of the difference.
+struct Resampled {
+  double share = 0, lower = 0, upper = 0;
+};
+[[nodiscard]] Resampled resampled(const std::vector<double>& worse, const std::vector<double>& better,
+                                  std::uint64_t seed);
+
+}  // namespace softgrip::sysid

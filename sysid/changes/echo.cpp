@@ -1,0 +1,109 @@
+#include "sysid/changes/echo.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace softgrip::sysid {
+namespace {
+
+using Series = std::vector<double>;
+
+constexpr std::array valve_lags_s{0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
+constexpr std::array finger_lags_s{0.02, 0.06, 0.2, 0.6, 2.0, 6.0, 20.0, 60.0};
+
+template <class F>
+Series each(const Series& x, F&& f) {
+  Series y(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] = f(i, x[i]);
+  return y;
+}
+
+Series play(const Series& x, double threshold) {
+  double z = 0;
+  return each(x, [&](std::size_t, double v) { return z = std::clamp(z, v - threshold, v + threshold); });
+}
+
+/// kPa per tenth of a second.
+Series rate(const Record& record, const Series& x) {
+  return each(x, [&](std::size_t i, double v) {
+    return i > 0 && record.duration_s[i] > 0 ? 0.1 * (v - x[i - 1]) / record.duration_s[i] : 0;
+  });
+}
+
+std::vector<Series> valve_signals(const Record& record, const Series& u, double largest_kpa) {
+  const Series rising = rate(record, u);
+  const Series behind = lagged(record, u, 0.05);
+  const auto share = [&](double v) { return v / largest_kpa; };
+  const Series miss = each(u, [&](std::size_t i, double v) { return v - behind[i]; });
+  const auto within = [](double v, double bound) { return std::clamp(v, -bound, bound); };
+  std::vector<Series> all{u, play(u, 0.0025 * largest_kpa)};
+  all.push_back(each(u, [&](std::size_t, double v) { return v * share(v); }));
+  all.push_back(each(u, [&](std::size_t, double v) { return v * share(v) * share(v); }));
+  all.push_back(each(rising, [](std::size_t, double v) { return std::max(v, 0.0); }));
+  all.push_back(each(rising, [&](std::size_t i, double v) { return std::max(v, 0.0) * share(u[i]); }));
+  all.push_back(each(rising, [&](std::size_t i, double v) { return v * share(u[i]); }));
+  all.push_back(each(miss, [](std::size_t, double v) { return std::abs(v); }));
+  for (const double part : {0.017, 0.05, 0.13, 0.33})
+    all.push_back(each(miss, [&](std::size_t, double v) { return within(v, part * largest_kpa); }));
+  for (const double part : {0.05, 0.13}) {
+    all.push_back(
+        each(miss, [&](std::size_t i, double v) { return within(v, part * largest_kpa) * share(u[i]); }));
+  }
+  all.push_back(each(miss, [&](std::size_t i, double v) { return std::abs(v) * share(u[i]); }));
+  if (record.supply_kpa.empty()) return all;
+  const double usual = *std::max_element(record.supply_kpa.begin(), record.supply_kpa.end());
+  const auto loss = [&](std::size_t i) { return usual > 0 ? record.supply_kpa[i] / usual - 1 : 0; };
+  all.push_back(each(u, [&](std::size_t i, double v) { return v * loss(i); }));
+  all.push_back(each(miss, [&](std::size_t i, double v) { return within(v, 0.05 * largest_kpa) * loss(i); }));
+  return all;
+}
+
+std::vector<Series> finger_signals(const Series& u, double largest_kpa) {
+  const auto squared = [&](const Series& x) {
+    return each(x, [&](std::size_t, double v) { return v * v / largest_kpa; });
+  };
+  std::vector<Series> all{u, squared(u)};
+  all.push_back(each(u, [&](std::size_t, double v) { return v * v * v / (largest_kpa * largest_kpa); }));
+  for (const double part : {0.02, 0.06, 0.12, 0.22, 0.35, 0.5}) {
+    all.push_back(play(u, part * largest_kpa));
+    all.push_back(squared(all.back()));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<double> lagged(const Record& record, const std::vector<double>& signal, double time_constant_s) {
+  std::vector<double> out(signal.size(), signal.front());
+  double last_s = -1, keep = 0, mean = 0;
+  for (std::size_t i = 1; i < signal.size(); ++i) {
+    const double dt = record.duration_s[i];
+    if (dt != last_s) {
+      keep = std::exp(-dt / time_constant_s);
+      mean = dt > 0 ? (1 - keep) * time_constant_s / dt : 1;
+      last_s = dt;
+    }
+    out[i] = keep * out[i - 1] + (mean - keep) * signal[i - 1] + (1 - mean) * signal[i];
+  }
+  return out;
+}
+
+Eigen::MatrixXd echo_columns(const Record& record, const std::vector<double>& drive_kpa, EchoKind kind,
+                             double largest_kpa) {
+  const std::vector<Series> signals = kind == EchoKind::valve ? valve_signals(record, drive_kpa, largest_kpa)
+                                                              : finger_signals(drive_kpa, largest_kpa);
+  const auto& lags_s = kind == EchoKind::valve ? valve_lags_s : finger_lags_s;
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(record.size()),
+                          static_cast<Eigen::Index>(signals.size() * lags_s.size()));
+  Eigen::Index column = 0;
+  for (const Series& signal : signals) {
+    for (const double lag_s : lags_s) {
+      const Series filtered = lagged(record, signal, lag_s);
+      columns.col(column++) = Eigen::Map<const Eigen::VectorXd>(filtered.data(), columns.rows());
+    }
+  }
+  return columns;
+}
+
+}  // namespace softgrip::sysid

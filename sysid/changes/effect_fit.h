@@ -1,0 +1,76 @@
+#pragma once
+// One effect fitted to what a frozen base leaves of later records.
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sysid/changes/base.h"
+#include "sysid/changes/effects.h"
+
+namespace softgrip::sysid {
+
+/// An effect with numbers.
+struct FittedEffect {
+  Effect effect;
+  std::vector<double> numbers;
+};
+
+/// What later records show beside a base, with what is no change: another zero, and a gain within what the
+/// healthy logs themselves vary by.
+class LaterReadings {
+ public:
+  /// @param later  thinned_for() the base. @param left  what the base leaves of them, in bins.
+  LaterReadings(const Base& base, std::vector<Record> later, Binned left);
+
+  /// Whitened residual of the base with these effects, without what zero and gain take; a few rows more than
+  /// rows(), for what zero and gain cost.
+  [[nodiscard]] Eigen::VectorXd white(const std::vector<FittedEffect>& effects) const;
+  [[nodiscard]] const WhiteRows& rows() const { return rows_; }
+  [[nodiscard]] const Base& base() const { return base_; }
+  [[nodiscard]] const std::vector<Record>& records() const { return later_; }
+  [[nodiscard]] const Binned& left() const { return left_; }
+  /// What the effects add to the prediction, in bins.
+  [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
+  /// Zero and gain that go with the effects: common zero [mm], relative gain.
+  struct Slack {
+    double zero_mm = 0, gain = 0;
+  };
+  [[nodiscard]] Slack slack(const std::vector<FittedEffect>& effects) const;
+
+ private:
+  struct Split {
+    Eigen::VectorXd left, zeros;
+    double gain = 0;
+  };
+  [[nodiscard]] Split split(const std::vector<FittedEffect>& effects) const;
+
+  const Base& base_;
+  std::vector<Record> later_;
+  Binned left_;
+  Binned plain_;
+  std::vector<Eigen::VectorXd> echo_;
+  WhiteRows rows_;
+  Eigen::VectorXd target_;
+  Eigen::MatrixXd slack_, solver_;        ///< columns of zeros; what turns a residual into their sizes
+  Eigen::VectorXd price_;                 ///< root of what each costs
+  Eigen::VectorXd motion_, motion_left_;  ///< the base's own motion, whole and without what zeros take
+};
+
+struct EffectFit {
+  FittedEffect fitted;
+  double sum_of_squares = 0;
+  Eigen::VectorXd white;
+};
+
+/// From the best of its starts, the effects so far kept as they are.
+[[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
+                                   const std::vector<FittedEffect>& others);
+
+/// The same from given numbers.
+[[nodiscard]] EffectFit refit_effect(const LaterReadings& readings, const FittedEffect& from,
+                                     const std::vector<FittedEffect>& others);
+
+[[nodiscard]] Extension extension_of(const std::vector<FittedEffect>& effects);
+
+}  // namespace softgrip::sysid

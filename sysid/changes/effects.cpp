@@ -1,0 +1,179 @@
+#include "sysid/changes/effects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/blocks/ageing.h"
+#include "model/catalogue.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t most_starts = 8;
+
+/// Thinned evenly.
+std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
+  if (all.size() <= most_starts) return all;
+  std::vector<std::vector<double>> kept;
+  for (std::size_t i = 0; i < most_starts; ++i) kept.push_back(all[i * all.size() / most_starts]);
+  return kept;
+}
+
+/// Whether the base can carry the block at all.
+bool is_carried(const Base& base, const model::BlockSpec& block) {
+  if (base.model.blocks.empty()) return false;
+  return model::validate(model::with_block(base.model, block)).empty();
+}
+
+class Collector {
+ public:
+  Collector(const Base& base, const std::vector<Record>& later, const std::vector<Line>& lines,
+            bool pressure_is_judged)
+      : base_(base), scales_(scales_of(later)), pressure_is_judged_(pressure_is_judged) {
+    scales_.has_valve = base.drive == Drive::command;
+    scales_.residual_lines = lines;
+  }
+
+  std::vector<Effect> collect() {
+    const bool pressure = base_.judged == Judged::pressure;
+    for (const Cause& cause : all_causes()) {
+      const bool of_valve = cause.station == model::Station::valve;
+      if (!cause.found_by_fitting || cause.id == "thermal_gain") continue;
+      if (pressure != (of_valve && pressure_is_judged_)) continue;
+      if (of_valve && base_.drive == Drive::measured) continue;
+      if (!unanswerable(cause, scales_).empty()) continue;
+      for (const CauseForm& form : cause.forms) add(cause, form);
+    }
+    if (pressure) {
+      add_leak();
+    } else {
+      add_gain();
+      add_softening();
+      if (scales_.has_temperature) add_thermal();
+    }
+    return std::move(effects_);
+  }
+
+ private:
+  void add(const Cause& cause, const CauseForm& form) {
+    if (form.starts == nullptr) return;
+    std::vector<model::BlockSpec> starts = form.starts(scales_);
+    if (starts.empty()) return;
+    const model::Descriptor& descriptor = model::catalogue()[form.type];
+    if (descriptor.info.id == std::string_view("sensor_wander")) return;  // knots follow it too
+    if (cause.station != model::Station::valve && !is_carried(base_, starts.front())) return;
+    Effect effect{std::string(cause.id),
+                  std::string(cause.title),
+                  cause.station,
+                  std::string(descriptor.info.id),
+                  form.free_form,
+                  {},
+                  {},
+                  {},
+                  {}};
+    std::vector<std::size_t> fitted;
+    for (std::size_t i = 0; i < starts.front().values.size(); ++i) {
+      if (!form.is_fitted(i)) continue;
+      const model::ParameterSpec& spec = descriptor.spec(i);
+      const Range range = form.range(i, scales_, base_.model);
+      fitted.push_back(i);
+      effect.numbers.push_back({descriptor.name(i), std::string(spec.unit), spec.scale,
+                                std::max(spec.lower, range.lower), std::min(spec.upper, range.upper)});
+      effect.nothing.push_back(spec.neutral);
+    }
+    for (const model::BlockSpec& start : starts) {
+      effect.starts.emplace_back();
+      for (const std::size_t i : fitted) effect.starts.back().push_back(start.values[i]);
+    }
+    effect.starts = some(std::move(effect.starts));
+    const bool of_valve = cause.station == model::Station::valve;
+    effect.apply = [block = starts.front(), fitted, of_valve](Extension& extension,
+                                                              const std::vector<double>& numbers) {
+      model::BlockSpec changed = block;
+      for (std::size_t i = 0; i < fitted.size(); ++i) changed.values[fitted[i]] = numbers[i];
+      (of_valve ? extension.valve : extension.chain).push_back(std::move(changed));
+    };
+    effects_.push_back(std::move(effect));
+  }
+
+  /// The gain is another than it was, once and for all.
+  void add_gain() {
+    effects_.push_back({"ageing",
+                        "Ageing",
+                        model::Station::actuator,
+                        "another_gain",
+                        false,
+                        {{"gain_change", "", 0.01, -0.9, 9}},
+                        {{0.02}, {-0.02}},
+                        {0},
+                        [](Extension& e, const std::vector<double>& n) { e.gain *= 1 + n[0]; }});
+  }
+  void add_softening() {
+    const double p = base_.largest_kpa;
+    effects_.push_back({"stress_softening",
+                        "Stress softening",
+                        model::Station::actuator,
+                        "softer_below_the_largest",
+                        false,
+                        {{"share", "", 0.02, 0, 3}, {"range_kpa", "kPa", 5, 0.02 * p, 2 * p}},
+                        {{0.03, 0.2 * p}, {0.03, 0.6 * p}},
+                        {0, nan},
+                        [](Extension& e, const std::vector<double>& n) {
+                          e.softening = {n[0], n[1]};
+                        }});
+  }
+  void add_thermal() {
+    effects_.push_back({"thermal_gain",
+                        "Thermal gain",
+                        model::Station::actuator,
+                        "thermal_gain",
+                        false,
+                        {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}},
+                        {{0.01}, {-0.01}},
+                        {0},
+                        [](Extension& e, const std::vector<double>& n) { e.gain_per_c += n[0]; }});
+  }
+  void add_leak() {
+    const double p = base_.largest_kpa;
+    effects_.push_back({"leak",
+                        "Leak",
+                        model::Station::valve,
+                        "leak",
+                        false,
+                        {{"loss_kpa_per_s", "kPa/s", 0.1, 0, p},
+                         {"recovery_s", "s", 2, 0.05, 200},
+                         {"way_kpa", "kPa", 1, 0.05, 10 * p}},
+                        {{0.1, 1, 2}, {0.1, 10, 2}, {0.5, 0.3, 10}, {0.1, 5, 100}, {0.1, 5, 10}},
+                        {0, nan, nan},
+                        [](Extension& e, const std::vector<double>& n) {
+                          e.loss = {n[0], n[1], n[2]};
+                        }});
+    effects_.push_back({"blocked_line",
+                        "Blocked line",
+                        model::Station::valve,
+                        "blocked_line",
+                        false,
+                        {{"filling_s", "s", 0.02, 0, 10}, {"venting_s", "s", 0.02, 0, 10}},
+                        {{0.02, 0.04}, {0.1, 0.2}},
+                        {0, 0},
+                        [](Extension& e, const std::vector<double>& n) {
+                          e.line = {n[0], n[1]};
+                        }});
+  }
+
+  const Base& base_;
+  Scales scales_;
+  bool pressure_is_judged_;
+  std::vector<Effect> effects_;
+};
+
+}  // namespace
+
+std::vector<Effect> effects_for(const Base& base, const std::vector<Record>& later,
+                                const std::vector<Line>& lines, bool pressure_is_judged) {
+  return Collector(base, later, lines, pressure_is_judged).collect();
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,40 @@
+#pragma once
+// What may have changed: every cause as a change of a frozen base, with few numbers.
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sysid/changes/base.h"
+#include "sysid/diagnosis/causes/cause.h"
+
+namespace softgrip::sysid {
+
+/// One number of an effect.
+struct EffectNumber {
+  std::string name;
+  std::string unit;
+  double scale = 1, lower = 0, upper = 0;
+};
+
+/// A cause in one form.
+struct Effect {
+  std::string id;  ///< of the vocabulary of causes
+  std::string title;
+  model::Station station = model::Station::actuator;
+  std::string form;  ///< of the block, or of what has no block
+  bool free_form = false;
+  std::vector<EffectNumber> numbers;
+  std::vector<std::vector<double>> starts;
+  std::vector<double> nothing;  ///< where it does nothing; NaN: does not matter there
+  /// Adds the effect with these numbers.
+  std::function<void(Extension&, const std::vector<double>&)> apply;
+};
+
+/// All effects that the reading of these later records can show.
+/// @param lines  what stands out of their residual's spectrum.
+[[nodiscard]] std::vector<Effect> effects_for(const Base& base, const std::vector<Record>& later,
+                                              const std::vector<Line>& lines, bool pressure_is_judged);
+
+}  // namespace softgrip::sysid

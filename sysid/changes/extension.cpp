@@ -1,0 +1,61 @@
+#include "sysid/changes/extension.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/chain.h"
+#include "sysid/fitting/trajectory_walk.h"
+
+namespace softgrip::sysid {
+
+std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve, const Record& record) {
+  if (valve.empty()) return record.drive_kpa;
+  model::Model model;
+  for (const model::BlockSpec& block : valve) model = model::with_block(std::move(model), block);
+  model::Chain<double> chain(model, {}, record.sample_time_s);
+  start<double>(chain, record, 0);
+  std::vector<double> out(record.size(), chain.pressure_kpa());
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const model::Surroundings around = surroundings_at(record, i);
+    const double end = drive_at_end(record, i);
+    if (record.held) chain.step(0, end, around);
+    chain.step(record.duration_s[i], end, around);
+    out[i] = chain.pressure_kpa();
+  }
+  return out;
+}
+
+std::vector<double> softened(const Softening& softening, const Record& record, double largest_kpa) {
+  double most_kpa = record.largest_before_kpa;
+  std::vector<double> factor(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    most_kpa = std::max(most_kpa, record.drive_kpa[i]);
+    factor[i] = 1 + softening.share * most_kpa / largest_kpa *
+                        std::tanh((most_kpa - record.drive_kpa[i]) / softening.range_kpa);
+  }
+  return factor;
+}
+
+std::vector<double> pressure_behind(const SlowLine& line, const PressureLoss& loss, const Record& record,
+                                    std::vector<double> pressure_kpa) {
+  if (line.filling_s > 0 || line.venting_s > 0) {
+    double p = pressure_kpa.front();
+    for (std::size_t i = 1; i < pressure_kpa.size(); ++i) {
+      const double tau_s = pressure_kpa[i] > p ? line.filling_s : line.venting_s;
+      p += (pressure_kpa[i] - p) * (tau_s > 0 ? -std::expm1(-record.duration_s[i] / tau_s) : 1);
+      pressure_kpa[i] = p;
+    }
+  }
+  if (loss.rate_kpa_per_s == 0) return pressure_kpa;
+  double lost = 0;
+  for (std::size_t i = 1; i < pressure_kpa.size(); ++i) {
+    const double dt = record.duration_s[i];
+    const double way = std::abs(record.drive_kpa[i] - record.drive_kpa[i - 1]);
+    lost += dt * loss.rate_kpa_per_s * std::max(pressure_kpa[i], 0.0) / record.largest_kpa;
+    lost *= std::exp(-dt / loss.recovery_s - way / loss.way_kpa);
+    pressure_kpa[i] -= lost;
+  }
+  return pressure_kpa;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,55 @@
+#pragma once
+// What may have changed since a healthy log, as numbers beside a frozen base.
+
+#include <vector>
+
+#include "model/model.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// Pressure that gets lost while the valve stands still, and is made up for when it moves: d' = rate
+/// p/largest
+/// - d (1/recovery + |command'|/way).
+struct PressureLoss {
+  double rate_kpa_per_s = 0;
+  double recovery_s = 5;
+  double way_kpa = 2;
+};
+
+/// Behind the valve: a line that fills and empties more slowly.
+struct SlowLine {
+  double filling_s = 0;
+  double venting_s = 0;
+};
+
+/// Softer below the largest pressure so far m, as before at it: y times 1 + share m/largest tanh((m - p)/range)
+/// (after Ogden and Roxburgh, Proc. R. Soc. A 455, 1999).
+struct Softening {
+  double share = 0;
+  double range_kpa = 10;
+};
+
+struct Extension {
+  std::vector<model::BlockSpec> valve;  ///< what happens to the command, before the base sees it
+  std::vector<model::BlockSpec> chain;  ///< blocks of the base's model, or behind what it says
+  double gain = 1;                      ///< of the displacement
+  double gain_per_c = 0;                ///< beside the temperature of the healthy logs
+  Softening softening;
+  PressureLoss loss;
+  SlowLine line;
+};
+
+/// The drive of a record behind blocks of the valve.
+[[nodiscard]] std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve,
+                                               const Record& record);
+
+/// By what softening multiplies the displacement, sample by sample.
+[[nodiscard]] std::vector<double> softened(const Softening& softening, const Record& record,
+                                           double largest_kpa);
+
+/// A pressure behind a line and a leak.
+[[nodiscard]] std::vector<double> pressure_behind(const SlowLine& line, const PressureLoss& loss,
+                                                  const Record& record, std::vector<double> pressure_kpa);
+
+}  // namespace softgrip::sysid

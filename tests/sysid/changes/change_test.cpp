@@ -1,0 +1,89 @@
+#include "sysid/changes/change.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "sysid/changes/change_json.h"
+#include "tests/sysid/changes/finger.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using test::Finger;
+using test::logs_of;
+
+ChangeDiagnosis changed(const Finger& later, bool with_pressure = false) {
+  const auto diagnosis = diagnose_change(logs_of({}, 1, with_pressure), logs_of(later, 5, with_pressure));
+  EXPECT_TRUE(diagnosis) << diagnosis.error();
+  return *diagnosis;
+}
+
+TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
+  const ChangeDiagnosis d = changed({.zero_mm = 0.4});
+  EXPECT_EQ(d.verdict, ChangeVerdict::unchanged) << change_sentence(d);
+  EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
+}
+
+TEST(Change, AnotherGainIsAgeingInPercent) {
+  const ChangeDiagnosis d = changed({.gain = 0.2 * 1.03});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "ageing");
+  EXPECT_EQ(d.causes[0].size.unit, "%");
+  EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
+}
+
+TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
+  const ChangeDiagnosis d = changed({.stop_mm = 7});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  const ChangeCause& cause = d.causes[0];
+  const bool named = cause.id == "contact" || cause.id == "sensor_saturation";
+  EXPECT_TRUE(named) << cause.id;
+  // What is missing in the tenth of the pressures below the highest.
+  const std::vector<Log> stopped = logs_of({.stop_mm = 7}, 5), free = logs_of({}, 5);
+  double highest_kpa = 0, missing_mm = 0, count = 0;
+  for (const Log& log : free)
+    for (const double p : log.pressure_command_kpa) highest_kpa = std::max(highest_kpa, p);
+  for (std::size_t l = 0; l < free.size(); ++l) {
+    for (std::size_t i = 0; i < free[l].size(); ++i) {
+      if (free[l].pressure_command_kpa[i] < 0.9 * highest_kpa) continue;
+      missing_mm += free[l].displacement_mm[i] - stopped[l].displacement_mm[i];
+      count += 1;
+    }
+  }
+  EXPECT_NEAR(cause.full_pressure_mm, -missing_mm / count, 0.2);
+}
+
+TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
+  const ChangeDiagnosis d = changed({.lost_kpa_per_s = 0.8}, true);
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "leak");
+  EXPECT_EQ(d.causes[0].judged, Judged::pressure);
+  EXPECT_EQ(d.causes.size(), 1U);
+}
+
+TEST(Change, ALaterStartOfThePressureIsADelayInSeconds) {
+  const ChangeDiagnosis d = changed({.delay_s = 0.1});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "transport_delay");
+  EXPECT_NEAR(d.causes[0].size.value, 0.1, 0.02);
+}
+
+TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
+  const auto json = json_of(changed({.gain = 0.19}));
+  for (const char* const key : {"schema", "verdict", "causes", "alternatives", "noise_mm", "heldout_rmse_mm",
+                                "gain_percent", "unexplained_percent", "next_experiment", "warnings"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["causes"].size(), json["alternatives"].size());
+  EXPECT_LT(json["heldout_rmse_mm"]["extended"], json["heldout_rmse_mm"]["as_given"]);
+}
+
+TEST(Change, TooLittleIsRefused) {
+  std::vector<Log> short_logs = logs_of({}, 1);
+  short_logs.resize(1);
+  short_logs[0] = slice(short_logs[0], 0, 100);
+  EXPECT_FALSE(diagnose_change(short_logs, logs_of({}, 5)));
+  EXPECT_FALSE(diagnose_change({}, logs_of({}, 5)));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

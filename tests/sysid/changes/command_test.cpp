@@ -1,0 +1,56 @@
+// softgrip baseline and softgrip diagnose --healthy as a user calls them.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/sysid/changes/finger.h"
+#include "tests/sysid/command_fixture.h"
+
+namespace softgrip::sysid {
+namespace {
+
+using Json = nlohmann::json;
+const std::string model = "'" SOFTGRIP_SOURCE_DIR "/tests/blind/textbook/given.yaml'";
+
+class ChangeCommand : public CommandInFolder {
+ protected:
+  void SetUp() override {
+    CommandInFolder::SetUp();
+    write("h1.csv", format_log(test::log_of({}, 1)));
+    write("h2.csv", format_log(test::log_of({}, 2)));
+    write("later1.csv", format_log(test::log_of({.gain = 0.19}, 5)));
+    write("later2.csv", format_log(test::log_of({.gain = 0.19}, 6)));
+  }
+};
+
+TEST_F(ChangeCommand, ABaselineIsKeptAndAWeakerFingerCaught) {
+  ASSERT_EQ(run("baseline --data h1.csv h2.csv --model " + model + " --out base"), 0) << read("err.txt");
+  EXPECT_EQ(read("base/healthy_2.csv"), read("h2.csv"));
+  EXPECT_TRUE(Json::parse(read("base/baseline.json"))["check"].is_null());
+  ASSERT_EQ(run("diagnose --baseline base --data later1.csv later2.csv --out out"), 0) << read("err.txt");
+  const Json json = Json::parse(read("out/diagnosis.json"));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["question"], "change");
+  ASSERT_FALSE(json["causes"].empty()) << json.dump(1);
+  EXPECT_EQ(json["causes"][0]["id"], "ageing");
+  EXPECT_NEAR(json["causes"][0]["size"]["value"].get<double>(), -5, 0.6);
+  EXPECT_EQ(json["causes"][0]["next_steps"].size(), 2U);
+  EXPECT_EQ(json["made_of"]["healthy"].size(), 2U);
+}
+
+TEST_F(ChangeCommand, ASecondRunThatDiffersIsNotAcceptable) {
+  EXPECT_EQ(run("baseline --data h1.csv h2.csv --check later1.csv --model " + model + " --out base"), 6);
+  EXPECT_NE(Json::parse(read("base/baseline.json"))["check"]["verdict"], "unchanged");
+}
+
+TEST_F(ChangeCommand, ABaselineThatSomebodyChangedIsRefused) {
+  ASSERT_EQ(run("baseline --data h1.csv --model " + model + " --out base"), 0);
+  write("base/healthy_1.csv", read("h2.csv"));
+  EXPECT_EQ(run("diagnose --baseline base --data later1.csv --out out"), 3);
+  EXPECT_NE(read("err.txt").find("healthy_1.csv"), std::string::npos) << read("err.txt");
+  EXPECT_EQ(run("diagnose --baseline nowhere --data later1.csv --out out"), 3);
+  EXPECT_EQ(run("diagnose --data later1.csv --out out"), 2);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

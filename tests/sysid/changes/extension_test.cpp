@@ -1,0 +1,73 @@
+#include "sysid/changes/extension.h"
+
+#include <gtest/gtest.h>
+
+#include "model/blocks/transport_delay.h"
+#include "model/named.h"
+#include "sysid/changes/echo.h"
+#include "tests/sysid/changes/finger.h"
+
+namespace softgrip::sysid {
+namespace {
+
+Record record() {
+  return make_records(test::logs_of({}, 1), {}).front();
+}
+
+TEST(Extension, ADelayShiftsTheDrive) {
+  const Record r = record();
+  const std::vector<double> late = drive_behind({{model::block_type<model::TransportDelay>(), {0.2}}}, r);
+  for (std::size_t i = 10; i < r.size(); ++i) EXPECT_NEAR(late[i], r.drive_kpa[i - 10], 1e-9);
+  EXPECT_EQ(drive_behind({}, r), r.drive_kpa);
+}
+
+TEST(Extension, ALeakLosesPressureWhileTheValveRestsAndIsMadeUpForByMotion) {
+  Record r = record();
+  r.largest_kpa = 40;
+  r.drive_kpa.assign(r.size(), 40.0);
+  for (std::size_t i = 1000; i < r.size(); ++i) r.drive_kpa[i] = i % 2 == 0 ? 40.0 : 20.0;
+  const std::vector<double> p = pressure_behind({}, {0.5, 1e6, 1.0}, r, std::vector<double>(r.size(), 40.0));
+  EXPECT_NEAR(40 - p[500], 0.5 * 10, 0.1);  // 10 s at half a kPa per second
+  EXPECT_LT(40 - p[1100], 0.05);
+  EXPECT_EQ(pressure_behind({}, {}, r, r.drive_kpa), r.drive_kpa);
+}
+
+TEST(Extension, SofteningIsAsBeforeAtTheLargestPressureAndSofterBelowIt) {
+  Record r = record();
+  r.drive_kpa.assign(r.size(), 20.0);
+  r.drive_kpa[10] = 60;
+  const std::vector<double> factor = softened({0.1, 5}, r, 60);
+  EXPECT_EQ(factor[5], 1);
+  EXPECT_EQ(factor[10], 1);
+  EXPECT_NEAR(factor[20], 1.1, 1e-6);
+}
+
+TEST(Extension, ABlockedLineFillsMoreSlowlyThanItEmpties) {
+  Record r = record();
+  std::vector<double> step(r.size(), 0.0);
+  for (std::size_t i = 100; i < 500; ++i) step[i] = 10;
+  const std::vector<double> p = pressure_behind({1.0, 0.2}, {}, r, step);
+  EXPECT_NEAR(p[100 + 50 - 1], 10 * (1 - std::exp(-1)), 0.1);  // 1 s
+  EXPECT_NEAR(p[500 + 10 - 1], 10 * std::exp(-1), 0.2);        // 0.2 s
+}
+
+TEST(Echo, ALagIsExactForWhatIsStraightBetweenSamples) {
+  Record r = record();
+  std::vector<double> ramp(r.size());
+  for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = 2 * r.time_s[i];
+  const std::vector<double> lag = lagged(r, ramp, 0.5);
+  for (const std::size_t i : {10UL, 500UL})
+    EXPECT_NEAR(lag[i], 2 * (r.time_s[i] - 0.5 * (1 - std::exp(-r.time_s[i] / 0.5))), 1e-9);
+}
+
+TEST(Echo, ColumnsKnowTheSupplyWhereItIsRecorded) {
+  Record r = record();
+  const auto plain = echo_columns(r, r.drive_kpa, EchoKind::valve, 60);
+  EXPECT_EQ(plain.rows(), static_cast<Eigen::Index>(r.size()));
+  EXPECT_TRUE(plain.allFinite());
+  r.supply_kpa.assign(r.size(), 500.0);
+  EXPECT_GT(echo_columns(r, r.drive_kpa, EchoKind::valve, 60).cols(), plain.cols());
+}
+
+}  // namespace
+}  // namespace softgrip::sysid

@@ -1,0 +1,71 @@
+#pragma once
+// A finger for tests of changes, by formulas that are not the model's: an elastic part, one with play, one
+// that creeps, behind a valve that follows at once.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sysid/logs/log.h"
+
+namespace softgrip::sysid::test {
+
+struct Finger {
+  double gain = 0.2;     ///< mm/kPa
+  double stop_mm = 1e9;  ///< it goes no farther
+  double zero_mm = 0;
+  double lost_kpa_per_s = 0;  ///< while the command stands still, up to 1.5 kPa
+  double delay_s = 0;
+};
+
+/// Triangles of several heights with a hold on top, drawn by `seed`.
+inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, double rate_hz) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> height(20, 58), time(1.5, 4);
+  std::vector<double> out(static_cast<std::size_t>(rate_hz), 0.0);
+  const auto line = [&](double to, double s) {
+    const double from = out.back();
+    const auto n = static_cast<int>(s * rate_hz);
+    for (int i = 1; i <= n; ++i) out.push_back(from + (to - from) * i / n);
+  };
+  while (out.size() < samples) {
+    line(height(random), time(random));
+    line(out.back(), time(random));
+    line(0, time(random));
+  }
+  out.resize(samples);
+  return out;
+}
+
+inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = false) {
+  constexpr double rate_hz = 50;
+  std::mt19937 random(seed + 100);
+  std::normal_distribution<double> noise(0, 1);
+  Log log;
+  log.name = "log" + std::to_string(seed);
+  log.pressure_command_kpa = command_kpa(seed, 3000, rate_hz);
+  double play = 0, creep = 0, lost = 0;
+  const auto late = static_cast<std::size_t>(finger.delay_s * rate_hz);
+  for (std::size_t i = 0; i < log.pressure_command_kpa.size(); ++i) {
+    const double u = log.pressure_command_kpa[i >= late ? i - late : 0];
+    const double before = log.pressure_command_kpa[i > late ? i - late - 1 : 0];
+    lost = u == before ? std::min(lost + finger.lost_kpa_per_s / rate_hz * u / 60, 1.5) : 0.8 * lost;
+    const double p = u - lost;
+    play = std::clamp(play, p - 3, p + 3);
+    creep += (p - creep) / (rate_hz * 4);
+    const double y = finger.gain * (0.6 * p + 0.3 * play + 0.1 * creep);
+    log.time_s.push_back(static_cast<double>(i) / rate_hz);
+    log.displacement_mm.push_back(std::min(y, finger.stop_mm) + finger.zero_mm + 0.03 * noise(random));
+    if (with_pressure) log.pressure_kpa.push_back(p + 0.03 * noise(random));
+  }
+  return log;
+}
+
+inline std::vector<Log> logs_of(const Finger& finger, unsigned first_seed, bool with_pressure = false) {
+  return {log_of(finger, first_seed, with_pressure), log_of(finger, first_seed + 1, with_pressure)};
+}
+
+}  // namespace softgrip::sysid::test

@@ -1,0 +1,76 @@
+#include "tools/commands/diagnose_change.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "base/numbers.h"
+#include "sysid/changes/change_json.h"
+#include "sysid/changes/next_steps.h"
+#include "tools/command_line/command.h"
+#include "tools/command_line/progress_line.h"
+
+namespace softgrip::tools {
+namespace {
+
+nlohmann::ordered_json sources_of(const std::vector<sysid::Log>& logs) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const sysid::Log& log : logs) list.push_back({{"path", log.path}, {"sha256", log.sha256}});
+  return list;
+}
+
+void print_cause(const sysid::ChangeCause& cause) {
+  std::printf("  %-26s %s: %s %s (%s %s at full pressure)\n", cause.id.c_str(), cause.size.what.c_str(),
+              significant(cause.size.value, 3).c_str(), cause.size.unit.c_str(),
+              significant(cause.full_pressure_mm, 3).c_str(),
+              cause.judged == sysid::Judged::pressure ? "kPa" : "mm");
+  for (const std::string& rival : cause.rivals) std::printf("      %s explains as much\n", rival.c_str());
+  for (const std::string_view step : sysid::next_steps(cause.id))
+    std::printf("      - %s\n", std::string(step).c_str());
+}
+
+void print_summary(const sysid::ChangeDiagnosis& d, const std::string& out) {
+  std::printf("%s\n\n", sysid::change_sentence(d).c_str());
+  for (const sysid::ChangeCause& cause : d.causes) print_cause(cause);
+  for (const sysid::JudgedChange& judged : d.readings) {
+    const bool pressure = judged.judged == sysid::Judged::pressure;
+    std::printf("  %-12s noise %s, healthy base leaves %s, of the later logs %s, with the causes %s %s\n",
+                pressure ? "pressure" : "displacement", significant(judged.noise_mm, 2).c_str(),
+                significant(judged.healthy_mm, 3).c_str(), significant(judged.later_mm, 3).c_str(),
+                significant(judged.explained_mm, 3).c_str(), pressure ? "kPa" : "mm");
+  }
+  for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::printf("%s s; %s\n", significant(d.wall_s, 3).c_str(),
+              (std::filesystem::path(out) / "diagnosis.json").c_str());
+}
+
+}  // namespace
+
+ExitCode run_change(ChangeQuestion question) {
+  question.options.given = question.given;
+  const auto diagnosis = [&] {
+    ProgressLine line;
+    question.options.progress = line.show();
+    return sysid::diagnose_change(question.healthy, question.later, question.options);
+  }();
+  if (!diagnosis) return fail(ExitCode::input_refused, diagnosis.error());
+  nlohmann::ordered_json json = sysid::json_of(*diagnosis);
+  json["made_of"] = {{"call", question.call},
+                     {"model", question.given.name},
+                     {"healthy", sources_of(question.healthy)},
+                     {"data", sources_of(question.later)}};
+  const std::string text = json.dump(2) + "\n";
+  if (const auto written =
+          write_file((std::filesystem::path(question.out) / "diagnosis.json").string(), text);
+      !written)
+    return fail(ExitCode::io, written.error());
+  if (question.json) {
+    std::fputs(text.c_str(), stdout);
+  } else {
+    print_summary(*diagnosis, question.out);
+  }
+  return ExitCode::done;
+}
+
+}  // namespace softgrip::tools

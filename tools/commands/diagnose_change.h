@@ -1,0 +1,25 @@
+#pragma once
+// softgrip diagnose --healthy: what became of a finger.
+
+#include <string>
+#include <vector>
+
+#include "base/exit_code.h"
+#include "sysid/changes/change.h"
+
+namespace softgrip::tools {
+
+struct ChangeQuestion {
+  std::vector<sysid::Log> healthy;
+  std::vector<sysid::Log> later;
+  model::Model given;
+  sysid::ChangeOptions options;
+  std::string out;
+  std::vector<std::string> call;
+  bool json = false;
+};
+
+/// Diagnoses, writes diagnosis.json and report.html and prints what came of it.
+[[nodiscard]] ExitCode run_change(ChangeQuestion question);
+
+}  // namespace softgrip::tools
