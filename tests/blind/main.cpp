@@ -1,12 +1,14 @@
 // blind-world: writes the logs of one world, and its truth elsewhere.
 //
 //   blind-world --seed N --out DIR --truth FILE [--cause ID[,ID]] [--strength X] [--poor] [--pressure]
+//               [--campaign N] [--zero-mm Z] [--warmer-c D]
 //               [--command CSV ... --log FILE] [--gauge CSV --log FILE]
 //
 // DIR gets log_1.csv ... in the project's log format and nothing else. With --command the same world answers
 // further commands after its campaign, in the order given, and writes the last answer as one log.
-// With --gauge somebody then holds the sensor's target at the positions of that file (first column, mm), and
-// what the sensor shows is written beside them.
+// With --campaign the same finger is driven by other waveforms, with other noise; Z is added to every
+// reading, D to every temperature. With --gauge somebody then holds the sensor's target at the positions of
+// that file (first column, mm), and what the sensor shows is written beside them.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -25,10 +27,10 @@
 namespace {
 
 struct Arguments {
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1, campaign = 0;
   std::string out, truth, cause, log, gauge;
   std::vector<std::string> commands;
-  double strength = 8;
+  double strength = 8, zero_mm = 0, warmer_c = 0;
   bool poor = false, pressure = false, list = false;
 };
 
@@ -60,6 +62,12 @@ Arguments arguments(int argc, char** argv) {
       a.cause = value;
     else if (key == "--strength")
       a.strength = std::stod(value);
+    else if (key == "--campaign")
+      a.campaign = std::stoull(value);
+    else if (key == "--zero-mm")
+      a.zero_mm = std::stod(value);
+    else if (key == "--warmer-c")
+      a.warmer_c = std::stod(value);
     else if (key == "--command")
       a.commands.push_back(value);
     else if (key == "--log")
@@ -188,12 +196,13 @@ int run(const Arguments& a) {
     throw std::invalid_argument("--out and --truth are needed");
   const blind::Base base = scattered(a.seed);
   const blind::Sensor sensor;
-  std::vector<blind::LogInput> logs = blind::draw_campaign(a.seed, a.poor);
+  const std::uint64_t drive_seed = a.seed + 1000003 * a.campaign;
+  std::vector<blind::LogInput> logs = blind::draw_campaign(drive_seed, a.poor);
   blind::Effects effects;
   std::map<std::string, blind::Scaled> scaled;
   std::stringstream ids(a.cause);
   for (std::string id; std::getline(ids, id, ',');) {
-    const auto rich = blind::draw_campaign(a.seed, false);
+    const auto rich = blind::draw_campaign(drive_seed, false);
     scaled[id] = blind::scale_to(id, a.strength * sensor.noise_mm, base, rich, a.seed);
     effects[id] = scaled[id].effect;
   }
@@ -214,10 +223,14 @@ int run(const Arguments& a) {
     return 0;
   }
   std::filesystem::create_directories(a.out);
-  const auto outputs = blind::simulate(base, effects, logs, a.seed);
+  for (blind::LogInput& log : logs)
+    for (double& t : log.temperature_c) t += a.warmer_c;
+  auto outputs = blind::simulate(base, effects, logs, a.seed);
+  for (blind::LogOutput& output : outputs)
+    for (double& y : output.displacement_mm) y += a.zero_mm;
   for (std::size_t i = 0; i < logs.size(); ++i)
     write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], outputs[i], sensor, a.pressure,
-              a.seed * 31 + i * 2);
+              drive_seed * 31 + i * 2);
   write_truth(a.truth, a, effects, scaled, sensor);
   return 0;
 }

@@ -67,6 +67,8 @@ Numbers draw_effect(const std::string& id, double s, const Setting& setting, std
   if (id == "periodic_disturbance") return {{"mm", 0.3 * span * s}, {"frequency_hz", between(1.5, 8)}};
   if (id == "outliers") return {{"share", between(0.002, 0.01)}, {"size_mm", span * s}};
   if (id == "leak") return {{"conductance", 2 * setting.world.valve.tube_conductance * s}};
+  if (id == "blocked_line")
+    return {{"share", 0.95 * s}};  // of a change, not of a finger: not in library_ids()
   throw std::invalid_argument("unknown cause " + id);
 }
 

@@ -1,11 +1,12 @@
 // textbook-world: writes the logs of one world of textbook physics, and its truth elsewhere.
 //
 //   textbook-world --seed N --out DIR --truth FILE [--make NAME] [--cause ID[,ID...]] [--strength X] [--poor]
-//                  [--campaign N] [--pressure] [--no-temperature] [--no-supply]
+//                  [--campaign N] [--pressure] [--no-temperature] [--no-supply] [--zero-mm Z] [--warmer-c D]
 //   textbook-world --list | --makes | --probe flow|rest|hold|loops|relays|span|creep
 //
 // Without --make the seed chooses. A strength is the excess error (strength.h) over the noise of 0.04 mm, per
-// cause. With --campaign the same finger and valve are driven by other waveforms, with other noise.
+// cause. With --campaign the same finger and valve are driven by other waveforms, with other noise. Z is
+// added to every reading, D to every temperature.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -32,7 +33,7 @@ constexpr double visible_mm = noise_mm / 4;
 struct Arguments {
   std::uint64_t seed = 1, campaign = 0;
   std::string out, truth, make, cause, probe;
-  double strength = 8;
+  double strength = 8, zero_mm = 0, warmer_c = 0;
   bool poor = false, pressure = false, temperature = true, supply = true, list = false, makes = false;
 };
 
@@ -72,6 +73,10 @@ Arguments arguments(int argc, char** argv) {
       a.cause = value;
     else if (key == "--strength")
       a.strength = std::stod(value);
+    else if (key == "--zero-mm")
+      a.zero_mm = std::stod(value);
+    else if (key == "--warmer-c")
+      a.warmer_c = std::stod(value);
     else if (key == "--probe")
       a.probe = value;
     else
@@ -93,7 +98,7 @@ void write_log(const std::string& path, const textbook::Log& log, const textbook
     file << cell;
   };
   for (std::size_t k = 0; k < log.command_kpa.size(); ++k) {
-    const double y = answer.displacement_mm[k] + noise_mm * normal(random);
+    const double y = answer.displacement_mm[k] + a.zero_mm + noise_mm * normal(random);
     const double p = answer.pressure_kpa[k] + pressure_noise_kpa * normal(random);
     const double t = log.temperature_c[k] + temperature_noise_c * normal(random);
     const double s = log.supply_kpa[k] + supply_noise_kpa * normal(random);
@@ -165,7 +170,9 @@ int run(const Arguments& a) {
       effects[id] = hidden[id].numbers;
     }
   }
-  const auto logs = textbook::draw_campaign(drive_seed, a.poor);
+  auto logs = textbook::draw_campaign(drive_seed, a.poor);
+  for (textbook::Log& log : logs)
+    for (double& t : log.temperature_c) t += a.warmer_c;
   const auto answers = textbook::simulate(world, effects, logs, a.seed);
   std::filesystem::create_directories(a.out);
   for (std::size_t i = 0; i < logs.size(); ++i)

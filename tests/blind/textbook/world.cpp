@@ -56,6 +56,7 @@ std::vector<double> pressure(const World& world, const Hidden& hidden, const Log
   if (world.perfect_valve) return command;
   ValveNumbers numbers = world.valve;
   numbers.leak_conductance = hidden.at("leak", "conductance");
+  numbers.tube_conductance *= 1 - hidden.at("blocked_line", "share");
   Valve valve(numbers);
   const int steps = static_cast<int>(std::lround(1 / (log.rate_hz * valve_step_s)));
   std::vector<double> out(command.size());

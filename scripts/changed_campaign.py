@@ -1,0 +1,142 @@
+#!/usr/bin/python3
+"""Fingers that changed since their healthy logs, and fingers that did not, through `softgrip diagnose --healthy`.
+
+    scripts/changed_campaign.py --work DIR [--build build/release] [--seeds 4] [--unchanged 60] [--strengths 0.15 1]
+                                [--columns pressure command] [--first-seed 1] [--workers 2] [--most-minutes M]
+                                [--page docs/reference/changed-campaign.md]
+
+--seeds counts per family, cause, strength and kind of columns. Worlds of both families (tests/blind, tests/blind/textbook),
+their measured pressure recorded or not. The later day has another input, another zero (up to 0.5 mm) and another
+temperature (up to 4 degrees; where the hidden cause is the temperature, the same). Resumable, and a fair sample whenever it
+is stopped: every world's outcome is one line of DIR/changed.jsonl.
+"""
+import argparse
+import collections
+import itertools
+import pathlib
+import random
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+for folder in ("tests/blind", "scripts"):
+    sys.path.insert(0, str(ROOT / folder))
+
+import campaign  # noqa: E402
+import changing  # noqa: E402
+from ledger import Ledger  # noqa: E402
+
+KEYS = ("family", "cause", "strength", "seed", "columns", "zero_mm", "warmer_c")
+OF_PRESSURE = {"leak", "blocked_line"}
+OUTCOMES = ("first", "twin", "listed", "wrong", "unnamed", "missed")
+
+
+def causes_of(build, family, columns):
+    listed = subprocess.run([build / changing.PROGRAM[family], "--list"], check=True, capture_output=True, text=True).stdout
+    ids = [i for i in listed.split() if not i.startswith("outside_")] + (["blocked_line"] if family == "textbook" else [])
+    return [i for i in ids if columns == "pressure" or i not in OF_PRESSURE]
+
+
+def worlds(args, build):
+    """All that is planned, in an order in which every part is like the whole. A world is the same whatever else is."""
+    planned = []
+    for family, columns in itertools.product(("textbook", "first"), args.columns):
+        kinds = [("none", 0, args.unchanged // 2 // len(args.columns))]
+        kinds += [(c, s, args.seeds) for c, s in itertools.product(causes_of(build, family, columns), args.strengths)]
+        for cause, strength, count in kinds:
+            rng = random.Random(f"{args.first_seed} {family} {cause} {strength} {columns}")
+            for _ in range(count):
+                warmer = 0 if cause == "thermal_gain" else round(rng.uniform(-4, 4), 2)
+                planned.append({"family": family, "cause": cause, "strength": strength, "seed": rng.randrange(10**6),
+                                "columns": columns, "zero_mm": round(rng.uniform(-0.5, 0.5), 3), "warmer_c": warmer})
+    random.Random(args.first_seed).shuffle(planned)
+    return planned
+
+
+def share(part, whole):
+    """Percent with its 95 % interval (Wilson)."""
+    if whole == 0:
+        return "-"
+    z, p = 1.96, part / whole
+    middle = (p + z * z / 2 / whole) / (1 + z * z / whole)
+    half = z * (p * (1 - p) / whole + z * z / 4 / whole**2) ** 0.5 / (1 + z * z / whole)
+    return f"{100 * p:.1f} % ({100 * (middle - half):.1f} .. {100 * (middle + half):.1f})"
+
+
+def table(rows, keys, outcomes):
+    lines = ["| " + " | ".join((*keys, "worlds", *outcomes)) + " |", "|" + "---|" * (len(keys) + 1 + len(outcomes))]
+    groups = collections.defaultdict(collections.Counter)
+    for row in rows:
+        groups[tuple(row[key] for key in keys)][row["outcome"]] += 1
+    for group, counts in sorted(groups.items(), key=str):
+        cells = [str(g) for g in group] + [str(sum(counts.values()))] + [str(counts[o]) for o in outcomes]
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
+def page(rows, command, planned):
+    changed = [r for r in rows if r["cause"] != "none" and r["outcome"] != "failed"]
+    still = [r for r in rows if r["cause"] == "none" and r["outcome"] != "failed"]
+    failed = sum(r["outcome"] == "failed" for r in rows)
+    lines = ["# Campaign of changed fingers", "", f"Written by `{command}`: {len(rows)} worlds of {planned} planned, "
+             f"{failed} of them failed. Stopped before its end, it is a sample of the plan in random order.", "",
+             *changing_text(), "", "| measure | wanted | measured (95 % interval) | worlds |", "|---|---|---|---|"]
+    for strength, wanted in ((0.15, 90), (1, 97)):
+        own = [r for r in changed if r["strength"] == strength]
+        for name, good in (("true change first", ("first",)), ("first, or its mirror image", ("first", "twin")),
+                           ("named or listed", ("first", "twin", "listed"))):
+            lines.append(f"| strength {strength}: {name} | {f'at least {wanted} %' if len(good) == 1 else '-'} | "
+                         f"{share(sum(r['outcome'] in good for r in own), len(own))} | {len(own)} |")
+        lines.append(f"| strength {strength}: something else named | - | "
+                     f"{share(sum(r['outcome'] == 'wrong' for r in own), len(own))} | {len(own)} |")
+    lines.append(f"| unchanged called unchanged | at least 98 % | "
+                 f"{share(sum(r['outcome'] == 'unchanged' for r in still), len(still))} | {len(still)} |")
+    lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
+              *table(still, ("family", "columns"), ("unchanged", "false_alarm", "unexplained")), "",
+              "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## What was named instead", "",
+              "| hidden | strength | family | columns | seed | outcome | verdict | named |", "|---|---|---|---|---|---|---|---|"]
+    for row in sorted((r for r in changed + still if r["outcome"] not in ("first", "unchanged")), key=lambda r: r["cause"]):
+        lines.append(f"| {row['cause']} | {row['strength']} | {row['family']} | {row['columns']} | {row['seed']} | "
+                     f"{row['outcome']} | {row['verdict']} | {', '.join(row['named'])} |")
+    return "\n".join(lines) + "\n"
+
+
+def changing_text():
+    return [
+        "Each world is a finger whose healthy logs (three, campaign 0 of its seed) are recorded before anything is hidden,",
+        "and whose later logs (campaign 1: other waveforms, other noise) have one cause in them, or none. Strength 1 is what",
+        "the other campaigns call 8: an excess error of 8 times the noise of 0.04 mm; 0.15 of it is 0.048 mm. The later day",
+        "has another zero and another temperature. `first`: the true cause is named first; `twin`: stiffening and a bent",
+        "scale for each other; `listed`: named after another or among the rivals; `unnamed`: something changed, nothing is",
+        "named; `missed`: called unchanged; `wrong`: only something else is named."]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--unchanged", type=int, default=60)
+    parser.add_argument("--strengths", type=float, nargs="+", default=[0.15, 1])
+    parser.add_argument("--columns", nargs="+", default=["pressure", "command"])
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--most-minutes", type=float)
+    parser.add_argument("--page", type=pathlib.Path)
+    args = parser.parse_args()
+    build = args.build.resolve()
+    ledger = Ledger(args.work / "changed.jsonl", KEYS)
+    planned = worlds(args, build)
+    campaign.run(ledger, planned, lambda world: changing.run_world(build, args.work, world),
+                 lambda world, result: f"{world['family']} {world['columns']} {world['cause']} {world['strength']:g}: "
+                 f"{result['outcome']} {result.get('named', '')} {result.get('wall_s', 0):.0f} s",
+                 args.workers, args.most_minutes)
+    if args.page:
+        command = campaign.command("scripts/changed_campaign.py", parser, args,
+                                   ("seeds", "unchanged", "strengths", "columns", "first_seed"))
+        wanted = {ledger.key(world) for world in planned}
+        args.page.write_text(page([r for r in ledger.rows if ledger.key(r) in wanted], command, len(planned)))
+
+
+if __name__ == "__main__":
+    main()

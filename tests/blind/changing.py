@@ -1,0 +1,68 @@
+"""One changed world, from its making to a judgement: what the fixed ones of the test suite and the campaign share.
+
+A world: family (`textbook` or `first`), cause (or `none`), strength (of the usual one: `--strength 8` of the worlds),
+seed, columns (`pressure` or `command`), zero_mm and warmer_c (of the later day). The healthy logs are the finger's
+campaign 0, the later ones its campaign 1: other waveforms, other noise. The engine is called as a user calls it.
+"""
+import json
+import pathlib
+import shutil
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+GIVEN = {"textbook": ROOT / "tests/blind/textbook/given.yaml", "first": ROOT / "tests/blind/given.yaml"}
+PROGRAM = {"textbook": "tests/blind/textbook/textbook-world", "first": "tests/blind/blind-world"}
+USUAL = 8
+# The same readings by another name, and which name the same law has in the other family.
+TWINS = {"stiffening": {"sensor_nonlinearity"}, "sensor_nonlinearity": {"stiffening"}}
+
+
+def judge(cause, diagnosis):
+    """unchanged, false_alarm, unexplained of an unchanged world; else first, twin (its mirror image is first), listed
+    (among the rivals of the first or named after it), missed (unchanged), unnamed (unexplained), wrong."""
+    named = [c["id"] for c in diagnosis["causes"]]
+    if cause == "none":
+        return "false_alarm" if named else diagnosis["verdict"]
+    if not named:
+        return "unnamed" if diagnosis["verdict"] == "unexplained" else "missed"
+    if named[0] == cause:
+        return "first"
+    if named[0] in TWINS.get(cause, set()):
+        return "twin"
+    return "listed" if cause in named or any(cause in rivals for rivals in diagnosis["alternatives"]) else "wrong"
+
+
+def make(build, world, work):
+    """(healthy logs, later logs, truth)"""
+    program = [build / PROGRAM[world["family"]], "--seed", str(world["seed"])]
+    program += ["--pressure"] if world["columns"] == "pressure" else []
+    subprocess.run([*program, "--out", work / "healthy", "--truth", work / "healthy.json"], check=True)
+    later = ["--campaign", "1", "--zero-mm", str(world["zero_mm"]), "--warmer-c", str(world["warmer_c"])]
+    if world["cause"] != "none":
+        later += ["--cause", world["cause"], "--strength", str(USUAL * world["strength"])]
+    subprocess.run([*program, *later, "--out", work / "later", "--truth", work / "truth.json"], check=True)
+    logs = [sorted((work / name).glob("*.csv")) for name in ("healthy", "later")]
+    return (*logs, json.loads((work / "truth.json").read_text()))
+
+
+def run_world(build, folder, world, threads=1):
+    """Makes the world, diagnoses it; returns the world with what came of it."""
+    build = pathlib.Path(build).resolve()
+    work = pathlib.Path(tempfile.mkdtemp(dir=folder))
+    try:
+        healthy, later, truth = make(build, world, work)
+        done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", GIVEN[world["family"]], "--healthy", *healthy,
+                               "--data", *later, "--out", work / "out", "--threads", str(threads), "--json"],
+                              capture_output=True, text=True)
+        if done.returncode != 0:
+            return {**world, "outcome": "failed", "message": done.stderr[-300:]}
+        diagnosis = json.loads(done.stdout)
+        return {**world, "outcome": judge(world["cause"], diagnosis), "verdict": diagnosis["verdict"],
+                "named": [c["id"] for c in diagnosis["causes"]], "rivals": diagnosis["alternatives"],
+                "sizes": [c["size"] for c in diagnosis["causes"]], "readings": [
+                    {key: r[key] for key in ("reading", "healthy_heldout_rms", "later_rms", "explained_rms", "misfit")} |
+                    {"tried": r["tried"][:3]} for r in diagnosis["readings"]],
+                "excess_mm": {k: e["excess_mm"] for k, e in truth["effects"].items()}, "wall_s": diagnosis["wall_s"]}
+    finally:
+        shutil.rmtree(work)

@@ -1,0 +1,29 @@
+#!/usr/bin/python3
+"""The judge of changed worlds."""
+import unittest
+
+from changing import judge
+
+
+def diagnosis(named=(), rivals=None, verdict="cause_found"):
+    return {"verdict": verdict, "causes": [{"id": i} for i in named], "alternatives": rivals or [[] for _ in named]}
+
+
+class Judge(unittest.TestCase):
+    def test_an_unchanged_world(self):
+        self.assertEqual(judge("none", diagnosis(verdict="unchanged")), "unchanged")
+        self.assertEqual(judge("none", diagnosis(verdict="unexplained")), "unexplained")
+        self.assertEqual(judge("none", diagnosis(["leak"])), "false_alarm")
+
+    def test_a_changed_world(self):
+        self.assertEqual(judge("leak", diagnosis(["leak"])), "first")
+        self.assertEqual(judge("stiffening", diagnosis(["sensor_nonlinearity"])), "twin")
+        self.assertEqual(judge("leak", diagnosis(["ageing", "leak"])), "listed")
+        self.assertEqual(judge("leak", diagnosis(["ageing"], [["leak"]])), "listed")
+        self.assertEqual(judge("leak", diagnosis(["ageing"])), "wrong")
+        self.assertEqual(judge("leak", diagnosis(verdict="unchanged")), "missed")
+        self.assertEqual(judge("leak", diagnosis(verdict="unexplained")), "unnamed")
+
+
+if __name__ == "__main__":
+    unittest.main()
