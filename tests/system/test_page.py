@@ -17,6 +17,8 @@ const body = JSON.stringify({command: "start", sequence: "pick_stone"});
 const tries = ["text/plain", "application/json"].flatMap((type) => ["no-cors", "cors"].map((mode) =>
   fetch("TARGET/api/command", {method: "POST", mode, credentials: "include", body, headers: {"Content-Type": type}})
     .then((answer) => answer.type === "opaque" ? "unseen" : "status " + answer.status, () => "refused")));
+tries.push(fetch("TARGET/api/session", {method: "POST", mode: "no-cors", credentials: "include", body: '{"token": "x"}'})
+  .then((answer) => answer.type === "opaque" ? "unseen" : "status " + answer.status, () => "refused"));
 tries.push(fetch("TARGET/api/status", {credentials: "include"}).then((a) => a.text(), () => "refused"));
 Promise.all(tries).then((said) => { document.title = "tried " + said.join(", "); });
 </script>"""
@@ -136,6 +138,10 @@ class Page(web.WebTest):
         self.assertEqual(set(said) - {"refused", "unseen"}, set())
         self.assertEqual(said[-1], "refused")
         self.assertNotIn("sequence_started", {e["kind"] for e in self.softgripd.events()})
+        # What came through to the server it turned away for where it came from, before anything else was wrong with it.
+        answers = {bench.re.search(r"\d+", name).group() for name in told.metrics() if "answers_total" in name}
+        self.assertIn("403", answers)
+        self.assertEqual(answers & {"401", "415"}, set())
         # The same from the page itself is a start: it was the origin that kept the others out.
         seen.open(told.address)
         status = seen.run_async("const done = arguments[0]; fetch('/api/command', {method: 'POST', headers:"
