@@ -216,7 +216,7 @@ class SelectorUpon {
     if (!is_gain(result_.extended_losses, best.losses, worth_mm2)) return false;
     const BlockLosses before = result_.extended_losses;
     if (!take(scored)) return false;
-    if (result_.chosen.size() > 1) return first_is_worth_its_place(before);
+    if (result_.chosen.size() > 1) return both_stay(before);
     in_first_place_ = std::move(scored);
     return true;
   }
@@ -240,30 +240,51 @@ class SelectorUpon {
     return true;
   }
 
-  /// The first cause was chosen while the second was missing. Where the second leaves less alone than the
-  /// first did, it comes first, and the other has to be worth its place beside it. False: it is not, and is
-  /// gone.
-  bool first_is_worth_its_place(const BlockLosses& beside_the_first) {
-    const Cause first = result_.extended.causes.front();
-    const std::vector<Cause> second{result_.extended.causes.back()};
+  /// The first cause was chosen, and its base fitted, while the second was missing. Whether each is worth its
+  /// place beside the other, fitted alone from where both stand; one that is not is gone.
+  bool both_stay(const BlockLosses& beside_the_first) {
+    const Cause first = result_.extended.causes.front(), second = result_.extended.causes.back();
+    ScoredCandidate first_alone = alone(first, second);
+    const bool better_so = rmse_mm(first_alone.losses) < rmse_mm(beside_the_first);
+    const BlockLosses& by_the_first = better_so ? first_alone.losses : beside_the_first;
+    if (!is_worth_its_place(second, by_the_first)) {
+      stand_alone(std::move(first_alone));
+      return false;
+    }
+    ScoredCandidate second_alone = alone(second, first);
+    if (rmse_mm(second_alone.losses) >= rmse_mm(by_the_first)) return true;
+    if (is_worth_its_place(first, second_alone.losses)) return true;
+    stand_alone(std::move(second_alone));
+    return false;
+  }
+
+  /// @param before  the losses without it.
+  [[nodiscard]] bool is_worth_its_place(const Cause& cause, const BlockLosses& before) const {
+    return is_gain(before, result_.extended_losses, std::max(further_worth_mm2(before), least_of(cause)));
+  }
+
+  /// One of two fitted without the other, from where both stand.
+  [[nodiscard]] ScoredCandidate alone(const Cause& cause, const Cause& other) const {
     FitPoint rest = result_.extended.point;
-    rest.model = without(std::move(rest.model), first);
-    ScoredCandidate alone;
-    alone.candidate.cause = second.front();
-    alone.candidate.fit = fit_structure(data_.records, second,
-                                        settled(start_at(data_.thinned, std::move(rest)), second), finish);
-    alone.losses = linear_held_out_losses(data_.records, division_, *alone.candidate.fit);
-    if (rmse_mm(alone.losses) >= rmse_mm(beside_the_first)) return true;
-    const double worth_mm2 = std::max(further_worth_mm2(alone.losses), least_of(first));
-    if (is_gain(alone.losses, result_.extended_losses, worth_mm2)) return true;
-    std::erase_if(in_first_place_, [&](const auto& one) { return one.candidate.cause == second.front(); });
-    in_first_place_.insert(in_first_place_.begin(), std::move(alone));
+    rest.model = without(std::move(rest.model), other);
+    const std::vector<Cause> causes{cause};
+    ScoredCandidate one;
+    one.candidate.cause = cause;
+    one.candidate.fit = fit_structure(data_.records, causes,
+                                      settled(start_at(data_.thinned, std::move(rest)), causes), finish);
+    one.losses = linear_held_out_losses(data_.records, division_, *one.candidate.fit);
+    return one;
+  }
+
+  void stand_alone(ScoredCandidate one) {
+    std::erase_if(in_first_place_,
+                  [&](const auto& other) { return other.candidate.cause == one.candidate.cause; });
+    in_first_place_.insert(in_first_place_.begin(), std::move(one));
     result_.extended = result_.base;
     result_.extended_losses = result_.base_losses;
     result_.left = result_.base_structure;
     result_.chosen.clear();
     take(in_first_place_);
-    return false;
   }
 
   /// A base has the form of the finger's loop but for a rest about as large as the noise (textbook worlds
