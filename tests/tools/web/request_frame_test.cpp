@@ -2,7 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <string>
+
+#include "base/files.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace softgrip::web {
 namespace {
@@ -61,6 +68,20 @@ TEST(RequestFrame, HeadsHaveABound) {
   EXPECT_EQ(frame_of(many + "\r\n").status, 431);
   EXPECT_EQ(frame_of(std::string("GET /\0 HTTP/1.1", 15)).status, 400)
       << "at once, before the head has ended";
+}
+
+/// It aborts where a promise is broken.
+TEST(RequestFrame, TheSeedsOfTheFuzzTargetAreServedWholeAndCutOff) {
+  std::size_t seeds = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(SOFTGRIP_SOURCE_DIR "/tests/tools/web/web_request_corpus")) {
+    const std::string seed = *read_file(entry.path(), 65536);
+    EXPECT_EQ(frame_of(seed).state, State::complete) << entry.path();
+    for (std::size_t length = 0; length <= seed.size(); ++length)
+      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(seed.data()), length);
+    ++seeds;
+  }
+  EXPECT_GE(seeds, 4U);
 }
 
 }  // namespace

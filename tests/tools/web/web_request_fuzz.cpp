@@ -1,0 +1,42 @@
+// Fuzz target of what softgrip-web does with the bytes of a client: a refusal, an answer, or it waits for
+// more.
+//
+//   cmake --preset fuzz && cmake --build --preset fuzz --target web_request_fuzz
+//   build/fuzz/tests/web_request_fuzz -max_total_time=660 -max_len=12000 NEW_CORPUS
+//   tests/tools/web/web_request_corpus
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "tools/web/request_frame.h"
+#include "tools/web/site.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace softgrip::web;
+  static Settings settings;
+  settings.without_token = Role::operate;
+  static Gate gate(settings, {});
+  static LiveState state;
+  static const OwnCounts counts;
+  static Site site(settings, gate, state, counts, "chart");
+
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const Frame frame = frame_of(bytes);
+  if (frame.state == Frame::State::incomplete) {
+    // Nobody can have it keep more than this.
+    if (size >= longest_head + longest_body) std::abort();
+    return 0;
+  }
+  if (frame.state == Frame::State::refused) {
+    if (frame.status < 400 || frame.status > 599) std::abort();
+    return 0;
+  }
+  if (frame.size > size) std::abort();
+  const Outcome outcome = site.serve(bytes.substr(0, frame.size), 0);
+  // A command waits for the daemon; everything else is answered.
+  if (!outcome.command && !outcome.bytes.starts_with("HTTP/1.1 ")) std::abort();
+  if (outcome.command && !(*outcome.command)["command"].is_string()) std::abort();
+  return 0;
+}
