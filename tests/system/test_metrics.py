@@ -95,6 +95,9 @@ class Metrics(web.WebTest):
         happened = sum(e["kind"] == "grip_result" and e["code"] == "PART LOST" and e["channel"] == "left"
                        for e in events)
         self.assertEqual(happened, 2)
+        counted = [e["count"] for e in self.softgripd.result("statistics")["events"]
+                   if (e["kind"], e.get("code"), e.get("channel")) == ("grip_result", "PART LOST", "left")]
+        self.assertEqual(counted, [happened])
         lost = 'softgrip_grip_results_total{channel="left",result="part_lost"}'
         bench.wait_for("the value", lambda: prometheus.value(lost) == happened)
         self.assertEqual(prometheus.value('softgrip_grip_results_total{channel="left",result="holding"}'), 2)
