@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
 #include "sysid/diagnosis/residual/noise.h"
@@ -21,6 +22,8 @@ constexpr double chance_ratio = 2.0;
 constexpr double least_gain = 0.03;
 /// What one cause gains there another one of its kind may gain as well.
 constexpr double chance_of_others = 0.35;
+/// A change is at least so large, of what the base usually leaves of healthy readings.
+constexpr double least_size = 0.5;
 /// From here on the temperature is the finger's own.
 constexpr double own_temperature_gain = 0.05;
 /// A further cause takes at least this share of what is left.
@@ -69,6 +72,18 @@ double rms_of(const Binned& series, double zero) {
     }
   }
   return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
+/// Whatever it leaves in a few hasty moments.
+double usual_left(const Binned& left) {
+  std::vector<double> sizes;
+  for (const std::vector<double>& part : left) {
+    for (const double v : part) {
+      if (std::isfinite(v)) sizes.push_back(std::abs(v));
+    }
+  }
+  constexpr double of_normal = 1.4826;
+  return of_normal * median_of(std::span(sizes));
 }
 
 Binned minus(Binned from, const Binned& what) {
@@ -156,6 +171,7 @@ class Judge {
   [[nodiscard]] bool is_a_change(const LaterReadings& readings, const ScoredEffect& best,
                                  const std::vector<FittedEffect>& found) const {
     if (!stands_out(best)) return false;
+    if (rms_of(readings.added({best.fit.fitted}), 0) < least_size * usual_left(base_.left)) return false;
     const std::vector<double> without = block_sums(readings, readings.white(found));
     const std::vector<double> with = block_sums(readings, best.fit.white);
     if (!(resampled(without, with, options_.seed).lower > 0)) return false;
@@ -201,6 +217,10 @@ class Judge {
     const auto bins = static_cast<double>(readings.rows().rows().size());
     judged.misfit_left = readings.white(found).squaredNorm() / bins;
     judged.left_over = judged.misfit_left > misfit_allowed;
+    judged.bin_s = base_.bin_s;
+    for (const Record& record : readings.records()) judged.logs.push_back(record.name);
+    judged.left = readings.left();
+    judged.explained = found.empty() ? judged.left : minus(readings.left(), readings.added(found));
     const LaterReadings::Slack slack = readings.slack(found);
     judged.zero_mm = slack.zero_mm;
     judged.gain_percent = 100 * slack.gain;

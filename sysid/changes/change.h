@@ -68,6 +68,9 @@ struct JudgedChange {
   double gain_percent = 0;                    ///< within the healthy spread
   bool left_over = false;
   std::vector<ChangeRival> tried;
+  double bin_s = 0.05;
+  std::vector<std::string> logs;  ///< names of the later ones
+  Binned left, explained;         ///< what the base leaves of them, without and with the causes
 };
 
 struct ChangeDiagnosis {

@@ -72,6 +72,8 @@ ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, do
   // Of another gain, what counts as no change is a part.
   if (effect.effect.id == "ageing" && effect.numbers.size() == 1 && number(effect, "gain_change") != nullptr)
     return {"gain", 100 * (effect.numbers[0] + readings.slack({effect}).gain), "%"};
+  if (effect.effect.id == "ageing")
+    return {"gain at full pressure, on average", 100 * full_pressure_mm / readings.base().span_mm, "%"};
   for (const Direct& known : direct) {
     if (known.id != effect.effect.id) continue;
     if (const double* value = number(effect, known.number))

@@ -23,8 +23,8 @@ struct SlowLine {
   double venting_s = 0;
 };
 
-/// Softer below the largest pressure so far m, as before at it: y times 1 + share m/largest tanh((m - p)/range)
-/// (after Ogden and Roxburgh, Proc. R. Soc. A 455, 1999).
+/// Softer below the largest pressure so far m, as before at it: y times 1 + share m/largest tanh((m -
+/// p)/range) (after Ogden and Roxburgh, Proc. R. Soc. A 455, 1999).
 struct Softening {
   double share = 0;
   double range_kpa = 10;

@@ -145,7 +145,7 @@ ExitCode changed(const Options& options, const model::Model& model, const std::v
                  const std::vector<std::string>& call) {
   const auto healthy = read_logs(options.healthy, options.logs);
   if (!healthy) return healthy.error();
-  ChangeQuestion question{*healthy, logs, model, {}, options.out, call, options.json};
+  ChangeQuestion question{*healthy, logs, model, {}, options.out, options.figures, call, options.json};
   question.options.held = options.logs.held;
   question.options.seed = options.diagnosis.seed;
   question.options.threads = options.diagnosis.threads;

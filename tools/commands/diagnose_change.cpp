@@ -7,9 +7,11 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "sysid/changes/change_json.h"
+#include "sysid/changes/change_page.h"
 #include "sysid/changes/next_steps.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/progress_line.h"
+#include "tools/figures/figure_files.h"
 
 namespace softgrip::tools {
 namespace {
@@ -41,8 +43,8 @@ void print_summary(const sysid::ChangeDiagnosis& d, const std::string& out) {
                 significant(judged.explained_mm, 3).c_str(), pressure ? "kPa" : "mm");
   }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
-  std::printf("%s s; %s\n", significant(d.wall_s, 3).c_str(),
-              (std::filesystem::path(out) / "diagnosis.json").c_str());
+  std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(),
+              (std::filesystem::path(out) / "report.html").c_str());
 }
 
 }  // namespace
@@ -64,6 +66,13 @@ ExitCode run_change(ChangeQuestion question) {
   if (const auto written =
           write_file((std::filesystem::path(question.out) / "diagnosis.json").string(), text);
       !written)
+    return fail(ExitCode::io, written.error());
+  const sysid::Page page = sysid::change_page(*diagnosis, question.healthy, question.later, question.given);
+  if (const auto written =
+          write_file((std::filesystem::path(question.out) / "report.html").string(), page.to_html());
+      !written)
+    return fail(ExitCode::io, written.error());
+  if (const auto written = write_figures(question.figures, page.figures()); !written)
     return fail(ExitCode::io, written.error());
   if (question.json) {
     std::fputs(text.c_str(), stdout);

@@ -15,6 +15,7 @@ struct ChangeQuestion {
   model::Model given;
   sysid::ChangeOptions options;
   std::string out;
+  std::string figures;  ///< folder for the figures as files; "": none
   std::vector<std::string> call;
   bool json = false;
 };

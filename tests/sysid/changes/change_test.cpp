@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "sysid/changes/change_json.h"
+#include "sysid/changes/change_page.h"
+#include "sysid/changes/next_steps.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid {
@@ -75,6 +77,16 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["causes"].size(), json["alternatives"].size());
   EXPECT_LT(json["heldout_rmse_mm"]["extended"], json["heldout_rmse_mm"]["as_given"]);
+}
+
+TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
+  const ChangeDiagnosis d = changed({.gain = 0.19});
+  const Page page = change_page(d, logs_of({}, 1), logs_of({}, 5), {});
+  const std::string html = page.to_html();
+  EXPECT_NE(html.find("What to do about ageing"), std::string::npos);
+  EXPECT_NE(html.find(std::string(next_steps("ageing")[1]).substr(0, 30)), std::string::npos);
+  ASSERT_EQ(page.figures().size(), 2U);
+  EXPECT_EQ(page.figures()[0].charts.size(), 2U);  // a log each
 }
 
 TEST(Change, TooLittleIsRefused) {

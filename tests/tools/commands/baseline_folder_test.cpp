@@ -48,7 +48,7 @@ TEST_F(BaselineFolder, AnotherFilesJsonIsRefused) {
 }
 
 TEST_F(BaselineFolder, AChangeOfNothingIsRefused) {
-  EXPECT_EQ(run_change({{}, {}, {}, {}, folder_, {}, true}), ExitCode::input_refused);
+  EXPECT_EQ(run_change({{}, {}, {}, {}, folder_, {}, {}, true}), ExitCode::input_refused);
 }
 
 }  // namespace

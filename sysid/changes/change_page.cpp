@@ -1,0 +1,140 @@
+#include "sysid/changes/change_page.h"
+
+#include "base/numbers.h"
+#include "sysid/changes/next_steps.h"
+#include "sysid/pages/provenance.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// So many of the causes that were tried are drawn.
+constexpr std::size_t drawn_causes = 8;
+
+Tone tone_of(ChangeVerdict verdict) {
+  if (verdict == ChangeVerdict::unchanged) return Tone::good;
+  return verdict == ChangeVerdict::cause_found ? Tone::bad : Tone::doubtful;
+}
+
+std::string unit_of(Judged judged) {
+  return judged == Judged::pressure ? "kPa" : "mm";
+}
+std::string name_of(Judged judged) {
+  return judged == Judged::pressure ? "pressure" : "displacement";
+}
+
+void add_causes(Page& page, const ChangeDiagnosis& d) {
+  page.section("What changed");
+  Table table{"The causes, the largest change first",
+              {"cause", "how much", "at full pressure", "share of what its reading shows [%]", "or"},
+              {false, false, false, true, false},
+              {}};
+  for (const ChangeCause& cause : d.causes) {
+    std::string rivals;
+    for (const std::string& rival : cause.rivals) rivals += (rivals.empty() ? "" : ", ") + rival;
+    table.rows.push_back({cause.id,
+                          cause.size.what + " " + significant(cause.size.value, 3) + " " + cause.size.unit,
+                          significant(cause.full_pressure_mm, 2) + " " + unit_of(cause.judged),
+                          fixed(cause.share_percent, 0), rivals.empty() ? "-" : rivals});
+  }
+  page.table(table);
+  for (const ChangeCause& cause : d.causes) {
+    page.subsection("What to do about " + cause.id);
+    const auto steps = next_steps(cause.id);
+    page.list({std::string(steps[0]), std::string(steps[1])});
+  }
+}
+
+/// What the base leaves of the later readings, log after log, before and with the causes.
+Figure misfit_figure(const JudgedChange& judged, bool explained) {
+  std::vector<Chart> charts;
+  for (std::size_t r = 0; r < judged.left.size(); ++r) {
+    Chart chart;
+    chart.title = judged.logs[r];
+    chart.x.label = "time [s]";
+    chart.y.label = "left [" + unit_of(judged.judged) + "]";
+    chart.height = 180;
+    Series before;
+    before.label = "base of the healthy finger";
+    before.colour = Colour::error;
+    for (std::size_t b = 0; b < judged.left[r].size(); ++b) {
+      before.x.push_back((static_cast<double>(b) + 0.5) * judged.bin_s);
+      before.y.push_back(judged.left[r][b]);
+    }
+    Series after;
+    after.label = "with the causes";
+    after.x = before.x;
+    after.y = judged.explained[r];
+    after.colour = Colour::model;
+    chart.series = {before};
+    if (explained) chart.series.push_back(after);
+    charts.push_back(std::move(chart));
+  }
+  return {
+      "misfit " + name_of(judged.judged),
+      "What the base of the healthy finger leaves of the later logs. Healthy logs that it was not fitted to "
+      "leave " +
+          significant(judged.healthy_mm, 2) + " " + unit_of(judged.judged) + " (RMS).",
+      stacked(std::move(charts))};
+}
+
+Figure tried_figure(const JudgedChange& judged) {
+  Chart chart;
+  chart.title = name_of(judged.judged);
+  chart.y.label = "gain";
+  Series later, healthy;
+  later.label = "later logs";
+  healthy.label = "healthy logs, held out";
+  later.style = Series::Style::bars;
+  healthy.style = Series::Style::points;
+  healthy.width = 4;
+  healthy.colour = Colour::error;
+  later.colour = Colour::model;
+  for (std::size_t i = 0; i < std::min(drawn_causes, judged.tried.size()); ++i) {
+    chart.x.categories.push_back(judged.tried[i].id);
+    for (Series* series : {&later, &healthy}) series->x.push_back(static_cast<double>(i));
+    later.y.push_back(std::max(0.0, judged.tried[i].gain));
+    healthy.y.push_back(judged.tried[i].healthy_gain);
+  }
+  chart.series = {later, healthy};
+  return {
+      "causes tried " + name_of(judged.judged),
+      "What each cause alone takes of the misfit, in whitened squares per bin: of the later logs, and of the "
+      "healthy ones while they were held out. A change must take more than twice what it takes there.",
+      stacked({chart})};
+}
+
+void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& d) {
+  page.section("The " + name_of(judged.judged));
+  const std::string unit = " " + unit_of(judged.judged);
+  page.terms({{"base", judged.base},
+              {"noise of the readings", significant(judged.noise_mm, 2) + unit},
+              {"left of healthy readings, held out", significant(judged.healthy_mm, 3) + unit},
+              {"left of the later ones", significant(judged.later_mm, 3) + unit},
+              {"with the causes", significant(judged.explained_mm, 3) + unit},
+              {"another zero", significant(judged.zero_mm, 2) + unit},
+              {"gain within the healthy spread", significant(judged.gain_percent, 2) + " %"}});
+  bool explained = false;
+  for (const ChangeCause& cause : d.causes) explained |= cause.judged == judged.judged;
+  page.figure(misfit_figure(judged, explained));
+  page.figure(tried_figure(judged));
+}
+
+}  // namespace
+
+Page change_page(const ChangeDiagnosis& diagnosis, const std::vector<Log>& healthy,
+                 const std::vector<Log>& later, const model::Model& given) {
+  Page page("What became of the finger", change_sentence(diagnosis), tone_of(diagnosis.verdict));
+  std::vector<Log> all = healthy;
+  for (Log& log : all) log.name += " (healthy)";
+  all.insert(all.end(), later.begin(), later.end());
+  page.provenance(provenance_of(all, {{"given", &given}}));
+  if (!diagnosis.causes.empty()) add_causes(page, diagnosis);
+  if (!diagnosis.warnings.empty()) {
+    page.section("Limits of the data");
+    page.list(diagnosis.warnings);
+  }
+  for (const JudgedChange& judged : diagnosis.readings) add_reading(page, judged, diagnosis);
+  return page;
+}
+
+}  // namespace softgrip::sysid
