@@ -56,6 +56,11 @@ std::vector<double> haste_of(const Record& record, double bin_s) {
   return binned(record, haste, bin_s);
 }
 
+std::vector<double> with_bins(std::vector<double> series, std::size_t bins) {
+  series.resize(bins, series.empty() ? 0.0 : series.back());
+  return series;
+}
+
 double bin_s(const std::vector<Record>& records, double least_s) {
   double longest_s = 0;
   for (const Record& record : records) longest_s = std::max(longest_s, record.mean_interval_s());

@@ -106,9 +106,10 @@ class Fit {
   const std::vector<FittedEffect>& others_;
 };
 
-Binned all_haste_of(const std::vector<Record>& records, double bin_s) {
+Binned all_haste_of(const std::vector<Record>& records, double bin_s, const Binned& left) {
   Binned all;
-  for (const Record& record : records) all.push_back(haste_of(record, bin_s));
+  for (std::size_t r = 0; r < records.size(); ++r)
+    all.push_back(with_bins(haste_of(records[r], bin_s), left[r].size()));
   return all;
 }
 
@@ -124,10 +125,11 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
     : base_(base),
       later_(std::move(later)),
       left_(std::move(left)),
-      rows_(left_, all_haste_of(later_, base.bin_s), base.whitener) {
-  for (const Record& record : later_) {
-    echo_.push_back(echo_of(base_, record));
-    plain_.push_back(binned(record, predict_base(base_, record, {}, &echo_.back()), base_.bin_s));
+      rows_(left_, all_haste_of(later_, base.bin_s, left_), base.whitener) {
+  for (std::size_t r = 0; r < later_.size(); ++r) {
+    echo_.push_back(echo_of(base_, later_[r]));
+    plain_.push_back(with_bins(
+        binned(later_[r], predict_base(base_, later_[r], {}, &echo_.back()), base_.bin_s), left_[r].size()));
   }
   target_ = rows_(left_);
   const std::size_t n = later_.size();
@@ -156,7 +158,9 @@ Binned LaterReadings::added(const std::vector<FittedEffect>& effects) const {
   const Extension extension = extension_of(effects);
   Binned added;
   for (std::size_t r = 0; r < later_.size(); ++r) {
-    added.push_back(binned(later_[r], predict_base(base_, later_[r], extension, &echo_[r]), base_.bin_s));
+    added.push_back(
+        with_bins(binned(later_[r], predict_base(base_, later_[r], extension, &echo_[r]), base_.bin_s),
+                  left_[r].size()));
     for (std::size_t b = 0; b < added[r].size(); ++b) added[r][b] -= plain_[r][b];
   }
   return added;

@@ -27,6 +27,11 @@ TEST(Bins, AverageWhatIsThereAndLeaveHolesWhereNothingIs) {
   EXPECT_EQ(bins[2], 1);
 }
 
+TEST(Bins, AThinnedRecordThatEndsSoonerGoesOnWithItsLastValue) {
+  EXPECT_EQ(with_bins({1, 2}, 4), (std::vector<double>{1, 2, 2, 2}));
+  EXPECT_EQ(with_bins({1, 2, 3}, 2), (std::vector<double>{1, 2}));
+}
+
 TEST(Bins, AnAutoregressionIsMadeWhite) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0, 0.5);

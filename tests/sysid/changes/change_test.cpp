@@ -26,6 +26,17 @@ TEST(Change, AnotherInputAndAnotherZeroAreNoChange) {
   EXPECT_NEAR(d.readings.back().zero_mm, 0.4, 0.03);
 }
 
+TEST(Change, AZeroIsFoundInLogsWhoseThinnedRecordsEndABinSooner) {
+  std::vector<Log> healthy = logs_of({}, 1), later = logs_of({.zero_mm = 0.4}, 5);
+  for (std::vector<Log>* const logs : {&healthy, &later}) {
+    for (Log& log : *logs) log = slice(log, 0, 2996);
+  }
+  const auto d = diagnose_change(healthy, later);
+  ASSERT_TRUE(d) << d.error();
+  EXPECT_EQ(d->verdict, ChangeVerdict::unchanged) << change_sentence(*d);
+  EXPECT_NEAR(d->readings.back().zero_mm, 0.4, 0.03);
+}
+
 TEST(Change, AnotherGainIsAgeingInPercent) {
   const ChangeDiagnosis d = changed({.gain = 0.2 * 1.03});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
