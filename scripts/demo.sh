@@ -65,7 +65,19 @@ say "5. The published structure, fitted to them: it looks good"
 say "6. What is wrong with it, and why"
 "$softgrip" diagnose --model config/models/zhang2025.yaml --data "$out/tp1.csv" "$out/steps.csv" "$out/sp2.csv" --out "$out/diagnosis"
 
+say "7. What became of the finger: a baseline, and a later day on which its gain drifts"
+twin=config/models/bench_twin.yaml
+{ cat "$twin"; printf '  - ageing:\n      gain_per_h: 1.0\n'; } >"$work/aged.yaml"
+simulate() { "$softgrip" simulate --model "$1" --input "$2" --out "$3" --noise-mm 0.05 --seed "$4" --rate-hz 100 >/dev/null; }
+for signal in tp2 sp1; do
+  simulate "$twin" $signal "$out/second_$signal.csv" 7
+  simulate "$work/aged.yaml" $signal "$out/aged_$signal.csv" 9
+done
+"$softgrip" baseline --model "$twin" --data "$out/tp1.csv" "$out/steps.csv" "$out/sp2.csv" \
+  --check "$out/second_tp2.csv" "$out/second_sp1.csv" --out "$out/baseline"
+"$softgrip" diagnose --baseline "$out/baseline" --data "$out/aged_tp2.csv" "$out/aged_sp1.csv" --out "$out/changed"
+
 say "Everything is vented and stopped. In $out:"
-(cd "$out" && ls -1d pick_stone.svg runs/*/run.csv identified/report.html diagnosis/*)
+(cd "$out" && ls -1d pick_stone.svg runs/*/run.csv identified/report.html diagnosis/* changed/report.html)
 echo
 echo "The report: $out/diagnosis/report.html"
