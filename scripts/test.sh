@@ -39,7 +39,7 @@ if clang-format --version 2>/dev/null | grep -q 'version 14\.'; then
 fi
 
 say "build"
-cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=ON >/dev/null
+cmake --preset release -DSOFTGRIP_TESTS=ON -DSOFTGRIP_BENCHMARKS=ON -DSOFTGRIP_PRECOMPILE=ON >/dev/null
 build release
 
 if $quick; then

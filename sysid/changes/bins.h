@@ -21,7 +21,8 @@ using Binned = std::vector<std::vector<double>>;
 [[nodiscard]] std::vector<double> binned(const Record& record, const std::vector<double>& series,
                                          double bin_s);
 
-/// The series with as many bins as another one: a thinned record may end a bin sooner. Its last value goes on.
+/// The series with as many bins as another one: a thinned record may end a bin sooner. Its last value goes
+/// on.
 [[nodiscard]] std::vector<double> with_bins(std::vector<double> series, std::size_t bins);
 
 /// How fast the drive moves or has moved half a second before, in bins [kPa/s].
