@@ -11,6 +11,10 @@ namespace softgrip::sysid::causes {
 /// All begin at a tenth over the campaign.
 struct Ageing {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
+  static constexpr WhenChanged when_changed{
+      "the gain of the finger is another",
+      {"Look at the finger for cracks and bulges, and count its cycles since the last one was fitted.",
+       "Fit a new finger and record the same log: if the gain is back, it was the finger."}};
 
   struct WithTime : FormOf<model::Ageing> {
     static Starts starts(const Scales& s) {

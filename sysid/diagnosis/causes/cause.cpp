@@ -106,6 +106,11 @@ constexpr Cause cause() {
   cause.title = Block::info.title;
   cause.station = Block::info.station;
   cause.forms = forms<C>;
+  static_assert(
+      requires { C::when_changed; },
+      "this cause lacks `static constexpr WhenChanged when_changed`: what a person calls it and does about "
+      "it");
+  cause.when_changed = C::when_changed;
   if constexpr (requires { C::id; }) cause.id = C::id;
   if constexpr (requires { C::title; }) cause.title = C::title;
   if constexpr (requires { C::found_by_fitting; }) cause.found_by_fitting = C::found_by_fitting;

@@ -51,6 +51,7 @@ struct Cause {
   bool is_own_law = false;
   bool parts_twins = false;
   std::string_view sensor_shape;  ///< empty: no sensor without memory
+  WhenChanged when_changed;
 
   [[nodiscard]] constexpr bool is_static_sensor() const { return !sensor_shape.empty(); }
   /// Whether its numbers may hold a share of the other's.

@@ -10,6 +10,10 @@ struct Contact : FormOf<model::Contact> {
   static constexpr std::array advice{Advice::change_load};
   static constexpr std::array<std::string_view, 2> counterparts{"sensor_saturation", "sensor_nonlinearity"};
   static constexpr bool is_stop = true;
+  static constexpr WhenChanged when_changed{
+      "something holds the finger back from a position on",
+      {"Move the finger by hand through its range and look what it touches.",
+       "Take the object or the stop away and record the same log again."}};
 
   static Starts starts(const Scales& s) {
     return every({{"position_mm",

@@ -16,6 +16,11 @@
 //   static constexpr bool free_form = true;                it can follow anything slow: named only where no
 //                                                          law explains nearly as much
 //
+// A cause must say:
+//   static constexpr WhenChanged when_changed{words, {step, step}};
+//                                                          for who stands beside the rig that it has come
+//                                                          upon
+//
 // A cause may say, besides:
 //   static constexpr Column needs = ...;                   a column without which nothing can be told
 //   static constexpr std::array advice{Advice::...};       what tells it from others where no waveform does
@@ -53,6 +58,13 @@ enum class Advice : std::uint8_t {
   leave_vented,        ///< leave the finger vented for an hour and read its zero
   record_temperature,  ///< record the temperature
   vary_temperature,    ///< the same, and that whatever the other cause is
+};
+
+/// For who stands beside a rig whose finger has got the cause since it was healthy. Empty: it is none that
+/// comes.
+struct WhenChanged {
+  std::string_view words;                      ///< "the finger rings"
+  std::array<std::string_view, 2> next_steps;  ///< what a person can do about it, the quicker first
 };
 
 /// Between what a value may be.

@@ -11,6 +11,8 @@ struct HysteresisShape {
   static constexpr std::string_view id = "hysteresis_shape";
   static constexpr std::string_view title = "Hysteresis shape";
   static constexpr bool found_by_fitting = false;
+  /// The form of a base is frozen where a change is looked for.
+  static constexpr WhenChanged when_changed{};
 
   struct Plays : FormOf<model::PrandtlIshlinskii> {};
 

@@ -12,6 +12,10 @@ struct RateDependentHysteresis {
   static constexpr std::string_view id = "rate_dependent_hysteresis";
   static constexpr std::string_view title = "Rate-dependent hysteresis";
   static constexpr bool is_own_law = true;
+  static constexpr WhenChanged when_changed{
+      "fast motion costs more pressure than slow motion",
+      {"Run the same stroke at three speeds and compare the loops.",
+       "Look for rubbing, dried lubricant or a swollen seal, and record again."}};
 
   /// A loop of its own that relaxes.
   struct Relaxing : FormOf<model::RelaxingFriction> {

@@ -15,6 +15,10 @@ namespace softgrip::sysid::causes {
 
 struct SensorDrift {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
+  static constexpr WhenChanged when_changed{
+      "the zero of the sensor wanders",
+      {"Leave the finger vented for an hour and read the zero every ten minutes.",
+       "Check the sensor's clamp and cable, and let it warm up before recording."}};
 
   /// One way.
   struct Steady : FormOf<model::SensorDrift> {

@@ -9,6 +9,10 @@ namespace softgrip::sysid::causes {
 struct SensorLag : FormOf<model::SensorLag> {
   static constexpr std::array<std::string_view, 1> confounded_with{"transport_delay"};
   static constexpr bool parts_twins = true;
+  static constexpr WhenChanged when_changed{
+      "the reading follows more slowly",
+      {"Look at the filter setting of the sensor or its amplifier.",
+       "Move the target by hand quickly and compare with a second sensor."}};
 
   static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }
 };

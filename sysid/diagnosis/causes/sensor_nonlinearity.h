@@ -11,6 +11,10 @@ struct SensorNonlinearity : FormOf<model::SensorNonlinearity> {
   static constexpr std::string_view twin = "stiffening";
   static constexpr std::array<std::string_view, 1> counterparts{"stiffening"};
   static constexpr std::string_view sensor_shape = "a bent scale";
+  static constexpr WhenChanged when_changed{
+      "the scale of the sensor is bent",
+      {"Look whether the sensor was knocked out of place or its target is askew.",
+       "Hold a gauge at five positions (`softgrip diagnose --gauge`)."}};
   /// The calibrated range is where the bend is counted from.
   static constexpr std::array<Parameter, 2> fitted{"bow_mm", "wave_mm"};
 

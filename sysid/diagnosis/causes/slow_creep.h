@@ -11,6 +11,10 @@ namespace softgrip::sysid::causes {
 
 struct SlowCreep : FormOf<model::SlowCreep> {
   static constexpr std::array advice{Advice::leave_vented};
+  static constexpr WhenChanged when_changed{
+      "the finger creeps more over minutes",
+      {"Hold full pressure for ten minutes and watch the reading.",
+       "Look for a slack mounting or a layer that comes off; tighten it and record again."}};
 
   static Starts starts(const Scales& s) {
     const double gain = s.gain_mm_per_kpa();

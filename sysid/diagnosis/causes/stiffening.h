@@ -10,6 +10,10 @@ struct Stiffening : FormOf<model::Stiffening> {
   static constexpr std::array advice{Advice::change_load};
   static constexpr std::string_view twin = "sensor_nonlinearity";
   static constexpr std::array<std::string_view, 1> counterparts{"sensor_nonlinearity"};
+  static constexpr WhenChanged when_changed{
+      "the finger gives way less the farther it is bent",
+      {"Bend the vented finger by hand and feel whether something is in its way.",
+       "Hold a gauge beside the sensor at five positions: if they agree, it is the finger."}};
 
   static Starts starts(const Scales& s) {
     return every({{"stiffening_per_mm", {-0.3 / s.span_mm, 0.1 / s.span_mm, 0.5 / s.span_mm}}});

@@ -8,6 +8,10 @@ namespace softgrip::sysid::causes {
 
 struct StressSoftening {
   static constexpr std::array advice{Advice::record_temperature};
+  static constexpr WhenChanged when_changed{
+      "the finger softened under a large load",
+      {"Look in the events for a load above the usual one.",
+       "Leave it vented overnight and record again: what comes back is not wear."}};
 
   /// In proportion to the largest load.
   struct Proportional : FormOf<model::StressSoftening> {

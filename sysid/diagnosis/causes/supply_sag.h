@@ -8,6 +8,10 @@ namespace softgrip::sysid::causes {
 
 struct SupplySag : FormOf<model::SupplySag> {
   static constexpr Column needs = Column::supply_kpa;
+  static constexpr WhenChanged when_changed{
+      "the pressure follows a falling supply",
+      {"Read the supply gauge while the compressor refills.",
+       "Move other users to another line, or set the supply regulator higher, and record again."}};
   /// The nominal supply is only where the coupling is counted from.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 

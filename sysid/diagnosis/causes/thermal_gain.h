@@ -9,6 +9,9 @@ namespace softgrip::sysid::causes {
 struct ThermalGain : FormOf<model::ThermalGain> {
   static constexpr Column needs = Column::temperature_c;
   static constexpr std::array advice{Advice::vary_temperature};
+  static constexpr WhenChanged when_changed{"the gain follows the temperature",
+                                            {"Record again at another temperature of the room.",
+                                             "Look for a heat source beside the finger or the sensor."}};
 
   static Starts starts(const Scales&) { return every({{"gain_per_c", {-0.01, 0.01}}}); }
 };

@@ -8,6 +8,10 @@ namespace softgrip::sysid::causes {
 
 struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr std::array<std::string_view, 1> confounded_with{"valve_lag"};
+  static constexpr WhenChanged when_changed{
+      "the pressure begins later",
+      {"Look whether the tube, a filter or the board's exchange rate was changed.",
+       "Step the command with the finger's tube closed at the valve and time the pressure there."}};
   static Starts starts(const Scales&) { return every({{"delay_s", {0.02, 0.1, 0.25, 0.5}}}); }
 };
 

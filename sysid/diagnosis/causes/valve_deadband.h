@@ -11,6 +11,10 @@ namespace softgrip::sysid::causes {
 
 struct ValveDeadband {
   static constexpr std::string_view id = "valve_deadband";
+  static constexpr WhenChanged when_changed{
+      "the valve ignores small changes",
+      {"Command steps of 1 kPa up and down and see which of them the pressure answers.",
+       "Cycle the valve fifty times over its range, or clean it, and record the same log again."}};
 
   /// It is dragged along.
   struct Play : FormOf<model::ValveDeadband> {

@@ -8,6 +8,10 @@ namespace softgrip::sysid::causes {
 
 struct ValveLag : FormOf<model::ValveLag> {
   static constexpr std::array<std::string_view, 1> confounded_with{"transport_delay"};
+  static constexpr WhenChanged when_changed{
+      "the pressure follows more slowly",
+      {"Look for a kinked tube and a clogged filter or silencer; check the supply pressure while it moves.",
+       "Step the command with the finger's tube closed at the valve: still slow there, it is the valve."}};
   static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }
 };
 
