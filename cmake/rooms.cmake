@@ -148,7 +148,8 @@ softgrip_room(tools/commands
        sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
        tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies
-  LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json)
+  LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
+  PRECOMPILE <CLI/CLI.hpp>)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)

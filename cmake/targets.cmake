@@ -1,9 +1,9 @@
-# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...])
+# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...])
 # A room is a folder, a static library of all its .cpp files (one that has none is an interface), and the rooms that
-# its files may include. The target of daemon/loop is softgrip_daemon_loop; ${softgrip_room_target} names the last one.
+# its files may include. PRECOMPILE: a library's header that most of its files include and that is most of their compile time. The target of daemon/loop is softgrip_daemon_loop; ${softgrip_room_target} names the last one.
 set_property(GLOBAL PROPERTY softgrip_rooms "")
 function(softgrip_room folder)
-  cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE" ${ARGN})
   softgrip_target_of(${folder} target)
   set(folders ${folder} ${arg_FOLDERS})
   set(sources "")
@@ -31,6 +31,11 @@ function(softgrip_room folder)
     add_library(${target} STATIC ${sources})
     target_link_libraries(${target} PUBLIC ${links})
     softgrip_arrows(${target} "${folders}" "${reachable}" ${sources} ${headers})
+    softgrip_may_precompile(may)
+    if(arg_PRECOMPILE AND may)
+      target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
+      target_compile_options(${target} PRIVATE ${softgrip_behind_a_precompiled_header})
+    endif()
   else()
     add_library(${target} INTERFACE)
     target_link_libraries(${target} INTERFACE ${links})
@@ -97,6 +102,18 @@ function(softgrip_program name files output)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# clang wants the same definitions wherever a precompiled header is used; ccache finds nothing again behind one.
+function(softgrip_may_precompile variable)
+  if(SOFTGRIP_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(${variable} TRUE PARENT_SCOPE)
+  else()
+    set(${variable} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+# GCC 12 takes a short std::string for its inner buffer; that it happens in a system header hides it elsewhere, but not
+# where the header is precompiled.
+set(softgrip_behind_a_precompiled_header -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+
 # softgrip_rooms(OUT room ...)  the targets of rooms
 function(softgrip_rooms variable)
   set(targets "")
@@ -114,14 +131,11 @@ if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_options(softgrip_test_flags INTERFACE -O1 -g1)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 takes a short std::string for its inner buffer; that it happens in a system header hides it elsewhere, but not
-  # where the header is precompiled.
-  target_compile_options(softgrip_test_flags INTERFACE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
-    -Wno-stringop-overread)
+  target_compile_options(softgrip_test_flags INTERFACE ${softgrip_behind_a_precompiled_header})
 endif()
 function(softgrip_precompile_for_tests target)
-  # clang wants the same definitions wherever a precompiled header is used; ccache finds nothing again behind one.
-  if(NOT SOFTGRIP_PRECOMPILE OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_CXX_COMPILER_LAUNCHER)
+  softgrip_may_precompile(may)
+  if(NOT may)
     return()
   endif()
   if(NOT TARGET softgrip_test_headers)
