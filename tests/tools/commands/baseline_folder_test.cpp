@@ -1,10 +1,9 @@
 #include "tools/commands/baseline_folder.h"
 
-#include <filesystem>
-
 #include <gtest/gtest.h>
 
 #include "base/files.h"
+#include "tests/daemon/temporary_folder.h"
 #include "tools/commands/diagnose_change.h"
 
 namespace softgrip::tools {
@@ -12,15 +11,15 @@ namespace {
 
 class BaselineFolder : public testing::Test {
  protected:
-  BaselineFolder() : folder_(testing::TempDir() + "/softgrip_baseline_folder") {
-    std::filesystem::remove_all(folder_);
+  BaselineFolder() {
     EXPECT_TRUE(write_file(folder_ + "/tp1.csv", "a log\n"));
     sysid::Log log;
     log.path = folder_ + "/tp1.csv";
     logs_ = {log};
   }
 
-  std::string folder_;
+  daemon::testing::TemporaryFolder temporary_;
+  std::string folder_ = temporary_.path();
   std::vector<sysid::Log> logs_;
 };
 
