@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <future>
 #include <thread>
 #include <utility>
@@ -311,10 +312,19 @@ void SocketApi::watch(ClientId client, const ClientRequest& request, Nanoseconds
   ok(client, request.id, {{"rate_hz", request.rate_hz}});
 }
 
-Json SocketApi::dated(const EventEntry& event, Nanoseconds now) const {
+Json SocketApi::dated(const EventEntry& event, Nanoseconds now) {
   Json json = event_json(event);
-  json["at"] = utc_text(wall_time_now() - (now - sources_.origin) + nanoseconds(event.time_s), 3);
+  json["at"] = utc_text(wall_origin(now) + nanoseconds(event.time_s), 3);
   return json;
+}
+
+/// The two clocks are read one after the other. An event that is told twice is told with the same time, but
+/// where the clock on the wall was set meanwhile.
+Nanoseconds SocketApi::wall_origin(Nanoseconds now) {
+  constexpr Nanoseconds was_set = ns_per_s / 2;
+  const Nanoseconds origin = wall_time_now() - (now - sources_.origin);
+  if (!wall_origin_ || std::abs(origin - *wall_origin_) > was_set) wall_origin_ = origin;
+  return *wall_origin_;
 }
 
 void SocketApi::tell_events(ClientId client, const ClientRequest& request, Nanoseconds now) {

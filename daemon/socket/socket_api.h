@@ -94,7 +94,8 @@ class SocketApi {
   void greet(ClientId client, const ClientRequest& request);
   void subscribe(ClientId client, const ClientRequest& request);
   void feed(Nanoseconds now);
-  [[nodiscard]] nlohmann::ordered_json dated(const EventEntry& event, Nanoseconds now) const;
+  [[nodiscard]] nlohmann::ordered_json dated(const EventEntry& event, Nanoseconds now);
+  [[nodiscard]] Nanoseconds wall_origin(Nanoseconds now);
   void start(ClientId client, const ClientRequest& request, Nanoseconds now);
   void loaded(const Planned& planned, SequenceLoader::Result sequence, Nanoseconds now);
   void take_planned(Nanoseconds now);
@@ -123,6 +124,7 @@ class SocketApi {
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
   std::optional<Listing> listing_;
+  std::optional<Nanoseconds> wall_origin_;  ///< the time of day at sources_.origin
 };
 
 }  // namespace softgrip::daemon

@@ -18,8 +18,6 @@ std::vector<std::string> shipped() {
   std::vector<std::string> paths;
   const std::filesystem::path config = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "config";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(config)) {
-    if (entry.path().parent_path().filename() == "monitoring")
-      continue;  // Prometheus', and promtool's to check
     if (entry.path().extension() == ".yaml") paths.push_back(entry.path().string());
   }
   std::sort(paths.begin(), paths.end());

@@ -57,9 +57,9 @@ class Metrics(web.WebTest):
         return done.stdout + done.stderr
 
     def test_the_rules_are_rules_and_go_off_when_they_should(self):
-        self.assertIn("12 rules found", self.promtool("check", "rules", bench.SOURCE / "config/monitoring/alerts.yaml"))
+        self.assertIn("12 rules found", self.promtool("check", "rules", bench.SOURCE / "config/monitoring/alerts.yml"))
         self.promtool("test", "rules", bench.SOURCE / "tests/monitoring/alerts_test.yaml")
-        self.promtool("check", "config", "--syntax-only", bench.SOURCE / "config/monitoring/prometheus.yaml")
+        self.promtool("check", "config", "--syntax-only", bench.SOURCE / "config/monitoring/prometheus.yml")
 
     def test_rules_and_dashboard_name_what_is_told(self):
         self.start_rig()
@@ -68,7 +68,7 @@ class Metrics(web.WebTest):
         _, text, _ = told.ask("/metrics")
         self.assertEqual(self.promtool("check", "metrics", text=text).strip(), "")
         names = {line.split()[2] for line in text.splitlines() if line.startswith("# TYPE")}
-        for name in ("alerts.yaml", "grafana.json"):
+        for name in ("alerts.yml", "grafana.json"):
             asked = set(bench.re.findall(r"softgrip_\w+", (bench.SOURCE / "config/monitoring" / name).read_text()))
             self.assertEqual(asked - names, set(), name)
         page = (bench.SOURCE / "docs/reference/metrics.md").read_text()
@@ -78,7 +78,7 @@ class Metrics(web.WebTest):
     def test_a_scraped_value_is_what_happened(self):
         self.start_rig()
         told = self.start_web()
-        rules = shutil.copy(bench.SOURCE / "config/monitoring/alerts.yaml", self.folder)
+        rules = shutil.copy(bench.SOURCE / "config/monitoring/alerts.yml", self.folder)
         prometheus = Prometheus(self.folder, free_port(), f"127.0.0.1:{told.port}", rules)
         self.processes.append(prometheus)
         bench.wait_for("the first scrape", lambda: prometheus.value("softgrip_up") == 1)
