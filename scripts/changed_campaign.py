@@ -24,6 +24,7 @@ for folder in ("tests/blind", "scripts"):
 
 import campaign  # noqa: E402
 import changing  # noqa: E402
+from blind_page import interval  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
 KEYS = ("family", "cause", "strength", "seed", "columns", "zero_mm", "warmer_c")
@@ -53,16 +54,6 @@ def worlds(args, build):
     return planned
 
 
-def share(part, whole):
-    """Percent with its 95 % interval (Wilson)."""
-    if whole == 0:
-        return "-"
-    z, p = 1.96, part / whole
-    middle = (p + z * z / 2 / whole) / (1 + z * z / whole)
-    half = z * (p * (1 - p) / whole + z * z / 4 / whole**2) ** 0.5 / (1 + z * z / whole)
-    return f"{100 * p:.1f} % ({100 * (middle - half):.1f} .. {100 * (middle + half):.1f})"
-
-
 def table(rows, keys, outcomes):
     lines = ["| " + " | ".join((*keys, "worlds", *outcomes)) + " |", "|" + "---|" * (len(keys) + 1 + len(outcomes))]
     groups = collections.defaultdict(collections.Counter)
@@ -86,11 +77,11 @@ def page(rows, command, planned):
         for name, good in (("true change first", ("first",)), ("first, or its mirror image", ("first", "twin")),
                            ("named or listed", ("first", "twin", "listed"))):
             lines.append(f"| strength {strength}: {name} | {f'at least {wanted} %' if len(good) == 1 else '-'} | "
-                         f"{share(sum(r['outcome'] in good for r in own), len(own))} | {len(own)} |")
+                         f"{interval(sum(r['outcome'] in good for r in own), len(own))} | {len(own)} |")
         lines.append(f"| strength {strength}: something else named | - | "
-                     f"{share(sum(r['outcome'] == 'wrong' for r in own), len(own))} | {len(own)} |")
-    lines.append(f"| unchanged called unchanged | at least 98 % | "
-                 f"{share(sum(r['outcome'] == 'unchanged' for r in still), len(still))} | {len(still)} |")
+                     f"{interval(sum(r['outcome'] == 'wrong' for r in own), len(own))} | {len(own)} |")
+    lines.append("| unchanged called unchanged | at least 98 % | "
+                 f"{interval(sum(r['outcome'] == 'unchanged' for r in still), len(still))} | {len(still)} |")
     lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
               *table(still, ("family", "columns"), ("unchanged", "false_alarm", "unexplained")), "",
               "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## What was named instead", "",

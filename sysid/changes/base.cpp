@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "model/catalogue.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/structure/published_element.h"
@@ -215,19 +216,13 @@ void spread(Base& base) {
   for (std::size_t r = 0; r < base.records.size(); ++r) {
     const std::vector<double> motion =
         binned(base.records[r], predict_base(base, base.records[r], {}), base.bin_s);
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (std::size_t b = 0; b < std::min(motion.size(), base.left[r].size()); ++b) {
-      if (!std::isfinite(base.left[r][b]) || !std::isfinite(motion[b])) continue;
-      n += 1;
-      x += motion[b];
-      y += base.left[r][b];
-      xx += motion[b] * motion[b];
-      xy += motion[b] * base.left[r][b];
-    }
-    if (n < 10) continue;
-    const double slope = (n * xy - x * y) / std::max(n * xx - x * x, 1e-12);
+    PairSums sums;
+    for (std::size_t b = 0; b < std::min(motion.size(), base.left[r].size()); ++b)
+      sums.add(motion[b], base.left[r][b]);
+    if (sums.count < 10) continue;
+    const double slope = sums.covariance() / std::max(sums.variance_x(), 1e-12);
     gains += slope * slope;
-    zeros += std::pow(y / n, 2);
+    zeros += std::pow(sums.y / sums.count, 2);
     count += 1;
   }
   base.gain_spread = std::max(least_gain_spread, count > 0 ? std::sqrt(gains / count) : 0);
@@ -272,10 +267,9 @@ Record thinned_for(const Base& base, const Record& record) {
   return thinned_to(record, (base.judged == Judged::pressure ? 0.25 : 1.0) * base.bin_s);
 }
 
-Binned residual_of(const Base& base, const std::vector<Record>& records) {
-  Binned left;
-  for (const Record& record : records)
-    left.push_back(binned(record, residual(record, predict_base(base, record, {})), base.bin_s));
+std::vector<std::vector<double>> residuals_of(const Base& base, const std::vector<Record>& records) {
+  std::vector<std::vector<double>> left;
+  for (const Record& record : records) left.push_back(residual(record, predict_base(base, record, {})));
   return left;
 }
 

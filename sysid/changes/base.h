@@ -22,6 +22,12 @@ namespace softgrip::sysid {
 /// Which column is judged. Of the pressure: command -> pressure_kpa, in the place of the displacement in
 /// every name below that ends with _mm (then kPa).
 enum class Judged { displacement, pressure };
+[[nodiscard]] constexpr const char* name_of(Judged judged) {
+  return judged == Judged::pressure ? "pressure" : "displacement";
+}
+[[nodiscard]] constexpr const char* unit_of(Judged judged) {
+  return judged == Judged::pressure ? "kPa" : "mm";
+}
 
 struct Base {
   Judged judged = Judged::displacement;
@@ -67,8 +73,9 @@ struct BaseOptions {
 /// As a search for changes walks it: a valve answers sooner than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
 
-/// Reading minus prediction of the unchanged base, in bins. @param records  at full rate.
-[[nodiscard]] Binned residual_of(const Base& base, const std::vector<Record>& records);
+/// Reading minus prediction of the unchanged base, sample by sample.
+[[nodiscard]] std::vector<std::vector<double>> residuals_of(const Base& base,
+                                                            const std::vector<Record>& records);
 
 /// Records whose reading is the measured pressure [kPa] and whose drive the command.
 [[nodiscard]] std::vector<Record> pressure_records(const std::vector<Log>& logs, bool held);

@@ -50,18 +50,6 @@ Prepared prepared(std::vector<Record> records) {
   return p;
 }
 
-LaterReadings readings_of(const Base& base, const std::vector<Record>& records) {
-  std::vector<Record> thinned;
-  for (const Record& record : records) thinned.push_back(thinned_for(base, record));
-  return {base, std::move(thinned), residual_of(base, records)};
-}
-
-std::vector<Line> lines_of(const Base& base, const std::vector<Record>& records) {
-  std::vector<std::vector<double>> left;
-  for (const Record& record : records) left.push_back(residual(record, predict_base(base, record, {})));
-  return spectrum_peaks(records, left);
-}
-
 double rms_of(const Binned& series, double zero) {
   double sum = 0, count = 0;
   for (const std::vector<double>& part : series) {
@@ -103,17 +91,18 @@ class Judge {
     learn_temperature();
     say("what chance shows on the healthy logs");
     const Chance chance = chance_of();
-    const LaterReadings readings = readings_of(base_, later);
+    const std::vector<std::vector<double>> residuals = residuals_of(base_, later);
+    const LaterReadings readings = readings_of(base_, later, residuals);
     const std::vector<Effect> effects =
-        effects_for(base_, later, lines_of(base_, later), pressure_is_judged_);
-    const auto bins = static_cast<double>(readings.rows().rows().size());
+        effects_for(base_, later, spectrum_peaks(later, residuals), pressure_is_judged_);
     JudgedChange judged;
     judged.judged = base_.judged;
     judged.base = base_.description;
     judged.noise_mm = base_.noise_mm;
     judged.healthy_mm = base_.left_mm;
     std::vector<FittedEffect> found;
-    judged.misfit_before = readings.white({}).squaredNorm() / bins;
+    Eigen::VectorXd white = readings.white(found);
+    judged.misfit_before = judged.misfit_left = per_bin(readings, white.squaredNorm());
     for (std::size_t step = 0; step < most_causes; ++step) {
       say("which changes the later logs show");
       const std::vector<ScoredEffect> ranked =
@@ -124,10 +113,16 @@ class Judge {
           judged.tried.push_back(
               {each.fit.fitted.effect.id, each.fit.fitted.effect.form, each.gain, each.chance});
       }
-      if (!is_a_change(readings, ranked.front(), found)) break;
-      diagnosis.causes.push_back(cause_of(readings, ranked, found));
-      found.push_back(ranked.front().fit.fitted);
-      if (!(readings.white(found).squaredNorm() / bins > misfit_allowed)) break;
+      const ScoredEffect& best = ranked.front();
+      if (!stands_out(best)) break;
+      const Weighed weighed = weigh(readings, best, white);
+      const double excess_left = judged.misfit_left - 1;
+      if (!weighed.is_a_change || !(found.empty() || best.gain > further_share * excess_left)) break;
+      diagnosis.causes.push_back(cause_of(readings, ranked, weighed, judged.misfit_before - 1));
+      found.push_back(best.fit.fitted);
+      white = best.fit.white;
+      judged.misfit_left = per_bin(readings, white.squaredNorm());
+      if (!(judged.misfit_left > misfit_allowed)) break;
     }
     finish(readings, found, judged);
     diagnosis.readings.push_back(std::move(judged));
@@ -168,23 +163,33 @@ class Judge {
     return scored.gain > least_gain + chance_ratio * scored.chance;
   }
 
-  [[nodiscard]] bool is_a_change(const LaterReadings& readings, const ScoredEffect& best,
-                                 const std::vector<FittedEffect>& found) const {
-    if (!stands_out(best)) return false;
-    if (rms_of(readings.added({best.fit.fitted}), 0) < least_size * usual_left(base_.left)) return false;
-    const std::vector<double> without = block_sums(readings, readings.white(found));
-    const std::vector<double> with = block_sums(readings, best.fit.white);
-    if (!(resampled(without, with, options_.seed).lower > 0)) return false;
-    if (found.empty()) return true;
-    const auto bins = static_cast<double>(readings.rows().rows().size());
-    const double left = readings.white(found).squaredNorm() / bins - 1;
-    return best.gain > further_share * left;
+  static double per_bin(const LaterReadings& readings, double value) {
+    return value / static_cast<double>(readings.rows().rows().size());
+  }
+
+  /// An effect beside the readings without it.
+  struct Weighed {
+    Binned added;
+    std::vector<double> block_sums;  ///< with it
+    Resampled spread;                ///< of what it takes
+    bool is_a_change = false;        ///< by its size and over blocks drawn anew
+  };
+
+  /// @param without  the whitened readings without it.
+  [[nodiscard]] Weighed weigh(const LaterReadings& readings, const ScoredEffect& scored,
+                              const Eigen::VectorXd& without) const {
+    Weighed weighed;
+    weighed.added = readings.added({scored.fit.fitted});
+    weighed.block_sums = block_sums(readings, scored.fit.white);
+    weighed.spread = resampled(block_sums(readings, without), weighed.block_sums, options_.seed);
+    weighed.is_a_change =
+        rms_of(weighed.added, 0) >= least_size * usual_left(base_.left) && weighed.spread.lower > 0;
+    return weighed;
   }
 
   [[nodiscard]] ChangeCause cause_of(const LaterReadings& readings, const std::vector<ScoredEffect>& ranked,
-                                     const std::vector<FittedEffect>& found) const {
+                                     const Weighed& weighed, double excess) const {
     const FittedEffect& best = ranked.front().fit.fitted;
-    const auto bins = static_cast<double>(readings.rows().rows().size());
     ChangeCause cause;
     cause.id = best.effect.id;
     cause.title = best.effect.title;
@@ -192,30 +197,23 @@ class Judge {
     cause.judged = base_.judged;
     cause.fitted = best;
     cause.gain = ranked.front().gain;
-    const std::vector<double> without = block_sums(readings, readings.white(found));
-    const std::vector<double> with = block_sums(readings, ranked.front().fit.white);
-    const Resampled spread = resampled(without, with, options_.seed);
-    cause.gain_lower = spread.lower / bins;
-    cause.gain_upper = spread.upper / bins;
+    cause.gain_lower = per_bin(readings, weighed.spread.lower);
+    cause.gain_upper = per_bin(readings, weighed.spread.upper);
     for (std::size_t i = 1; i < ranked.size(); ++i) {
       if (!stands_out(ranked[i])) continue;
       const std::vector<double> other = block_sums(readings, ranked[i].fit.white);
-      if (resampled(other, with, options_.seed).share < wins_alone)
+      if (resampled(other, weighed.block_sums, options_.seed).share < wins_alone)
         cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
     }
-    const Binned added = readings.added({best});
-    cause.effect_mm = rms_of(added, 0);
-    cause.full_pressure_mm = at_full_pressure(readings, added);
+    cause.effect_mm = rms_of(weighed.added, 0);
+    cause.full_pressure_mm = at_full_pressure(readings, weighed.added);
     cause.size = size_of(readings, best, cause.full_pressure_mm);
-    const double excess = readings.white({}).squaredNorm() / bins - 1;
     cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
     return cause;
   }
 
   void finish(const LaterReadings& readings, const std::vector<FittedEffect>& found,
               JudgedChange& judged) const {
-    const auto bins = static_cast<double>(readings.rows().rows().size());
-    judged.misfit_left = readings.white(found).squaredNorm() / bins;
     judged.left_over = judged.misfit_left > misfit_allowed;
     judged.bin_s = base_.bin_s;
     for (const Record& record : readings.records()) judged.logs.push_back(record.name);
@@ -225,9 +223,7 @@ class Judge {
     judged.zero_mm = slack.zero_mm;
     judged.gain_percent = 100 * slack.gain;
     judged.later_mm = rms_of(readings.left(), readings.slack({}).zero_mm);
-    judged.explained_mm = found.empty()
-                              ? judged.later_mm
-                              : rms_of(minus(readings.left(), readings.added(found)), slack.zero_mm);
+    judged.explained_mm = rms_of(judged.explained, slack.zero_mm);
   }
 
   Base base_;

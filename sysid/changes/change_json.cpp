@@ -23,7 +23,7 @@ Json cause_json(const ChangeCause& cause) {
           {"size", {{"what", cause.size.what}, {"value", cause.size.value}, {"unit", cause.size.unit}}},
           {"full_pressure", cause.full_pressure_mm},
           {"effect_rms", cause.effect_mm},
-          {"unit", cause.judged == Judged::pressure ? "kPa" : "mm"},
+          {"unit", unit_of(cause.judged)},
           {"share_percent", cause.share_percent},
           {"gain", {{"value", cause.gain}, {"ci95", {cause.gain_lower, cause.gain_upper}}}},
           {"next_steps", {steps[0], steps[1]}}};
@@ -35,7 +35,7 @@ Json reading_json(const JudgedChange& judged) {
     tried.push_back(
         {{"id", rival.id}, {"form", rival.form}, {"gain", rival.gain}, {"healthy_gain", rival.healthy_gain}});
   return {{"reading", judged.judged == Judged::pressure ? "pressure_kpa" : "displacement_mm"},
-          {"unit", judged.judged == Judged::pressure ? "kPa" : "mm"},
+          {"unit", unit_of(judged.judged)},
           {"base", judged.base},
           {"noise", judged.noise_mm},
           {"healthy_heldout_rms", judged.healthy_mm},

@@ -15,13 +15,6 @@ Tone tone_of(ChangeVerdict verdict) {
   return verdict == ChangeVerdict::cause_found ? Tone::bad : Tone::doubtful;
 }
 
-std::string unit_of(Judged judged) {
-  return judged == Judged::pressure ? "kPa" : "mm";
-}
-std::string name_of(Judged judged) {
-  return judged == Judged::pressure ? "pressure" : "displacement";
-}
-
 void add_causes(Page& page, const ChangeDiagnosis& d) {
   page.section("What changed");
   Table table{"The causes, the largest change first",
@@ -51,7 +44,7 @@ Figure misfit_figure(const JudgedChange& judged, bool explained) {
     Chart chart;
     chart.title = judged.logs[r];
     chart.x.label = "time [s]";
-    chart.y.label = "left [" + unit_of(judged.judged) + "]";
+    chart.y.label = std::string("left [") + unit_of(judged.judged) + "]";
     chart.height = 180;
     Series before;
     before.label = "base of the healthy finger";
@@ -70,7 +63,7 @@ Figure misfit_figure(const JudgedChange& judged, bool explained) {
     charts.push_back(std::move(chart));
   }
   return {
-      "misfit " + name_of(judged.judged),
+      std::string("misfit ") + name_of(judged.judged),
       "What the base of the healthy finger leaves of the later logs. Healthy logs that it was not fitted to "
       "leave " +
           significant(judged.healthy_mm, 2) + " " + unit_of(judged.judged) + " (RMS).",
@@ -97,15 +90,15 @@ Figure tried_figure(const JudgedChange& judged) {
   }
   chart.series = {later, healthy};
   return {
-      "causes tried " + name_of(judged.judged),
+      std::string("causes tried ") + name_of(judged.judged),
       "What each cause alone takes of the misfit, in whitened squares per bin: of the later logs, and of the "
       "healthy ones while they were held out. A change must take more than twice what it takes there.",
       stacked({chart})};
 }
 
 void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& d) {
-  page.section("The " + name_of(judged.judged));
-  const std::string unit = " " + unit_of(judged.judged);
+  page.section(std::string("The ") + name_of(judged.judged));
+  const std::string unit = std::string(" ") + unit_of(judged.judged);
   page.terms({{"base", judged.base},
               {"noise of the readings", significant(judged.noise_mm, 2) + unit},
               {"left of healthy readings, held out", significant(judged.healthy_mm, 3) + unit},

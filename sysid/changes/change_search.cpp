@@ -19,11 +19,12 @@ constexpr int draws = 500;
 std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const std::vector<Effect>& effects,
                                          const std::vector<FittedEffect>& others, const Chance& chance,
                                          unsigned threads) {
-  const double before = readings.white(others).squaredNorm();
+  const Eigen::VectorXd without = readings.white(others);
+  const double before = without.squaredNorm();
   const auto rows = static_cast<double>(std::max<std::size_t>(1, readings.rows().rows().size()));
   std::vector<ScoredEffect> all(effects.size());
   parallel_for(effects.size(), threads, [&](std::size_t i) {
-    all[i].fit = fit_effect(readings, effects[i], others);
+    all[i].fit = fit_effect(readings, effects[i], others, without);
     all[i].gain = (before - all[i].fit.sum_of_squares -
                    price_of_a_number * static_cast<double>(effects[i].numbers.size())) /
                   rows;

@@ -61,8 +61,6 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 }
 
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
-  const bool pressure = readings.base().judged == Judged::pressure;
-  const char* const unit = pressure ? "kPa" : "mm";
   if (effect.effect.id == "leak")
     return {"pressure lost while it holds", largest_of(readings.added({effect})), "kPa"};
   if (effect.effect.id == "sensor_drift")
@@ -79,7 +77,7 @@ ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, do
     if (const double* value = number(effect, known.number))
       return {std::string(known.what), *value * known.factor, std::string(known.unit)};
   }
-  return {"at full pressure", full_pressure_mm, unit};
+  return {"at full pressure", full_pressure_mm, unit_of(readings.base().judged)};
 }
 
 }  // namespace softgrip::sysid

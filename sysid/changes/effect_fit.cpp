@@ -190,10 +190,20 @@ LaterReadings::Slack LaterReadings::slack(const std::vector<FittedEffect>& effec
   return {split.zeros(0), split.gain};
 }
 
+LaterReadings readings_of(const Base& base, const std::vector<Record>& records,
+                          const std::vector<std::vector<double>>& left) {
+  std::vector<Record> thinned;
+  Binned left_in_bins;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    thinned.push_back(thinned_for(base, records[r]));
+    left_in_bins.push_back(binned(records[r], left[r], base.bin_s));
+  }
+  return {base, std::move(thinned), std::move(left_in_bins)};
+}
+
 EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
-                     const std::vector<FittedEffect>& others) {
+                     const std::vector<FittedEffect>& others, const Eigen::VectorXd& without) {
   const Fit fit(readings, effect, others);
-  const Eigen::VectorXd without = readings.white(others);
   std::vector<EffectFit> looks;
   for (const std::vector<double>& start : effect.starts) {
     looks.push_back(fit.sized(start, without));
@@ -208,12 +218,6 @@ EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
     if (other.sum_of_squares < best.sum_of_squares) best = std::move(other);
   }
   return best;
-}
-
-EffectFit refit_effect(const LaterReadings& readings, const FittedEffect& from,
-                       const std::vector<FittedEffect>& others) {
-  const Fit fit(readings, from.effect, others);
-  return fit.descend(fit.at(from.numbers));
 }
 
 }  // namespace softgrip::sysid

@@ -57,6 +57,10 @@ class LaterReadings {
   Eigen::VectorXd motion_, motion_left_;  ///< the base's own motion, whole and without what zeros take
 };
 
+/// @param records  at full rate. @param left  residuals_of() them.
+[[nodiscard]] LaterReadings readings_of(const Base& base, const std::vector<Record>& records,
+                                        const std::vector<std::vector<double>>& left);
+
 struct EffectFit {
   FittedEffect fitted;
   double sum_of_squares = 0;
@@ -64,12 +68,9 @@ struct EffectFit {
 };
 
 /// From the best of its starts, the effects so far kept as they are.
+/// @param without  readings.white(others).
 [[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
-                                   const std::vector<FittedEffect>& others);
-
-/// The same from given numbers.
-[[nodiscard]] EffectFit refit_effect(const LaterReadings& readings, const FittedEffect& from,
-                                     const std::vector<FittedEffect>& others);
+                                   const std::vector<FittedEffect>& others, const Eigen::VectorXd& without);
 
 [[nodiscard]] Extension extension_of(const std::vector<FittedEffect>& effects);
 

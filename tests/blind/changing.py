@@ -10,8 +10,9 @@ import shutil
 import subprocess
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-GIVEN = {"textbook": ROOT / "tests/blind/textbook/given.yaml", "first": ROOT / "tests/blind/given.yaml"}
+import judging
+
+GIVEN = {"textbook": pathlib.Path(__file__).resolve().parent / "textbook/given.yaml", "first": judging.GIVEN}
 PROGRAM = {"textbook": "tests/blind/textbook/textbook-world", "first": "tests/blind/blind-world"}
 USUAL = 8
 # The same readings by another name, and which name the same law has in the other family.
@@ -52,12 +53,10 @@ def run_world(build, folder, world, threads=1):
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:
         healthy, later, truth = make(build, world, work)
-        done = subprocess.run([build / "tools/softgrip", "diagnose", "--model", GIVEN[world["family"]], "--healthy", *healthy,
-                               "--data", *later, "--out", work / "out", "--threads", str(threads), "--json"],
-                              capture_output=True, text=True)
-        if done.returncode != 0:
-            return {**world, "outcome": "failed", "message": done.stderr[-300:]}
-        diagnosis = json.loads(done.stdout)
+        diagnosis, message = judging.diagnose(build, GIVEN[world["family"]], later, work / "out", "--threads", str(threads),
+                                              "--healthy", *healthy)
+        if diagnosis is None:
+            return {**world, "outcome": "failed", "message": message}
         return {**world, "outcome": judge(world["cause"], diagnosis), "verdict": diagnosis["verdict"],
                 "named": [c["id"] for c in diagnosis["causes"]], "rivals": diagnosis["alternatives"],
                 "sizes": [c["size"] for c in diagnosis["causes"]], "readings": [

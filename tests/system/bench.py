@@ -238,6 +238,13 @@ class BenchTest(unittest.TestCase):
         for about in sorted((self.folder / "runs").glob("*/run.json")):
             self.assertEqual(recording_check.check(about.parent), [])
 
+    def start_rig(self, *arguments):
+        """A stone between the fingers of an emulated rig, and its daemon, idle."""
+        self.board = self.emulator("--object", "stone", *arguments)
+        self.rig_path = self.rig(self.board.port)
+        self.softgripd = self.daemon(self.rig_path)
+        self.softgripd.wait_for_state("idle")
+
     def write(self, name, text):
         path = self.folder / name
         path.write_text(text)

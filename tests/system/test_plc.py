@@ -10,10 +10,7 @@ import plc
 class Gateway(bench.BenchTest):
     def setUp(self):
         super().setUp()
-        self.board = self.emulator("--object", "stone")
-        self.rig_path = self.rig(self.board.port)
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.start_rig()
 
     def gateway(self, **keys):
         process = plc.Plc(self.folder, **keys)

@@ -18,10 +18,7 @@ PATIENCE_S = bench.PATIENCE_S
 class Python(bench.BenchTest):
     def setUp(self):
         super().setUp()
-        self.board = self.emulator("--object", "stone")
-        self.rig_path = self.rig(self.board.port)
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+        self.start_rig()
         self.path = str(self.softgripd.socket_path)
 
     def gripper(self, name="robot", **keys):

@@ -65,13 +65,7 @@ class Web(bench.Process):
 
 
 class WebTest(bench.BenchTest):
-    """A test with a rig that holds a stone, its daemon, and softgrip-web in front of it."""
-
-    def start_rig(self, *arguments):
-        self.board = self.emulator("--object", "stone", *arguments)
-        self.rig_path = self.rig(self.board.port)
-        self.softgripd = self.daemon(self.rig_path)
-        self.softgripd.wait_for_state("idle")
+    """A test with a rig, its daemon, and softgrip-web in front of it."""
 
     def start_web(self, **keys):
         process = Web(self.folder, **keys)

@@ -25,8 +25,7 @@ nlohmann::ordered_json sources_of(const std::vector<sysid::Log>& logs) {
 void print_cause(const sysid::ChangeCause& cause) {
   std::printf("  %-26s %s: %s %s (%s %s at full pressure)\n", cause.id.c_str(), cause.size.what.c_str(),
               significant(cause.size.value, 3).c_str(), cause.size.unit.c_str(),
-              significant(cause.full_pressure_mm, 3).c_str(),
-              cause.judged == sysid::Judged::pressure ? "kPa" : "mm");
+              significant(cause.full_pressure_mm, 3).c_str(), unit_of(cause.judged));
   for (const std::string& rival : cause.rivals) std::printf("      %s explains as much\n", rival.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());
@@ -36,11 +35,10 @@ void print_summary(const sysid::ChangeDiagnosis& d, const std::string& out) {
   std::printf("%s\n\n", sysid::change_sentence(d).c_str());
   for (const sysid::ChangeCause& cause : d.causes) print_cause(cause);
   for (const sysid::JudgedChange& judged : d.readings) {
-    const bool pressure = judged.judged == sysid::Judged::pressure;
     std::printf("  %-12s noise %s, healthy base leaves %s, of the later logs %s, with the causes %s %s\n",
-                pressure ? "pressure" : "displacement", significant(judged.noise_mm, 2).c_str(),
+                name_of(judged.judged), significant(judged.noise_mm, 2).c_str(),
                 significant(judged.healthy_mm, 3).c_str(), significant(judged.later_mm, 3).c_str(),
-                significant(judged.explained_mm, 3).c_str(), pressure ? "kPa" : "mm");
+                significant(judged.explained_mm, 3).c_str(), unit_of(judged.judged));
   }
   for (const std::string& warning : d.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%s s; report: %s\n", significant(d.wall_s, 3).c_str(),

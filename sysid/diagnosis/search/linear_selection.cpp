@@ -185,6 +185,15 @@ class SelectorUpon {
     return best.point;
   }
 
+  /// The last of `causes` from where it is best, on all readings and held out.
+  [[nodiscard]] ScoredCandidate finished(Start best, const std::vector<Cause>& causes) const {
+    ScoredCandidate one;
+    one.candidate.cause = causes.back();
+    one.candidate.fit = fit_structure(data_.records, causes, settled(std::move(best), causes), finish);
+    one.losses = linear_held_out_losses(data_.records, division_, *one.candidate.fit);
+    return one;
+  }
+
   std::vector<ScoredCandidate> score() {
     const Scan scan(data_.thinned, result_.extended.causes, result_.extended.point);
     const std::vector<std::pair<Cause, Look>> found = looks(scan);
@@ -194,12 +203,9 @@ class SelectorUpon {
     std::vector<ScoredCandidate> scored(std::min(finalists, static_cast<std::size_t>(worse - found.begin())));
     parallel_for(scored.size(), data_.threads, [&](std::size_t i) {
       const auto& [cause, look] = found[i];
-      scored[i].candidate.cause = cause;
       std::vector<Cause> causes = result_.extended.causes;
       causes.push_back(cause);
-      const FitPoint start = settled(best_answer(data_.thinned, scan, cause, look), causes);
-      scored[i].candidate.fit = fit_structure(data_.records, causes, start, finish);
-      scored[i].losses = linear_held_out_losses(data_.records, division_, *scored[i].candidate.fit);
+      scored[i] = finished(best_answer(data_.thinned, scan, cause, look), causes);
     });
     std::stable_sort(scored.begin(), scored.end(), [](const ScoredCandidate& a, const ScoredCandidate& b) {
       return rmse_mm(a.losses) < rmse_mm(b.losses);
@@ -267,13 +273,7 @@ class SelectorUpon {
   [[nodiscard]] ScoredCandidate alone(const Cause& cause, const Cause& other) const {
     FitPoint rest = result_.extended.point;
     rest.model = without(std::move(rest.model), other);
-    const std::vector<Cause> causes{cause};
-    ScoredCandidate one;
-    one.candidate.cause = cause;
-    one.candidate.fit = fit_structure(data_.records, causes,
-                                      settled(start_at(data_.thinned, std::move(rest)), causes), finish);
-    one.losses = linear_held_out_losses(data_.records, division_, *one.candidate.fit);
-    return one;
+    return finished(start_at(data_.thinned, std::move(rest)), {cause});
   }
 
   void stand_alone(ScoredCandidate one) {

@@ -17,9 +17,7 @@ class ChangeSearch : public testing::Test {
 
   LaterReadings readings(const test::Finger& finger) {
     const std::vector<Record> records = pressure_records(test::logs_of(finger, 5, true), false);
-    std::vector<Record> thinned;
-    for (const Record& record : records) thinned.push_back(thinned_for(base_, record));
-    return {base_, thinned, residual_of(base_, records)};
+    return readings_of(base_, records, residuals_of(base_, records));
   }
 
   Base base_;
