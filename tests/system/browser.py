@@ -99,13 +99,15 @@ class Browser:
 
     def results(self):
         """What stands large on the fingers' cards."""
-        try:
-            return [e.text for e in self.driver.find_elements(By.CSS_SELECTOR, ".finger .big")]
-        except StaleElementReferenceException:
-            return []
+        return [e.text for e in self.driver.find_elements(By.CSS_SELECTOR, ".finger .big")]
 
     def wait(self, what, condition, patience_s=bench.PATIENCE_S):
-        return bench.wait_for(what, condition, patience_s, pause_s=0.1)
+        def on_this_page():
+            try:
+                return condition()
+            except StaleElementReferenceException:  # the page has been loaded again meanwhile
+                return False
+        return bench.wait_for(what, on_this_page, patience_s, pause_s=0.1)
 
     def wait_for_state(self, *states):
         return self.wait(f"the page to say {states}", lambda: self.text("state") in states)
