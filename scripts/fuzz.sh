@@ -27,6 +27,7 @@ emulator_fuzz|tests/simulation/emulator/emulator_corpus|||1024
 client_request_fuzz|tests/daemon/socket/client_request_corpus||tests/daemon/client_request.dict|1024
 log_fuzz|tests/sysid/logs/log_corpus|||4096
 import_fuzz|tests/sysid/import/import_corpus|||4096
+plc_request_fuzz|tests/tools/plc/plc_request_corpus|||1024
 web_request_fuzz|tests/tools/web/web_request_corpus|||12000
 gauge_fuzz|tests/sysid/diagnosis/gauge/gauge_corpus|||4096
 recording_fuzz|tests/tools/recordings/recording_corpus||tests/daemon/client_request.dict|4096

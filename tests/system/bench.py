@@ -73,6 +73,11 @@ class Lines:
         self.socket.close()
 
 
+def resident_kib(pid):
+    """The memory that a process has in use."""
+    return int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{pid}/status").read_text()).group(1))
+
+
 class Process:
     """A child whose output goes to files and who never outlives its test."""
 
@@ -92,6 +97,9 @@ class Process:
 
     def running(self):
         return self.child.poll() is None
+
+    def resident_kib(self):
+        return resident_kib(self.child.pid)
 
     def send(self, number):
         self.child.send_signal(number)

@@ -173,7 +173,7 @@ class Soak:
         numbers = self.daemon.result("statistics")
         loop, bus = numbers["loop"], numbers["bus"]
         row = dict(zip(COLUMNS, (
-            round(minute, 2), int(status["VmRSS"].split()[0]), len(os.listdir(f"/proc/{pid}/fd")),
+            round(minute, 2), self.daemon.resident_kib(), len(os.listdir(f"/proc/{pid}/fd")),
             int(status["Threads"]), loop["ticks"], loop["slips_woken_late"], loop["slips_took_long"], bus["exchanges"],
             bus["failures"], bus["slips"], bus["sessions"], self.daemon.status()["recording"]["dropped_rows"],
             self.faults, self.sequences, len(self.unexpected), self.rows, self.missing, loop["wake_up"]["p999_us"],

@@ -158,11 +158,6 @@ time.sleep(60)
         line = (json.dumps({"command": "start", "sequence": "mine", "sequence_text": text}) + "\n").encode()
         client = self.raw().makefile("rwb")
 
-        def memory_kib():
-            status = (f"/proc/{self.daemon_.child.pid}/status")
-            with open(status) as lines:
-                return next(int(row.split()[1]) for row in lines if row.startswith("VmRSS"))
-
         def refuse(times):
             for _ in range(times):
                 client.write(line)
@@ -170,9 +165,9 @@ time.sleep(60)
                 self.assertEqual(json.loads(client.readline())["error"]["code"], "refused")
 
         refuse(20)
-        before = memory_kib()
+        before = self.daemon_.resident_kib()
         refuse(60)
-        self.assertLess(memory_kib() - before, 60 * 50, "60 KiB of text each, 206 KiB as a sequence")
+        self.assertLess(self.daemon_.resident_kib() - before, 60 * 50, "60 KiB of text each, 206 KiB as a sequence")
 
 
 class Ending(bench.BenchTest):

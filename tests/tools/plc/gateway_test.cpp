@@ -3,12 +3,16 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/files.h"
 #include "base/grid.h"
 #include "drivers/modbus_server/listener.h"
 #include "tools/plc/server.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace softgrip::plc {
 namespace {
@@ -55,6 +59,19 @@ TEST_F(GatewayAlone, RefusesEachCommandOnce) {
   write(Name::command, 77);
   write(Name::command_counter, 2);
   EXPECT_EQ(read(Name::reason), static_cast<int>(Reason::no_such_command));
+}
+
+/// It aborts where a promise is broken.
+TEST_F(GatewayAlone, AnswersTheSeedsOfTheFuzzTargetWholeAndCutOff) {
+  std::size_t seeds = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(SOFTGRIP_SOURCE_DIR "/tests/tools/plc/plc_request_corpus")) {
+    const std::string seed = *read_file(entry.path(), 65536);
+    for (std::size_t length = 0; length <= seed.size(); ++length)
+      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(seed.data()), length);
+    ++seeds;
+  }
+  EXPECT_GE(seeds, 5U);
 }
 
 TEST_F(GatewayAlone, TellsAMasterThatBeatsFromOneThatFellSilent) {

@@ -1,0 +1,76 @@
+// Fuzz target: what a master may send to softgrip-plc, byte by byte, in pieces of any size, while no daemon
+// is there.
+//
+//   cmake --preset fuzz && cmake --build --preset fuzz --target plc_request_fuzz
+//   build/fuzz/tests/plc_request_fuzz -max_total_time=660 -max_len=1024 NEW_CORPUS
+//   tests/tools/plc/plc_request_corpus
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "tools/plc/gateway.h"
+
+namespace {
+
+using namespace softgrip;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+plc::Settings shipped() {
+  document::Problems problems;
+  auto settings = plc::load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
+  require(settings.has_value());
+  settings->socket = "/nonexistent/softgripd.sock";
+  return *settings;
+}
+
+/// One frame, whole, to the request that was asked.
+void check(const modbus::Request& request, const modbus::Reply& reply) {
+  require(reply.pieces.size() == 1 && !reply.disconnect);
+  const std::span<const std::uint8_t> frame = reply.pieces.front().bytes;
+  constexpr std::size_t header = 7;
+  require(frame.size() >= header + 2 && frame.size() <= header + modbus::max_pdu);
+  require(modbus::word_at(frame, 0) == request.transaction && frame[6] == request.unit);
+  require(modbus::word_at(frame, 4) == frame.size() - 6);
+  require((frame[header] & 0x7fU) == (request.pdu[0] & 0x7fU));
+}
+
+/// What only the gateway may write, read by a request of its own.
+std::uint16_t read(plc::Gateway& gateway, std::uint16_t address, Nanoseconds now) {
+  modbus::Request request{0, 1, {3}};
+  modbus::append_word(request.pdu, address);
+  modbus::append_word(request.pdu, 1);
+  const modbus::Reply reply = gateway.serve(request, now);
+  return modbus::word_at(reply.pieces.front().bytes, 9);
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using plc::Name;
+  static const plc::Settings settings = shipped();
+  plc::Gateway gateway(settings);
+  modbus::RequestStream stream;
+  std::span<const std::uint8_t> bytes(data, size);
+  Nanoseconds now = 0;
+  while (!bytes.empty() && !stream.broken()) {
+    const std::size_t piece = std::min<std::size_t>(bytes.size(), 1 + bytes.front() % 32);
+    stream.append(bytes.first(piece));
+    bytes = bytes.subspan(piece);
+    while (const auto request = stream.next()) {
+      now += 10'000'000;
+      check(*request, gateway.serve(*request, now));
+      require(read(gateway, settings.registers.at(Name::map_version), now) == plc::version_of_map);
+      // Without a daemon nothing is ever under way or carried out.
+      const auto outcome =
+          static_cast<plc::Outcome>(read(gateway, settings.registers.at(Name::outcome), now));
+      require(outcome == plc::Outcome::none || outcome == plc::Outcome::refused);
+    }
+  }
+  return 0;
+}
