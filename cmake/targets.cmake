@@ -177,7 +177,7 @@ function(softgrip_discover name filter label)
     endif()
     gtest_discover_tests(${name} NO_PRETTY_VALUES TEST_FILTER "${filter}" DISCOVERY_TIMEOUT 60
       TEST_LIST ${name}_tests_${label}
-      PROPERTIES TIMEOUT 120 ${ARGN})
+      PROPERTIES TIMEOUT 600 ${ARGN})
   endif()
 endfunction()
 
