@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/quantisation.h"
@@ -91,10 +92,43 @@ std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptio
   return records;
 }
 
+namespace {
+
+std::size_t stride_for(const Record& record, double interval_s) {
+  return static_cast<std::size_t>(std::max(1.0, std::floor(interval_s / record.mean_interval_s())));
+}
+
+/// Mean of `reach` readings on either side of one and itself; none where fewer than half are there.
+double mean_around(const std::vector<double>& readings, std::size_t at, std::size_t reach) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t i = at - reach; i <= at + reach; ++i) {
+    if (!std::isfinite(readings[i])) continue;
+    sum += readings[i];
+    ++count;
+  }
+  return 2 * count > 2 * reach ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
 Record thinned_to(const Record& record, double interval_s) {
-  const auto stride =
-      static_cast<std::size_t>(std::max(1.0, std::floor(interval_s / record.mean_interval_s())));
+  const std::size_t stride = stride_for(record, interval_s);
   return stride > 1 ? thinned_record(record, stride) : record;
+}
+
+Record averaged_to(const Record& record, double interval_s) {
+  const std::size_t stride = stride_for(record, interval_s);
+  if (stride <= 1) return record;
+  Record thin = thinned_record(record, stride);
+  thin.readings = 0;
+  for (std::size_t to = 0; to < thin.size(); ++to) {
+    const std::size_t at = to * stride;
+    const std::size_t reach = std::min({(stride - 1) / 2, at, record.size() - 1 - at});
+    thin.reading_mm[to] = mean_around(record.reading_mm, at, reach);
+    if (std::isfinite(thin.reading_mm[to])) ++thin.readings;
+  }
+  return thin;
 }
 
 Record thinned_record(const Record& record, std::size_t stride) {

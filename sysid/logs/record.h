@@ -81,6 +81,10 @@ struct Record {
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
 /// Thinned so that samples stand at most `interval_s` apart, where they are not farther apart already.
 [[nodiscard]] Record thinned_to(const Record& record, double interval_s);
+/// Thinned likewise, and each reading the mean of those that are nearer to it than to any other that is left:
+/// their noise falls with the root of their number. A motion is not blurred as long as it bends little within
+/// `interval_s`.
+[[nodiscard]] Record averaged_to(const Record& record, double interval_s);
 
 /// The readings' noise, from second differences of neighbours (robust; white noise assumed) [mm].
 [[nodiscard]] double fast_noise_mm(const Record& record);

@@ -18,13 +18,15 @@ std::string cell(double value) {
 
 LogSeries series_of(const Log& log, const Record& record, bool all_held_out) {
   LogSeries series;
+  // Of an averaged record the log's own samples are no longer there.
+  const bool own_samples = record.size() == log.size();
   series.name = log.name;
-  series.time_s = log.time_s;
+  series.time_s = own_samples ? log.time_s : record.time_s;
   series.drive_kpa = record.drive_kpa;
-  series.measured_mm = log.displacement_mm;
-  series.held_out.resize(log.size());
-  for (std::size_t i = 0; i < log.size(); ++i) {
-    const bool read = std::isfinite(log.displacement_mm[i]);
+  series.measured_mm = own_samples ? log.displacement_mm : record.reading_mm;
+  series.held_out.resize(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const bool read = std::isfinite(series.measured_mm[i]);
     series.held_out[i] = read && (all_held_out || !std::isfinite(record.reading_mm[i]));
   }
   return series;

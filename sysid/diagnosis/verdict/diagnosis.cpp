@@ -13,6 +13,7 @@
 #include "sysid/diagnosis/search/staircase_selection.h"
 #include "sysid/diagnosis/verdict/base_findings.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
+#include "sysid/diagnosis/verdict/dense_logs.h"
 #include "sysid/diagnosis/verdict/mixed_intervals.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/fitting/trajectory.h"
@@ -128,6 +129,7 @@ class Diagnostician {
     d_.noise_mm = measured_noise_mm(records);
     if (d_.noise_mm <= 0) return Failure("the readings have no noise at all: this is not measured data");
     d_.outliers = hide_outliers(records, d_.noise_mm);
+    if (average_dense(records, d_.warnings)) d_.noise_mm = measured_noise_mm(records);
     use(std::move(records));
     warn_of_data(logs_, data_.scales, d_.warnings);
     warn_of_scale(d_.records, d_.as_given.residual_mm, d_.warnings);

@@ -13,6 +13,7 @@ TEST(Series, IsCsvWithEmptyCellsWhereNothingIs) {
   log.time_s = {0, 0.01, 0.02};
   log.displacement_mm = {1, std::nan(""), 3};
   Record record;
+  record.time_s = log.time_s;
   record.drive_kpa = {10, 20, 30};
   record.reading_mm = {1, std::nan(""), std::nan("")};
   LogSeries series = series_of(log, record, false);
@@ -25,6 +26,20 @@ TEST(Series, IsCsvWithEmptyCellsWhereNothingIs) {
             "0.01,20,,1.5,,2,,0\n"
             "0.02,30,3,2.5,0.5,,,1\n");
   EXPECT_EQ(series_of(log, record, true).held_out, (std::vector<bool>{true, false, true}));
+}
+
+TEST(Series, OfAveragedReadingsHasTheirSamples) {
+  Log log;
+  log.time_s = {0, 0.001, 0.002, 0.003};
+  log.displacement_mm = {1, 2, 3, 4};
+  Record record;
+  record.time_s = {0, 0.002};
+  record.drive_kpa = {10, 20};
+  record.reading_mm = {1, 3.1};
+  const LogSeries series = series_of(log, record, false);
+  EXPECT_EQ(series.time_s, record.time_s);
+  EXPECT_EQ(series.measured_mm, record.reading_mm);
+  EXPECT_EQ(series.held_out, (std::vector<bool>{false, false}));
 }
 
 TEST(Series, ALogsNameStaysWithinTheFolder) {

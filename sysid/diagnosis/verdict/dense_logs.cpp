@@ -1,0 +1,27 @@
+#include "sysid/diagnosis/verdict/dense_logs.h"
+
+#include <utility>
+
+#include "base/numbers.h"
+
+namespace softgrip::sysid {
+
+bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings) {
+  std::size_t readings = 0;
+  for (const Record& record : records) readings += record.readings;
+  if (readings <= most_readings) return false;
+  bool any = false;
+  for (Record& record : records) {
+    Record averaged = averaged_to(record, averaged_interval_s);
+    if (averaged.size() == record.size()) continue;
+    warnings.push_back(record.name + ": " + significant(1 / record.mean_interval_s(), 3) +
+                       " samples per second are more than a finger needs: means over " +
+                       significant(1e3 * averaged.mean_interval_s(), 2) +
+                       " ms were diagnosed, and noise and errors are those of the means");
+    record = std::move(averaged);
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace softgrip::sysid
