@@ -2,7 +2,6 @@
 # only rooms that stand above it in this file, and of those only the ones that it names. A source that includes another
 # room's header does not compile (arrows.cmake says which line and why). docs/explanation/architecture.md draws it.
 #
-# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...])
 # Every .cpp of a room belongs to its library, but for the programs' main files; a new file needs no edit here.
 
 # Ground floor: nobody's in particular.
@@ -47,7 +46,7 @@ softgrip_room(rig/web_file USES document drivers/modbus_server)
 # The rig file.
 softgrip_room(rig
   USES base document model/file control/feedforward control/tick control/sequences drivers/board drivers/modbus
-       drivers/iio drivers/gpio simulation/plant rig/plc_file rig/web_file)
+       drivers/iio drivers/gpio simulation/plant rig/plc_file rig/web_file TOGETHER)
 
 # The daemon.
 softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig LIBRARIES spdlog::spdlog)
@@ -86,7 +85,7 @@ softgrip_room(sysid/diagnosis/gauge
        sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/verdict
   USES base model sysid/logs sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
-       sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
+       sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge TOGETHER)
 softgrip_room(sysid/changes
   USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
@@ -102,9 +101,9 @@ softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_
 
 # Programs.
 softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/import sysid/diagnosis/gauge
-  LIBRARIES CLI11::CLI11)
+  LIBRARIES CLI11::CLI11 TOGETHER)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
-softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
 # What stands in front of the daemon's socket, in processes of their own.
 softgrip_room(tools/plc USES base drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
@@ -118,7 +117,7 @@ if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
   target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_HTTPLIB_ADDRESSES=1)
 endif()
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
-  LIBRARIES nlohmann_json::nlohmann_json)
+  LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
 softgrip_room(tools/figures USES base sysid/pages)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
@@ -126,18 +125,18 @@ softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/c
 softgrip_room(tools/exporting
   USES base document model model/file control/elements control/feedforward sysid/logs sysid/import tools/command_line
        tools/recordings
-  LIBRARIES nlohmann_json::nlohmann_json)
+  LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
 # What moves a rig by hand: doctor and calibrate.
 softgrip_room(tools/commissioning
   USES base document model model/file control/elements control/feedforward drivers/board rig/plc_file rig/web_file rig
        daemon/loop daemon/recording daemon/service tools/command_line
-  LIBRARIES nlohmann_json::nlohmann_json)
+  LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig
        daemon/service daemon/socket sysid/logs sysid/pages sysid/identification sysid/diagnosis/verdict
        sysid/diagnosis/experiments sysid/diagnosis/report tools/recordings
-  LIBRARIES nlohmann_json::nlohmann_json)
+  LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
 # A report computed again.
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/studies
@@ -149,7 +148,7 @@ softgrip_room(tools/commands
        tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
-  PRECOMPILE <CLI/CLI.hpp>)
+  PRECOMPILE <CLI/CLI.hpp> TOGETHER)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)

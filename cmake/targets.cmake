@@ -1,9 +1,12 @@
-# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...])
+# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...] [TOGETHER])
 # A room is a folder, a static library of all its .cpp files (one that has none is an interface), and the rooms that
-# its files may include. PRECOMPILE: a library's header that most of its files include and that is most of their compile time. The target of daemon/loop is softgrip_daemon_loop; ${softgrip_room_target} names the last one.
+# its files may include. PRECOMPILE: a library's header that most of its files include and that is most of their compile
+# time. TOGETHER: most of that time are the same headers in every file, so eight files are compiled as one; names in their
+# unnamed namespaces must differ. Both only with SOFTGRIP_PRECOMPILE. The target of daemon/loop is softgrip_daemon_loop;
+# ${softgrip_room_target} names the last one.
 set_property(GLOBAL PROPERTY softgrip_rooms "")
 function(softgrip_room folder)
-  cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "TOGETHER" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE" ${ARGN})
   softgrip_target_of(${folder} target)
   set(folders ${folder} ${arg_FOLDERS})
   set(sources "")
@@ -35,6 +38,9 @@ function(softgrip_room folder)
     if(arg_PRECOMPILE AND may)
       target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
       target_compile_options(${target} PRIVATE ${softgrip_behind_a_precompiled_header})
+    endif()
+    if(arg_TOGETHER)
+      softgrip_together(${target})
     endif()
   else()
     add_library(${target} INTERFACE)
@@ -114,6 +120,14 @@ endfunction()
 # where the header is precompiled.
 set(softgrip_behind_a_precompiled_header -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 
+# softgrip_together(TARGET)
+function(softgrip_together target)
+  softgrip_may_precompile(may)
+  if(may)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
 # softgrip_rooms(OUT room ...)  the targets of rooms
 function(softgrip_rooms variable)
   set(targets "")
@@ -149,18 +163,23 @@ function(softgrip_precompile_for_tests target)
   target_precompile_headers(${target} REUSE_FROM softgrip_test_headers)
 endfunction()
 
-# softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...])
+# softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...]
+#               [TOGETHER] [ALONE file ...])
 # a GoogleTest program; its tests are discovered one by one. REALTIME: patterns of the tests that measure real time, which
 # a shared machine may disturb: they get a second attempt (scripts/ctest.sh). LONG: of those that compute for seconds,
-# which scripts/test.sh --quick leaves out. A pattern stands in one of the two.
+# which scripts/test.sh --quick leaves out. A pattern stands in one of the two. TOGETHER: as of a room; ALONE: but not these.
 function(softgrip_test name)
-  cmake_parse_arguments(arg "" "" "ROOMS;LINK;REALTIME;LONG;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(arg "TOGETHER" "" "ROOMS;LINK;REALTIME;LONG;PROPERTIES;ALONE" ${ARGN})
   softgrip_rooms(rooms ${arg_ROOMS})
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name}
     PRIVATE softgrip_flags softgrip_test_flags ${rooms} ${arg_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE SOFTGRIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   softgrip_precompile_for_tests(${name})
+  if(arg_TOGETHER)
+    softgrip_together(${name})
+    set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   string(JOIN ":" labelled ${arg_REALTIME} ${arg_LONG})
   softgrip_discover(${name} "*:-${labelled}" "" ${arg_PROPERTIES})
   string(JOIN ":" realtime ${arg_REALTIME})

@@ -17,7 +17,7 @@ sanitized() {
   local preset=$1 reports=$PWD/build/$1/reports failed=0
   shift
   echo "$preset: $*"
-  cmake --preset "$preset" >/dev/null
+  cmake --preset "$preset" -DSOFTGRIP_PRECOMPILE=ON >/dev/null
   build "$preset" "$@"
   ! $only_build || return 0
   rm -rf "$reports" && mkdir -p "$reports"

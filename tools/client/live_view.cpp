@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tools/client/event_text.h"
+#include "tools/client/json_fields.h"
 #include "tools/client/key_dialogue.h"
 
 namespace softgrip::tools {
@@ -21,12 +22,6 @@ constexpr std::size_t fewest_event_rows = 3;
 
 void append(Lines& lines, const Lines& more) {
   lines.insert(lines.end(), more.begin(), more.end());
-}
-
-std::optional<double> number_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
 }
 
 Lines footer_of(const LiveState& state, const ViewStyle& style) {

@@ -13,17 +13,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_at(const Json& json, const char* key) {
+std::string text_of(const Json& json, const char* key) {
   return document::shown(json.value(key, std::string()), 400);
 }
 
-std::string number_at(const Json& json, const char* key) {
+std::string written_at(const Json& json, const char* key) {
   return written(json.value(key, 0.0));
 }
 
 /// " kPa" of "kpa", " mm/s" of "mm_per_s".
 std::string unit_of(const Json& parameter) {
-  std::string unit = text_at(parameter, "unit");
+  std::string unit = text_of(parameter, "unit");
   if (const std::size_t per = unit.find("_per_"); per != std::string::npos) unit.replace(per, 5, "/");
   if (unit.starts_with("kpa")) unit[1] = 'P';
   if (unit == "hz") unit = "Hz";
@@ -32,13 +32,13 @@ std::string unit_of(const Json& parameter) {
 
 void add_parameters(const Json& parameters, std::vector<std::string>& lines) {
   std::size_t longest = 0;
-  for (const Json& parameter : parameters) longest = std::max(longest, text_at(parameter, "name").size());
+  for (const Json& parameter : parameters) longest = std::max(longest, text_of(parameter, "name").size());
   for (const Json& parameter : parameters) {
-    std::string name = text_at(parameter, "name");
+    std::string name = text_of(parameter, "name");
     name.resize(longest, ' ');
-    lines.push_back("  " + name + "  " + number_at(parameter, "lower") + " to " +
-                    number_at(parameter, "upper") + unit_of(parameter) + ", default " +
-                    number_at(parameter, "default") + ": " + text_at(parameter, "about"));
+    lines.push_back("  " + name + "  " + written_at(parameter, "lower") + " to " +
+                    written_at(parameter, "upper") + unit_of(parameter) + ", default " +
+                    written_at(parameter, "default") + ": " + text_of(parameter, "about"));
   }
 }
 
@@ -47,8 +47,8 @@ void add_parameters(const Json& parameters, std::vector<std::string>& lines) {
 std::vector<std::string> view_of_sequences(const Json& sequences) {
   std::vector<std::string> lines;
   for (const Json& sequence : sequences) {
-    const std::string about = text_at(sequence, "about");
-    lines.push_back(text_at(sequence, "name") + (about.empty() ? "" : ": " + about));
+    const std::string about = text_of(sequence, "about");
+    lines.push_back(text_of(sequence, "name") + (about.empty() ? "" : ": " + about));
     add_parameters(sequence.value("parameters", Json::array()), lines);
     const Json problems = sequence.value("problems", Json::array());
     if (!problems.empty()) lines.push_back("  cannot be started:" + listed(problems));
@@ -58,7 +58,7 @@ std::vector<std::string> view_of_sequences(const Json& sequences) {
 
 std::vector<std::string> names_of_sequences(const Json& sequences) {
   std::vector<std::string> names;
-  for (const Json& sequence : sequences) names.push_back(text_at(sequence, "name"));
+  for (const Json& sequence : sequences) names.push_back(text_of(sequence, "name"));
   return names;
 }
 

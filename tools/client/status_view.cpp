@@ -6,33 +6,15 @@
 #include <optional>
 
 #include "base/numbers.h"
-#include "document/problem.h"
+#include "tools/client/json_fields.h"
 
 namespace softgrip::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? document::shown(found->get<std::string>(), 200) : "-";
-}
-
-std::optional<double> number_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
-}
-
 std::string with_decimals(std::optional<double> value, int decimals) {
   return value ? fixed(*value, decimals) : "-";
-}
-
-/// An object at `key`, or an empty one.
-const Json& object_at(const Json& json, const char* key) {
-  static const Json empty = Json::object();
-  const auto found = json.find(key);
-  return found != json.end() && found->is_object() ? *found : empty;
 }
 
 Tone tone_of_state(const std::string& state) {

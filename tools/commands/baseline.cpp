@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct BaselineOptions {
   std::vector<std::string> data;
   std::vector<std::string> check;
   std::string model;
@@ -35,7 +35,8 @@ struct Options {
   bool json = false;
 };
 
-tl::expected<model::Model, ExitCode> model_of(const Options& options, const std::vector<sysid::Log>& logs) {
+tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
+                                              const std::vector<sysid::Log>& logs) {
   if (!options.model.empty()) return read_model(options.model);
   ProgressLine line;
   sysid::IdentifyOptions fit;
@@ -51,7 +52,7 @@ tl::expected<model::Model, ExitCode> model_of(const Options& options, const std:
 }
 
 /// What a second run of the healthy finger says; null: there is none.
-tl::expected<Json, ExitCode> checked(const Options& options, const std::vector<sysid::Log>& healthy,
+tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const std::vector<sysid::Log>& healthy,
                                      const model::Model& model, bool& holds) {
   if (options.check.empty()) return Json(nullptr);
   const auto again = read_logs(options.check, options.logs);
@@ -67,7 +68,7 @@ tl::expected<Json, ExitCode> checked(const Options& options, const std::vector<s
               {"second_run_rms_mm", diagnosis->readings.back().later_mm}};
 }
 
-ExitCode run(const Options& options, const std::vector<std::string>& call) {
+ExitCode run(const BaselineOptions& options, const std::vector<std::string>& call) {
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   const auto model = model_of(options, *logs);
@@ -100,7 +101,7 @@ ExitCode run(const Options& options, const std::vector<std::string>& call) {
 }  // namespace
 
 void add_baseline(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BaselineOptions>();
   CLI::App* command =
       program.add_subcommand("baseline", "Keep what a healthy finger does, to be compared with later");
   command->add_option("--data", options->data, "Logs of the healthy finger, in order")->required();

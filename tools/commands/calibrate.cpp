@@ -29,7 +29,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   std::string rig;
   std::string channel;
   std::string socket;
@@ -77,7 +77,7 @@ std::string names_of(const rig::RigFile& rig) {
 }
 
 /// Pressures of the two places: as given, or a sixth and two thirds of what the limits allow.
-std::optional<ExitCode> set_pressures(const Options& options, const control::LimitSettings& limits,
+std::optional<ExitCode> set_pressures(const CalibrateOptions& options, const control::LimitSettings& limits,
                                       calibrate::Settings& settings) {
   const double span = limits.pressure_max_kpa - limits.pressure_min_kpa;
   settings.low_kpa = options.at_kpa.empty() ? limits.pressure_min_kpa + span / 6 : options.at_kpa[0];
@@ -98,12 +98,12 @@ std::vector<std::string> spread(const std::vector<std::string>& answers, std::si
 }
 
 /// Whether the board is free to be taken.
-std::optional<ExitCode> refuse_beside_daemon(const Options& options, const rig::RigFile& rig) {
+std::optional<ExitCode> refuse_beside_daemon(const CalibrateOptions& options, const rig::RigFile& rig) {
   if (!daemon_runs(options.socket.empty() ? rig.socket.path : options.socket)) return std::nullopt;
   return fail(ExitCode::state_refused, stop_the_daemon);
 }
 
-calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const Options& options,
+calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const CalibrateOptions& options,
                                                 const calibrate::Settings& settings, HandDrive& drive,
                                                 calibrate::TerminalOperator& terminal) {
   calibrate::Results results;
@@ -153,7 +153,7 @@ bool confirmed(calibrate::TerminalOperator& terminal, Pace& pace, const std::str
 }
 
 /// What is odd about the results; true if they may be written all the same.
-bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const Options& options,
+bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const CalibrateOptions& options,
               calibrate::TerminalOperator& terminal, Pace& pace) {
   const std::vector<std::string> odd = calibrate::doubts(rig, results);
   for (const std::string& sentence : odd) std::fprintf(stderr, "doubtful: %s\n", sentence.c_str());
@@ -172,7 +172,8 @@ ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& resul
   return ExitCode::done;
 }
 
-ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& results, const Options& options) {
+ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& results,
+                       const CalibrateOptions& options) {
   const std::string text = calibrate::snippet(rig, results);
   if (const auto written = write_output(options.out, text); !written)
     return fail(ExitCode::io, written.error());
@@ -185,7 +186,7 @@ ExitCode write_results(const rig::RigFile& rig, const calibrate::Results& result
 }
 
 /// What can be said before anything moves: exit code, or the settings.
-tl::expected<calibrate::Settings, ExitCode> prepare(Options& options, const rig::RigFile& rig) {
+tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, const rig::RigFile& rig) {
   const auto channel = channel_of(rig, options.channel);
   if (!channel) {
     return tl::unexpected(
@@ -224,7 +225,8 @@ tl::expected<calibrate::Settings, ExitCode> prepare(Options& options, const rig:
 }
 
 /// Connected, measured, left at the lowest pressures.
-ExitCode carry_out(const rig::RigFile& rig, const Options& options, const calibrate::Settings& settings) {
+ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
+                   const calibrate::Settings& settings) {
   const auto lock = daemon::BoardLock::take(rig);
   if (!lock) return fail(ExitCode::state_refused, lock.error());
   const MonotonicClock clock;
@@ -249,7 +251,7 @@ ExitCode carry_out(const rig::RigFile& rig, const Options& options, const calibr
   return code == ExitCode::done && !safe ? ExitCode::io : code;
 }
 
-ExitCode run(Options options) {
+ExitCode run(CalibrateOptions options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
   if (const auto code = unreadable(path)) return *code;
   document::Problems problems;
@@ -262,7 +264,7 @@ ExitCode run(Options options) {
   return carry_out(*rig, options, *settings);
 }
 
-void add_measuring_options(CLI::App& command, Options& options) {
+void add_measuring_options(CLI::App& command, CalibrateOptions& options) {
   command
       .add_option("--at-kpa", options.at_kpa,
                   "Pressures of the two points [a sixth and two thirds of the limits]")
@@ -286,7 +288,7 @@ void add_measuring_options(CLI::App& command, Options& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = program.add_subcommand(
       "calibrate", "Sensor and valve against gauge and manometer: lines for the rig file");
   command->add_option("--rig", options->rig, "Rig file [config/rig.yaml, or the installed one]");

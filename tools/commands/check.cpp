@@ -16,7 +16,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::vector<std::string> files;
   std::vector<std::string> settings;
   bool json = false;
@@ -73,7 +73,7 @@ void print_text(const rig::CheckReport& report) {
   }
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const CheckOptions& options) {
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
   const rig::CheckReport report = rig::check_files(options.files, *arguments);
@@ -88,7 +88,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   CLI::App* command =
       program.add_subcommand("check", "What is wrong with rigs, boards, models and sequences");
   command

@@ -30,7 +30,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct DiagnoseOptions {
   std::string model;
   std::vector<std::string> data;
   std::vector<std::string> healthy;
@@ -100,7 +100,7 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
-ConsequenceOptions consequence_options(const Options& options, const std::vector<sysid::Log>& logs) {
+ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std::vector<sysid::Log>& logs) {
   ConsequenceOptions wanted = options.consequences;
   sysid::RigLimits limits{options.pressure_max_kpa, options.slew_kpa_per_s};
   for (const sysid::Log& log : logs) {
@@ -141,8 +141,8 @@ std::optional<sysid::ClosedLoopCurves> closed_loop_curves(const Consequences& co
 }
 
 /// What changed between the healthy logs and the others.
-ExitCode changed(const Options& options, const model::Model& model, const std::vector<sysid::Log>& logs,
-                 const std::vector<std::string>& call) {
+ExitCode changed(const DiagnoseOptions& options, const model::Model& model,
+                 const std::vector<sysid::Log>& logs, const std::vector<std::string>& call) {
   const auto healthy = read_logs(options.healthy, options.logs);
   if (!healthy) return healthy.error();
   ChangeQuestion question{*healthy, logs, model, {}, options.out, options.figures, call, options.json};
@@ -152,7 +152,7 @@ ExitCode changed(const Options& options, const model::Model& model, const std::v
   return run_change(std::move(question));
 }
 
-ExitCode run(Options options, const std::vector<std::string>& call) {
+ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
   if (!options.baseline.empty()) {
     const auto baseline = read_baseline(options.baseline);
     if (!baseline) return fail(ExitCode::input_refused, baseline.error());
@@ -206,7 +206,7 @@ ExitCode run(Options options, const std::vector<std::string>& call) {
 }  // namespace
 
 void add_diagnose(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DiagnoseOptions>();
   CLI::App* command = program.add_subcommand("diagnose", "What a model gets wrong on measured data, and why");
   command->add_option("--model", options->model, "Model file as it is used today [the baseline's]");
   command

@@ -31,7 +31,7 @@ constexpr const char* enabled_units = "/etc/systemd/system/multi-user.target.wan
 constexpr const char* daemon_holds_the_board =
     "softgripd runs and holds the board: stop it, or leave out --move";
 
-struct Options {
+struct DoctorOptions {
   std::string rig;
   std::string socket;
   bool move = false;
@@ -75,7 +75,7 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   doctor::examine_rig(rig, *board, pace, move, {}, findings);
 }
 
-ExitCode conclude(const Options& options, const doctor::Examination& examination,
+ExitCode conclude(const DoctorOptions& options, const doctor::Examination& examination,
                   const doctor::Findings& findings) {
   if (options.json) {
     print_json(doctor::json_of(examination, findings));
@@ -102,7 +102,7 @@ ExitCode ask_for_a_name(const std::string& socket) {
 }
 
 /// Without a rig file: what runs here, if anything does.
-ExitCode run_unnamed(const Options& options) {
+ExitCode run_unnamed(const DoctorOptions& options) {
   const std::string socket = options.socket.empty() ? default_socket_path() : options.socket;
   auto client = DaemonClient::connect(socket);
   if (!client && client.error().nobody_listens) return ask_for_a_name(socket);
@@ -126,7 +126,7 @@ ExitCode run_unnamed(const Options& options) {
   return conclude(options, examination, findings);
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const DoctorOptions& options) {
   if (options.rig.empty()) return run_unnamed(options);
   const std::string& path = options.rig;
   if (const auto code = unreadable(path)) return *code;
@@ -157,7 +157,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_doctor(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = program.add_subcommand(
       "doctor",
       "Is this rig fit to run today? Computer, board, sensors, disk: ok, warn or fail, and what to do");

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct EventsOptions {
   DaemonOptions daemon;
   std::string since;
   EventQuery query;
@@ -34,7 +34,7 @@ void print(const Json& event, bool json) {
   std::fflush(stdout);
 }
 
-ExitCode run(Options options) {
+ExitCode run(EventsOptions options) {
   constexpr std::chrono::milliseconds pause{200};
   if (!options.since.empty()) {
     const auto since = parse_since(options.since, wall_time_now());
@@ -60,7 +60,7 @@ ExitCode run(Options options) {
 }  // namespace
 
 void add_events(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EventsOptions>();
   CLI::App* command = program.add_subcommand("events", "What the daemon had to tell, the newest last");
   add_daemon_options(*command, options->daemon);
   command

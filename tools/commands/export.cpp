@@ -24,7 +24,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string input;
   std::string out;
   std::string format;
@@ -39,7 +39,7 @@ const std::vector<std::string>& formats() {
 }
 
 /// What was asked for, or what the file's ending says; empty: neither.
-std::string format_of(const Options& options) {
+std::string format_of(const ExportOptions& options) {
   if (!options.format.empty()) return options.format;
   std::string ending = std::filesystem::path(options.out).extension().string();
   if (!ending.empty()) ending.erase(0, 1);
@@ -47,7 +47,7 @@ std::string format_of(const Options& options) {
   return known ? ending : std::string();
 }
 
-void report(const Options& options, const std::string& format, const std::vector<SignalGroup>& groups,
+void report(const ExportOptions& options, const std::string& format, const std::vector<SignalGroup>& groups,
             const std::vector<std::string>& left_out) {
   std::FILE* const stream = report_stream(options.out);
   std::size_t signals = 0;
@@ -66,7 +66,7 @@ void report(const Options& options, const std::string& format, const std::vector
   std::fprintf(stream, "%zu signals, %zu samples -> %s\n", signals, samples, options.out.c_str());
 }
 
-ExitCode export_c(const Options& options) {
+ExitCode export_c(const ExportOptions& options) {
   if (!options.rate_hz)
     return fail(ExitCode::usage, "--format c needs --rate-hz: how often the function will be called");
   const auto model = read_model(options.input);
@@ -98,7 +98,7 @@ bool is_yaml(const std::string& path) {
 }
 
 /// What was asked for and makes no sense.
-std::optional<ExitCode> refused(const Options& options, const std::string& format) {
+std::optional<ExitCode> refused(const ExportOptions& options, const std::string& format) {
   std::error_code error;
   if (std::filesystem::equivalent(options.input, options.out, error))
     return fail(ExitCode::usage, options.out + " is the file that is exported: it is not written over");
@@ -110,7 +110,7 @@ std::optional<ExitCode> refused(const Options& options, const std::string& forma
   return std::nullopt;
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const ExportOptions& options) {
   const std::string format = format_of(options);
   if (format.empty())
     return fail(ExitCode::usage,
@@ -140,7 +140,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_export(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   CLI::App* command = program.add_subcommand(
       "export", "A recording, log or series for other programs: wide CSV, MATLAB, MCAP; a model as C");
   command

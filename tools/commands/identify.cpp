@@ -30,7 +30,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct IdentifyOptions {
   std::vector<std::string> data;
   std::vector<std::string> validate;
   std::string start;
@@ -54,7 +54,7 @@ sysid::ShowProgress progress_on(ProgressLine& line) {
 constexpr const char* automatic = "auto";
 
 /// The structure that is to be looked for, if none was given.
-std::optional<sysid::StructureQuestion> question_of(const Options& options) {
+std::optional<sysid::StructureQuestion> question_of(const IdentifyOptions& options) {
   using sysid::HysteresisForm, sysid::StructureQuestion;
   if (options.structure == name_of(HysteresisForm::bouc_wen)) return StructureQuestion::bouc_wen;
   if (options.structure == name_of(HysteresisForm::play)) return StructureQuestion::prandtl_ishlinskii;
@@ -65,7 +65,7 @@ std::optional<sysid::StructureQuestion> question_of(const Options& options) {
 /// Fits with its progress shown.
 tl::expected<sysid::Identification, std::string> identified(const std::vector<sysid::Log>& logs,
                                                             const model::Model& start,
-                                                            const Options& options) {
+                                                            const IdentifyOptions& options) {
   ProgressLine line;
   sysid::IdentifyOptions fit = options.fit;
   fit.progress = progress_on(line);
@@ -74,7 +74,7 @@ tl::expected<sysid::Identification, std::string> identified(const std::vector<sy
 }
 
 /// The model to start from: the given file's, or the base structure.
-tl::expected<model::Model, ExitCode> start_model(const Options& options,
+tl::expected<model::Model, ExitCode> start_model(const IdentifyOptions& options,
                                                  const std::vector<sysid::Log>& logs) {
   if (options.start.empty()) return sysid::base_model(logs, options.branches);
   return read_model(options.start);
@@ -143,7 +143,7 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
               (std::filesystem::path(out) / "report.html").c_str());
 }
 
-ExitCode run(Options options, const std::vector<std::string>& call) {
+ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
   std::vector<sysid::Log> validation_logs;
@@ -225,7 +225,7 @@ void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {
 }
 
 /// Chooses among structures of its own: what belongs to the fit of a given one is refused beside it.
-void add_structure_option(CLI::App& command, Options& options) {
+void add_structure_option(CLI::App& command, IdentifyOptions& options) {
   using sysid::HysteresisForm;
   const std::vector<std::string> names{automatic, std::string(name_of(HysteresisForm::bouc_wen)),
                                        std::string(name_of(HysteresisForm::play))};
@@ -241,7 +241,7 @@ void add_structure_option(CLI::App& command, Options& options) {
 }  // namespace
 
 void add_identify(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<IdentifyOptions>();
   CLI::App* command = program.add_subcommand("identify", "A model's parameters from logs, with intervals");
   command->add_option("--data", options->data, "Logs to fit (CSV, or a recording's folder)")->required();
   command->add_option("--validate", options->validate, "Logs to predict");

@@ -22,7 +22,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct InitOptions {
   std::string file = "my_rig.yaml";
   std::string name;
   double rate_hz = 0;
@@ -61,7 +61,7 @@ bool ask(const Fact& fact, const Fact::Question& question, RigDraft& draft,
 }
 
 /// From the option, an answer, or what is usual; an exit code where none of them will do.
-std::optional<ExitCode> settle(const Fact& fact, const Options& options, RigDraft& draft,
+std::optional<ExitCode> settle(const Fact& fact, const InitOptions& options, RigDraft& draft,
                                calibrate::TerminalOperator& person) {
   const auto given = options.facts.find(fact.key);
   if (given != options.facts.end() && !given->second.empty()) {
@@ -87,7 +87,7 @@ std::optional<ExitCode> settle(const Fact& fact, const Options& options, RigDraf
   return fail(ExitCode::usage, "--" + fact.key + " is needed: " + complaint);
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const InitOptions& options) {
   std::error_code error;
   if (std::filesystem::exists(options.file, error)) {
     return fail(ExitCode::state_refused,
@@ -114,7 +114,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_init(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InitOptions>();
   CLI::App* command =
       program.add_subcommand("init", "A first rig file, from a few questions or from options");
   command->add_option("FILE", options->file, "The rig file; one that is there is never overwritten")

@@ -32,7 +32,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct InvestigateOptions {
   std::string model;
   std::vector<std::string> data;
   std::string rig;
@@ -72,7 +72,7 @@ CampaignScales scales_of(const std::vector<sysid::Log>& logs) {
   return scales;
 }
 
-Consent consent_of(const Options& options) {
+Consent consent_of(const InvestigateOptions& options) {
   if (options.yes) return [](const std::string&) { return true; };
   return [](const std::string& what) {
     std::fprintf(stderr, "%s. Ctrl-C vents it. Go on? [y/N] ", what.c_str());
@@ -92,7 +92,8 @@ struct Playground {
   std::optional<ExperimentRig> rig;  ///< of a rig file: the closed loop can be measured on it
 };
 
-tl::expected<Playground, ExitCode> playground_of(const Options& options, const CampaignScales& scales) {
+tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& options,
+                                                 const CampaignScales& scales) {
   Playground ground;
   if (!options.rig_command.empty()) {
     const double largest_kpa = options.pressure_max_kpa > 0 ? options.pressure_max_kpa : scales.largest_kpa;
@@ -128,7 +129,7 @@ tl::expected<Playground, ExitCode> playground_of(const Options& options, const C
 }
 
 /// The extension's worth on the rig itself. A rig that cannot be measured is said, and no failure.
-std::optional<RigTracking> on_rig(const Options& options, const Playground& ground,
+std::optional<RigTracking> on_rig(const InvestigateOptions& options, const Playground& ground,
                                   const Investigation& investigation,
                                   const std::optional<ClosedLoopGain>& gain) {
   if (!gain || !ground.rig || investigation.end != InvestigationEnd::settled) return std::nullopt;
@@ -177,7 +178,7 @@ ExitCode exit_code_of(const Investigation& investigation) {
 }
 
 /// Extends, retunes, measures, and leaves the result.
-ExitCode conclude(const Options& options, const model::Model& given, const Playground& ground,
+ExitCode conclude(const InvestigateOptions& options, const model::Model& given, const Playground& ground,
                   const Investigation& investigation) {
   ConsequenceOptions wanted;
   wanted.experiment.most_minutes = 0;  // whatever is still open was judged in the last step
@@ -211,7 +212,7 @@ ExitCode conclude(const Options& options, const model::Model& given, const Playg
   return exit_code_of(investigation);
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const InvestigateOptions& options) {
   if (options.rig.empty() == options.rig_command.empty())
     return fail(ExitCode::usage, "an investigation needs --rig or --rig-command, and not both");
   if (!options.rig_channel.empty() && options.rig.empty())
@@ -262,7 +263,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_investigate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InvestigateOptions>();
   CLI::App* command = program.add_subcommand(
       "investigate", "Diagnose, play the experiment that tells more, diagnose again, until one cause stands");
   command->add_option("--model", options->model, "Model file as it is used today")->required();

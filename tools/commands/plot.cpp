@@ -20,7 +20,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct PlotOptions {
   std::vector<std::string> recordings;
   std::string out;
   std::string channel;
@@ -30,7 +30,7 @@ struct Options {
   bool json = false;
 };
 
-nlohmann::ordered_json told_of(const Options& options, const Recording& recording) {
+nlohmann::ordered_json told_of(const PlotOptions& options, const Recording& recording) {
   std::FILE* const stream = report_stream(options.out);
   nlohmann::ordered_json channels = nlohmann::ordered_json::array();
   for (const sysid::Log& log : recording.channels) {
@@ -56,7 +56,7 @@ nlohmann::ordered_json told_of(const Options& options, const Recording& recordin
   return channels;
 }
 
-void report(const Options& options, const std::vector<Recording>& recordings) {
+void report(const PlotOptions& options, const std::vector<Recording>& recordings) {
   std::FILE* const stream = report_stream(options.out);
   nlohmann::ordered_json json{{"out", options.out}};
   json["channels"] = told_of(options, recordings.front());
@@ -68,7 +68,7 @@ void report(const Options& options, const std::vector<Recording>& recordings) {
   }
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const PlotOptions& options) {
   // A stream has no ending: SVG.
   const auto format = is_stream(options.out) ? PictureFormat::svg : picture_format_of(options.out);
   if (!format)
@@ -99,7 +99,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_plot(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlotOptions>();
   CLI::App* command =
       program.add_subcommand("plot", "A recording as a picture: pressure, displacement, error, states");
   command

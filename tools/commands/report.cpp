@@ -14,13 +14,13 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct ReportOptions {
   std::string folder;
   double tolerance = 1e-6;
   bool json = false;
 };
 
-void print_json(const Verification& v) {
+void print_verification_json(const Verification& v) {
   nlohmann::ordered_json json{{"same", v.missing.empty() && v.comparison.differences.empty()},
                               {"missing", v.missing},
                               {"reported_by", v.reported_by},
@@ -33,7 +33,7 @@ void print_json(const Verification& v) {
   std::printf("%s\n", json.dump(2).c_str());
 }
 
-void print_text(const Verification& v, const std::string& folder) {
+void print_verification(const Verification& v, const std::string& folder) {
   if (v.reported_by != v.recomputed_by)
     std::printf("reported by %s, recomputed by %s\n", v.reported_by.c_str(), v.recomputed_by.c_str());
   for (const Difference& d : v.comparison.differences)
@@ -47,21 +47,21 @@ void print_text(const Verification& v, const std::string& folder) {
   }
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const ReportOptions& options) {
   const Verification v = verify_report(options.folder, "/proc/self/exe", options.tolerance);
-  if (options.json) print_json(v);
+  if (options.json) print_verification_json(v);
   if (!v.missing.empty()) {
     for (const std::string& sentence : v.missing) fail(ExitCode::input_refused, sentence);
     return ExitCode::input_refused;
   }
-  if (!options.json) print_text(v, options.folder);
+  if (!options.json) print_verification(v, options.folder);
   return v.comparison.differences.empty() ? ExitCode::done : ExitCode::not_acceptable;
 }
 
 }  // namespace
 
 void add_report(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportOptions>();
   CLI::App* command =
       program.add_subcommand("report", "Whether a report's numbers come out again from the same logs");
   command

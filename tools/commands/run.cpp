@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct RunOptions {
   std::string sequence;
   std::vector<std::string> settings;
   std::string rig;
@@ -33,7 +33,7 @@ struct Options {
   bool json = false;
 };
 
-void report(const Options& options, const daemon::Outcome& outcome) {
+void report(const RunOptions& options, const daemon::Outcome& outcome) {
   const std::vector<std::string>& channels = outcome.channel_names;
   const std::string end =
       outcome.sequence_end ? std::string(control::name_of(*outcome.sequence_end)) : std::string("not run");
@@ -62,7 +62,7 @@ void report(const Options& options, const daemon::Outcome& outcome) {
                                   : "the board did NOT confirm the safe outputs");
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const RunOptions& options) {
   const std::string path = options.rig.empty() ? configuration_path("rig.yaml") : options.rig;
   for (const std::string& file : {path, options.sequence}) {
     if (const auto code = unreadable(file)) return *code;
@@ -110,7 +110,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_run(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   CLI::App* command =
       program.add_subcommand("run", "One sequence on a rig, in the foreground; no daemon is needed");
   command->add_option("SEQUENCE", options->sequence, "Sequence file")->required();

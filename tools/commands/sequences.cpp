@@ -13,12 +13,12 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct SequencesOptions {
   DaemonOptions daemon;
   bool names = false;
 };
 
-ExitCode run(const Options& options) {
+ExitCode run(const SequencesOptions& options) {
   const auto result = ask_daemon(options.daemon, {{"command", "sequences"}});
   if (!result) return result.error();
   if (options.daemon.json) {
@@ -35,7 +35,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_sequences(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SequencesOptions>();
   CLI::App* command =
       program.add_subcommand("sequences", "Which sequences the daemon can start, with their parameters");
   add_daemon_options(*command, options->daemon);

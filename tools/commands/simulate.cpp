@@ -20,7 +20,7 @@ namespace {
 
 constexpr double default_rate_hz = 100;
 
-struct Options {
+struct SimulateOptions {
   std::string model;
   std::string input;
   std::string out;
@@ -40,7 +40,7 @@ std::string signal_names() {
 }
 
 /// The command to answer to, or an exit code.
-tl::expected<sysid::Log, ExitCode> read_input(const Options& options) {
+tl::expected<sysid::Log, ExitCode> read_input(const SimulateOptions& options) {
   if (const auto signal = model::signal_named(options.input)) {
     return sampled_signal(*signal, options.rate_hz.value_or(default_rate_hz));
   }
@@ -65,7 +65,7 @@ tl::expected<sysid::Log, ExitCode> read_input(const Options& options) {
   return log;
 }
 
-void report(const Options& options, const model::Model& model, const sysid::Log& log) {
+void report(const SimulateOptions& options, const model::Model& model, const sysid::Log& log) {
   std::FILE* const stream = report_stream(options.out);
   const double span_mm = sysid::span_mm(log);
   const double duration_s = log.time_s.back() - log.time_s.front();
@@ -88,7 +88,7 @@ void report(const Options& options, const model::Model& model, const sysid::Log&
                std::to_string(options.settings.seed).c_str(), options.out.c_str());
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const SimulateOptions& options) {
   const auto model = read_model(options.model);
   if (!model) return model.error();
   auto log = read_input(options);
@@ -104,7 +104,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_simulate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SimulateOptions>();
   CLI::App* command =
       program.add_subcommand("simulate", "A model's answer to a test signal or to the command of a log");
   command->add_option("--model", options->model, "Model file")->required();

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct StartOptions {
   DaemonOptions daemon;
   std::string sequence;
   std::vector<std::string> settings;
@@ -34,7 +34,8 @@ tl::expected<std::uint64_t, ClientFailure> newest_event(DaemonClient& client) {
 }
 
 /// Prints what happens until the sequence that `request` started has ended.
-ExitCode follow(DaemonClient& client, const Options& options, std::uint64_t request, std::uint64_t since) {
+ExitCode follow(DaemonClient& client, const StartOptions& options, std::uint64_t request,
+                std::uint64_t since) {
   constexpr std::chrono::milliseconds pause{50};
   while (true) {
     const auto result = client.ask({{"command", "events"}, {"since", since}, {"limit", 1000}});
@@ -56,7 +57,7 @@ ExitCode follow(DaemonClient& client, const Options& options, std::uint64_t requ
   }
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const StartOptions& options) {
   constexpr std::size_t longest_sequence = 256 * 1024;
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
@@ -90,7 +91,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_start(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StartOptions>();
   CLI::App* command = program.add_subcommand("start", "Lets the daemon run a sequence");
   command->add_option("SEQUENCE", options->sequence, "A file, or a name in the daemon's sequence directory")
       ->required();

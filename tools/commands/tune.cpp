@@ -22,7 +22,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct TuneOptions {
   std::string model;
   std::string rig;
   std::string channel;
@@ -40,7 +40,7 @@ constexpr double default_slew_kpa_per_s = 400;
 constexpr double ahead_of_any_mm = 1e4;
 
 /// Takes over what the rig file says of the channel; nothing when that went well.
-std::optional<ExitCode> take_rig(const Options& options, control::TuneTask& task) {
+std::optional<ExitCode> take_rig(const TuneOptions& options, control::TuneTask& task) {
   if (const auto code = unreadable(options.rig)) return code;
   document::Problems problems;
   const auto rig = rig::load_rig(options.rig, problems);
@@ -72,7 +72,7 @@ void take_defaults(control::TuneTask& task) {
                          0};
 }
 
-std::string snippet(const Options& options, const control::TuneTask& task, const control::Tuned& tuned,
+std::string snippet(const TuneOptions& options, const control::TuneTask& task, const control::Tuned& tuned,
                     const std::string& model_name) {
   std::string text;
   text += "# `softgrip tune` for " + model_name + ", " + significant(task.rate_hz) +
@@ -94,7 +94,7 @@ std::string snippet(const Options& options, const control::TuneTask& task, const
   return text;
 }
 
-std::string json_of(const Options& options, const control::TuneTask& task, const control::Tuned& tuned) {
+std::string json_of(const TuneOptions& options, const control::TuneTask& task, const control::Tuned& tuned) {
   nlohmann::ordered_json json;
   json["schema"] = 1;
   json["out"] = options.out;
@@ -117,7 +117,7 @@ std::string json_of(const Options& options, const control::TuneTask& task, const
   return json.dump() + "\n";
 }
 
-ExitCode run(Options& options) {
+ExitCode run(TuneOptions& options) {
   const auto model = read_model(options.model);
   if (!model) return model.error();
   control::TuneTask& task = options.task;
@@ -164,7 +164,7 @@ ExitCode run(Options& options) {
 }  // namespace
 
 void add_tune(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneOptions>();
   CLI::App* command = program.add_subcommand("tune", "PID gains for a model that is not quite the finger");
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--rig", options->rig, "Rig file: rate, limits, feedforward and latency of a channel");

@@ -26,7 +26,7 @@
 namespace softgrip::tools {
 namespace {
 
-struct Options {
+struct ValidateOptions {
   std::string model;
   std::vector<std::string> data;
   std::string out;
@@ -60,7 +60,7 @@ void print_summary(const sysid::Validation& v) {
   for (const std::string& warning : v.warnings) std::printf("warning: %s\n", warning.c_str());
 }
 
-ExitCode run(const Options& options, const std::vector<std::string>& call) {
+ExitCode run(const ValidateOptions& options, const std::vector<std::string>& call) {
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
@@ -100,7 +100,7 @@ ExitCode run(const Options& options, const std::vector<std::string>& call) {
 }  // namespace
 
 void add_validate(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ValidateOptions>();
   CLI::App* command = program.add_subcommand("validate", "How well a model predicts logs");
   command->add_option("--model", options->model, "Model file")->required();
   command->add_option("--data", options->data, "Logs to predict (CSV, or a recording's folder)")->required();

@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::chrono::milliseconds whole_line{1000};
 
-struct Options {
+struct WatchOptions {
   DaemonOptions daemon;
   double rate_hz = 10;
   std::uint64_t count = 0;  ///< 0: until interrupted
@@ -47,7 +47,7 @@ void print(const Json& status, bool json) {
 }
 
 /// A line per update, until a signal ends it.
-ExitCode print_updates(DaemonClient& client, const Options& options) {
+ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
   const Descriptor signals = take_ending_signals();
   for (std::uint64_t lines = 0; options.count == 0 || lines < options.count;) {
     std::array<pollfd, 2> watched{{{client.descriptor(), POLLIN, 0}, {signals.get(), POLLIN, 0}}};
@@ -257,7 +257,7 @@ ExitCode LiveWatch::run(std::uint64_t count) {
   return ExitCode::done;
 }
 
-ExitCode run(const Options& options) {
+ExitCode run(const WatchOptions& options) {
   auto client = DaemonClient::connect(options.daemon.socket);
   if (!client) return fail(client.error().code, client.error().message);
   const auto accepted = client->ask({{"command", "watch"}, {"rate_hz", options.rate_hz}});
@@ -269,7 +269,7 @@ ExitCode run(const Options& options) {
 }  // namespace
 
 void add_watch(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WatchOptions>();
   CLI::App* command = program.add_subcommand("watch",
                                              "The daemon's state, live, with trends, events and keys that "
                                              "stop, vent, release, acknowledge and start; a "
