@@ -118,6 +118,10 @@ if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
 endif()
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
+# A recorded grip as numbers, their charts, and what an alarm says.
+softgrip_room(tools/health
+  USES base model sysid/logs sysid/fitting sysid/diagnosis/causes tools/recordings
+  LIBRARIES Eigen3::Eigen)
 softgrip_room(tools/figures USES base sysid/pages)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line

@@ -23,6 +23,17 @@ std::string text_at(const json& object, const char* key) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+/// "pick_stone 4419590a hold_s=5 squeeze_kpa=5"
+std::string recipe_of(const json& sequence) {
+  std::string recipe = text_at(sequence, "name") + " " + text_at(sequence, "sha256").substr(0, 8);
+  const auto parameters = sequence.find("parameters");
+  if (parameters == sequence.end() || !parameters->is_object()) return recipe;
+  for (const auto& [name, value] : parameters->items()) {
+    if (value.is_number()) recipe += " " + name + "=" + significant(value.get<double>(), 6);
+  }
+  return recipe;
+}
+
 /// What run.json adds. A recording without one, or with one that was cut off, is still a recording.
 void read_story(const std::string& path, Recording& recording) {
   const auto text = read_file(path, longest_story);
@@ -30,8 +41,11 @@ void read_story(const std::string& path, Recording& recording) {
   const json story = json::parse(*text, nullptr, false);
   if (!story.is_object()) return;
   recording.software_version = text_at(story, "software_version");
+  recording.started_at = text_at(story, "started_at");
+  recording.unfinished = text_at(story, "state") == "recording";
   if (const auto sequence = story.find("sequence"); sequence != story.end() && sequence->is_object()) {
     recording.sequence = text_at(*sequence, "name");
+    recording.recipe = recipe_of(*sequence);
   }
   const auto events = story.find("events");
   if (events == story.end() || !events->is_array()) return;

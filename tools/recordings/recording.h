@@ -25,6 +25,9 @@ struct Recording {
   std::string name;                  ///< of the folder or file
   std::string sequence;              ///< empty if unknown
   std::string software_version;      ///< that recorded it, empty if unknown
+  std::string started_at;            ///< UTC, empty if unknown or in virtual time
+  std::string recipe;                ///< what two runs of the same sequence, text and parameters share
+  bool unfinished = false;           ///< it is still being recorded, or its daemon was killed
   std::vector<sysid::Log> channels;  ///< as LogOptions::need_readings = false reads them
   std::vector<RecordedEvent> events;
 };

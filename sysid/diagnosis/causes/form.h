@@ -17,9 +17,10 @@
 //                                                          law explains nearly as much
 //
 // A cause must say:
-//   static constexpr WhenChanged when_changed{words, {step, step}};
+//   static constexpr WhenChanged when_changed{words, {step, step}, {{{number, way}, ...}}};
 //                                                          for who stands beside the rig that it has come
-//                                                          upon
+//                                                          upon; the numbers of a recorded grip that it
+//                                                          moves (health_sign.h), which may be left out
 //
 // A cause may say, besides:
 //   static constexpr Column needs = ...;                   a column without which nothing can be told
@@ -47,6 +48,7 @@
 #include <vector>
 
 #include "model/model.h"
+#include "sysid/diagnosis/causes/health_sign.h"
 #include "sysid/diagnosis/causes/scales.h"
 
 namespace softgrip::sysid {
@@ -65,6 +67,7 @@ enum class Advice : std::uint8_t {
 struct WhenChanged {
   std::string_view words;                      ///< "the finger rings"
   std::array<std::string_view, 2> next_steps;  ///< what a person can do about it, the quicker first
+  HealthSigns signs{};                         ///< how recorded grips show it; none: they do not
 };
 
 /// Between what a value may be.
