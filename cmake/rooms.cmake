@@ -120,7 +120,7 @@ softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/c
   LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
 # A recorded grip as numbers, their charts, and what an alarm says.
 softgrip_room(tools/health
-  USES base model sysid/logs sysid/fitting sysid/diagnosis/causes tools/recordings
+  USES base model control/elements sysid/logs sysid/fitting sysid/diagnosis/causes tools/recordings
   LIBRARIES Eigen3::Eigen)
 softgrip_room(tools/figures USES base sysid/pages)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)

@@ -54,8 +54,10 @@ Recording grip_of(const GripWorld& world) {
     const double t = log.time_s[i];
     const bool back = t > holding_s + hold_s;
     double y = world.gain * way[i] + (back && way[i] > 0.3 ? world.loop_mm : 0);
-    if (y > world.object_mm && !std::isfinite(touched_s)) touched_s = t;
-    y = std::min(y, world.object_mm);
+    // The object gives way a little, and a touch is told when the finger lags by a millimetre.
+    const double into_mm = std::max(0.0, y - world.object_mm);
+    if (0.9 * into_mm > 1 && !std::isfinite(touched_s)) touched_s = t;
+    y -= 0.9 * into_mm;
     if (t > end_s - 1) y -= world.extra_creep_mm * (t - end_s + 1);
     log.displacement_mm.push_back(y + world.zero_mm + world.noise_mm * normal(random));
     const double command = command_at(t, world.rise_s);

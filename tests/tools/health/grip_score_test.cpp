@@ -29,7 +29,7 @@ TEST(GripScore, OfAHealthyGripSaysThatNothingIsBesideTheBase) {
   EXPECT_NEAR(score[HealthNumber::loop_width], 0, 0.1);
   EXPECT_NEAR(score[HealthNumber::pressure_loss], 0, 0.05);
   EXPECT_NEAR(score[HealthNumber::leak], 0, 0.05);
-  EXPECT_NEAR(score[HealthNumber::contact], 12, 0.05);
+  EXPECT_NEAR(score[HealthNumber::contact], 12.15, 0.05);  // told once the object has given way a little
   EXPECT_GT(score[HealthNumber::time_to_grip], 2.9);
 }
 

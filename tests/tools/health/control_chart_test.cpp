@@ -1,0 +1,197 @@
+#include "tools/health/control_chart.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace softgrip::tools::health {
+namespace {
+
+constexpr double least = 1e-9;
+const std::string recipe = "pick";
+
+class Healthy {
+ public:
+  Healthy(unsigned seed, double mean, double spread) : random_(seed), mean_(mean), spread_(spread) {}
+  double operator()() { return mean_ + spread_ * normal_(random_); }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  double mean_, spread_;
+};
+
+// Student's t at its two-sided points, Abramowitz and Stegun 26.10: p = 0.05 and 0.001 are 1.960 and 3.291.
+TEST(ControlChart, WallacesFormulaTurnsStudentsTIntoANormalValue) {
+  EXPECT_NEAR(normal_of_t(2.776, 4), 1.960, 0.02);
+  EXPECT_NEAR(normal_of_t(2.228, 10), 1.960, 0.01);
+  EXPECT_NEAR(normal_of_t(4.587, 10), 3.291, 0.02);
+  EXPECT_NEAR(normal_of_t(-3.646, 30), -3.291, 0.01);
+  EXPECT_EQ(normal_of_t(0, 5), 0);
+  // Never too sure with next to nothing to compare with.
+  EXPECT_LT(normal_of_t(12.706, 1), 1.960);
+  EXPECT_LT(normal_of_t(636.6, 1), 3.291);
+}
+
+TEST(ControlChart, HealthyValuesBecomeIndependentStandardNormalOnes) {
+  Healthy healthy(3, 40, 7);
+  double sum = 0, squares = 0, products = 0, beyond_two = 0;
+  constexpr int runs = 4000, length = 30;
+  int count = 0;
+  for (int run = 0; run < runs; ++run) {
+    RunningReference reference;
+    double before = 0;
+    for (int i = 0; i < length; ++i) {
+      const double value = healthy();
+      if (const auto z = reference.judge(value, least); z && i >= 4) {
+        sum += *z;
+        squares += *z * *z;
+        products += *z * before;
+        beyond_two += std::abs(*z) > 2 ? 1 : 0;
+        before = *z;
+        ++count;
+      }
+      reference.learn(value);
+    }
+  }
+  EXPECT_NEAR(sum / count, 0, 0.012);
+  EXPECT_NEAR(squares / count, 1, 0.015);
+  EXPECT_NEAR(products / count, 0, 0.012);
+  EXPECT_NEAR(beyond_two / count, 0.0455, 0.0025);
+}
+
+int length_of_run(Healthy& healthy, const ChartLimits& limits) {
+  ControlChart chart(limits, least);
+  int length = 0;
+  while (!chart.alarm()) {
+    chart.add({{recipe, healthy()}});
+    ++length;
+  }
+  return length;
+}
+
+TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
+  Healthy healthy(5, -2, 0.03);
+  for (const double stated : {100.0, 400.0}) {
+    const ChartLimits limits = ChartLimits::for_run_length(stated);
+    double total = 0;
+    constexpr int runs = 1500;
+    for (int run = 0; run < runs; ++run) total += length_of_run(healthy, limits);
+    // The mean of nearly geometric lengths is known to 2.6 %; Siegmund's and Wallace's formulas give the
+    // rest.
+    EXPECT_NEAR(total / runs / stated, 1.05, 0.13) << "stated " << stated;
+  }
+}
+
+TEST(ControlChart, FewerFalseAlarmsNeedWiderLimits) {
+  const ChartLimits often = ChartLimits::for_run_length(100), seldom = ChartLimits::for_run_length(30000);
+  EXPECT_GT(seldom.cusum, often.cusum + 3);
+  EXPECT_GT(seldom.single, often.single + 1);
+  EXPECT_NEAR(std::erfc(seldom.single / std::sqrt(2.0)) * 60000, 1, 1e-6);
+}
+
+/// How many points after a shift by so many spreads it is noticed, the median of many.
+int noticed_after(double spreads, int healthy_points) {
+  std::vector<int> delays;
+  for (unsigned seed = 0; seed < 101; ++seed) {
+    Healthy healthy(100 + seed, 5, 0.2);
+    ControlChart chart(ChartLimits::for_run_length(30000), least);
+    for (int i = 0; i < healthy_points; ++i) chart.add({{recipe, healthy()}});
+    if (chart.alarm()) continue;
+    int delay = 0;
+    while (!chart.alarm() && delay < 1000) {
+      chart.add({{recipe, healthy() + spreads * 0.2}});
+      ++delay;
+    }
+    delays.push_back(delay);
+  }
+  std::nth_element(delays.begin(), delays.begin() + 50, delays.end());
+  return delays[50];
+}
+
+TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
+  EXPECT_EQ(noticed_after(10, 20), 1);
+  EXPECT_LE(noticed_after(4, 20), 5);
+  EXPECT_LE(noticed_after(2, 20), 15);
+  EXPECT_GT(noticed_after(2, 20), noticed_after(4, 20));
+}
+
+TEST(ControlChart, SaysSinceWhenAndByHowMuch) {
+  Healthy healthy(7, 5, 0.2);
+  ControlChart chart(ChartLimits::for_run_length(30000), least);
+  std::vector<double> values;
+  while (!chart.alarm()) {
+    values.push_back(healthy() - (values.size() < 40 ? 0 : 0.6));
+    chart.add({{recipe, values.back()}});
+  }
+  const std::size_t since = chart.alarm()->since;
+  EXPECT_NEAR(static_cast<double>(since), 40, 2);
+  EXPECT_GT(chart.alarm()->noticed, since);
+  for (int i = 0; i < 50; ++i) chart.add({{recipe, healthy() - 0.6}});
+  EXPECT_NEAR(chart.alarm()->change, -0.6, 0.1);
+  // What came since is no part of what is usual.
+  double usual = 0;
+  for (std::size_t i = 0; i < since; ++i) usual += values[i] / static_cast<double>(since);
+  EXPECT_NEAR(chart.references().at(recipe).mean(), usual, 1e-12);
+}
+
+TEST(ControlChart, KnowsNothingFromUnitsAndFromWhereZeroIs) {
+  std::vector<double> values;
+  Healthy healthy(11, 0, 1);
+  for (int i = 0; i < 60; ++i) values.push_back(healthy() + (i > 40 ? 3 : 0));
+  ControlChart one(ChartLimits::for_run_length(1000), least), other(ChartLimits::for_run_length(1000), least);
+  for (const double value : values) {
+    const auto z = one.add({{recipe, value}});
+    const auto same = other.add({{recipe, 273 + 0.001 * value}});
+    ASSERT_EQ(z.has_value(), same.has_value());
+    if (z) {
+      EXPECT_NEAR(*z, *same, 1e-6);
+    }
+  }
+  ASSERT_TRUE(one.alarm() && other.alarm());
+  EXPECT_EQ(one.alarm()->noticed, other.alarm()->noticed);
+}
+
+TEST(ControlChart, ARecipeIsComparedWithItselfAlone) {
+  Healthy healthy(13, 0, 0.05);
+  ControlChart chart(ChartLimits::for_run_length(30000), least);
+  for (int i = 0; i < 200; ++i) {
+    const double far = i % 3 == 0 ? 20 : 0;
+    chart.add({{far > 0 ? "hand_over" : recipe, far + healthy()}});
+  }
+  EXPECT_FALSE(chart.alarm());
+  // A new recipe far from all others begins its own reference.
+  for (int i = 0; i < 10; ++i) chart.add({{"new", 7 + healthy()}});
+  EXPECT_FALSE(chart.alarm());
+}
+
+TEST(ControlChart, RecipesThatMoveTogetherAlarmNoMoreOftenThanOne) {
+  const ChartLimits limits = ChartLimits::for_run_length(200);
+  double total = 0;
+  Healthy healthy(17, 0, 1);
+  constexpr int runs = 600;
+  for (int run = 0; run < runs; ++run) {
+    ControlChart chart(limits, least);
+    while (!chart.alarm()) {
+      const double value = healthy();
+      chart.add({{"a", value}, {"b", 5 + value}, {"c", 2 * value}});
+      total += 1;
+    }
+  }
+  EXPECT_GT(total / runs, 0.9 * 200);
+}
+
+TEST(ControlChart, DifferencesThatMatterToNobodyAreNone) {
+  ControlChart chart(ChartLimits::for_run_length(1000), 0.01);
+  for (int i = 0; i < 20; ++i) chart.add({{recipe, 1.0}});
+  for (int i = 0; i < 5; ++i) chart.add({{recipe, 1.004}});
+  EXPECT_FALSE(chart.alarm());
+  for (int i = 0; i < 5; ++i) chart.add({{recipe, 1.3}});
+  EXPECT_TRUE(chart.alarm());
+}
+
+}  // namespace
+}  // namespace softgrip::tools::health

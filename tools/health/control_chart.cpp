@@ -1,0 +1,124 @@
+#include "tools/health/control_chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "control/elements/model_health.h"
+
+namespace softgrip::tools::health {
+namespace {
+
+/// Beyond which a standard normal value lies, on either side, once in so many.
+double two_sided_limit(double once_in) {
+  double lower = 0, upper = 40;
+  for (int i = 0; i < 80; ++i) {
+    const double middle = 0.5 * (lower + upper);
+    (std::erfc(middle / std::numbers::sqrt2) * once_in > 1 ? lower : upper) = middle;
+  }
+  return upper;
+}
+
+}  // namespace
+
+ChartLimits ChartLimits::for_run_length(double run_length) {
+  ChartLimits limits;
+  limits.cusum = control::cusum_threshold(limits.allowance, 2 * run_length);
+  limits.single = two_sided_limit(2 * run_length);
+  return limits;
+}
+
+double normal_of_t(double t, double degrees_of_freedom) {
+  const double n = degrees_of_freedom;
+  const double z = (8 * n + 1) / (8 * n + 3) * std::sqrt(n * std::log1p(t * t / n));
+  return std::copysign(z, t);
+}
+
+void RunningReference::learn(double value) {
+  ++count_;
+  const double off = value - mean_;
+  mean_ += off / static_cast<double>(count_);
+  squares_ += off * (value - mean_);
+}
+
+double RunningReference::spread() const {
+  return count_ > 1 ? std::sqrt(squares_ / static_cast<double>(count_ - 1)) : 0;
+}
+
+std::optional<double> RunningReference::judge(double value, double least_spread) const {
+  if (count_ < 2) return std::nullopt;
+  const auto n = static_cast<double>(count_);
+  const double t = std::sqrt(n / (n + 1)) * (value - mean_) / std::max(spread(), least_spread);
+  return normal_of_t(t, n - 1);
+}
+
+std::optional<double> ControlChart::excess_of(const ChartValues& values) const {
+  double sum = 0, count = 0;
+  for (const auto& [recipe, value] : values) {
+    const auto reference = references_.find(recipe);
+    if (reference == references_.end() || reference->second.count() < 2) continue;
+    sum += value - reference->second.mean();
+    count += 1;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+std::optional<double> ControlChart::add(const ChartValues& values) {
+  double sum = 0, count = 0;
+  for (const auto& [recipe, value] : values) {
+    const auto reference = references_.find(recipe);
+    if (reference == references_.end()) continue;
+    if (const auto z = reference->second.judge(value, least_spread_)) {
+      sum += *z;
+      count += 1;
+    }
+  }
+  std::optional<double> z;
+  if (count > 0) z = sum / count;
+  history_.push_back(values);
+  if (z) {
+    ++judged_;
+    if (!alarm_) judge(*z);
+  }
+  if (!alarm_) {
+    learn(values);
+    return z;
+  }
+  double excesses = 0, known = 0;
+  for (std::size_t i = alarm_->since; i < history_.size(); ++i) {
+    const auto excess = excess_of(history_[i]);
+    excesses += excess.value_or(0);
+    known += excess ? 1 : 0;
+  }
+  alarm_->change = known > 0 ? excesses / known : 0;
+  return z;
+}
+
+void ControlChart::learn(const ChartValues& values) {
+  for (const auto& [recipe, value] : values) references_[recipe].learn(value);
+}
+
+void ControlChart::forget_since(std::size_t point) {
+  references_.clear();
+  for (std::size_t i = 0; i < point; ++i) learn(history_[i]);
+}
+
+void ControlChart::judge(double z) {
+  const std::size_t now = history_.size() - 1;
+  if (up_ == 0) up_since_ = now;
+  if (down_ == 0) down_since_ = now;
+  up_ = std::max(0.0, up_ + z - limits_.allowance);
+  down_ = std::max(0.0, down_ - z - limits_.allowance);
+  std::optional<std::size_t> since;
+  if (std::max(up_, down_) > limits_.cusum) {
+    since = up_ > down_ ? up_since_ : down_since_;
+  } else if (std::abs(z) > limits_.single) {
+    since = now;
+  }
+  if (!since) return;
+  alarm_ = ChartAlarm{now, *since, 0};
+  forget_since(*since);
+}
+
+}  // namespace softgrip::tools::health

@@ -1,0 +1,97 @@
+#pragma once
+// A self-starting control chart: says when the values of a healthy finger are no longer what they were,
+// without being told what they are.
+//
+// Every value is compared with those before it, in units of their own spread, and what Student's t makes of
+// that is turned into a standard normal value (Wallace, Annals of Mathematical Statistics 30, 1959): of
+// healthy values that are independent and normal these are independent and standard normal from the third
+// on, whatever their mean and spread (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of Quality
+// Technology 23, 1991). Two judges look at them: a two-sided CUSUM (Page, Biometrika 41, 1954) for shifts
+// that stay, a plain limit for what is large at once (Lucas, Journal of Quality Technology 14, 1982). Each is
+// given half of the false alarms that are asked for. After an alarm nothing is learnt any more.
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace softgrip::tools::health {
+
+/// What a chart holds against its values.
+struct ChartLimits {
+  double allowance = 0.5;  ///< half the shift to be found, in spreads
+  double cusum = 0;        ///< threshold
+  double single = 0;       ///< limit of one standard normal value
+
+  /// @param run_length  mean number of healthy values between false alarms of one chart, at least 20.
+  [[nodiscard]] static ChartLimits for_run_length(double run_length);
+};
+
+/// What Student's t with so many degrees of freedom (at least 1) would be if it were standard normal, by
+/// Wallace's formula.
+[[nodiscard]] double normal_of_t(double t, double degrees_of_freedom);
+
+/// Mean and spread of what was seen so far.
+class RunningReference {
+ public:
+  void learn(double value);
+  /// The next value as a standard normal one, nothing before the third.
+  /// @param least_spread  what a spread is taken for where it is smaller, > 0.
+  [[nodiscard]] std::optional<double> judge(double value, double least_spread) const;
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] double mean() const { return mean_; }
+  /// Standard deviation; 0 of fewer than two.
+  [[nodiscard]] double spread() const;
+
+ private:
+  std::size_t count_ = 0;
+  double mean_ = 0, squares_ = 0;
+};
+
+/// Values of one point in time, by what they may be compared with: a recipe and what it was measured in.
+using ChartValues = std::map<std::string, double>;
+
+struct ChartAlarm {
+  std::size_t noticed = 0;  ///< index of the point at which it was raised
+  std::size_t since = 0;    ///< of the point from which on the values were others
+  double change = 0;        ///< by how much more than the reference they are since then, on the mean
+};
+
+/// One number of one finger. Values of several recipes in a point are each judged against their own, and
+/// their mean is the point's: right where they move together, careful where they do not.
+class ControlChart {
+ public:
+  /// @param least_spread  smaller differences are nothing, > 0.
+  ControlChart(ChartLimits limits, double least_spread) : limits_(limits), least_spread_(least_spread) {}
+
+  /// The next point. Returns its standard normal value, nothing while there is nothing to compare it with.
+  std::optional<double> add(const ChartValues& values);
+
+  [[nodiscard]] std::size_t points() const { return history_.size(); }
+  /// How many of the points were judged.
+  [[nodiscard]] std::size_t judged() const { return judged_; }
+  [[nodiscard]] const std::optional<ChartAlarm>& alarm() const { return alarm_; }
+  [[nodiscard]] double up() const { return up_; }
+  [[nodiscard]] double down() const { return down_; }
+  [[nodiscard]] const std::map<std::string, RunningReference>& references() const { return references_; }
+
+ private:
+  /// Of the values that have a reference: how much more than it they are, on the mean.
+  [[nodiscard]] std::optional<double> excess_of(const ChartValues& values) const;
+  void judge(double z);
+  void learn(const ChartValues& values);
+  /// Nothing of what came since the change stays in the references.
+  void forget_since(std::size_t point);
+
+  ChartLimits limits_;
+  double least_spread_;
+  std::map<std::string, RunningReference> references_;
+  std::vector<ChartValues> history_;
+  std::optional<ChartAlarm> alarm_;
+  double up_ = 0, down_ = 0;
+  std::size_t up_since_ = 0, down_since_ = 0;
+  std::size_t judged_ = 0;
+};
+
+}  // namespace softgrip::tools::health
