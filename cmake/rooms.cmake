@@ -120,8 +120,9 @@ softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/c
   LIBRARIES nlohmann_json::nlohmann_json TOGETHER)
 # A recorded grip as numbers, their charts, and what an alarm says.
 softgrip_room(tools/health
-  USES base model control/elements sysid/logs sysid/fitting sysid/diagnosis/causes tools/recordings
-  LIBRARIES Eigen3::Eigen)
+  USES base document model control/elements sysid/logs sysid/pages sysid/fitting sysid/diagnosis/causes sysid/changes
+       sysid/diagnosis/experiments tools/recordings
+  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(tools/figures USES base sysid/pages)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
@@ -149,7 +150,7 @@ softgrip_room(tools/studies
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
        sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
-       tools/recordings tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
+       tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
   PRECOMPILE <CLI/CLI.hpp> TOGETHER)

@@ -1,8 +1,11 @@
 #pragma once
-// What a person can do next about a change: for every cause two things, the first the quicker.
+// What a person sees of a change and can do next about it: for every cause two things, the first the quicker.
 
 #include <array>
 #include <string_view>
+#include <vector>
+
+#include "sysid/diagnosis/causes/health_sign.h"
 
 namespace softgrip::sysid {
 
@@ -12,5 +15,10 @@ namespace softgrip::sysid {
 /// What the cause is, in the words of somebody who stands beside the rig: "the gain of the finger is
 /// another".
 [[nodiscard]] std::string_view plain_words(std::string_view cause_id);
+
+/// The ids of all causes that a finger can get while it works.
+[[nodiscard]] std::vector<std::string_view> changes();
+/// How recorded grips show it.
+[[nodiscard]] HealthSigns signs_of(std::string_view cause_id);
 
 }  // namespace softgrip::sysid

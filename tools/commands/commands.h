@@ -17,6 +17,7 @@
   X(validate)                \
   X(baseline)                \
   X(diagnose)                \
+  X(health)                  \
   X(investigate)             \
   X(report)                  \
   X(run)                     \

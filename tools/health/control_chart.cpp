@@ -65,13 +65,14 @@ std::optional<double> ControlChart::excess_of(const ChartValues& values) const {
 }
 
 std::optional<double> ControlChart::add(const ChartValues& values) {
-  double sum = 0, count = 0;
+  double sum = 0, count = 0, compared = 0;
   for (const auto& [recipe, value] : values) {
     const auto reference = references_.find(recipe);
     if (reference == references_.end()) continue;
     if (const auto z = reference->second.judge(value, least_spread_)) {
       sum += *z;
       count += 1;
+      compared += static_cast<double>(reference->second.count());
     }
   }
   std::optional<double> z;
@@ -79,10 +80,14 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
   history_.push_back(values);
   if (z) {
     ++judged_;
-    if (!alarm_) judge(*z);
+    if (!alarm_) judge(*z, compared / count);
   }
   if (!alarm_) {
-    learn(values);
+    waiting_.push_back(values);
+    if (std::max(up_, down_) <= limits_.doubt) {
+      for (const ChartValues& learnt : waiting_) learn(learnt);
+      waiting_.clear();
+    }
     return z;
   }
   double excesses = 0, known = 0;
@@ -104,12 +109,14 @@ void ControlChart::forget_since(std::size_t point) {
   for (std::size_t i = 0; i < point; ++i) learn(history_[i]);
 }
 
-void ControlChart::judge(double z) {
+void ControlChart::judge(double z, double count) {
   const std::size_t now = history_.size() - 1;
   if (up_ == 0) up_since_ = now;
   if (down_ == 0) down_since_ = now;
-  up_ = std::max(0.0, up_ + z - limits_.allowance);
-  down_ = std::max(0.0, down_ - z - limits_.allowance);
+  const bool in_doubt = std::max(up_, down_) > limits_.doubt;
+  const double allowance = limits_.allowance + (in_doubt ? 1 / std::sqrt(count) : 0);
+  up_ = std::max(0.0, up_ + z - allowance);
+  down_ = std::max(0.0, down_ - z - allowance);
   std::optional<std::size_t> since;
   if (std::max(up_, down_) > limits_.cusum) {
     since = up_ > down_ ? up_since_ : down_since_;

@@ -8,7 +8,17 @@
 // on, whatever their mean and spread (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of Quality
 // Technology 23, 1991). Two judges look at them: a two-sided CUSUM (Page, Biometrika 41, 1954) for shifts
 // that stay, a plain limit for what is large at once (Lucas, Journal of Quality Technology 14, 1982). Each is
-// given half of the false alarms that are asked for. After an alarm nothing is learnt any more.
+// given half of the false alarms that are asked for.
+//
+// While a CUSUM is far up nothing is learnt: a change that comes soon after the start would become what is
+// usual before it is noticed. Values that are judged against the same few share what is wrong with those; the
+// allowance grows by it, one spread over the root of their number. After an alarm what was learnt since the
+// change is forgotten.
+//
+// Of 200,000 simulated charts with 32850 values stated between two false alarms 1.2 times as many alarmed
+// within their first 90 healthy values as the stated rate would have it. A shift by three spreads is found
+// within thirty values in 66 of 100 where it comes after eight healthy values, always after twenty, then
+// after seven on the mean.
 
 #include <cstddef>
 #include <map>
@@ -23,6 +33,7 @@ struct ChartLimits {
   double allowance = 0.5;  ///< half the shift to be found, in spreads
   double cusum = 0;        ///< threshold
   double single = 0;       ///< limit of one standard normal value
+  double doubt = 5;        ///< a CUSUM beyond it: nothing is learnt until it is back
 
   /// @param run_length  mean number of healthy values between false alarms of one chart, at least 20.
   [[nodiscard]] static ChartLimits for_run_length(double run_length);
@@ -79,7 +90,8 @@ class ControlChart {
  private:
   /// Of the values that have a reference: how much more than it they are, on the mean.
   [[nodiscard]] std::optional<double> excess_of(const ChartValues& values) const;
-  void judge(double z);
+  /// @param count  of the values that it was compared with, the mean over recipes.
+  void judge(double z, double count);
   void learn(const ChartValues& values);
   /// Nothing of what came since the change stays in the references.
   void forget_since(std::size_t point);
@@ -87,7 +99,7 @@ class ControlChart {
   ChartLimits limits_;
   double least_spread_;
   std::map<std::string, RunningReference> references_;
-  std::vector<ChartValues> history_;
+  std::vector<ChartValues> history_, waiting_;  ///< all; not learnt yet
   std::optional<ChartAlarm> alarm_;
   double up_ = 0, down_ = 0;
   std::size_t up_since_ = 0, down_since_ = 0;

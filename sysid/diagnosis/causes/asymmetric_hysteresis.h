@@ -14,7 +14,8 @@ struct AsymmetricHysteresis {
   static constexpr WhenChanged when_changed{
       "the way back is another than the way there",
       {"Look for something that rubs on the finger or its guide in one direction.",
-       "Run up and down slowly three times with the load taken off."}};
+       "Run up and down slowly three times with the load taken off."},
+      {{{HealthNumber::loop_width, Moves::either_way}}}};
 
   /// An element that takes another way up than down.
   struct OwnLoop : FormOf<model::DuhemHysteresis> {

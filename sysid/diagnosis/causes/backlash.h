@@ -11,7 +11,8 @@ struct Backlash : FormOf<model::Backlash> {
   static constexpr WhenChanged when_changed{
       "there is play between finger and sensor",
       {"Move the sensor's target by hand and feel for play.",
-       "Tighten the clamp of the sensor's target and record the same log again."}};
+       "Tighten the clamp of the sensor's target and record the same log again."},
+      {{{HealthNumber::loop_width, Moves::up}}}};
 
   static Starts starts(const Scales& s) {
     return every({{"gap_mm", {0.01 * s.span_mm, 0.05 * s.span_mm, 0.15 * s.span_mm}}});

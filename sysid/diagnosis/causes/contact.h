@@ -13,7 +13,8 @@ struct Contact : FormOf<model::Contact> {
   static constexpr WhenChanged when_changed{
       "something holds the finger back from a position on",
       {"Move the finger by hand through its range and look what it touches.",
-       "Take the object or the stop away and record the same log again."}};
+       "Take the object or the stop away and record the same log again."},
+      {{{HealthNumber::contact, Moves::either_way}}}};
 
   static Starts starts(const Scales& s) {
     return every({{"position_mm",

@@ -15,7 +15,8 @@ struct RateDependentHysteresis {
   static constexpr WhenChanged when_changed{
       "fast motion costs more pressure than slow motion",
       {"Run the same stroke at three speeds and compare the loops.",
-       "Look for rubbing, dried lubricant or a swollen seal, and record again."}};
+       "Look for rubbing, dried lubricant or a swollen seal, and record again."},
+      {{{HealthNumber::loop_width, Moves::up}, {HealthNumber::lag, Moves::up}}}};
 
   /// A loop of its own that relaxes.
   struct Relaxing : FormOf<model::RelaxingFriction> {

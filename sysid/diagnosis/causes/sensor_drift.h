@@ -18,7 +18,8 @@ struct SensorDrift {
   static constexpr WhenChanged when_changed{
       "the zero of the sensor wanders",
       {"Leave the finger vented for an hour and read the zero every ten minutes.",
-       "Check the sensor's clamp and cable, and let it warm up before recording."}};
+       "Check the sensor's clamp and cable, and let it warm up before recording."},
+      {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}}};
 
   /// One way.
   struct Steady : FormOf<model::SensorDrift> {

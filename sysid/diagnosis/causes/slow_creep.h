@@ -14,7 +14,8 @@ struct SlowCreep : FormOf<model::SlowCreep> {
   static constexpr WhenChanged when_changed{
       "the finger creeps more over minutes",
       {"Hold full pressure for ten minutes and watch the reading.",
-       "Look for a slack mounting or a layer that comes off; tighten it and record again."}};
+       "Look for a slack mounting or a layer that comes off; tighten it and record again."},
+      {{{HealthNumber::creep, Moves::up}}}};
 
   static Starts starts(const Scales& s) {
     const double gain = s.gain_mm_per_kpa();

@@ -11,7 +11,8 @@ struct StressSoftening {
   static constexpr WhenChanged when_changed{
       "the finger softened under a large load",
       {"Look in the events for a load above the usual one.",
-       "Leave it vented overnight and record again: what comes back is not wear."}};
+       "Leave it vented overnight and record again: what comes back is not wear."},
+      {{{HealthNumber::gain, Moves::up}, {HealthNumber::loop_width, Moves::up}}}};
 
   /// In proportion to the largest load.
   struct Proportional : FormOf<model::StressSoftening> {

@@ -11,7 +11,8 @@ struct SupplySag : FormOf<model::SupplySag> {
   static constexpr WhenChanged when_changed{
       "the pressure follows a falling supply",
       {"Read the supply gauge while the compressor refills.",
-       "Move other users to another line, or set the supply regulator higher, and record again."}};
+       "Move other users to another line, or set the supply regulator higher, and record again."},
+      {{{HealthNumber::pressure_loss, Moves::up}}}};
   /// The nominal supply is only where the coupling is counted from.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 

@@ -11,7 +11,8 @@ struct ThermalGain : FormOf<model::ThermalGain> {
   static constexpr std::array advice{Advice::vary_temperature};
   static constexpr WhenChanged when_changed{"the gain follows the temperature",
                                             {"Record again at another temperature of the room.",
-                                             "Look for a heat source beside the finger or the sensor."}};
+                                             "Look for a heat source beside the finger or the sensor."},
+                                            {{{HealthNumber::gain, Moves::either_way}}}};
 
   static Starts starts(const Scales&) { return every({{"gain_per_c", {-0.01, 0.01}}}); }
 };

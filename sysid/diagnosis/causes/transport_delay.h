@@ -11,7 +11,8 @@ struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr WhenChanged when_changed{
       "the pressure begins later",
       {"Look whether the tube, a filter or the board's exchange rate was changed.",
-       "Step the command with the finger's tube closed at the valve and time the pressure there."}};
+       "Step the command with the finger's tube closed at the valve and time the pressure there."},
+      {{{HealthNumber::lag, Moves::up}}}};
   static Starts starts(const Scales&) { return every({{"delay_s", {0.02, 0.1, 0.25, 0.5}}}); }
 };
 

@@ -86,6 +86,20 @@ TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
   }
 }
 
+// A chart that has seen little alarms no more often than one that has seen much.
+TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
+  Healthy healthy(23, 0, 1);
+  const ChartLimits limits = ChartLimits::for_run_length(20000);
+  int alarms = 0;
+  constexpr int charts = 20000, youth = 60;
+  for (int c = 0; c < charts; ++c) {
+    ControlChart chart(limits, least);
+    for (int i = 0; i < youth && !chart.alarm(); ++i) chart.add({{recipe, healthy()}});
+    alarms += chart.alarm() ? 1 : 0;
+  }
+  EXPECT_LT(alarms / (static_cast<double>(charts) * youth / 20000), 1.6);
+}
+
 TEST(ControlChart, FewerFalseAlarmsNeedWiderLimits) {
   const ChartLimits often = ChartLimits::for_run_length(100), seldom = ChartLimits::for_run_length(30000);
   EXPECT_GT(seldom.cusum, often.cusum + 3);
@@ -117,6 +131,20 @@ TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
   EXPECT_LE(noticed_after(4, 20), 5);
   EXPECT_LE(noticed_after(2, 20), 15);
   EXPECT_GT(noticed_after(2, 20), noticed_after(4, 20));
+}
+
+/// While a change is in doubt it is not learnt: else eight healthy values would be outvoted by as many
+/// others.
+TEST(ControlChart, NoticesAChangeThatComesSoonAfterTheStart) {
+  int noticed = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    Healthy healthy(500 + seed, 5, 0.2);
+    ControlChart chart(ChartLimits::for_run_length(30000), least);
+    for (int i = 0; i < 8; ++i) chart.add({{recipe, healthy()}});
+    for (int i = 0; i < 30; ++i) chart.add({{recipe, healthy() + 0.8}});
+    noticed += chart.alarm() ? 1 : 0;
+  }
+  EXPECT_GE(noticed, 80);  // learnt at once it would be about 60
 }
 
 TEST(ControlChart, SaysSinceWhenAndByHowMuch) {

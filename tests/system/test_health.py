@@ -1,0 +1,123 @@
+"""softgrip health on recordings of softgrip run: what became of a finger is found out from its ordinary grips."""
+
+import datetime
+import json
+import pathlib
+import shutil
+import tempfile
+
+import bench
+import working_life
+from working_life import Finger
+
+
+def day(number, hour=8):
+    return (datetime.datetime(2026, 8, 1, hour) + datetime.timedelta(number)).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+class Health(bench.BenchTest):
+    """Twelve days of two grips each; what happens to the left finger begins on the ninth."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = pathlib.Path(tempfile.mkdtemp(prefix="softgrip-health-"))
+        cls.rig_at_work = working_life.Rig(bench.SOFTGRIP, cls.shared)
+        cls.baseline = cls.rig_at_work.baseline()
+        cls.healthy = [cls.rig_at_work.play(working_life.Grip(day(number, hour), 10 * number + hour,
+                                                              {"left": Finger(), "right": Finger()}))
+                       for number in range(8) for hour in (8, 15)]
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.shared)
+
+    def later(self, finger, days=range(8, 12)):
+        rig = working_life.Rig(bench.SOFTGRIP, self.folder)
+        return [rig.play(working_life.Grip(day(number, hour), 10 * number + hour, {"left": finger, "right": Finger()}))
+                for number in days for hour in (8, 15)]
+
+    def health(self, runs, *arguments, expect):
+        out = self.folder / "out"
+        done = self.softgrip("health", *runs, "--baseline", self.baseline, "--out", out, "--json", *arguments,
+                             expect=expect)
+        result = json.loads(done.stdout)
+        self.assertEqual(result, json.loads((out / "health.json").read_text()))
+        return {finger["finger"]: finger for finger in result["fingers"]}
+
+    def check_found(self, finger, number, sign, suspect):
+        fingers = self.health(self.healthy + self.later(finger), expect=6)
+        left = fingers["left"]
+        self.assertEqual(left["state"], "alarm")
+        self.assertEqual(fingers["right"]["state"], "steady")
+        alarm = next(one for one in left["alarms"] if one["number"] == number)
+        self.assertGreater(sign * alarm["change"], 0)
+        self.assertEqual(alarm["since"], day(8)[:10])
+        self.assertEqual(left["suspects"][0]["id"], suspect, left["sentence"])
+        self.assertTrue(all(left["suspects"][0]["next_steps"]))
+        page = (self.folder / "out/health-left.html").read_text()
+        self.assertIn(left["suspects"][0]["words"], page)
+        return left
+
+    def test_a_healthy_rig_is_steady(self):
+        fingers = self.health(self.healthy + self.later(Finger()), expect=0)
+        for name in ("left", "right"):
+            self.assertEqual(fingers[name]["state"], "steady")
+            self.assertEqual(fingers[name]["alarms"], [])
+            self.assertEqual(fingers[name]["grips"], 24)
+            self.assertAlmostEqual(fingers[name]["numbers"]["gain_mm"]["value"], 32.09, delta=0.1)
+
+    def test_a_leak_is_suspected(self):
+        self.check_found(Finger(leak=0.04), "pressure_loss_kpa", 1, "leak")
+
+    def test_a_softer_finger_is_suspected(self):
+        self.check_found(Finger(gain=0.96), "gain_mm", -1, "ageing")
+
+    def test_a_sensor_that_was_knocked_is_suspected(self):
+        left = self.check_found(Finger(zero_mm=0.5), "zero_mm", 1, "sensor_drift")
+        zero = next(one for one in left["alarms"] if one["number"] == "zero_mm")
+        self.assertAlmostEqual(zero["change"], 0.5, delta=0.02)
+
+    def test_a_slower_valve_is_suspected(self):
+        left = self.check_found(Finger(valve_lag_s=0.1), "lag_s", 1, "blocked_line")
+        self.assertIn("valve_lag", [one["id"] for one in left["suspects"]])
+
+    def test_what_was_mended_begins_the_charts_anew(self):
+        runs = self.healthy + self.later(Finger(gain=0.96))
+        notes = self.write("notes.yaml", f"notes:\n  - {{date: {day(8)[:10]}, finger: left, mended: finger replaced}}\n")
+        fingers = self.health(runs, "--notes", notes, expect=0)
+        self.assertEqual(fingers["left"]["state"], "steady")
+        self.assertIn("finger replaced", (self.folder / "out/health-left.html").read_text())
+
+    def test_numbers_outlive_the_recordings_and_one_bad_recording_costs_itself_alone(self):
+        kept = self.folder / "kept"
+        for run in self.healthy:
+            shutil.copytree(run, kept / run.name)
+        self.health([kept], expect=0)
+        scores = (self.folder / "out/health-scores.jsonl").read_text()
+        self.assertEqual(len(scores.splitlines()), 2 * len(self.healthy))
+        for run in list(kept.iterdir())[:-1]:
+            shutil.rmtree(run)
+        bad = kept / "2026-08-20T08-00-00Z_pick_stone"
+        bad.mkdir()
+        (bad / "run.csv").write_text("time_s,channel\n0,left\n")
+        fingers = self.health([kept, *self.later(Finger(leak=0.04))], expect=6)
+        self.assertEqual(fingers["left"]["grips"], 24)
+        result = json.loads((self.folder / "out/health.json").read_text())
+        self.assertEqual([one["run"] for one in result["skipped"]], [bad.name])
+        # What was scored is not scored again.
+        self.assertEqual(len((self.folder / "out/health-scores.jsonl").read_text().splitlines()), 48)
+
+    def test_what_cannot_be_compared_is_refused(self):
+        self.softgrip("health", self.healthy[0], "--baseline", self.folder, expect=3)
+        self.softgrip("health", self.folder, "--baseline", self.baseline, expect=3)
+        notes = self.write("bad.yaml", "notes:\n  - {date: soon, mended: x}\n")
+        self.softgrip("health", *self.healthy, "--baseline", self.baseline, "--notes", notes, expect=3)
+        self.softgrip("health", *self.healthy, "--baseline", self.baseline, "--notes", self.folder / "none", expect=4)
+        broken = self.folder / "broken"
+        shutil.copytree(self.baseline, broken)
+        (broken / "model.yaml").write_text("changed\n")
+        self.softgrip("health", *self.healthy, "--baseline", broken, expect=3)
+
+
+if __name__ == "__main__":
+    bench.main()

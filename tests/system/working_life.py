@@ -1,0 +1,105 @@
+"""A rig at work for months, in virtual time: grips recorded by `softgrip run` on fingers that change.
+
+What happens to a finger goes into its plant, never into the recording: another gain of the model that stands for it, a
+line that leaks, a sensor that is off. Only the time of day is written into run.json afterwards, which a run in virtual
+time does not have.
+"""
+import dataclasses
+import json
+import pathlib
+import re
+import subprocess
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+MODEL = SOURCE / "config/models/bench_twin.yaml"
+# What a larger gain makes larger, and what it makes smaller.
+GAINS = {"alpha_mm_per_kpa": 0.21105, "beta_mm_per_kpa": 0.1713}
+STIFFNESSES = {"k0_kpa_per_mm": 325.9, "k1_kpa_per_mm": 18.16, "c1_kpa_s_per_mm": 299.8, "k2_kpa_per_mm": 2.761,
+               "c2_kpa_s_per_mm": 1.621}
+VALVE_LAG_S = 0.044
+
+
+@dataclasses.dataclass(frozen=True)
+class Finger:
+    """What became of it."""
+    gain: float = 1
+    zero_mm: float = 0
+    leak: float = 0  # share of the pressure
+    valve_lag_s: float = VALVE_LAG_S
+
+
+@dataclasses.dataclass(frozen=True)
+class Grip:
+    at: str  # UTC, "2026-08-01T08:00:00Z"
+    seed: int
+    fingers: dict  # by name
+    sequence: str = "pick_stone"
+    part_mm: float = 12  # where the part stands
+
+
+class Rig:
+    """Plays grips into folders of `recordings`."""
+
+    def __init__(self, softgrip, folder):
+        self.softgrip = softgrip
+        self.folder = pathlib.Path(folder)
+        self.recordings = self.folder / "recordings"
+        self.recordings.mkdir(parents=True, exist_ok=True)
+
+    def baseline(self):
+        """Logs of the healthy finger and what `softgrip baseline` makes of them."""
+        logs = []
+        for signal in ("tp1", "steps", "sp2"):
+            logs.append(self.folder / f"{signal}.csv")
+            self._call("simulate", "--model", MODEL, "--input", signal, "--out", logs[-1], "--noise-mm", "0.03")
+        self._call("baseline", "--data", *logs, "--model", MODEL, "--out", self.folder / "baseline")
+        return self.folder / "baseline"
+
+    def play(self, grip):
+        name = f"{grip.at.replace(':', '-')}_{grip.sequence}"
+        run = self.recordings / name
+        self._call("run", SOURCE / f"config/sequences/{grip.sequence}.yaml", "--rig", self._rig_of(grip), "--virtual-time",
+                   "--seed", str(grip.seed), "--record", run, "--quiet", "--no-socket", may_fail=True)
+        story = json.loads((run / "run.json").read_text())
+        story["started_at"] = grip.at
+        (run / "run.json").write_text(json.dumps(story))
+        return run
+
+    def _rig_of(self, grip):
+        head, plants = (SOURCE / "config/rig.yaml").read_text().split("    plants:", 1)
+        happens, models = [], {}
+        for name, finger in grip.fingers.items():
+            if finger.leak > 0:
+                happens.append(f"{{at_s: 0, channel: {name}, line: leaking, share: {finger.leak:.6f}}}")
+            if finger.zero_mm:
+                happens.append(f"{{at_s: 0, channel: {name}, sensor: offset, value_mm: {finger.zero_mm:.6f}}}")
+            models[name] = self._model_of(name, finger)
+        events = "    events:\n" + "".join(f"      - {one}\n" for one in happens) if happens else ""
+        plants, rest = plants.split("\nchannel_defaults:", 1)
+        for name, model in models.items():
+            before, after = plants.split(f"      {name}:\n", 1)
+            plants = f"{before}      {name}:\n" + after.replace("models/bench_twin.yaml", str(model), 1)
+        plants = plants.replace("position_mm: 12", f"position_mm: {grip.part_mm:.4f}")
+        rest = rest.replace("models/bench_twin.yaml", str(MODEL)).replace(
+            "sequence_directory: sequences", f"sequence_directory: {SOURCE / 'config/sequences'}")
+        path = self.folder / "rig.yaml"
+        path.write_text(f"{head}{events}    plants:{plants}\nchannel_defaults:{rest}")
+        return path
+
+    def _model_of(self, name, finger):
+        text = MODEL.read_text()
+        changed = {key: value * finger.gain for key, value in GAINS.items()}
+        changed |= {key: value / finger.gain for key, value in STIFFNESSES.items()}
+        for key, value in changed.items():
+            text, count = re.subn(rf"{key}: [\d.]+", f"{key}: {value:.8f}", text)
+            assert count == 1, key
+        text = text.replace(f"time_constant_s: {VALVE_LAG_S}", f"time_constant_s: {finger.valve_lag_s:.6f}")
+        path = self.folder / f"{name}.yaml"
+        path.write_text(text)
+        return path
+
+    def _call(self, *arguments, may_fail=False):
+        done = subprocess.run([str(self.softgrip), *map(str, arguments)], capture_output=True, text=True)
+        if done.returncode and not may_fail:
+            raise AssertionError(f"{' '.join(map(str, arguments))}\n{done.stdout}{done.stderr}")
+        return done

@@ -1,0 +1,37 @@
+#include "tools/health/notes_file.h"
+
+#include <gtest/gtest.h>
+
+namespace softgrip::tools::health {
+namespace {
+
+std::optional<std::vector<Note>> notes_of(const std::string& text, document::Problems& problems) {
+  return read_notes("notes.yaml", text, problems);
+}
+
+TEST(NotesFile, ComesInTheOrderOfItsDates) {
+  document::Problems problems;
+  const auto notes = notes_of(
+      "notes:\n"
+      "  - {date: 2026-11-20T14:30:00Z, mended: \"sensors clamped anew\"}\n"
+      "  - {date: 2026-11-03, finger: left, mended: finger replaced}\n",
+      problems);
+  ASSERT_TRUE(notes) << problems.format();
+  ASSERT_EQ(notes->size(), 2U);
+  EXPECT_EQ(notes->front().finger, "left");
+  EXPECT_EQ(notes->front().mended, "finger replaced");
+  EXPECT_EQ(notes->back().finger, "");
+}
+
+TEST(NotesFile, IsRefusedWithItsPlaceWhereItSaysNoDateOrNothing) {
+  for (const char* text : {"notes:\n  - {date: yesterday, mended: x}\n",
+                           "notes:\n  - {date: 2026-11-3, mended: x}\n", "notes:\n  - {date: 2026-11-03}\n",
+                           "notes:\n  - {date: 2026-11-03, mended: x, fingers: left}\n", "note: []\n", ""}) {
+    document::Problems problems;
+    EXPECT_FALSE(notes_of(text, problems)) << text;
+    EXPECT_NE(problems.format().find("notes.yaml:"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::tools::health

@@ -1,0 +1,84 @@
+#pragma once
+// How a finger has been: its recorded grips in points of time, a control chart for every number, and what
+// stands out.
+//
+// A point is a day of a finger (UTC): the median of its runs of a recipe, so that what changes within a day,
+// the temperature above all, is not taken for chance from grip to grip. Runs whose time is not known are a
+// point each. What was mended begins all charts of the finger anew.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/health/control_chart.h"
+#include "tools/health/notes_file.h"
+#include "tools/health/scored_run.h"
+
+namespace softgrip::tools::health {
+
+struct HealthOptions {
+  /// Mean number of points of a healthy finger between two false alarms of any of its charts; at least 20.
+  double false_alarm_points = 3650;
+  bool by_day = true;  ///< false: every run is a point
+
+  [[nodiscard]] ChartLimits limits() const {
+    return ChartLimits::for_run_length(false_alarm_points * static_cast<double>(sysid::health_numbers));
+  }
+};
+
+struct HealthPoint {
+  std::string label;                                      ///< "2026-11-22", or the run's name
+  std::size_t grips = 0;                                  ///< runs
+  std::size_t epoch = 0;                                  ///< how often something was mended before
+  std::array<ChartValues, sysid::health_numbers> values;  ///< medians by recipe
+  std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< standard normal
+};
+
+/// An alarm of one number.
+struct HealthAlarm {
+  sysid::HealthNumber number = sysid::HealthNumber::gain;
+  std::size_t epoch = 0;
+  std::size_t noticed = 0;  ///< index of a point
+  std::size_t since = 0;
+  double change = 0;      ///< in the number's unit
+  std::size_t grips = 0;  ///< from the change to when it was noticed
+};
+
+/// What is usual of a number since the last note.
+struct HealthReference {
+  std::string recipe;  ///< the one with most points
+  double mean = 0;
+  double spread = 0;
+  std::size_t points = 0;
+};
+
+enum class FingerState : std::uint8_t {
+  learning,  ///< too few points to judge any number since the last note
+  steady,
+  alarm,
+};
+[[nodiscard]] const char* name_of(FingerState state);
+
+struct FingerHealth {
+  std::string finger;
+  FingerState state = FingerState::learning;
+  std::vector<HealthPoint> points;
+  std::vector<HealthAlarm> alarms;  ///< of all epochs, in the order in which they were noticed
+  std::array<std::optional<HealthReference>, sysid::health_numbers> references{};
+  std::vector<std::pair<std::size_t, Note>> notes;  ///< before which point
+
+  /// Those that stand.
+  [[nodiscard]] std::vector<HealthAlarm> standing() const;
+  [[nodiscard]] std::size_t epoch() const { return points.empty() ? 0 : points.back().epoch; }
+  /// Of a number, the median of the last point that has it; nothing where none has.
+  [[nodiscard]] std::optional<double> latest(sysid::HealthNumber number) const;
+};
+
+/// @param runs  of this finger. @param base  gives the differences that matter to nobody.
+[[nodiscard]] FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs,
+                                        const std::vector<Note>& notes, const ScoreBase& base,
+                                        const HealthOptions& options);
+
+}  // namespace softgrip::tools::health

@@ -1,0 +1,61 @@
+#include "tools/health/health_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::tools::health {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of_alarm(const FingerHealth& health, const HealthAlarm& alarm) {
+  return {{"number", sysid::info_of(alarm.number).id}, {"change", alarm.change},
+          {"since", health.points[alarm.since].label}, {"noticed", health.points[alarm.noticed].label},
+          {"grips_until_noticed", alarm.grips},        {"stands", alarm.epoch == health.epoch()}};
+}
+
+Json json_of_number(const FingerHealth& health, std::size_t i) {
+  Json number{{"value", nullptr}, {"reference", nullptr}, {"spread", nullptr}, {"points", 0}, {"z", nullptr}};
+  if (const auto value = health.latest(static_cast<sysid::HealthNumber>(i))) number["value"] = *value;
+  if (const auto& reference = health.references[i]) {
+    number["reference"] = reference->mean;
+    if (reference->points > 1) number["spread"] = reference->spread;
+    number["points"] = reference->points;
+    number["recipe"] = reference->recipe;
+  }
+  for (auto point = health.points.rbegin(); point != health.points.rend(); ++point) {
+    if (point->values[i].empty()) continue;
+    if (point->judged[i]) number["z"] = *point->judged[i];
+    break;
+  }
+  return number;
+}
+
+}  // namespace
+
+Json json_of(const FingerHealth& health, const Suspicion& suspicion) {
+  std::size_t grips = 0;
+  for (const HealthPoint& point : health.points) grips += point.grips;
+  Json finger{{"finger", health.finger},
+              {"state", name_of(health.state)},
+              {"sentence", health_sentence(health, suspicion)},
+              {"grips", grips},
+              {"points", health.points.size()},
+              {"first", health.points.empty() ? Json(nullptr) : Json(health.points.front().label)},
+              {"last", health.points.empty() ? Json(nullptr) : Json(health.points.back().label)}};
+  finger["numbers"] = Json::object();
+  for (std::size_t i = 0; i < sysid::health_numbers; ++i)
+    finger["numbers"][std::string(sysid::health_number_infos[i].id)] = json_of_number(health, i);
+  finger["alarms"] = Json::array();
+  for (const HealthAlarm& alarm : health.alarms) finger["alarms"].push_back(json_of_alarm(health, alarm));
+  finger["suspects"] = Json::array();
+  for (const Suspect& suspect : suspicion.suspects)
+    finger["suspects"].push_back(
+        {{"id", suspect.id}, {"words", suspect.words}, {"next_steps", suspect.next_steps}});
+  finger["advice"] = suspicion.advice;
+  finger["notes"] = Json::array();
+  for (const auto& [before, note] : health.notes)
+    finger["notes"].push_back({{"date", note.date}, {"mended", note.mended}});
+  return finger;
+}
+
+}  // namespace softgrip::tools::health

@@ -1,0 +1,99 @@
+#include "tools/health/run_search.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "tools/recordings/recording.h"
+
+namespace softgrip::tools::health {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_run(const fs::path& path) {
+  std::error_code ignored;
+  return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
+}
+
+void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores) {
+  document::Problems problems;
+  const std::string name = fs::path(path).lexically_normal().filename().string();
+  const auto recording = read_recording(path, problems);
+  if (!recording) {
+    scores.skipped.push_back(
+        {name, problems.empty() ? "it cannot be read" : problems.list().front().message});
+    return;
+  }
+  if (recording->unfinished) {
+    scores.skipped.push_back({name, "it is not finished"});
+    return;
+  }
+  for (std::size_t c = 0; c < recording->channels.size(); ++c) {
+    const std::string& finger = recording->channels[c].channel;
+    const auto base = base_of(finger);
+    if (!base) {
+      scores.skipped.push_back({name, "there is no baseline of `" + finger + "`"});
+      continue;
+    }
+    scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, base->id,
+                           score_of(*recording, c, base->base)});
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> find_runs(const std::vector<std::string>& paths) {
+  std::vector<std::string> runs;
+  for (const std::string& path : paths) {
+    if (is_run(path)) {
+      runs.push_back(path);
+      continue;
+    }
+    std::vector<std::string> inside;
+    std::error_code unreadable;
+    for (const auto& entry : fs::directory_iterator(path, unreadable)) {
+      if (entry.is_directory() && is_run(entry.path())) inside.push_back(entry.path().string());
+    }
+    std::sort(inside.begin(), inside.end());
+    runs.insert(runs.end(), inside.begin(), inside.end());
+  }
+  return runs;
+}
+
+std::vector<ScoredRun> current(const std::vector<ScoredRun>& runs, const BaseOf& base_of) {
+  std::map<std::pair<std::string, std::string>, std::size_t> place;
+  std::vector<ScoredRun> kept;
+  for (const ScoredRun& run : runs) {
+    const auto base = base_of(run.finger);
+    if (!base || base->id != run.baseline) continue;
+    const auto [at, is_new] = place.try_emplace({run.run, run.finger}, kept.size());
+    if (is_new)
+      kept.push_back(run);
+    else
+      kept[at->second] = run;
+  }
+  return kept;
+}
+
+RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_of,
+                     const std::vector<ScoredRun>& known) {
+  std::set<std::pair<std::string, std::string>> stale;
+  for (const ScoredRun& run : known) stale.emplace(run.run, run.finger);
+  std::set<std::string> done;
+  for (const ScoredRun& run : current(known, base_of)) {
+    stale.erase({run.run, run.finger});
+    done.insert(run.run);
+  }
+  for (const auto& [run, finger] : stale) done.erase(run);
+  RunScores scores;
+  for (const std::string& path : paths) {
+    if (!done.contains(fs::path(path).lexically_normal().filename().string()))
+      score_one(path, base_of, scores);
+  }
+  return scores;
+}
+
+}  // namespace softgrip::tools::health

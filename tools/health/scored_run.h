@@ -1,0 +1,32 @@
+#pragma once
+// One finger's numbers of one recorded run, and where they are kept: a line each in a file that only grows,
+// so that the numbers outlive the recordings and nobody reads a recording twice.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tl/expected.hpp>
+
+#include "tools/health/grip_score.h"
+
+namespace softgrip::tools::health {
+
+struct ScoredRun {
+  std::string run;         ///< name of the recording's folder
+  std::string finger;      ///< name of the channel
+  std::string started_at;  ///< UTC; empty: not known
+  std::string recipe;      ///< only runs of the same one are compared
+  std::string baseline;    ///< by what it was scored
+  GripScore score;
+};
+
+/// The file's name in the folder for results.
+inline constexpr const char* scores_file = "health-scores.jsonl";
+
+/// The lines of such a file. What is none (a line that a power failure cut off) is passed over.
+[[nodiscard]] std::vector<ScoredRun> read_scores(std::string_view text);
+/// One line, with its end.
+[[nodiscard]] std::string line_of(const ScoredRun& run);
+
+}  // namespace softgrip::tools::health

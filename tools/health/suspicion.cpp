@@ -1,0 +1,114 @@
+#include "tools/health/suspicion.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/numbers.h"
+#include "sysid/changes/next_steps.h"
+#include "sysid/diagnosis/causes/cause.h"
+#include "sysid/diagnosis/experiments/experiment_advice.h"
+
+namespace softgrip::tools::health {
+namespace {
+
+using sysid::HealthNumber;
+using sysid::HealthSign;
+using sysid::Moves;
+
+/// A sign that would be seen and is not, and an alarm that the cause does not explain, count so much against
+/// it, in signs.
+constexpr double missing_sign = 0.25;
+constexpr double foreign_alarm = 0.75;
+/// As does that a recording of grips lacks the column without which nothing can be told of the cause.
+constexpr double lacks_column = 0.05;
+/// Causes that are so near explain as much.
+constexpr double as_much = 0.1;
+constexpr std::size_t most_suspects = 4;
+
+bool agrees(Moves moves, double change) {
+  if (moves == Moves::either_way) return true;
+  return moves == (change > 0 ? Moves::up : Moves::down);
+}
+
+/// Alarms by number. Of the time to the grip only where nothing else alarms: whatever changes, changes it.
+std::map<HealthNumber, double> changes_of(const FingerHealth& health) {
+  std::map<HealthNumber, double> changes;
+  for (const HealthAlarm& alarm : health.standing()) changes[alarm.number] = alarm.change;
+  if (changes.size() > 1) changes.erase(HealthNumber::time_to_grip);
+  return changes;
+}
+
+/// How much of the alarms a cause with these signs explains; 0: nothing.
+double explained(const sysid::HealthSigns& signs, const std::map<HealthNumber, double>& changes,
+                 const FingerHealth& health) {
+  double worth = 0;
+  std::size_t hits = 0;
+  for (const HealthSign& sign : signs) {
+    if (sign.moves == Moves::not_at_all) continue;
+    const auto change = changes.find(sign.number);
+    const bool seen = change != changes.end() && agrees(sign.moves, change->second);
+    const bool judged = health.references[static_cast<std::size_t>(sign.number)].has_value();
+    hits += seen ? 1 : 0;
+    worth += seen ? 1 : judged ? -missing_sign : 0;
+  }
+  const auto foreign = static_cast<double>(changes.size() - hits);
+  return hits == 0 ? 0 : worth - foreign_alarm * foreign;
+}
+
+std::string change_text(const HealthAlarm& alarm) {
+  const sysid::HealthNumberInfo& info = sysid::info_of(alarm.number);
+  return std::string(info.title) + (alarm.change > 0 ? " +" : " -") + significant(std::abs(alarm.change), 2) +
+         " " + std::string(info.unit);
+}
+
+}  // namespace
+
+Suspicion suspicion_of(const FingerHealth& health) {
+  const std::map<HealthNumber, double> changes = changes_of(health);
+  std::vector<std::pair<double, std::string_view>> found;
+  for (const std::string_view id : sysid::changes()) {
+    const double worth = explained(sysid::signs_of(id), changes, health);
+    const auto cause = sysid::find_cause(id);
+    const bool untold = cause && cause->needs != sysid::Column::none;
+    if (worth > 0) found.emplace_back(untold ? worth - lacks_column : worth, id);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  Suspicion suspicion;
+  for (const auto& [worth, id] : found) {
+    if (worth < found.front().first - as_much || suspicion.suspects.size() == most_suspects) break;
+    const auto steps = sysid::next_steps(id);
+    suspicion.suspects.push_back({std::string(id),
+                                  std::string(sysid::plain_words(id)),
+                                  {std::string(steps[0]), std::string(steps[1])}});
+  }
+  const auto measured = static_cast<std::size_t>(HealthNumber::pressure_loss);
+  for (std::size_t i = 1; i < suspicion.suspects.size(); ++i) {
+    sysid::AdviceFacts facts;
+    facts.separable = true;
+    facts.pressure_recorded = health.references[measured].has_value();
+    for (std::string& advice :
+         sysid::advice_for(suspicion.suspects.front().id, suspicion.suspects[i].id, facts)) {
+      if (std::find(suspicion.advice.begin(), suspicion.advice.end(), advice) == suspicion.advice.end())
+        suspicion.advice.push_back(std::move(advice));
+    }
+  }
+  return suspicion;
+}
+
+std::string health_sentence(const FingerHealth& health, const Suspicion& suspicion) {
+  const std::vector<HealthAlarm> alarms = health.standing();
+  if (health.state == FingerState::learning)
+    return "Too few grips yet to say what is usual of " + health.finger + ".";
+  if (alarms.empty()) return "Nothing has changed at " + health.finger + ".";
+  std::string sentence =
+      "Since " + health.points[alarms.front().since].label + " " + health.finger + " is another: ";
+  for (std::size_t i = 0; i < alarms.size(); ++i) sentence += (i > 0 ? ", " : "") + change_text(alarms[i]);
+  if (suspicion.suspects.empty()) return sentence + ". No cause in the library shows such signs.";
+  sentence += ". Suspected: " + suspicion.suspects.front().words;
+  for (std::size_t i = 1; i < suspicion.suspects.size(); ++i)
+    sentence += ", or " + suspicion.suspects[i].words;
+  return sentence + ".";
+}
+
+}  // namespace softgrip::tools::health
