@@ -147,11 +147,14 @@ softgrip_room(tools/verification USES base document model model/file sysid/logs 
 softgrip_room(tools/studies
   USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
        sysid/identification)
+# The commissioning experiment on a rig.
+softgrip_room(tools/baseline
+  USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation tools/studies)
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
        sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
        tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
-       tools/studies
+       tools/studies tools/baseline
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
   PRECOMPILE <CLI/CLI.hpp> TOGETHER)
 

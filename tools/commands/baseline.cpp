@@ -1,23 +1,32 @@
 // softgrip baseline: what a healthy finger does, kept for the day on which it does not.
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/numbers.h"
+#include "base/sha256.h"
 #include "base/version.h"
 #include "base/wall_clock.h"
 #include "sysid/changes/change.h"
+#include "sysid/identification/validate.h"
 #include "sysid/structure/identify_structure.h"
+#include "tools/baseline/commissioning_run.h"
 #include "tools/command_line/call.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/baseline_folder.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/rig_to_move.h"
 
 namespace softgrip::tools {
 namespace {
@@ -27,12 +36,25 @@ using Json = nlohmann::ordered_json;
 struct BaselineOptions {
   std::vector<std::string> data;
   std::vector<std::string> check;
+  std::string rig;
+  std::string rig_channel;  ///< "": that of --channel
+  std::vector<std::string> experiments = usual_commissioning();
+  double rest_s = CommissioningOptions{}.rest_s;
+  std::string gauge;
   std::string model;
   std::string out;
   LogInput logs;
   std::uint64_t seed = 1;
   unsigned threads = 0;
+  bool yes = false;
   bool json = false;
+};
+
+/// Logs of a healthy finger: the first run, and a second one where there is one.
+struct Runs {
+  std::vector<sysid::Log> healthy, again;
+  BaselineContents contents;
+  Json rig;  ///< where they were played; null: they were recorded before
 };
 
 tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
@@ -51,51 +73,200 @@ tl::expected<model::Model, ExitCode> model_of(const BaselineOptions& options,
   return identified->model;
 }
 
+/// Root mean square of what a model leaves of all readings of some logs [mm].
+double left_mm(const BaselineOptions& options, const model::Model& model,
+               const std::vector<sysid::Log>& logs) {
+  const sysid::Validation validation = sysid::validate_logs(model, logs, options.logs.record_options());
+  double squares = 0, count = 0;
+  for (const sysid::Score& score : validation.scores) {
+    const auto readings = static_cast<double>(score.error_mm.size());
+    squares += readings * score.rmse_mm * score.rmse_mm;
+    count += readings;
+  }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
 /// What a second run of the healthy finger says; null: there is none.
-tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const std::vector<sysid::Log>& healthy,
+tl::expected<Json, ExitCode> checked(const BaselineOptions& options, const Runs& runs,
                                      const model::Model& model, bool& holds) {
-  if (options.check.empty()) return Json(nullptr);
-  const auto again = read_logs(options.check, options.logs);
-  if (!again) return tl::unexpected(again.error());
+  if (runs.again.empty()) return Json(nullptr);
   ProgressLine line;
   sysid::ChangeOptions change{options.logs.held, model, options.seed, options.threads, line.show()};
-  const auto diagnosis = sysid::diagnose_change(healthy, *again, change);
+  const auto diagnosis = sysid::diagnose_change(runs.healthy, runs.again, change);
   if (!diagnosis) return tl::unexpected(fail(ExitCode::input_refused, diagnosis.error()));
   holds = diagnosis->verdict == sysid::ChangeVerdict::unchanged;
   return Json{{"verdict", name_of(diagnosis->verdict)},
               {"sentence", sysid::change_sentence(*diagnosis)},
               {"healthy_heldout_rms_mm", diagnosis->readings.back().healthy_mm},
-              {"second_run_rms_mm", diagnosis->readings.back().later_mm}};
+              {"second_run_rms_mm", diagnosis->readings.back().later_mm},
+              {"model_rmse_mm",
+               {{"first_run", left_mm(options, model, runs.healthy)},
+                {"second_run", left_mm(options, model, runs.again)}}}};
 }
 
-ExitCode run(const BaselineOptions& options, const std::vector<std::string>& call) {
-  const auto logs = read_logs(options.data, options.logs);
-  if (!logs) return logs.error();
-  const auto model = model_of(options, *logs);
+/// "The second run: ...", and by how much the model holds.
+std::string text_of_check(const Json& check) {
+  if (check.is_null())
+    return "No second run was given (--check): whether the finger repeats itself is not known.";
+  const auto number = [](const Json& value) { return significant(value.get<double>(), 3); };
+  const Json& model = check["model_rmse_mm"];
+  return "The second run: " + check["sentence"].get<std::string>() +
+         " What the base leaves: " + number(check["healthy_heldout_rms_mm"]) +
+         " mm of the first run, held out, " + number(check["second_run_rms_mm"]) +
+         " mm of the second; model.yaml from the command: " + number(model["first_run"]) + " and " +
+         number(model["second_run"]) + " mm.";
+}
+
+tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
+  Runs runs;
+  auto healthy = read_logs(options.data, options.logs);
+  if (!healthy) return tl::unexpected(healthy.error());
+  runs.healthy = std::move(*healthy);
+  if (!options.check.empty()) {
+    auto again = read_logs(options.check, options.logs);
+    if (!again) return tl::unexpected(again.error());
+    runs.again = std::move(*again);
+  }
+  auto files = files_of(runs.healthy);
+  auto second = files ? files_of(runs.again) : files;
+  if (!second) return tl::unexpected(fail(ExitCode::io, second.error()));
+  runs.contents.healthy = std::move(*files);
+  runs.contents.second = std::move(*second);
+  return runs;
+}
+
+/// One channel's log of each experiment, as it goes into the folder.
+std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, const std::string& rig) {
+  std::vector<BaselineFile> files;
+  for (const sysid::Log& log : logs) files.push_back({log.name + " on " + rig, sysid::format_log(log)});
+  return files;
+}
+
+tl::expected<Runs, ExitCode> played(const BaselineOptions& options) {
+  std::error_code none;
+  if (std::filesystem::exists(options.out, none) && !std::filesystem::is_empty(options.out, none))
+    return tl::unexpected(
+        fail(ExitCode::usage, options.out + " is there already: name a folder that is not"));
+  const auto rig = rig_to_move(
+      options.rig, options.rig_channel.empty() ? options.logs.channel : options.rig_channel, options.yes);
+  if (!rig) return tl::unexpected(rig.error());
+  CommissioningOptions commissioning{
+      options.experiments, options.rest_s, consent_on_terminal(options.yes), {}};
+  commissioning.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
+  auto result = play_commissioning(*rig, commissioning);
+  if (!result) return tl::unexpected(fail(result.error().code, result.error().why));
+  Runs runs;
+  runs.healthy = std::move(result->first);
+  runs.again = std::move(result->second);
+  runs.contents.healthy = files_of_played(runs.healthy, options.rig);
+  runs.contents.second = files_of_played(runs.again, options.rig);
+  const rig::RigFile& file = rig->rig;
+  runs.rig = {{"file", options.rig},
+              {"sha256", sha256(file.inputs.front().text)},
+              {"name", file.name},
+              {"channel", rig->channel_name()},
+              {"simulated", rig->simulated},
+              {"experiments", options.experiments},
+              {"rest_s", options.rest_s},
+              {"pressure_max_kpa", result->limits.pressure_max_kpa},
+              {"slew_kpa_per_s", result->limits.slew_kpa_per_s},
+              {"minutes", result->minutes}};
+  return runs;
+}
+
+ExitCode keep(const BaselineOptions& options, Runs runs, const std::vector<std::string>& call) {
+  if (!options.gauge.empty()) {
+    if (const auto gauge = read_gauge(options.gauge); !gauge) return gauge.error();
+    auto file = baseline_file(options.gauge);
+    if (!file) return fail(ExitCode::io, file.error());
+    runs.contents.gauge = std::move(*file);
+  }
+  const auto model = model_of(options, runs.healthy);
   if (!model) return model.error();
+  runs.contents.model = *model;
   bool holds = true;
-  const auto check = checked(options, *logs, *model, holds);
+  const auto check = checked(options, runs, *model, holds);
   if (!check) return check.error();
   Json about{{"schema", 1},
              {"made", utc_text(wall_time_now())},
              {"software_version", std::string(software_version())},
              {"call", call},
+             {"rig", runs.rig},
              {"check", *check}};
   about["noise_mm"] = Json::array();
-  for (const sysid::Record& record : sysid::make_records(*logs, options.logs.record_options()))
+  for (const sysid::Record& record : sysid::make_records(runs.healthy, options.logs.record_options()))
     about["noise_mm"].push_back(sysid::fast_noise_mm(record));
-  const auto text = write_baseline(options.out, *logs, *model, std::move(about));
+  const auto text = write_baseline(options.out, runs.contents, std::move(about));
   if (!text) return fail(ExitCode::io, text.error());
   if (options.json) {
     std::fputs(text->c_str(), stdout);
   } else {
-    std::printf("Baseline of %zu logs in %s. ", logs->size(), options.out.c_str());
-    if (check->is_null())
-      std::puts("No second run was given (--check): whether the finger repeats itself is not known.");
-    else
-      std::printf("The second run: %s\n", (*check)["sentence"].get<std::string>().c_str());
+    std::printf("Baseline of %zu logs in %s. %s\n", runs.healthy.size(), options.out.c_str(),
+                text_of_check(*check).c_str());
   }
   return holds ? ExitCode::done : ExitCode::not_acceptable;
+}
+
+/// A baseline that is there: its files, and its second run against its first once more.
+ExitCode checked_again(BaselineOptions options) {
+  const std::string folder = options.check.front();
+  const auto baseline = read_baseline(folder);
+  if (!baseline) return fail(ExitCode::input_refused, baseline.error());
+  if (baseline->second.empty())
+    return fail(ExitCode::input_refused, folder + " holds no second run: make it with --check or --rig");
+  options.data = baseline->logs;
+  options.check = baseline->second;
+  const auto runs = recorded(options);
+  if (!runs) return runs.error();
+  const auto model = read_model(baseline->model);
+  if (!model) return model.error();
+  bool holds = false;
+  const auto check = checked(options, *runs, *model, holds);
+  if (!check) return check.error();
+  if (options.json) {
+    std::printf("%s\n", Json{{"schema", 1}, {"baseline", folder}, {"check", *check}}.dump(2).c_str());
+  } else {
+    std::printf("Baseline in %s: its files are those that were written. %s\n", folder.c_str(),
+                text_of_check(*check).c_str());
+  }
+  return holds ? ExitCode::done : ExitCode::not_acceptable;
+}
+
+ExitCode run(const BaselineOptions& options, const std::vector<std::string>& call) {
+  if (options.data.empty() && options.rig.empty()) {
+    if (options.check.size() == 1) return checked_again(options);
+    return fail(ExitCode::usage,
+                "a baseline needs --rig or --data; --check DIR alone looks at one that is there");
+  }
+  if (options.out.empty()) return fail(ExitCode::usage, "--out is required: the folder of the baseline");
+  auto runs = options.rig.empty() ? recorded(options) : played(options);
+  if (!runs) return runs.error();
+  return keep(options, std::move(*runs), call);
+}
+
+/// What belongs to a rig that is moved.
+void add_rig_options(CLI::App& command, BaselineOptions& options) {
+  CLI::Option* const data = command.get_option("--data");
+  CLI::Option* const rig =
+      command.add_option("--rig", options.rig, "Rig file: play the commissioning experiment on it, twice");
+  rig->excludes(data)->excludes(command.get_option("--check"));
+  command
+      .add_option("--rig-channel", options.rig_channel,
+                  "With --rig: which of its channels is moved [that of --channel]")
+      ->needs(rig);
+  std::vector<std::string> menu;
+  for (const sysid::Waveform& waveform : sysid::experiment_menu({})) menu.push_back(waveform.name);
+  command.add_option("--experiments", options.experiments, "With --rig: which of the menu are played")
+      ->needs(rig)
+      ->check(CLI::IsMember(menu))
+      ->capture_default_str();
+  command
+      .add_option("--rest-s", options.rest_s,
+                  "With --rig: at no pressure before each experiment, until the finger has crept back")
+      ->needs(rig)
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command.add_flag("--yes", options.yes, "Move the rig without asking")->needs(rig);
 }
 
 }  // namespace
@@ -104,11 +275,16 @@ void add_baseline(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<BaselineOptions>();
   CLI::App* command =
       program.add_subcommand("baseline", "Keep what a healthy finger does, to be compared with later");
-  command->add_option("--data", options->data, "Logs of the healthy finger, in order")->required();
-  command->add_option("--check", options->check,
-                      "Logs of a second run of the healthy finger: nothing may have changed (exit 6)");
+  command->add_option("--data", options->data, "Logs of the healthy finger, in order");
+  command->add_option(
+      "--check", options->check,
+      "Logs of a second run of the healthy finger: nothing may have changed (exit 6). Alone: a "
+      "baseline's folder, looked at again");
+  add_rig_options(*command, *options);
+  command->add_option("--gauge", options->gauge,
+                      "What the sensor reads at positions that a gauge knows: kept beside the logs");
   command->add_option("--model", options->model, "Model file of the finger [identified from the logs]");
-  command->add_option("--out", options->out, "Folder for the logs, model.yaml and baseline.json")->required();
+  command->add_option("--out", options->out, "Folder for the logs, model.yaml and baseline.json");
   command->add_option("--seed", options->seed, "Of starts and resampling")->capture_default_str();
   command->add_option("--threads", options->threads, "0: as many as there are cores")->capture_default_str();
   add_log_options(*command, options->logs);

@@ -1,9 +1,14 @@
 #include "tools/commands/baseline_folder.h"
 
+#include <unistd.h>
+
 #include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include "base/files.h"
 #include "base/sha256.h"
+#include "daemon/service/signals.h"
 #include "model/file/model_file.h"
 
 namespace softgrip::tools {
@@ -20,27 +25,79 @@ std::string file_of(const sysid::Log& log) {
   return fs::is_directory(log.path) ? (fs::path(log.path) / "run.csv").string() : log.path;
 }
 
+/// Writes files one by one and keeps what baseline.json says of them, up to the first failure.
+class FolderWriter {
+ public:
+  explicit FolderWriter(std::string folder) : folder_(std::move(folder)) {}
+
+  Json write(const std::string& name, const std::string& bytes, const std::string& source = "") {
+    if (why_.empty()) {
+      if (auto written = write_file((fs::path(folder_) / name).string(), bytes); !written)
+        why_ = written.error();
+    }
+    Json entry{{"file", name}};
+    if (!source.empty()) entry["source"] = source;
+    entry["sha256"] = sha256(bytes);
+    return entry;
+  }
+  Json write_all(const std::string& name, const std::vector<BaselineFile>& files) {
+    Json list = Json::array();
+    for (std::size_t i = 0; i < files.size(); ++i)
+      list.push_back(write(name + std::to_string(i + 1) + ".csv", files[i].bytes, files[i].source));
+    return list;
+  }
+  [[nodiscard]] const std::string& why() const { return why_; }
+
+ private:
+  std::string folder_;
+  std::string why_;
+};
+
+tl::expected<std::string, std::string> write_into(const std::string& folder, const BaselineContents& contents,
+                                                  Json about) {
+  FolderWriter writer(folder);
+  about["logs"] = writer.write_all("healthy_", contents.healthy);
+  about["second_run"] = writer.write_all("second_", contents.second);
+  about["gauge"] = nullptr;
+  if (contents.gauge)
+    about["gauge"] = writer.write("gauge.csv", contents.gauge->bytes, contents.gauge->source);
+  about["model"] = writer.write("model.yaml", model::to_yaml(contents.model));
+  std::string text = about.dump(2) + "\n";
+  (void)writer.write("baseline.json", text);
+  if (!writer.why().empty()) return Failure(writer.why());
+  return text;
+}
+
 }  // namespace
 
-tl::expected<std::string, std::string> write_baseline(const std::string& folder,
-                                                      const std::vector<sysid::Log>& logs,
-                                                      const model::Model& model, Json about) {
-  about["logs"] = Json::array();
-  for (std::size_t i = 0; i < logs.size(); ++i) {
-    const std::string name = "healthy_" + std::to_string(i + 1) + ".csv";
-    const auto bytes = read_file(file_of(logs[i]), largest_log);
-    if (!bytes) return Failure(bytes.error());
-    if (const auto written = write_file((fs::path(folder) / name).string(), *bytes); !written)
-      return Failure(written.error());
-    about["logs"].push_back({{"file", name}, {"source", logs[i].path}, {"sha256", sha256(*bytes)}});
+tl::expected<BaselineFile, std::string> baseline_file(const std::string& path) {
+  auto bytes = read_file(path, largest_log);
+  if (!bytes) return Failure(bytes.error());
+  return BaselineFile{path, std::move(*bytes)};
+}
+
+tl::expected<std::vector<BaselineFile>, std::string> files_of(const std::vector<sysid::Log>& logs) {
+  std::vector<BaselineFile> files;
+  for (const sysid::Log& log : logs) {
+    auto file = baseline_file(file_of(log));
+    if (!file) return Failure(file.error());
+    files.push_back({log.path, std::move(file->bytes)});
   }
-  const std::string yaml = model::to_yaml(model);
-  if (const auto written = write_file((fs::path(folder) / "model.yaml").string(), yaml); !written)
-    return Failure(written.error());
-  about["model"] = {{"file", "model.yaml"}, {"sha256", sha256(yaml)}};
-  std::string text = about.dump(2) + "\n";
-  if (const auto written = write_file((fs::path(folder) / "baseline.json").string(), text); !written)
-    return Failure(written.error());
+  return files;
+}
+
+tl::expected<std::string, std::string> write_baseline(const std::string& folder,
+                                                      const BaselineContents& contents, Json about) {
+  const daemon::Signals held_back;
+  std::error_code ignored;
+  const fs::path place = fs::path(folder).has_filename() ? fs::path(folder) : fs::path(folder).parent_path();
+  if (fs::exists(place, ignored)) return write_into(place.string(), contents, std::move(about));
+  const std::string partial = place.string() + ".partial-" + std::to_string(::getpid());
+  auto text = write_into(partial, contents, std::move(about));
+  std::error_code failed;
+  if (text) fs::rename(partial, place, failed);
+  if (text && failed) text = Failure("cannot make " + folder + ": " + failed.message());
+  if (!text) fs::remove_all(partial, ignored);
   return text;
 }
 
@@ -64,10 +121,20 @@ tl::expected<Baseline, std::string> read_baseline(const std::string& folder) {
       return Failure(file + " is not the file that the baseline was made with: make the baseline again");
     return file;
   };
-  for (const Json& entry : json["logs"]) {
-    const auto file = known(entry);
-    if (!file) return Failure(file.error());
-    baseline.logs.push_back(*file);
+  const auto all = [&](const char* key, std::vector<std::string>& files) -> tl::expected<void, std::string> {
+    for (const Json& entry : json.value(key, Json::array())) {
+      const auto file = known(entry);
+      if (!file) return Failure(file.error());
+      files.push_back(*file);
+    }
+    return {};
+  };
+  if (const auto healthy = all("logs", baseline.logs); !healthy) return Failure(healthy.error());
+  if (const auto second = all("second_run", baseline.second); !second) return Failure(second.error());
+  if (json.contains("gauge") && !json["gauge"].is_null()) {
+    const auto gauge = known(json["gauge"]);
+    if (!gauge) return Failure(gauge.error());
+    baseline.gauge = *gauge;
   }
   const auto model = known(json["model"]);
   if (!model) return Failure(model.error());

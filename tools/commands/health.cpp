@@ -34,7 +34,7 @@ constexpr const char* scoring = "1-";
 constexpr std::size_t id_letters = 12;
 constexpr std::size_t largest_file = std::size_t{512} * 1024 * 1024;
 
-struct Options {
+struct HealthOptions {
   std::vector<std::string> runs;
   std::string baseline;
   std::string notes;
@@ -98,7 +98,7 @@ class Baselines {
   std::optional<ExitCode> refused_;
 };
 
-tl::expected<std::vector<health::Note>, ExitCode> notes_of(const Options& options) {
+tl::expected<std::vector<health::Note>, ExitCode> notes_of(const HealthOptions& options) {
   std::string path = options.notes;
   if (path.empty() && !options.out.empty()) {
     const fs::path beside = fs::path(options.out) / "notes.yaml";
@@ -127,7 +127,8 @@ std::vector<Judged> judged(const std::vector<health::ScoredRun>& runs, const std
   return all;
 }
 
-Json result_of(const Options& options, const std::vector<Judged>& fingers, const health::RunScores& scores) {
+Json result_of(const HealthOptions& options, const std::vector<Judged>& fingers,
+               const health::RunScores& scores) {
   const Nanoseconds now = wall_time_now();
   const health::ChartLimits limits = options.judge.limits();
   const bool alarm = std::any_of(fingers.begin(), fingers.end(), [](const Judged& finger) {
@@ -184,7 +185,7 @@ tl::expected<void, std::string> write_results(const std::string& out, const Json
   return write(health::health_file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-ExitCode run(Options options) {
+ExitCode run(HealthOptions options) {
   options.judge.by_day = options.points == "day";
   const auto notes = notes_of(options);
   if (!notes) return notes.error();
@@ -226,7 +227,7 @@ ExitCode run(Options options) {
 }  // namespace
 
 void add_health(CLI::App& program, ExitCode& outcome) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<HealthOptions>();
   CLI::App* command = program.add_subcommand(
       "health", "What the recordings of a working day say of the fingers: what has changed, since when");
   command->add_option("runs", options->runs, "Recordings, or folders of recordings")->required();

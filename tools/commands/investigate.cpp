@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,13 +16,13 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
-#include "rig/rig_file.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/gauge_by_hand.h"
+#include "tools/commands/rig_to_move.h"
 #include "tools/investigation/experiment_rig.h"
 #include "tools/investigation/investigation.h"
 #include "tools/investigation/investigation_report.h"
@@ -72,16 +71,6 @@ CampaignScales scales_of(const std::vector<sysid::Log>& logs) {
   return scales;
 }
 
-Consent consent_of(const InvestigateOptions& options) {
-  if (options.yes) return [](const std::string&) { return true; };
-  return [](const std::string& what) {
-    std::fprintf(stderr, "%s. Ctrl-C vents it. Go on? [y/N] ", what.c_str());
-    std::fflush(stderr);
-    std::string answer;
-    return std::getline(std::cin, answer) && (answer == "y" || answer == "Y" || answer == "yes");
-  };
-}
-
 /// Where experiments are played, and within which limits.
 struct Playground {
   Player play;
@@ -98,23 +87,15 @@ tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& optio
   if (!options.rig_command.empty()) {
     const double largest_kpa = options.pressure_max_kpa > 0 ? options.pressure_max_kpa : scales.largest_kpa;
     ground.limits = {largest_kpa, options.slew_kpa_per_s};
-    ground.play = command_player(options.rig_command, scales.interval_s, consent_of(options));
+    ground.play = command_player(options.rig_command, scales.interval_s, consent_on_terminal(options.yes));
     if (!options.gauge_command.empty())
-      ground.take_gauge = command_gauge(options.gauge_command, consent_of(options));
+      ground.take_gauge = command_gauge(options.gauge_command, consent_on_terminal(options.yes));
     ground.name = options.rig_command;
     return ground;
   }
-  if (const auto code = unreadable(options.rig)) return tl::unexpected(*code);
-  document::Problems problems;
-  auto file = rig::load_rig(options.rig, problems);
-  if (!file) return tl::unexpected(refuse(problems));
-  auto rig = experiment_rig(std::move(*file),
-                            options.rig_channel.empty() ? options.logs.channel : options.rig_channel);
-  if (!rig) return tl::unexpected(fail(ExitCode::usage, rig.error()));
-  if (!rig->simulated && !options.yes && ::isatty(STDIN_FILENO) == 0) {
-    return tl::unexpected(
-        fail(ExitCode::usage, "this would move a rig and there is nobody to ask: --yes allows it"));
-  }
+  auto rig = rig_to_move(
+      options.rig, options.rig_channel.empty() ? options.logs.channel : options.rig_channel, options.yes);
+  if (!rig) return tl::unexpected(rig.error());
   ground.limits = rig->limits(scales.gain_mm_per_kpa, scales.largest_kpa);
   ground.channel = rig->channel_name();
   ground.name = options.rig;
@@ -122,9 +103,9 @@ tl::expected<Playground, ExitCode> playground_of(const InvestigateOptions& optio
   if (rig->simulated) {
     ground.take_gauge = simulated_gauge(*rig);
   } else if (::isatty(STDIN_FILENO) == 1) {
-    ground.take_gauge = gauge_by_hand(*rig, consent_of(options));
+    ground.take_gauge = gauge_by_hand(*rig, consent_on_terminal(options.yes));
   }
-  ground.play = rig_player(std::move(*rig), consent_of(options));
+  ground.play = rig_player(std::move(*rig), consent_on_terminal(options.yes));
   return ground;
 }
 
@@ -135,7 +116,7 @@ std::optional<RigTracking> on_rig(const InvestigateOptions& options, const Playg
   if (!gain || !ground.rig || investigation.end != InvestigationEnd::settled) return std::nullopt;
   const auto tracking =
       track_on_rig(*ground.rig, investigation.last.recalibrated_model, investigation.last.extended_model,
-                   *gain, options.out, consent_of(options));
+                   *gain, options.out, consent_on_terminal(options.yes));
   if (tracking) return *tracking;
   std::fprintf(stderr, "the closed loop was not measured on the rig: %s\n", tracking.error().why.c_str());
   return std::nullopt;

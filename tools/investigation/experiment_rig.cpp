@@ -12,6 +12,7 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
+#include "base/random.h"
 #include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"
 
@@ -100,6 +101,12 @@ sysid::RigLimits ExperimentRig::limits(double gain_mm_per_kpa, double known_kpa)
   return {largest_kpa, std::min(own.slew_up_kpa_per_s, own.slew_down_kpa_per_s)};
 }
 
+ExperimentRig ExperimentRig::at(std::uint64_t occasion) const {
+  ExperimentRig other = *this;
+  rig::reseed(other.rig, derived_seed(rig.seed.value_or(0), occasion));
+  return other;
+}
+
 tl::expected<ExperimentRig, std::string> experiment_rig(rig::RigFile rig, const std::string& channel) {
   ExperimentRig result{std::move(rig), 0, false};
   const auto& channels = result.rig.settings.channels;
@@ -146,6 +153,13 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   return options.record_folder;
 }
 
+tl::expected<sysid::Log, NotPlayed> played_on(const ExperimentRig& rig, const std::string& name,
+                                              const std::string& sequence_yaml, const std::string& folder) {
+  const auto recording = run_on(rig, name, sequence_yaml, folder);
+  if (!recording) return tl::unexpected(recording.error());
+  return log_of(*recording, rig.channel_name());
+}
+
 Player rig_player(ExperimentRig rig, Consent consent) {
   return [rig = std::move(rig), consent = std::move(consent)](
              const sysid::NextExperiment& experiment,
@@ -153,10 +167,7 @@ Player rig_player(ExperimentRig rig, Consent consent) {
     if (!rig.simulated &&
         !consent(what_moves(experiment, "channel '" + rig.channel_name() + "' of " + rig.rig.name)))
       return stopped("not allowed to move the rig");
-    const auto recording =
-        run_on(rig, "recording", sysid::sequence_yaml(experiment, rig.channel_name()), folder);
-    if (!recording) return tl::unexpected(recording.error());
-    return log_of(*recording, rig.channel_name());
+    return played_on(rig, "recording", sysid::sequence_yaml(experiment, rig.channel_name()), folder);
   };
 }
 

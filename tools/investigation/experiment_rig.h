@@ -2,6 +2,7 @@
 // What an investigation plays its experiments on: a rig file's rig through the daemon's own code, or a
 // command of the user's.
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -21,6 +22,8 @@ struct ExperimentRig {
   bool simulated = false;  ///< in process: nothing moves, time is virtual
 
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
+  /// The same rig on another occasion: a simulated one draws other noise, a real one does so by itself.
+  [[nodiscard]] ExperimentRig at(std::uint64_t occasion) const;
   /// What the menu may ask of it. @param gain_mm_per_kpa  of the logs, keeps the finger inside its
   /// displacement range; 0: unknown. @param known_kpa  the largest pressure of the logs, beyond which less of
   /// it is used.
@@ -35,6 +38,11 @@ struct ExperimentRig {
 [[nodiscard]] tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std::string& name,
                                                           const std::string& sequence_yaml,
                                                           const std::string& folder);
+
+/// The same, and the rig's channel read from that recording.
+[[nodiscard]] tl::expected<sysid::Log, NotPlayed> played_on(const ExperimentRig& rig, const std::string& name,
+                                                            const std::string& sequence_yaml,
+                                                            const std::string& folder);
 
 /// Asked before anything moves, with a sentence that says what will. False: it does not move.
 using Consent = std::function<bool(const std::string& what)>;

@@ -15,6 +15,7 @@
 #include <set>
 
 #include "base/files.h"
+#include "base/scratch_folder.h"
 #include "base/sha256.h"
 #include "document/problem.h"
 #include "model/file/model_file.h"
@@ -34,26 +35,6 @@ struct Kind {
 };
 constexpr std::array kinds{Kind{"identify", "identify.json"}, Kind{"validate", "validate.json"},
                            Kind{"diagnose", "diagnosis.json"}};
-
-/// A folder that is gone with it.
-class ScratchFolder {
- public:
-  ScratchFolder() : path_((fs::temp_directory_path() / "softgrip-report-XXXXXX").string()) {
-    if (::mkdtemp(path_.data()) == nullptr) path_.clear();
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ScratchFolder(ScratchFolder&&) = delete;
-  ScratchFolder& operator=(ScratchFolder&&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 /// Calls the program with its standard output closed; its exit code, or -1.
 int called(const std::string& program, std::vector<std::string> words) {

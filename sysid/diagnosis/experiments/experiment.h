@@ -73,6 +73,8 @@ inline constexpr double separation_needed_sigma = 5;
 
 /// A sequence file of one pressure step, as softgripd reads it. @param channel  "" for all of the rig.
 [[nodiscard]] std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel = "");
+/// The same of any entry of the menu.
+[[nodiscard]] std::string sequence_yaml(const Waveform& waveform, const std::string& channel);
 
 /// Fills in next_experiment and gauge_check (null without one) and experiment_advice of a diagnosis.json.
 void add_experiment(nlohmann::ordered_json& diagnosis_json, const NextExperiment& experiment,

@@ -21,15 +21,16 @@ std::string list_of(const std::vector<std::string>& ids) {
 
 std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel) {
   const JudgedWaveform& best = experiment.best.value();
-  std::string yaml = "# Proposed by softgrip diagnose: tells " + list_of(experiment.separates) +
-                     " apart, by " + significant(experiment.predicted_separation_sigma, 3) +
-                     " standard deviations as predicted, in " + significant(best.minutes, 3) +
-                     " minutes on the rig.\n";
-  yaml += "name: " + best.waveform.name + "\n";
-  yaml += "about: \"" + best.waveform.about + "\"\n";
+  return "# Proposed by softgrip diagnose: tells " + list_of(experiment.separates) + " apart, by " +
+         significant(experiment.predicted_separation_sigma, 3) + " standard deviations as predicted, in " +
+         significant(best.minutes, 3) + " minutes on the rig.\n" + sequence_yaml(best.waveform, channel);
+}
+
+std::string sequence_yaml(const Waveform& waveform, const std::string& channel) {
+  std::string yaml = "name: " + waveform.name + "\nabout: \"" + waveform.about + "\"\n";
   if (!channel.empty()) yaml += "channels: [" + channel + "]\n";
   yaml += "steps:\n  - pressure:\n      points:\n";
-  for (const Corner& corner : best.waveform.corners) {
+  for (const Corner& corner : waveform.corners) {
     yaml += "        - {time_s: " + shortest(corner.time_s) +
             ", pressure_kpa: " + shortest(corner.pressure_kpa) + "}\n";
   }

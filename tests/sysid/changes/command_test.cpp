@@ -43,6 +43,26 @@ TEST_F(ChangeCommand, ASecondRunThatDiffersIsNotAcceptable) {
   EXPECT_NE(Json::parse(read("base/baseline.json"))["check"]["verdict"], "unchanged");
 }
 
+TEST_F(ChangeCommand, ABaselineThatIsThereIsLookedAtAgain) {
+  write("gauge.csv", "gauge_mm,displacement_mm\n0,0\n5,5\n10,10\n");
+  write("again.csv", format_log(test::log_of({}, 3)));
+  ASSERT_EQ(run("baseline --data h1.csv h2.csv --check again.csv --gauge gauge.csv --model " + model +
+                " --out base --json"),
+            0)
+      << read("err.txt");
+  const Json made = Json::parse(read("out.txt"));
+  EXPECT_EQ(made["gauge"]["source"], "gauge.csv");
+  EXPECT_GT(made["check"]["model_rmse_mm"]["second_run"].get<double>(), 0);
+  ASSERT_EQ(run("baseline --check base --json"), 0) << read("err.txt");
+  EXPECT_EQ(Json::parse(read("out.txt"))["check"], made["check"]);
+  write("base/gauge.csv", "gauge_mm,displacement_mm\n0,1\n");
+  EXPECT_EQ(run("baseline --check base"), 3);
+  ASSERT_EQ(run("baseline --data h1.csv --check later1.csv --model " + model + " --out drifted"), 6);
+  EXPECT_EQ(run("baseline --check drifted"), 6);
+  ASSERT_EQ(run("baseline --data h1.csv --model " + model + " --out once"), 0);
+  EXPECT_EQ(run("baseline --check once"), 3) << "no second run";
+}
+
 TEST_F(ChangeCommand, ABaselineThatSomebodyChangedIsRefused) {
   ASSERT_EQ(run("baseline --data h1.csv --model " + model + " --out base"), 0);
   write("base/healthy_1.csv", read("h2.csv"));

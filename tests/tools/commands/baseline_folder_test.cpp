@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "base/files.h"
 #include "tests/daemon/temporary_folder.h"
 #include "tools/commands/diagnose_change.h"
@@ -15,24 +17,52 @@ class BaselineFolder : public testing::Test {
     EXPECT_TRUE(write_file(folder_ + "/tp1.csv", "a log\n"));
     sysid::Log log;
     log.path = folder_ + "/tp1.csv";
-    logs_ = {log};
+    contents_.healthy = files_of({log}).value();
   }
 
   daemon::testing::TemporaryFolder temporary_;
   std::string folder_ = temporary_.path();
-  std::vector<sysid::Log> logs_;
+  BaselineContents contents_;
 };
 
 TEST_F(BaselineFolder, WhatIsWrittenIsReadBack) {
-  ASSERT_TRUE(write_baseline(folder_ + "/base", logs_, {}, {{"schema", 1}}));
+  ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
   const auto baseline = read_baseline(folder_ + "/base");
   ASSERT_TRUE(baseline) << baseline.error();
   ASSERT_EQ(baseline->logs.size(), 1U);
   EXPECT_EQ(*read_file(baseline->logs[0], 100), "a log\n");
+  EXPECT_TRUE(baseline->second.empty());
+  EXPECT_TRUE(baseline->gauge.empty());
+}
+
+TEST_F(BaselineFolder, TheSecondRunAndTheGaugeAreKeptAndWatchedOver) {
+  contents_.second = {{"again.csv", "another log\n"}};
+  contents_.gauge = BaselineFile{"blocks.csv", "gauge_mm,displacement_mm\n"};
+  for (const char* const name : {"second_1.csv", "gauge.csv"}) {
+    ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
+    const auto baseline = read_baseline(folder_ + "/base");
+    ASSERT_TRUE(baseline) << baseline.error();
+    ASSERT_EQ(baseline->second.size(), 1U);
+    EXPECT_EQ(*read_file(baseline->second[0], 100), "another log\n");
+    EXPECT_EQ(*read_file(baseline->gauge, 100), "gauge_mm,displacement_mm\n");
+    ASSERT_TRUE(write_file(folder_ + "/base/" + name, "touched"));
+    const auto touched = read_baseline(folder_ + "/base");
+    ASSERT_FALSE(touched);
+    EXPECT_NE(touched.error().find(name), std::string::npos) << touched.error();
+  }
+}
+
+TEST_F(BaselineFolder, WhatCannotBeWrittenWholeLeavesNothing) {
+  ASSERT_TRUE(write_file(folder_ + "/file", "no folder"));
+  EXPECT_FALSE(write_baseline(folder_ + "/file/base", contents_, {{"schema", 1}}));
+  ASSERT_TRUE(write_baseline(folder_ + "/base/", contents_, {{"schema", 1}}));
+  std::size_t entries = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_)) ++entries;
+  EXPECT_EQ(entries, 3U) << "tp1.csv, file and base";
 }
 
 TEST_F(BaselineFolder, WhatWasChangedIsRefusedByName) {
-  ASSERT_TRUE(write_baseline(folder_ + "/base", logs_, {}, {{"schema", 1}}));
+  ASSERT_TRUE(write_baseline(folder_ + "/base", contents_, {{"schema", 1}}));
   ASSERT_TRUE(write_file(folder_ + "/base/model.yaml", "another"));
   const auto baseline = read_baseline(folder_ + "/base");
   ASSERT_FALSE(baseline);

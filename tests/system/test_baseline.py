@@ -1,0 +1,198 @@
+"""softgrip baseline --rig: the commissioning experiment on a rig, what it keeps, and what it refuses."""
+
+import csv
+import json
+import os
+import re
+import signal
+import unittest.mock
+
+import bench
+import terminal
+
+STONE = "\n        object: {position_mm: 12, yielding: 0.1}    # a stone between the fingers"
+SHORT = ("--experiments", "minor_loops", "sharp_steps")
+ENDS_WITHIN_S = 170
+
+
+class Baseline(bench.BenchTest):
+
+    def setUp(self):
+        super().setUp()
+        self.temporary = self.folder / "temporary"
+        self.temporary.mkdir()
+        patch = unittest.mock.patch.dict(os.environ, {"TMPDIR": str(self.temporary)})
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def simulated(self, *changes):
+        """config/rig.yaml with a free way for its left finger."""
+        text = (self.folder / "config/rig.yaml").read_text()
+        for old, new in ((STONE, ""), *changes):
+            self.assertIn(old, text)
+            text = text.replace(old, new, 1)
+        return self.write("config/simulated.yaml", text)
+
+    def commissioned(self, rig, *arguments, expect=0):
+        return self.softgrip("baseline", "--rig", rig, "--rig-channel", "left", "--out", "base", *arguments,
+                             expect=expect, timeout_s=ENDS_WITHIN_S)
+
+    def column(self, log, name):
+        with open(self.folder / "base" / log, newline="") as file:
+            return [float(row[name]) for row in csv.DictReader(file) if row[name]]
+
+    def check_nothing_is_left(self):
+        self.assertEqual([path.name for path in self.folder.glob("base*")], [])
+        self.assertEqual(list(self.temporary.iterdir()), [])
+
+    def check_whole(self, logs):
+        """The folder that --data makes, with a second run that is another one; and it does what it is for."""
+        self.assertEqual(list(self.temporary.iterdir()), [])
+        about = json.loads((self.folder / "base/baseline.json").read_text())
+        names = [f"{run}_{i + 1}.csv" for run in ("healthy", "second") for i in range(logs)]
+        self.assertEqual([entry["file"] for entry in about["logs"] + about["second_run"]], names)
+        self.assertEqual(sorted(path.name for path in (self.folder / "base").iterdir()),
+                         sorted(["baseline.json", "model.yaml", *names]))
+        self.assertNotEqual(about["logs"][0]["sha256"], about["second_run"][0]["sha256"], "played, not copied")
+        again = json.loads(self.softgrip("baseline", "--check", "base", "--json", expect=None,
+                                         timeout_s=ENDS_WITHIN_S).stdout)
+        self.assertEqual(again["check"], about["check"])
+        return about
+
+    def found(self, logs):
+        self.softgrip("diagnose", "--baseline", "base", "--data", *logs, "--out", "found", timeout_s=ENDS_WITHIN_S)
+        return json.loads((self.folder / "found/diagnosis.json").read_text())
+
+    def test_a_simulated_rig_is_commissioned_and_a_change_found(self):
+        done = self.commissioned(self.simulated(), *SHORT)
+        self.assertRegex(done.stdout, r"The second run: Unchanged.*What the base leaves: 0\.\d+ mm of the first run")
+        about = self.check_whole(2)
+        self.assertEqual(about["check"]["verdict"], "unchanged")
+        self.assertEqual((about["rig"]["channel"], about["rig"]["simulated"]), ("left", True))
+        (self.folder / "base").rename(self.folder / "healthy")
+        text = (self.folder / "config/models/bench_twin.yaml").read_text()
+        self.assertIn("alpha_mm_per_kpa: 0.21", text)
+        self.write("config/models/weaker.yaml", text.replace("alpha_mm_per_kpa: 0.21", "alpha_mm_per_kpa: 0.18"))
+        self.commissioned(self.simulated(("      left:\n        model: models/bench_twin.yaml",
+                                          "      left:\n        model: models/weaker.yaml")), *SHORT)
+        (self.folder / "base").rename(self.folder / "today")
+        (self.folder / "healthy").rename(self.folder / "base")
+        cause = self.found(["today/healthy_1.csv", "today/healthy_2.csv"])["causes"][0]
+        self.assertEqual(cause["id"], "ageing")
+        self.assertLess(cause["size"]["value"], -4, "per cent of the gain")
+        log = self.folder / "base/second_2.csv"
+        log.write_text(log.read_text() + "\n")
+        self.assertIn("second_2.csv", self.softgrip("baseline", "--check", "base", expect=3).stderr)
+
+    def test_it_stays_within_the_limits_of_the_rig_file(self):
+        for old, new, most_kpa, most_mm in (
+                ("pressure_max_kpa: 60", "pressure_max_kpa: 22", 22, 35),
+                ("displacement_max_mm: 35", "displacement_max_mm: 11", 60, 11)):
+            with self.subTest(new):
+                self.commissioned(self.simulated((old, new)), *SHORT)
+                for log in ("healthy_1.csv", "second_1.csv"):
+                    command = self.column(log, "pressure_command_kpa")
+                    self.assertLessEqual(max(command), most_kpa + 1e-6)
+                    self.assertGreater(max(command), 10)
+                    steps = [abs(b - a) for a, b in zip(command, command[1:])]
+                    self.assertLessEqual(max(steps), 300 / 200 + 1e-6, "300 kPa/s at 200 Hz")
+                    self.assertLess(max(self.column(log, "displacement_mm")), most_mm)
+                for path in (self.folder / "base").iterdir():
+                    path.unlink()
+
+    def test_a_contact_in_the_way_ends_it_and_leaves_nothing(self):
+        done = self.commissioned(self.folder / "config/rig.yaml", expect=6)
+        self.assertRegex(done.stderr, r"the finger touched something: it stopped at 1[2-5](\.\d)? mm")
+        self.check_nothing_is_left()
+
+    def test_a_finger_that_does_not_move_ends_it(self):
+        still = (self.folder / "config/models/bench_twin.yaml").read_text()
+        plant = ("      left:\n        model: models/bench_twin.yaml", "      left:\n        model: models/still.yaml")
+        self.write("config/models/still.yaml", re.sub(
+            r"(alpha|beta)_mm_per_kpa: 0\.", r"\1_mm_per_kpa: 0.00", re.sub(r"(k[012]_kpa_per_mm: )", r"\g<1>100", still)))
+        done = self.commissioned(self.simulated(plant), expect=6)
+        self.assertIn("the finger hardly moved", done.stderr)
+        self.check_nothing_is_left()
+
+    def test_what_cannot_be_done_is_refused_before_anything_moves(self):
+        free = self.simulated()
+        for arguments, code, why in (
+                (["--rig", free, "--out", "base"], 2, "the rig has 2 channels"),
+                (["--rig", free, "--rig-channel", "middle", "--out", "base"], 2, "no channel 'middle'"),
+                (["--rig", free, "--rig-channel", "left", "--out", "config"], 2, "config is there already"),
+                (["--rig", free, "--rig-channel", "left"], 2, "--out is required"),
+                (["--rig", free, "--data", "log.csv", "--out", "base"], 2, "excludes"),
+                (["--rig", "nowhere.yaml", "--out", "base"], 4, "nowhere.yaml"),
+                (["--rig-channel", "left", "--data", "log.csv", "--out", "base"], 2, "requires --rig"),
+                (["--rig", free, "--rig-channel", "left", "--experiments", "dance", "--out", "base"], 2, "dance"),
+                (["--out", "base"], 2, "needs --rig or --data"),
+                (["--check", "config"], 3, "config is no baseline")):
+            with self.subTest(why):
+                self.assertIn(why, self.softgrip("baseline", *arguments, expect=code).stderr)
+        upper = self.simulated(("pressure_min_kpa: 0", "pressure_min_kpa: 2"))
+        self.assertIn("never goes down to 0 kPa", self.commissioned(upper, expect=2).stderr)
+        self.check_nothing_is_left()
+
+    def test_over_modbus_in_real_time_it_is_commissioned_too(self):
+        quick = (self.folder / "config/models/bench_twin.yaml").read_text()
+        self.assertIn("c1_kpa_s_per_mm: 299.8", quick)
+        model = self.write("config/models/bench_twin.yaml", quick.replace("c1_kpa_s_per_mm: 299.8", "c1_kpa_s_per_mm: 20"))
+        board = self.emulator("--model", model)  # one that has crept back after a few seconds
+        done = self.commissioned(self.rig(board.port), "--experiments", "sharp_steps", "--rest-s", "5", "--yes",
+                                 expect=None)
+        self.assertIn("run_2, 1 of 1: sharp_steps", done.stderr)
+        self.assertLess(max(board.pressures_kpa()), 5, "and it is vented")
+        about = self.check_whole(1)
+        check = about["check"]  # one short log is thin ground: the verdict on it is not what is shown here
+        self.assertEqual(done.returncode, 0 if check["verdict"] == "unchanged" else 6)
+        self.assertLess(check["second_run_rms_mm"], 2 * check["healthy_heldout_rms_mm"])
+        self.assertEqual((about["rig"]["channel"], about["rig"]["simulated"]), ("left", False))
+
+    def test_who_is_not_allowed_moves_nothing(self):
+        board = self.emulator()
+        rig = self.rig(board.port)
+        self.assertIn("nobody to ask: --yes allows it", self.commissioned(rig, expect=2).stderr)
+        screen = terminal.Terminal([bench.SOFTGRIP, "baseline", "--rig", rig, "--rig-channel", "left", "--out", "base"],
+                                   self.folder, columns=200)
+        self.addCleanup(screen.close)
+        bench.wait_for("the question", lambda: "Go on? [y/N]" in screen.text())
+        self.assertRegex(screen.text(), r"channel 'left' of bench will move, .* up to [\d.]+ kPa, about 17 minutes; "
+                                        "nothing may be in its way")
+        screen.type("n\n")
+        self.assertEqual(screen.wait(), 1)
+        self.assertIn("not allowed to move the rig", screen.text())
+        self.assertEqual(board.commands_kpa(), [0, 0])
+        self.check_nothing_is_left()
+
+    def test_a_board_that_somebody_drives_is_refused(self):
+        board = self.emulator()
+        rig = self.rig(board.port)
+        softgripd = self.daemon(rig)
+        softgripd.wait_for_state("idle")
+        self.assertIn("softgripd runs", self.commissioned(rig, "--yes", expect=5).stderr)
+        other = self.write("config/other.yaml", rig.read_text().replace("softgripd.sock", "other.sock"))
+        self.assertIn(str(softgripd.child.pid), self.commissioned(other, "--yes", expect=5).stderr)
+        self.check_nothing_is_left()
+
+    def test_ctrl_c_vents_and_leaves_nothing(self):
+        board = self.emulator()
+        child = bench.Process("softgrip", [bench.SOFTGRIP, "baseline", "--rig", self.rig(board.port), "--rig-channel",
+                                           "left", "--out", "base", "--yes"], self.folder)
+        self.processes.append(child)
+        bench.wait_for("pressure", lambda: board.commands_kpa()[0] > 5)
+        self.assertNotEqual(list(self.temporary.iterdir()), [], "what is recorded is somewhere")
+        self.assertEqual(child.end(signal.SIGINT), 1)
+        self.assertIn("stopped by the user; the rig is vented", child.errors())
+        self.assertEqual(board.commands_kpa(), [0, 0])
+        self.check_nothing_is_left()
+
+    def test_a_contact_over_modbus_is_noticed_too(self):
+        board = self.emulator("--object", "stone")
+        done = self.commissioned(self.rig(board.port), *SHORT, "--rest-s", "1", "--yes", expect=6)
+        self.assertIn("the finger touched something", done.stderr)
+        self.assertLess(max(board.pressures_kpa()), 5, "and it is vented")
+        self.check_nothing_is_left()
+
+
+if __name__ == "__main__":
+    bench.main()

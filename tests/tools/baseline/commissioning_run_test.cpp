@@ -1,0 +1,91 @@
+#include "tools/baseline/commissioning_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "document/problem.h"
+#include "model/catalogue.h"
+
+namespace softgrip::tools {
+namespace {
+
+/// The shipped rig with nothing between the fingers.
+ExperimentRig free_rig() {
+  document::Problems problems;
+  rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();
+  for (auto& channel : std::get<simulation::SimulatedBoardSettings>(file.board).channels)
+    channel.plant.object.reset();
+  return experiment_rig(std::move(file), "left").value();
+}
+
+CommissioningOptions short_one() {
+  CommissioningOptions options;
+  options.experiments = {"sharp_steps"};
+  return options;
+}
+
+TEST(CommissioningRun, PlaysTwiceWithOtherNoise) {
+  std::vector<std::string> told;
+  CommissioningOptions options = short_one();
+  options.tell = [&](const std::string& line) { told.push_back(line); };
+  const auto runs = play_commissioning(free_rig(), options);
+  ASSERT_TRUE(runs) << runs.error().why;
+  ASSERT_EQ(runs->first.size(), 1U);
+  ASSERT_EQ(runs->second.size(), 1U);
+  EXPECT_EQ(runs->first[0].name, "sharp_steps");
+  EXPECT_EQ(runs->first[0].channel, "left");
+  EXPECT_EQ(runs->first[0].pressure_command_kpa, runs->second[0].pressure_command_kpa);
+  EXPECT_NE(runs->first[0].displacement_mm, runs->second[0].displacement_mm);
+  ASSERT_EQ(told.size(), 4U);
+  EXPECT_EQ(told[0].rfind("first: gentle_motion", 0), 0U) << told[0];
+  EXPECT_EQ(told[1].rfind("first: first_load", 0), 0U) << told[1];
+}
+
+TEST(CommissioningRun, AsksBeforeARealRigMovesAndTakesNoForAnAnswer) {
+  ExperimentRig rig = free_rig();
+  rig.simulated = false;
+  CommissioningOptions options = short_one();
+  std::string question;
+  options.consent = [&](const std::string& what) {
+    question = what;
+    return false;
+  };
+  options.tell = [](const std::string& line) { ADD_FAILURE() << line; };
+  const auto runs = play_commissioning(rig, options);
+  ASSERT_FALSE(runs);
+  EXPECT_EQ(runs.error().code, ExitCode::failed);
+  EXPECT_EQ(question.rfind("channel 'left' of simulated will move", 0), 0U) << question;
+  EXPECT_NE(question.find("about 3.8 minutes"), std::string::npos) << question;
+}
+
+TEST(CommissioningRun, AFingerThatGoesFurtherThanItsModelIsKeptWithinItsRange) {
+  for (const double share : {1.0, 0.6}) {
+    ExperimentRig rig = free_rig();
+    model::Model& believed = rig.rig.settings.channels[rig.channel].model;
+    for (model::BlockSpec& block : believed.blocks) {
+      if (std::string_view(model::catalogue()[block.type].info.id) != "bouc_wen") continue;
+      block.values[0] *= share;  // alpha and beta: what the finger does at once
+      block.values[1] *= share;
+    }
+    rig.rig.settings.channels[rig.channel].limits.displacement_max_mm = 15;
+    const auto runs = play_commissioning(rig, short_one());
+    ASSERT_TRUE(runs) << runs.error().why;
+    const auto& readings = runs->first[0].displacement_mm;
+    double furthest_mm = 0;
+    for (const double reading : readings) furthest_mm = std::max(furthest_mm, reading);
+    EXPECT_LT(furthest_mm, 15) << share;
+    EXPECT_GT(furthest_mm, 9) << share;
+  }
+}
+
+TEST(CommissioningRun, EveryUsualExperimentIsOnTheMenu) {
+  const auto menu = sysid::experiment_menu({});
+  for (const std::string& name : usual_commissioning()) {
+    EXPECT_TRUE(std::any_of(menu.begin(), menu.end(), [&](const auto& w) { return w.name == name; })) << name;
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::tools

@@ -1,0 +1,46 @@
+#include "tools/commands/rig_to_move.h"
+
+#include <gtest/gtest.h>
+
+#include "daemon/service/board_lock.h"
+
+namespace softgrip::tools {
+namespace {
+
+const std::string simulated = SOFTGRIP_SOURCE_DIR "/config/rig.yaml";
+const std::string real = SOFTGRIP_SOURCE_DIR "/config/rig_tcp.yaml";
+
+TEST(RigToMove, ASimulatedOneIsNobodyElses) {
+  const auto rig = rig_to_move(simulated, "right", false);
+  ASSERT_TRUE(rig);
+  EXPECT_TRUE(rig->simulated);
+  EXPECT_EQ(rig->channel_name(), "right");
+}
+
+TEST(RigToMove, WhatStandsInTheWayHasItsExitCode) {
+  EXPECT_EQ(rig_to_move("nowhere.yaml", "", true).error(), ExitCode::io);
+  EXPECT_EQ(rig_to_move(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml", "", true).error(),
+            ExitCode::input_refused);
+  EXPECT_EQ(rig_to_move(simulated, "", true).error(), ExitCode::usage) << "two channels, none named";
+  EXPECT_EQ(rig_to_move(simulated, "middle", true).error(), ExitCode::usage);
+}
+
+TEST(RigToMove, ABoardThatAnotherProgramHoldsIsNotTaken) {
+  document::Problems problems;
+  const auto file = rig::load_rig(real, problems);
+  ASSERT_TRUE(file);
+  {
+    const auto held = daemon::BoardLock::take(*file);
+    ASSERT_TRUE(held) << held.error();
+    EXPECT_EQ(rig_to_move(real, "left", true).error(), ExitCode::state_refused);
+  }
+  EXPECT_TRUE(rig_to_move(real, "left", true)) << "and it is let go of";
+  EXPECT_TRUE(daemon::BoardLock::take(*file));
+}
+
+TEST(RigToMove, WhoSaidYesIsNotAsked) {
+  EXPECT_TRUE(consent_on_terminal(true)("it will move"));
+}
+
+}  // namespace
+}  // namespace softgrip::tools

@@ -1,0 +1,236 @@
+#include "tools/baseline/commissioning_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "base/numbers.h"
+#include "base/scratch_folder.h"
+#include "base/time.h"
+#include "daemon/service/signals.h"
+#include "sysid/diagnosis/experiments/experiment.h"
+#include "sysid/identification/validate.h"
+#include "tools/investigation/experiment_check.h"
+#include "tools/studies/simulation.h"
+
+namespace softgrip::tools {
+namespace {
+
+using Failure = tl::unexpected<NotCommissioned>;
+
+/// Of the largest pressure, in the motion that comes before all others.
+constexpr double gentle_share = 0.3;
+/// A finger that goes less than this share of what its model says does not go at all.
+constexpr double least_motion = 0.1;
+/// Of the way to displacement_max_mm, what the finger may go.
+constexpr double range_share = 0.9;
+constexpr int most_corrections = 8;
+/// What a motion takes beside its waveform: finding rest, opening and leaving the board.
+constexpr double pause_s = 3;
+
+/// Slow triangles to a share of the largest pressure.
+sysid::Waveform slow(const char* name, const char* about, double share, int count,
+                     const sysid::RigLimits& limits) {
+  const double top_kpa = share * limits.pressure_max_kpa;
+  const double rise_s = std::max(3.0, std::ceil(2 * top_kpa / limits.slew_kpa_per_s));
+  sysid::Waveform waveform{name, about, {{0, 0}, {1, 0}}};
+  for (int i = 0; i < 2 * count; ++i)
+    waveform.corners.push_back({waveform.duration_s() + rise_s, i % 2 == 0 ? top_kpa : 0});
+  waveform.corners.push_back({waveform.duration_s() + 3, 0});
+  return waveform;
+}
+
+sysid::Waveform gentle(const sysid::RigLimits& limits) {
+  return slow("gentle_motion", "does it move, and how far", gentle_share, 1, limits);
+}
+
+/// A finger that was never so far out yet, or not since long ago, goes differently the first time and rests
+/// elsewhere after it.
+sysid::Waveform first_load(const sysid::RigLimits& limits) {
+  return slow("first_load", "so that both runs begin after the same loads", 1, 2, limits);
+}
+
+std::vector<sysid::Waveform> chosen(const std::vector<std::string>& names, const sysid::RigLimits& limits) {
+  std::vector<sysid::Waveform> result;
+  const std::vector<sysid::Waveform> menu = sysid::experiment_menu(limits);
+  for (const std::string& name : names) {
+    const auto found = std::find_if(menu.begin(), menu.end(),
+                                    [&](const sysid::Waveform& waveform) { return waveform.name == name; });
+    if (found != menu.end()) result.push_back(*found);
+  }
+  return result;
+}
+
+/// How far a finger went, from its first reading on.
+struct Reach {
+  double rest_mm = std::nan("");
+  double motion_mm = 0;
+};
+
+Reach reach_of(const sysid::Log& log) {
+  Reach reach;
+  for (const double reading_mm : log.displacement_mm) {
+    if (!std::isfinite(reading_mm)) continue;
+    if (std::isnan(reach.rest_mm)) reach.rest_mm = reading_mm;
+    reach.motion_mm = std::max(reach.motion_mm, reading_mm - reach.rest_mm);
+  }
+  return reach;
+}
+
+/// How far the rig file's model goes on a waveform [mm].
+double expected_mm(const ExperimentRig& rig, const sysid::Waveform& waveform) {
+  const control::RigSettings& settings = rig.rig.settings;
+  sysid::Log log;
+  log.pressure_command_kpa = sysid::sampled_kpa(waveform, 1 / settings.rate_hz);
+  for (std::size_t i = 0; i < log.pressure_command_kpa.size(); ++i)
+    log.time_s.push_back(static_cast<double>(i) / settings.rate_hz);
+  simulate(settings.channels[rig.channel].model, {}, log);
+  return reach_of(log).motion_mm;
+}
+
+/// The largest pressure at which no experiment takes the finger near the end of its range.
+/// @param ratio  by which the finger goes further than its model. @param rest_mm  where it begins.
+sysid::RigLimits limits_for(const ExperimentRig& rig, const std::vector<std::string>& experiments,
+                            double ratio, double rest_mm) {
+  sysid::RigLimits limits = rig.limits(0, 0);
+  const double room_mm =
+      range_share * (rig.rig.settings.channels[rig.channel].limits.displacement_max_mm - rest_mm);
+  for (int i = 0; i < most_corrections; ++i) {
+    double furthest_mm = 0;
+    for (const sysid::Waveform& waveform : chosen(experiments, limits))
+      furthest_mm = std::max(furthest_mm, ratio * expected_mm(rig, waveform));
+    if (furthest_mm <= room_mm) break;
+    limits.pressure_max_kpa *= std::clamp(0.98 * room_mm / furthest_mm, 0.1, 0.98);
+  }
+  return limits;
+}
+
+class Commissioning {
+ public:
+  Commissioning(const ExperimentRig& rig, const CommissioningOptions& options)
+      : rig_(rig), options_(options) {}
+
+  tl::expected<CommissioningRuns, NotCommissioned> run() {
+    runs_.limits = limits_for(rig_, options_.experiments, 1, 0);
+    if (!rig_.simulated && options_.consent && !options_.consent(what_moves()))
+      return fails(ExitCode::failed, "not allowed to move the rig");
+    signals_.emplace();
+    const ScratchFolder scratch;
+    if (scratch.path().empty()) return fails(ExitCode::io, "no folder could be made for the recordings");
+    if (const auto begun = begin(scratch.path()); !begun) return Failure(begun.error());
+    for (auto* const logs : {&runs_.first, &runs_.second}) {
+      const std::string run = logs == &runs_.first ? "run_1" : "run_2";
+      if (const auto whole = play_all(scratch.path() + "/" + run, run, *logs); !whole)
+        return Failure(whole.error());
+    }
+    return std::move(runs_);
+  }
+
+ private:
+  static Failure fails(ExitCode code, std::string why) {
+    return Failure(NotCommissioned{code, std::move(why)});
+  }
+
+  [[nodiscard]] std::string what_moves() const {
+    double length_s = gentle(runs_.limits).duration_s() + first_load(runs_.limits).duration_s() + 2 * pause_s;
+    const auto waveforms = chosen(options_.experiments, runs_.limits);
+    for (const sysid::Waveform& waveform : waveforms)
+      length_s += 2 * (options_.rest_s + waveform.duration_s() + pause_s);
+    return "channel '" + rig_.channel_name() + "' of " + rig_.rig.name +
+           " will move, gently once and then through " + std::to_string(waveforms.size()) +
+           " experiments, twice: up to " + significant(runs_.limits.pressure_max_kpa, 3) + " kPa, about " +
+           significant(length_s / 60, 2) + " minutes; nothing may be in its way";
+  }
+
+  static std::string no_motion(double found, double expected) {
+    return "the finger hardly moved: " + significant(found, 2) + " mm, its model says " +
+           significant(expected, 2) +
+           " mm; is there air, and does the sensor look at this finger? (softgrip doctor --move)";
+  }
+
+  /// The gentle motion, and what follows from it for the others.
+  tl::expected<void, NotCommissioned> begin(const std::string& folder) {
+    const sysid::Waveform waveform = gentle(runs_.limits);
+    const auto log = play(waveform, folder);
+    if (!log) return Failure(log.error());
+    const Reach reach = reach_of(*log);
+    const double expected = expected_mm(rig_, waveform);
+    if (!(reach.motion_mm > least_motion * expected))
+      return fails(ExitCode::not_acceptable, no_motion(reach.motion_mm, expected));
+    if (const auto free = check_free(*log); !free) return free;
+    runs_.limits = limits_for(rig_, options_.experiments, std::max(1.0, reach.motion_mm / expected),
+                              std::max(0.0, reach.rest_mm));
+    const auto loaded = play(first_load(runs_.limits), folder);
+    if (!loaded) return Failure(loaded.error());
+    return check_free(*loaded);
+  }
+
+  /// One run: a rest and an experiment, again and again.
+  tl::expected<void, NotCommissioned> play_all(const std::string& folder, const std::string& run,
+                                               std::vector<sysid::Log>& logs) {
+    for (const sysid::Waveform& waveform : chosen(options_.experiments, runs_.limits)) {
+      const double rest_s = rig_.simulated ? 0 : options_.rest_s;  // what is simulated begins anew
+      if (signals_->wait(nanoseconds(rest_s)) != 0)
+        return fails(ExitCode::failed, "stopped by the user; the rig is vented");
+      runs_.minutes += rest_s / 60;
+      const std::string number = std::to_string(logs.size() + 1);
+      auto log = play(waveform, folder + "/" + number,
+                      run + ", " + number + " of " + std::to_string(options_.experiments.size()));
+      if (!log) return Failure(log.error());
+      if (const auto free = check_free(*log); !free) return free;
+      log->name = waveform.name;
+      logs.push_back(std::move(*log));
+    }
+    return {};
+  }
+
+  tl::expected<sysid::Log, NotCommissioned> play(const sysid::Waveform& waveform, const std::string& folder,
+                                                 const std::string& title = "first") {
+    if (options_.tell)
+      options_.tell(title + ": " + waveform.name + ", up to " + significant(highest_kpa(waveform), 3) +
+                    " kPa, " + significant(waveform.duration_s(), 3) + " s");
+    auto log = played_on(rig_.at(++motions_), waveform.name,
+                         sysid::sequence_yaml(waveform, rig_.channel_name()), folder);
+    if (!log) return fails(ExitCode::failed, log.error().why);
+    runs_.minutes += waveform.duration_s() / 60;
+    if (const auto why = broken_promise(waveform, *log)) return fails(ExitCode::not_acceptable, *why);
+    return std::move(*log);
+  }
+
+  tl::expected<void, NotCommissioned> check_free(const sysid::Log& log) const {
+    const model::Model& model = rig_.rig.settings.channels[rig_.channel].model;
+    const auto why = touched(sysid::validate_logs(model, {log}), log, runs_.limits.pressure_max_kpa);
+    if (why) return fails(ExitCode::not_acceptable, *why);
+    return {};
+  }
+
+  static double highest_kpa(const sysid::Waveform& waveform) {
+    double highest = 0;
+    for (const sysid::Corner& corner : waveform.corners) highest = std::max(highest, corner.pressure_kpa);
+    return highest;
+  }
+
+  const ExperimentRig& rig_;
+  const CommissioningOptions& options_;
+  // After the question. Between two motions, too, what was recorded goes before the process does.
+  std::optional<daemon::Signals> signals_;
+  CommissioningRuns runs_;
+  std::uint64_t motions_ = 0;
+};
+
+}  // namespace
+
+const std::vector<std::string>& usual_commissioning() {
+  static const std::vector<std::string> names{"staircase_with_holds", "triangles_three_rates", "minor_loops",
+                                              "sharp_steps"};
+  return names;
+}
+
+tl::expected<CommissioningRuns, NotCommissioned> play_commissioning(const ExperimentRig& rig,
+                                                                    const CommissioningOptions& options) {
+  return Commissioning(rig, options).run();
+}
+
+}  // namespace softgrip::tools
