@@ -20,7 +20,8 @@ def rooms():
     text = re.sub(r"#.*", "", (source / "cmake/rooms.cmake").read_text())
     found = []
     for call in re.findall(r"softgrip_room\(([^)]*)\)", text):
-        words, key, lists = call.split(), "FOLDER", {"FOLDER": [], "FOLDERS": [], "USES": [], "LIBRARIES": [], "PRECOMPILE": []}
+        words, key, lists = call.split(), "FOLDER", {"FOLDER": [], "FOLDERS": [], "USES": [], "LIBRARIES": [], "PRECOMPILE": [],
+                                                    "TOGETHER": []}
         for word in words:
             if word in lists:
                 key = word
