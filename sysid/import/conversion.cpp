@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/numbers.h"
@@ -11,8 +10,6 @@
 
 namespace softgrip::sysid {
 namespace {
-
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// One role's columns and what comes of their values.
 struct Source {
