@@ -7,6 +7,7 @@ import shutil
 import tempfile
 
 import bench
+import web
 import working_life
 from working_life import Finger
 
@@ -117,6 +118,43 @@ class Health(bench.BenchTest):
         shutil.copytree(self.baseline, broken)
         (broken / "model.yaml").write_text("changed\n")
         self.softgrip("health", *self.healthy, "--baseline", broken, expect=3)
+
+
+class Told(web.WebTest):
+    """The last result, as the service leaves it beside the recordings, is told wherever somebody looks."""
+
+    def judge(self):
+        at_work = working_life.Rig(bench.SOFTGRIP, self.folder / "at_work")
+        baseline = at_work.baseline()
+        runs = [at_work.play(working_life.Grip(day(number), number, {
+            "left": Finger(leak=0.05 if number >= 8 else 0), "right": Finger()})) for number in range(12)]
+        self.softgrip("health", *runs, "--baseline", baseline, "--out", self.folder / "runs/health", expect=6)
+
+    def test_status_doctor_and_metrics_tell_the_last_result(self):
+        self.start_rig()
+        told = self.start_web()
+        self.assertNotIn("health", self.softgrip("status").stdout)
+        self.assertNotIn("softgrip_health_state", told.ask("/metrics")[1])
+        self.judge()
+        self.assertIn("Suspected: pressure is lost while it should hold.", self.softgrip("status").stdout)
+        status = json.loads(self.softgrip("status", "--json").stdout)
+        self.assertEqual(status["health"]["state"], "alarm")
+        self.assertLess(status["health"]["age_s"], 600)
+        for arguments in ((), ("--rig", self.rig_path)):
+            report = json.loads(self.softgrip("doctor", *arguments, "--json", expect=None).stdout)
+            finding = next(one for one in report["findings"] if one["name"] == "health")
+            self.assertEqual(finding["verdict"], "warn")
+            self.assertIn("pressure is lost", finding["text"])
+            self.assertIn("soapy water", finding["advice"])
+        metrics = told.metrics()
+        self.assertEqual(metrics['softgrip_health_state{channel="left",state="alarm"}'], 1)
+        self.assertEqual(metrics['softgrip_health_state{channel="right",state="steady"}'], 1)
+        self.assertEqual(metrics['softgrip_health_suspect{channel="left",cause="leak"}'], 1)
+        self.assertAlmostEqual(metrics["softgrip_health_timestamp_seconds"], bench.time.time(), delta=600)
+        self.assertIn("soapy water", told.ask("/recordings/health/health-left.html")[1])
+        self.softgripd.kill()
+        bench.wait_for("no daemon", lambda: told.metrics()["softgrip_up"] == 0)
+        self.assertIn('softgrip_health_suspect{channel="left",cause="leak"}', told.metrics())
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ import dataclasses
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -55,9 +56,17 @@ class Rig:
         self._call("baseline", "--data", *logs, "--model", MODEL, "--out", self.folder / "baseline")
         return self.folder / "baseline"
 
+    def _run_of(self, grip):
+        return self.recordings / f"{grip.at.replace(':', '-')}_{grip.sequence}"
+
+    def has(self, grip):
+        """Whether it was played whole."""
+        story = self._run_of(grip) / "run.json"
+        return story.exists() and "started_at" in json.loads(story.read_text())
+
     def play(self, grip):
-        name = f"{grip.at.replace(':', '-')}_{grip.sequence}"
-        run = self.recordings / name
+        run = self._run_of(grip)
+        shutil.rmtree(run, ignore_errors=True)
         self._call("run", SOURCE / f"config/sequences/{grip.sequence}.yaml", "--rig", self._rig_of(grip), "--virtual-time",
                    "--seed", str(grip.seed), "--record", run, "--quiet", "--no-socket", may_fail=True)
         story = json.loads((run / "run.json").read_text())

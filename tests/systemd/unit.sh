@@ -33,7 +33,7 @@ case $1 in
     systemd-tmpfiles --root="$root" --create "$source/softgrip.tmpfiles"
     runs=$root/var/lib/softgrip/runs
     [ "$(stat -c %a "$runs")" = 750 ]
-    mkdir "$runs/kept" && touch "$runs/kept/run.csv"
+    mkdir "$runs/kept" && touch "$runs/kept/run.csv" "$runs/health/notes.yaml"
     systemd-tmpfiles --root="$root" --clean "$source/softgrip.tmpfiles"
     [ -f "$runs/kept/run.csv" ]
     # What is a second old is old enough for this copy of the file.
@@ -41,6 +41,7 @@ case $1 in
     sleep 1.5
     systemd-tmpfiles --root="$root" --clean "$root/etc/softgrip.conf"
     [ ! -e "$runs/kept/run.csv" ]
+    [ -f "$runs/health/notes.yaml" ]
     ;;
   *) echo "unit.sh: unknown check $1" >&2; exit 2 ;;
 esac

@@ -13,6 +13,7 @@
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
 #include "tools/client/daemon_command.h"
+#include "tools/client/last_health.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
@@ -58,10 +59,24 @@ Json ask_running(DaemonClient& client, const std::string& rig, doctor::Findings&
   return *status;
 }
 
+/// What the recordings of the working days said last; nothing where nobody asked them.
+void examine_health(const rig::RigFile& rig, doctor::Findings& findings) {
+  for (const HealthLine& line : health_lines(last_health(rig.recorder.directory))) {
+    if (line.good)
+      findings.ok("health", line.text);
+    else
+      findings.warn("health", line.text,
+                    line.advice.empty()
+                        ? "look at the finger's page in " + rig.recorder.directory + "/" + health_folder
+                        : line.advice);
+  }
+}
+
 void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings) {
   doctor::examine_machine(rig, findings);
   doctor::examine_clock(findings);
   doctor::examine_disk(rig, findings);
+  examine_health(rig, findings);
   const auto lock = daemon::BoardLock::take(rig);
   if (!lock) {
     findings.fail("board", lock.error(), "stop that program first");
@@ -121,7 +136,10 @@ ExitCode run_unnamed(const DoctorOptions& options) {
   }
   document::Problems problems;
   if (::access(examination.rig_file.c_str(), R_OK) == 0) {
-    if (const auto rig = rig::load_rig(examination.rig_file, problems)) doctor::examine_disk(*rig, findings);
+    if (const auto rig = rig::load_rig(examination.rig_file, problems)) {
+      doctor::examine_disk(*rig, findings);
+      examine_health(*rig, findings);
+    }
   }
   return conclude(options, examination, findings);
 }
@@ -145,6 +163,7 @@ ExitCode run(const DoctorOptions& options) {
     ask_running(*client, rig->name, findings);
     doctor::examine_clock(findings);
     doctor::examine_disk(*rig, findings);
+    examine_health(*rig, findings);
   } else if (runs) {
     findings.fail("daemon", client.error().message, "without an answer the board is not touched");
   } else {

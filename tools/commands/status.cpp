@@ -1,10 +1,14 @@
 // softgrip status: what the daemon does now.
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "rig/rig_file.h"
 #include "tools/client/daemon_command.h"
+#include "tools/client/last_health.h"
 #include "tools/client/status_view.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
@@ -12,16 +16,30 @@
 namespace softgrip::tools {
 namespace {
 
+/// Of the rig that runs, as far as its file can be read.
+nlohmann::ordered_json health_of(const nlohmann::ordered_json& status) {
+  const auto file = status.find("rig_file");
+  if (file == status.end() || !file->is_string()) return nullptr;
+  const auto path = file->get<std::string>();
+  if (::access(path.c_str(), R_OK) != 0) return nullptr;
+  document::Problems problems;
+  const auto rig = rig::load_rig(path, problems);
+  return rig ? last_health(rig->recorder.directory) : nullptr;
+}
+
 ExitCode run(const DaemonOptions& options) {
-  const auto status = ask_daemon(options, {{"command", "status"}});
+  auto status = ask_daemon(options, {{"command", "status"}});
   if (!status) return status.error();
+  const nlohmann::ordered_json health = health_of(*status);
   if (options.json) {
+    if (!health.is_null()) (*status)["health"] = health;
     print_json(*status);
     return ExitCode::done;
   }
   const ViewStyle style{on_terminal() ? terminal_columns() : 100, wants_colour(),
                         on_terminal() && has_unicode()};
   for (const std::string& line : view_of(*status, style)) std::printf("%s\n", line.c_str());
+  for (const HealthLine& line : health_lines(health)) std::printf("health       %s\n", line.text.c_str());
   return ExitCode::done;
 }
 

@@ -31,6 +31,11 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
     scores.skipped.push_back({name, "it is not finished"});
     return;
   }
+  // Of a fault, or of a day and a night: nothing in it can be compared with another one.
+  if (recording->recipe.empty() && !recording->software_version.empty()) {
+    scores.skipped.push_back({name, "it is of no sequence (recorder: mode: sequences records one each)"});
+    return;
+  }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
     const auto base = base_of(finger);

@@ -25,6 +25,7 @@ class Recordings {
   /// `folder` may be empty: then there are none.
   explicit Recordings(std::string folder) : folder_(std::move(folder)) {}
 
+  [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
   /// The newest first: `name`, `files` that can be shown.
   [[nodiscard]] nlohmann::ordered_json list() const;
   /// The bytes of a file; nothing where there is none, or none that is shown. Follows no links.

@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "tools/client/last_health.h"
 #include "tools/web/access/origin.h"
 #include "tools/web/commander.h"
 #include "tools/web/metrics/daemon_metrics.h"
+#include "tools/web/metrics/health_metrics.h"
 #include "tools/web/page/page_files.h"
 
 namespace softgrip::web {
@@ -208,6 +210,7 @@ void Site::greet(Response& response) {
 std::string Site::metrics() const {
   MetricText metrics;
   tell_daemon(state_.status(), state_.statistics(), metrics);
+  tell_health(tools::last_health(recordings_.folder()), metrics);
   using enum MetricText::Type;
   metrics.family("softgrip_web_connections", gauge, "Connections of browsers and collectors.");
   metrics.sample(static_cast<double>(counts_.connections));

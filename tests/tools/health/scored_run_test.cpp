@@ -1,9 +1,13 @@
 #include "tools/health/scored_run.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 
+#include "base/files.h"
+#include "tests/sysid/simulated.h"
 #include "tools/health/run_search.h"
 
 namespace softgrip::tools::health {
@@ -39,6 +43,66 @@ TEST(ScoredRun, ALineThatWasCutOffCostsItselfAlone) {
   }
   EXPECT_TRUE(read_scores("").empty());
   EXPECT_TRUE(read_scores("null\n[]\n3\n").empty());
+}
+
+class FoundRuns : public testing::Test {
+ protected:
+  ~FoundRuns() override { std::filesystem::remove_all(folder); }
+  FoundRuns() = default;
+  FoundRuns(const FoundRuns&) = delete;
+  FoundRuns& operator=(const FoundRuns&) = delete;
+  FoundRuns(FoundRuns&&) = delete;
+  FoundRuns& operator=(FoundRuns&&) = delete;
+
+  /// A recording with this run.json.
+  [[nodiscard]] std::string run(const std::string& name, const std::string& story) const {
+    const std::filesystem::path path = folder / name;
+    std::string csv = "time_s,channel,pressure_command_kpa,displacement_mm\n";
+    for (int i = 0; i < 200; ++i)
+      csv += std::to_string(0.01 * i) + ",left," + std::to_string(0.1 * i) + ",0.1\n";
+    EXPECT_TRUE(write_file((path / "run.csv").string(), csv));
+    if (!story.empty()) {
+      EXPECT_TRUE(write_file((path / "run.json").string(), story));
+    }
+    return path.string();
+  }
+  [[nodiscard]] RunScores scores() const {
+    const ScoreBase base = score_base(sysid::loaded("bench_twin"), 60);
+    return score_runs(find_runs({folder.string()}),
+                      [&](const std::string&) {
+                        return FingerBase{base, "b"};
+                      },
+                      {});
+  }
+
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("softgrip_found_runs_" + std::to_string(::getpid()));
+};
+
+TEST_F(FoundRuns, AreThoseInAFolderByNameAndNothingElse) {
+  (void)run("b", "");
+  (void)run("a", "");
+  ASSERT_TRUE(write_file((folder / "health/health.json").string(), "{}"));
+  const auto found = find_runs({folder.string(), (folder / "b").string()});
+  ASSERT_EQ(found.size(), 3U);
+  EXPECT_EQ(found[0], (folder / "a").string());
+  EXPECT_EQ(found[1], (folder / "b").string());
+  EXPECT_EQ(found[2], (folder / "b").string());
+}
+
+TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
+  const std::string of_sequence =
+      R"("software_version": "1", "sequence": {"name": "pick", "sha256": "0123456789"})";
+  (void)run("1-good", "{" + of_sequence + R"(, "state": "complete"})");
+  (void)run("2-running", "{" + of_sequence + R"(, "state": "recording"})");
+  (void)run("3-fault", R"({"software_version": "1", "sequence": null, "state": "complete"})");
+  const RunScores found = scores();
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_EQ(found.runs[0].run, "1-good");
+  EXPECT_EQ(found.runs[0].recipe, "pick 01234567");
+  ASSERT_EQ(found.skipped.size(), 2U);
+  EXPECT_EQ(found.skipped[0].why, "it is not finished");
+  EXPECT_NE(found.skipped[1].why.find("no sequence"), std::string::npos);
 }
 
 TEST(ScoredRun, OnlyScoresByTodaysBaselineCountAndTheLastOfThem) {

@@ -1,0 +1,77 @@
+#include "tools/client/last_health.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "base/wall_clock.h"
+
+namespace softgrip::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class LastHealth : public testing::Test {
+ protected:
+  ~LastHealth() override { std::filesystem::remove_all(recordings); }
+  LastHealth() = default;
+  LastHealth(const LastHealth&) = delete;
+  LastHealth& operator=(const LastHealth&) = delete;
+  LastHealth(LastHealth&&) = delete;
+  LastHealth& operator=(LastHealth&&) = delete;
+
+  [[nodiscard]] Json read(const std::string& text) const {
+    EXPECT_TRUE(write_file((recordings / "health/health.json").string(), text));
+    return last_health(recordings.string());
+  }
+  [[nodiscard]] Json aged(double age_s, const std::string& left) const {
+    const double made = static_cast<double>(wall_time_now()) * 1e-9 - age_s;
+    Json json{{"made_unix_s", made}};
+    json["fingers"] = Json::array({{{"finger", "left"},
+                                    {"state", left},
+                                    {"sentence", "Since then left is another."},
+                                    {"suspects", {{{"id", "leak"}, {"next_steps", {"Listen.", "Close."}}}}}},
+                                   {{"finger", "right"}, {"state", "steady"}}});
+    return read(json.dump());
+  }
+
+  std::filesystem::path recordings =
+      std::filesystem::temp_directory_path() / ("softgrip_last_health_" + std::to_string(::getpid()));
+};
+
+TEST_F(LastHealth, SaysWhatChangedWhenAndWhatToDo) {
+  const auto lines = health_lines(aged(7200, "alarm"));
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].text, "Since then left is another.");
+  EXPECT_EQ(lines[0].advice, "Listen.");
+  EXPECT_FALSE(lines[0].good);
+}
+
+TEST_F(LastHealth, SaysWhenNothingHas) {
+  const auto lines = health_lines(aged(7200, "steady"));
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_TRUE(lines[0].good);
+  EXPECT_EQ(lines[0].text, "nothing has changed at 2 fingers, judged 2 h ago");
+}
+
+TEST_F(LastHealth, IsInDoubtWhenItIsLongAgo) {
+  const auto lines = health_lines(aged(10 * 86400, "steady"));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_FALSE(lines[1].good);
+  EXPECT_EQ(lines[1].text, "the fingers were judged 10 days ago");
+}
+
+TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
+  EXPECT_TRUE(last_health("").is_null());
+  EXPECT_TRUE(last_health(recordings.string()).is_null());
+  for (const char* text :
+       {"", "{", "[]", "{}", R"({"made_unix_s": "x", "fingers": []})", R"({"made_unix_s": 1, "fingers": 2})"})
+    EXPECT_TRUE(read(text).is_null()) << text;
+  EXPECT_TRUE(health_lines(nullptr).empty());
+}
+
+}  // namespace
+}  // namespace softgrip::tools

@@ -1,0 +1,41 @@
+#include "tools/web/metrics/health_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string told(const Json& health) {
+  MetricText metrics;
+  tell_health(health, metrics);
+  return metrics.text();
+}
+
+TEST(HealthMetrics, TellStateSuspectsAndWhen) {
+  const std::string text = told(Json::parse(R"({"made_unix_s": 1795313181, "fingers": [
+    {"finger": "left", "state": "alarm", "suspects": [{"id": "leak"}, {"id": "ageing"}]},
+    {"finger": "right", "state": "steady", "suspects": []}]})"));
+  for (const char* line : {"softgrip_health_timestamp_seconds 1795313181\n",
+                           "softgrip_health_state{channel=\"left\",state=\"alarm\"} 1\n",
+                           "softgrip_health_state{channel=\"left\",state=\"steady\"} 0\n",
+                           "softgrip_health_state{channel=\"right\",state=\"steady\"} 1\n",
+                           "softgrip_health_suspect{channel=\"left\",cause=\"leak\"} 1\n",
+                           "softgrip_health_suspect{channel=\"left\",cause=\"ageing\"} 1\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  EXPECT_EQ(text.find("channel=\"right\",cause"), std::string::npos);
+}
+
+TEST(HealthMetrics, OfNothingAndOfNonsenseNothingIsTold) {
+  EXPECT_EQ(told(nullptr), "");
+  for (const char* nonsense : {"{}", R"({"fingers": 3})", R"({"fingers": [1, null, {"suspects": 4}]})"})
+    EXPECT_EQ(told(Json::parse(nonsense)).find("} 1\n"), std::string::npos) << nonsense;
+}
+
+}  // namespace
+}  // namespace softgrip::web

@@ -1,0 +1,40 @@
+#include "tools/web/metrics/health_metrics.h"
+
+#include <nlohmann/json.hpp>
+
+#include "tools/web/metrics/json_member.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using enum MetricText::Type;
+
+}  // namespace
+
+void tell_health(const Json& health, MetricText& metrics) {
+  if (!health.is_object()) return;
+  metrics.family("softgrip_health_timestamp_seconds", gauge,
+                 "When the recordings were judged last, since 1970.");
+  metrics.sample(number(health, "made_unix_s"));
+  const Json& fingers = member(health, "fingers");
+  if (!fingers.is_array()) return;
+  metrics.family("softgrip_health_state", gauge,
+                 "1 for what the recordings say of the finger, 0 for the others.");
+  for (const Json& finger : fingers) {
+    for (const char* state : {"learning", "steady", "alarm"})
+      metrics.sample({{"channel", text(finger, "finger")}, {"state", state}},
+                     text(finger, "state") == state ? 1 : 0);
+  }
+  metrics.family("softgrip_health_suspect", gauge,
+                 "1 for every cause that is suspected where a finger has changed.");
+  for (const Json& finger : fingers) {
+    const Json& suspects = member(finger, "suspects");
+    if (!suspects.is_array()) continue;
+    for (const Json& suspect : suspects)
+      metrics.sample({{"channel", text(finger, "finger")}, {"cause", text(suspect, "id")}}, 1);
+  }
+}
+
+}  // namespace softgrip::web
