@@ -9,6 +9,12 @@
 namespace softgrip::tools::health {
 namespace {
 
+/// Of fewer values a change that is not noticed at once would pass for persistence.
+constexpr std::size_t least_for_persistence = 15;
+/// So many standard errors less than what is found.
+constexpr double surely = 0.5;
+constexpr double most_persistence = 0.95;
+
 /// Beyond which a standard normal value lies, on either side, once in so many.
 double two_sided_limit(double once_in) {
   double lower = 0, upper = 40;
@@ -35,6 +41,10 @@ double normal_of_t(double t, double degrees_of_freedom) {
 }
 
 void RunningReference::learn(double value) {
+  if (count_ == 0) first_ = value;
+  products_ += (value - first_) * last_;
+  last_ = value - first_;
+  sum_ += last_;
   ++count_;
   const double off = value - mean_;
   mean_ += off / static_cast<double>(count_);
@@ -43,6 +53,16 @@ void RunningReference::learn(double value) {
 
 double RunningReference::spread() const {
   return count_ > 1 ? std::sqrt(squares_ / static_cast<double>(count_ - 1)) : 0;
+}
+
+double RunningReference::persistence() const {
+  if (count_ < least_for_persistence || !(squares_ > 0)) return 0;
+  const auto n = static_cast<double>(count_);
+  const double mean = sum_ / n;
+  // The sum of products of neighbours, each less the mean.
+  const double together = products_ - mean * (2 * sum_ - last_) + (n - 1) * mean * mean;
+  const double correlation = together / squares_ + 1 / n;
+  return std::clamp(correlation - surely / std::sqrt(n), 0.0, most_persistence);
 }
 
 std::optional<double> RunningReference::judge(double value, double least_spread) const {
@@ -65,7 +85,7 @@ std::optional<double> ControlChart::excess_of(const ChartValues& values) const {
 }
 
 std::optional<double> ControlChart::add(const ChartValues& values) {
-  double sum = 0, count = 0, compared = 0;
+  double sum = 0, count = 0, compared = 0, persistence = 0;
   for (const auto& [recipe, value] : values) {
     const auto reference = references_.find(recipe);
     if (reference == references_.end()) continue;
@@ -73,6 +93,7 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
       sum += *z;
       count += 1;
       compared += static_cast<double>(reference->second.count());
+      persistence += reference->second.persistence();
     }
   }
   std::optional<double> z;
@@ -80,7 +101,7 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
   history_.push_back(values);
   if (z) {
     ++judged_;
-    if (!alarm_) judge(*z, compared / count);
+    if (!alarm_) judge(*z, compared / count, persistence / count);
   }
   if (!alarm_) {
     waiting_.push_back(values);
@@ -109,14 +130,15 @@ void ControlChart::forget_since(std::size_t point) {
   for (std::size_t i = 0; i < point; ++i) learn(history_[i]);
 }
 
-void ControlChart::judge(double z, double count) {
+void ControlChart::judge(double z, double count, double persistence) {
   const std::size_t now = history_.size() - 1;
   if (up_ == 0) up_since_ = now;
   if (down_ == 0) down_since_ = now;
   const bool in_doubt = std::max(up_, down_) > limits_.doubt;
   const double allowance = limits_.allowance + (in_doubt ? 1 / std::sqrt(count) : 0);
-  up_ = std::max(0.0, up_ + z - allowance);
-  down_ = std::max(0.0, down_ - z - allowance);
+  const double slow = z * std::sqrt((1 - persistence) / (1 + persistence));
+  up_ = std::max(0.0, up_ + slow - allowance);
+  down_ = std::max(0.0, down_ - slow - allowance);
   std::optional<std::size_t> since;
   if (std::max(up_, down_) > limits_.cusum) {
     since = up_ > down_ ? up_since_ : down_since_;

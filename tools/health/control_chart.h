@@ -15,10 +15,18 @@
 // allowance grows by it, one spread over the root of their number. After an alarm what was learnt since the
 // change is forgotten.
 //
-// Of 200,000 simulated charts with 32850 values stated between two false alarms 1.2 times as many alarmed
-// within their first 90 healthy values as the stated rate would have it. A shift by three spreads is found
-// within thirty values in 66 of 100 where it comes after eight healthy values, always after twenty, then
-// after seven on the mean.
+// Weather stays for days: values that take after the one before wander farther than independent ones would.
+// How much they do is estimated (lag-one correlation, less half its standard error), and the CUSUM takes its
+// values in units of the spread that a mean over many such values has, after Johnson and Bagshaw
+// (Technometrics 16, 1974). Of 4000 simulated charts 90 healthy values long so many alarmed with that, and
+// without it: correlated by 0.5 4.4 and 24 %, by 0.7 15 and 65 %. The stated rate is that of independent
+// values.
+//
+// Of 200,000 simulated charts with 32850 independent values stated between two false alarms 1.2 times as many
+// alarmed within their first 90 as the stated rate would have it, without the estimate of correlation, which
+// makes them fewer. A shift by three spreads is found within thirty values in 59 of 100 charts where it comes
+// after eight healthy ones, in 95 after twenty, then after ten on the mean; by six after eight, by five after
+// twenty in all, after nine and after four.
 
 #include <cstddef>
 #include <map>
@@ -54,10 +62,13 @@ class RunningReference {
   [[nodiscard]] double mean() const { return mean_; }
   /// Standard deviation; 0 of fewer than two.
   [[nodiscard]] double spread() const;
+  /// How much the next value takes after the last one, from 0 to below 1, as far as that is surely no chance.
+  [[nodiscard]] double persistence() const;
 
  private:
   std::size_t count_ = 0;
   double mean_ = 0, squares_ = 0;
+  double first_ = 0, last_ = 0, sum_ = 0, products_ = 0;  ///< all but `first_` counted from it
 };
 
 /// Values of one point in time, by what they may be compared with: a recipe and what it was measured in.
@@ -90,8 +101,8 @@ class ControlChart {
  private:
   /// Of the values that have a reference: how much more than it they are, on the mean.
   [[nodiscard]] std::optional<double> excess_of(const ChartValues& values) const;
-  /// @param count  of the values that it was compared with, the mean over recipes.
-  void judge(double z, double count);
+  /// @param count, persistence  of the values that it was compared with, the means over recipes.
+  void judge(double z, double count, double persistence);
   void learn(const ChartValues& values);
   /// Nothing of what came since the change stays in the references.
   void forget_since(std::size_t point);

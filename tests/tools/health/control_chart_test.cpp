@@ -80,9 +80,9 @@ TEST(ControlChart, AlarmsAsOftenAsStatedWhereNothingIsWrong) {
     double total = 0;
     constexpr int runs = 1500;
     for (int run = 0; run < runs; ++run) total += length_of_run(healthy, limits);
-    // The mean of nearly geometric lengths is known to 2.6 %; Siegmund's and Wallace's formulas give the
-    // rest.
-    EXPECT_NEAR(total / runs / stated, 1.05, 0.13) << "stated " << stated;
+    // The mean of nearly geometric lengths is known to 2.6 %; Siegmund's and Wallace's formulas, and what
+    // little correlation is found in independent values, give the rest.
+    EXPECT_NEAR(total / runs / stated, 1.1, 0.17) << "stated " << stated;
   }
 }
 
@@ -98,6 +98,46 @@ TEST(ControlChart, AlarmsNoMoreOftenInItsYouth) {
     alarms += chart.alarm() ? 1 : 0;
   }
   EXPECT_LT(alarms / (static_cast<double>(charts) * youth / 20000), 1.6);
+}
+
+/// Values each of which takes after the one before by `persistence`, of unit spread.
+class Weather {
+ public:
+  Weather(unsigned seed, double persistence) : random_(seed), persistence_(persistence) {
+    now_ = normal_(random_);
+  }
+  double operator()() {
+    now_ = persistence_ * now_ + std::sqrt(1 - persistence_ * persistence_) * normal_(random_);
+    return now_;
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  double persistence_, now_ = 0;
+};
+
+TEST(ControlChart, FindsHowMuchValuesTakeAfterTheOneBefore) {
+  for (const double persistence : {0.0, 0.5, 0.8}) {
+    Weather weather(29, persistence);
+    RunningReference reference;
+    for (int i = 0; i < 4000; ++i) reference.learn(300 + 0.01 * weather());
+    EXPECT_NEAR(reference.persistence(), persistence, 0.04);
+  }
+}
+
+// Weather stays for days. Taken for independent days, two thirds of the charts would alarm.
+TEST(ControlChart, WeatherThatStaysIsSeldomAnAlarm) {
+  const ChartLimits limits = ChartLimits::for_run_length(30000);
+  int alarms = 0;
+  constexpr int charts = 1000;
+  for (unsigned seed = 0; seed < charts; ++seed) {
+    Weather weather(1000 + seed, 0.7);
+    ControlChart chart(limits, least);
+    for (int i = 0; i < 90 && !chart.alarm(); ++i) chart.add({{recipe, weather()}});
+    alarms += chart.alarm() ? 1 : 0;
+  }
+  EXPECT_LT(alarms, 0.2 * charts);
 }
 
 TEST(ControlChart, FewerFalseAlarmsNeedWiderLimits) {
@@ -128,9 +168,9 @@ int noticed_after(double spreads, int healthy_points) {
 
 TEST(ControlChart, NoticesWhatIsLargeAtOnceAndWhatStaysSoon) {
   EXPECT_EQ(noticed_after(10, 20), 1);
-  EXPECT_LE(noticed_after(4, 20), 5);
-  EXPECT_LE(noticed_after(2, 20), 15);
-  EXPECT_GT(noticed_after(2, 20), noticed_after(4, 20));
+  EXPECT_LE(noticed_after(4, 20), 7);
+  EXPECT_LE(noticed_after(2, 40), 15);
+  EXPECT_GT(noticed_after(2, 40), noticed_after(4, 40));
 }
 
 /// While a change is in doubt it is not learnt: else eight healthy values would be outvoted by as many
@@ -141,10 +181,10 @@ TEST(ControlChart, NoticesAChangeThatComesSoonAfterTheStart) {
     Healthy healthy(500 + seed, 5, 0.2);
     ControlChart chart(ChartLimits::for_run_length(30000), least);
     for (int i = 0; i < 8; ++i) chart.add({{recipe, healthy()}});
-    for (int i = 0; i < 30; ++i) chart.add({{recipe, healthy() + 0.8}});
+    for (int i = 0; i < 30; ++i) chart.add({{recipe, healthy() + 1.2}});
     noticed += chart.alarm() ? 1 : 0;
   }
-  EXPECT_GE(noticed, 80);  // learnt at once it would be about 60
+  EXPECT_GE(noticed, 94);
 }
 
 TEST(ControlChart, SaysSinceWhenAndByHowMuch) {
