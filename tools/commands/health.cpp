@@ -127,6 +127,12 @@ std::vector<Judged> judged(const std::vector<health::ScoredRun>& runs, const std
   return all;
 }
 
+std::vector<sysid::HealthNumber> shared_by(const std::vector<Judged>& fingers) {
+  std::vector<const health::FingerHealth*> all;
+  for (const Judged& finger : fingers) all.push_back(&finger.health);
+  return health::shared_changes(all);
+}
+
 Json result_of(const HealthOptions& options, const std::vector<Judged>& fingers,
                const health::RunScores& scores) {
   const Nanoseconds now = wall_time_now();
@@ -146,6 +152,9 @@ Json result_of(const HealthOptions& options, const std::vector<Judged>& fingers,
   json["fingers"] = Json::array();
   for (const Judged& finger : fingers)
     json["fingers"].push_back(health::json_of(finger.health, finger.suspicion));
+  json["shared"] = Json::array();
+  for (const sysid::HealthNumber number : shared_by(fingers))
+    json["shared"].push_back(sysid::info_of(number).id);
   json["skipped"] = Json::array();
   for (const health::SkippedRun& skipped : scores.skipped)
     json["skipped"].push_back({{"run", skipped.run}, {"why", skipped.why}});
@@ -220,6 +229,11 @@ ExitCode run(HealthOptions options) {
     std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   } else {
     for (const Judged& finger : fingers) print(finger);
+    for (const sysid::HealthNumber number : shared_by(fingers))
+      std::printf(
+          "All fingers have changed alike in %s: look first at what they share, the temperature and the "
+          "supply.\n",
+          std::string(sysid::info_of(number).title).c_str());
   }
   return json["state"] == "alarm" ? ExitCode::not_acceptable : ExitCode::done;
 }

@@ -157,4 +157,19 @@ FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs
   return health;
 }
 
+std::vector<sysid::HealthNumber> shared_changes(const std::vector<const FingerHealth*>& fingers) {
+  std::vector<sysid::HealthNumber> shared;
+  if (fingers.size() < 2) return shared;
+  for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
+    std::size_t up = 0, down = 0;
+    for (const FingerHealth* finger : fingers) {
+      for (const HealthAlarm& alarm : finger->standing()) {
+        if (static_cast<std::size_t>(alarm.number) == i) ++(alarm.change > 0 ? up : down);
+      }
+    }
+    if (std::max(up, down) == fingers.size()) shared.push_back(static_cast<sysid::HealthNumber>(i));
+  }
+  return shared;
+}
+
 }  // namespace softgrip::tools::health

@@ -81,4 +81,9 @@ struct FingerHealth {
                                         const std::vector<Note>& notes, const ScoreBase& base,
                                         const HealthOptions& options);
 
+/// Numbers that alarm at all of several fingers in the same direction: what they share comes before what each
+/// of them is. None of a single finger.
+[[nodiscard]] std::vector<sysid::HealthNumber> shared_changes(
+    const std::vector<const FingerHealth*>& fingers);
+
 }  // namespace softgrip::tools::health

@@ -171,6 +171,16 @@ TEST(FingerHealth, ANumberThatNoRecordingHasIsAbsent) {
   EXPECT_TRUE(json["numbers"]["gain_mm"]["value"].is_number());
 }
 
+TEST(FingerHealth, WhatAllFingersShareIsTold) {
+  const FingerHealth healthy = judged({});
+  const FingerHealth less = judged(changed({{HealthNumber::gain, -2}, {HealthNumber::zero, 1}}));
+  const FingerHealth also = judged(changed({{HealthNumber::gain, -3}, {HealthNumber::zero, -1}}));
+  EXPECT_EQ(shared_changes({&less, &also}), std::vector{HealthNumber::gain});
+  EXPECT_TRUE(shared_changes({&less, &also, &healthy}).empty());
+  EXPECT_TRUE(shared_changes({&less}).empty());
+  EXPECT_TRUE(shared_changes({}).empty());
+}
+
 std::string first_suspect(const Life& life) {
   const Suspicion suspicion = suspicion_of(judged(life));
   return suspicion.suspects.empty() ? "" : suspicion.suspects.front().id;
