@@ -75,8 +75,7 @@ def main():
     ledger = Ledger(args.work / "results.jsonl", ("causes", "strength", "seed"))
     ids, outside = judging.library(args.build)
     planned = list(worlds(args, ids, outside))
-    campaign.run(ledger, planned, lambda world: judging.run_world(args.build, args.work, world), told, args.workers,
-                 args.most_minutes)
+    campaign.run(ledger, planned, "judging", args, told)
     if args.page:
         command = campaign.command("scripts/blind_campaign.py", parser, args, (
             "first_seed", "seeds", "clean", "outside", "pairs", "strengths", "causes"))

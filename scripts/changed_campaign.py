@@ -118,10 +118,9 @@ def main():
     build = args.build.resolve()
     ledger = Ledger(args.work / "changed.jsonl", KEYS)
     planned = worlds(args, build)
-    campaign.run(ledger, planned, lambda world: changing.run_world(build, args.work, world),
+    campaign.run(ledger, planned, "changing", args,
                  lambda world, result: f"{world['family']} {world['columns']} {world['cause']} {world['strength']:g}: "
-                 f"{result['outcome']} {result.get('named', '')} {result.get('wall_s', 0):.0f} s",
-                 args.workers, args.most_minutes)
+                 f"{result['outcome']} {result.get('named', '')} {result.get('wall_s', 0):.0f} s")
     if args.page:
         command = campaign.command("scripts/changed_campaign.py", parser, args,
                                    ("seeds", "unchanged", "strengths", "columns", "first_seed"))

@@ -5,7 +5,7 @@
 #   scripts/coverage.sh
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
-bash scripts/packages.sh build tests coverage
+bash scripts/packages.sh build tests workflows coverage
 build=build/coverage
 cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS="--coverage -O0" -DSOFTGRIP_TESTS=ON \
   -DSOFTGRIP_BENCHMARKS=OFF >/dev/null

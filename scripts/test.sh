@@ -18,7 +18,7 @@ case "${1:-}" in
   *) echo "usage: scripts/test.sh [--quick | --all]" >&2; exit 2 ;;
 esac
 
-if $quick; then wanted="build tests"; else wanted="build tests readers package lint"; fi
+if $quick; then wanted="build tests workflows"; else wanted="build tests workflows readers package lint"; fi
 bash scripts/packages.sh $wanted
 $quick || bash scripts/mcap_reader.sh
 . scripts/build.sh

@@ -86,8 +86,7 @@ def main():
     args.build = args.build.resolve()
     ledger = Ledger(args.work / "textbook.jsonl", KEYS)
     planned = worlds(args, trial.listed(args.build, "--list"), trial.listed(args.build, "--makes"))
-    campaign.run(ledger, planned, lambda world: trial.run_world(args.build, args.work, world), told, args.workers,
-                 args.most_minutes)
+    campaign.run(ledger, planned, "trial", args, told)
     if args.page:
         command = campaign.command("scripts/textbook_campaign.py", parser, args, (
             "clean", "seeds", "pairs", "triples", "strengths", "columns", "given", "causes", "first_seed"))

@@ -1,32 +1,60 @@
-"""What every campaign over worlds does: the worlds that are not known yet, some side by side, until all are done or the time
-is up; and the command by which a page was made."""
-import concurrent.futures
+"""What every campaign over worlds does: the worlds that are not known yet, some side by side by the workflow of workflows/,
+until all are done or the time is up; and the command by which a page was made."""
+import csv
+import hashlib
+import json
+import pathlib
+import subprocess
+import sys
 import time
 
+WORKFLOW = pathlib.Path(__file__).resolve().parents[2] / "workflows/run.py"
 
-def run(ledger, planned, run_world, told, workers, most_minutes):
-    """Adds to the ledger what run_world(world) returns; told(world, result) is a line for the screen. No world is begun after
-    `most_minutes` (None: all are run)."""
-    until = time.monotonic() + 60 * most_minutes if most_minutes is not None else None
-    left = iter([world for world in planned if world not in ledger])
-    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
-        running = {}
 
-        def fill():
-            while len(running) < workers and (until is None or time.monotonic() < until):
-                world = next(left, None)
-                if world is None:
-                    break
-                running[pool.submit(run_world, world)] = world
+def name_of(world):
+    return "world-" + hashlib.sha256(json.dumps(world, sort_keys=True).encode()).hexdigest()[:16]
 
-        fill()
-        while running:
-            done, _ = concurrent.futures.wait(running, return_when=concurrent.futures.FIRST_COMPLETED)
-            for future in done:
-                world, result = running.pop(future), future.result()
-                ledger.add(result)
-                print(f"{len(ledger.rows)}/{len(planned)} {told(world, result)}", flush=True)
-            fill()
+
+def write_table(path, worlds, judge):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(("name", "task", "judge", "world"))
+        writer.writerows((name_of(world), "world", judge, json.dumps(world)) for world in worlds)
+
+
+def collect(ledger, worlds, out, planned, told):
+    """Adds what the workflow has done; returns what went wrong, a line each."""
+    wrong = []
+    for world in worlds:
+        row = out / "world" / name_of(world) / "row.json"
+        if world in ledger or not row.exists():
+            continue
+        done = json.loads(row.read_text())
+        if "world" not in done:
+            wrong.append(f"{name_of(world)} {json.dumps(world)}: {done['error']}")
+            continue
+        ledger.add(done["world"])
+        print(f"{len(ledger.rows)}/{planned} {told(world, done['world'])}", flush=True)
+    return wrong
+
+
+def run(ledger, planned, judge, args, told):
+    """Adds to the ledger what `judge`.run_world(build, folder, world) returns; told(world, result) is a line for the screen.
+    No world is begun after args.most_minutes (None: all are run)."""
+    left = list({name_of(world): world for world in planned if world not in ledger}.values())
+    if not left or args.most_minutes == 0:
+        return
+    worlds, out = args.work / "worlds.csv", args.work / "worlds"
+    write_table(worlds, left, judge)
+    until = [] if args.most_minutes is None else ["--until", str(time.time() + 60 * args.most_minutes)]
+    try:
+        subprocess.run([sys.executable, WORKFLOW, worlds, "--out", out, "--cores", str(args.workers), "--build", args.build,
+                        "--progress", *until], check=False)
+    finally:
+        wrong = collect(ledger, left, out, len(planned), told)
+    if wrong:
+        sys.exit("\n".join(wrong))
 
 
 def command(script, parser, args, options):

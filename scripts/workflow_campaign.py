@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""The workflow over many small logs: on the cores of this machine, on a Slurm of this machine, killed and gone on with,
+beside a plain loop.
+
+    scripts/workflow_campaign.py --work DIR [--rows 1000] [--cores 2] [--batch 25] [--page docs/reference/workflow-campaign.md]
+
+Each row is `softgrip identify` of a simulated log of 25 s at 20 Hz, another finger each. Root is needed for Slurm.
+"""
+import argparse
+import csv
+import hashlib
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+RUN = ROOT / "workflows/run.py"
+SAMPLES = 500
+
+
+def make(args, program):
+    """The logs and their table."""
+    args.work.mkdir(parents=True, exist_ok=True)
+    twin = (ROOT / "config/models/bench_twin.yaml").read_text()
+    rng = random.Random(1)
+    with (args.work / "rows.csv").open("w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(("name", "task", "data"))
+        for i in range(args.rows):
+            name = f"finger{i + 1:04d}"
+            alpha = 0.21105 * rng.uniform(0.8, 1.2)
+            model = args.work / "finger.yaml"
+            model.write_text(twin.replace("alpha_mm_per_kpa: 0.21105", f"alpha_mm_per_kpa: {alpha:.5f}"))
+            log = args.work / f"{name}.csv"
+            subprocess.run([program, "simulate", "--model", model, "--input", "tp1", "--rate-hz", "20", "--noise-mm", "0.04",
+                            "--seed", str(i + 1), "--out", log], check=True, capture_output=True)
+            log.write_text("\n".join(log.read_text().splitlines()[:SAMPLES + 1]) + "\n")
+            table.writerow((name, "identify", log.name))
+
+
+def plain_loop(args, program, out):
+    shutil.rmtree(out, ignore_errors=True)
+    began = time.monotonic()
+    for i in range(args.rows):
+        name = f"finger{i + 1:04d}"
+        subprocess.run([program, "identify", "--data", args.work / f"{name}.csv", "--threads", "1", "--out", out / name],
+                       capture_output=True, check=False)
+    return time.monotonic() - began
+
+
+def command(args, out, *more):
+    return [sys.executable, RUN, args.work / "rows.csv", "--out", out, "--cores", str(args.cores), "--build", args.build, *more]
+
+
+def workflow(words):
+    began = time.monotonic()
+    subprocess.run([str(word) for word in words], check=False, stdout=subprocess.DEVNULL)
+    return time.monotonic() - began
+
+
+def rows_of(out):
+    return {path.parent.name: path.stat().st_mtime_ns for path in out.glob("identify/*/row.json")}
+
+
+def killed(args, out):
+    """Kills a run in its middle. Returns what it took until then, what the rest took, and how many rows were run twice."""
+    shutil.rmtree(out, ignore_errors=True)
+    began = time.monotonic()
+    child = subprocess.Popen([str(word) for word in command(args, out)], start_new_session=True, stdout=subprocess.DEVNULL)
+    while len(rows_of(out)) < args.rows // 2 and child.poll() is None:
+        time.sleep(0.05)
+    os.killpg(child.pid, signal.SIGKILL)
+    child.wait()
+    first_s, before = time.monotonic() - began, rows_of(out)
+    second_s = workflow(command(args, out))
+    after = rows_of(out)
+    return first_s, second_s, len(before), sum(after[name] != when for name, when in before.items())
+
+
+def models(folders):
+    """A hash over the models of all rows, and how many there are."""
+    digest, count = hashlib.sha256(), 0
+    for number, folder in enumerate(folders):
+        model = folder / "model.yaml"
+        if model.exists():
+            digest.update(f"{number} ".encode() + model.read_bytes())
+            count += 1
+    return digest.hexdigest()[:16], count
+
+
+def page(args, figures):
+    rows = args.rows
+    lines = ["# The workflow beside a plain loop", "",
+             f"Written by `scripts/workflow_campaign.py --work DIR --rows {rows} --cores {args.cores} --batch {args.batch} --page "
+             f"{args.page}` on {os.cpu_count()} processors, load {figures['load']:.1f} before it began (others worked on the "
+             "machine, too): each row is `softgrip identify --threads 1` of another simulated finger, 25 s at 20 Hz. Rows this "
+             "short are the workflow's worst case: what it adds per row is the same for rows of minutes.", "",
+             "| how | wall time | per row | models, hash over all |", "|---|---|---|---|"]
+    for name, seconds, (digest, count) in figures["ways"]:
+        lines.append(f"| {name} | {seconds:.0f} s | {seconds / rows:.2f} s | {count}, `{digest}` |")
+    same = len({result for _, _, result in figures["ways"]}) == 1
+    first_s, second_s, done, twice = figures["killed"]
+    whole_s = figures["ways"][1][1]
+    lines += ["", f"The models are {'the same, byte by byte' if same else 'NOT the same'}.", "",
+              f"Killed with SIGKILL after {first_s:.0f} s, when {done} of {rows} rows were done, and begun again: {second_s:.0f} s "
+              f"more, {first_s + second_s:.0f} s in all instead of {whole_s:.0f} s; {twice} of the rows that were done were run "
+              "twice."]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--rows", type=int, default=1000)
+    parser.add_argument("--cores", type=int, default=2)
+    parser.add_argument("--batch", type=int, default=25)
+    parser.add_argument("--page", type=pathlib.Path)
+    args = parser.parse_args()
+    args.work, args.build = args.work.resolve(), args.build.resolve()
+    program = args.build / "tools/softgrip"
+    figures = {"load": os.getloadavg()[0], "ways": []}
+    make(args, program)
+    names = [f"finger{i + 1:04d}" for i in range(args.rows)]
+
+    def told(name, seconds, folders):
+        figures["ways"].append((name, seconds, models(folders)))
+        print(name, f"{seconds:.1f} s", figures["ways"][-1][2], flush=True)
+
+    loop = args.work / "loop"
+    told("a plain loop, one after the other", plain_loop(args, program, loop), [loop / name for name in names])
+    for name, out, words in (
+            (f"the workflow, `--cores {args.cores}`", args.work / "cores", []),
+            (f"the workflow on a Slurm of this machine, {args.batch} rows per job", args.work / "slurm",
+             ["--slurm", "--batch", str(args.batch)])):
+        shutil.rmtree(out, ignore_errors=True)
+        begin = ["bash", ROOT / "scripts/slurm_here.sh", args.work / "slurm_state"] if words else []
+        told(name, workflow([*begin, *command(args, out, *words)]), [out / "identify" / n / "result" for n in names])
+    out = args.work / "killed"
+    figures["killed"] = killed(args, out)
+    print("killed", figures["killed"], models([out / "identify" / n / "result" for n in names]), flush=True)
+    (args.work / "figures.json").write_text(json.dumps(figures) + "\n")
+    if args.page:
+        args.page.write_text(page(args, figures))
+
+
+if __name__ == "__main__":
+    main()

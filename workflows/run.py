@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""A table of logs, recordings or rigs, row by row, on the cores of this machine or on Slurm; one page over all at the end.
+
+    workflows/run.py TABLE --out DIR [--cores 2] [--slurm [--jobs 64] [--batch 20]] [--again]
+
+The table: workflows/table.py. Interrupted, by whatever, the same command goes on: rows that are done are not run again but
+where their line or what they read has changed. --again: nor are those that failed, otherwise. DIR/overview.html,
+DIR/overview.json, and DIR/TASK/NAME/ with row.json and result/. Exit codes: 0 all rows done, 1 the workflow was stopped, 2
+usage, 3 the table is refused, 4 Snakemake is missing, 5 the same DIR is in use, 6 some rows failed or are not acceptable.
+"""
+import argparse
+import fcntl
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import table
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--cores", type=int, default=1, help="rows side by side on this machine")
+    parser.add_argument("--slurm", action="store_true", help="hand the rows to Slurm instead")
+    parser.add_argument("--jobs", type=int, default=64, help="with --slurm: in its queue at once")
+    parser.add_argument("--batch", type=int, default=20, help="with --slurm: rows per job")
+    parser.add_argument("--threads", type=int, default=1, help="of one row")
+    parser.add_argument("--most-minutes", type=float, default=60, help="of one row; it has failed then")
+    parser.add_argument("--until", type=float, default=0, help="no row is begun after this time (seconds of Unix)")
+    parser.add_argument("--again", action="store_true", help="run failed rows again")
+    parser.add_argument("--progress", action="store_true", help="say how far it is")
+    parser.add_argument("--program", help="[build/release/tools/softgrip beside this folder, or the installed one]")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release", help="of the blind worlds")
+    return parser.parse_args()
+
+
+def program_of(args):
+    built = args.build.resolve() / "tools/softgrip"
+    return args.program or (str(built) if built.exists() else "softgrip")
+
+
+def snakemake(args, *more):
+    words = ["snakemake", "--snakefile", HERE / "Snakefile", "--directory", args.out.resolve(), "--quiet",
+             "rules" if args.progress else "all", "--rerun-incomplete", "--rerun-triggers", "mtime", "params", "input",
+             "--nolock"]
+    if args.slurm:
+        words += ["--profile", HERE / "slurm", "--jobs", args.jobs, "--group-components", f"rows={args.batch}",
+                  "--cores", args.threads]
+    else:
+        words += ["--cores", args.cores]
+    config = {"table": args.table.resolve(), "program": program_of(args), "build": args.build.resolve(),
+              "threads": args.threads, "most_minutes": args.most_minutes, "until": f"{args.until:.0f}"}
+    words += [*more, "--config", *(f"{key}={value}" for key, value in config.items())]
+    return subprocess.run([str(word) for word in words], stdin=subprocess.DEVNULL, check=False).returncode
+
+
+def failed_rows(args, rows):
+    for row in rows:
+        told = args.out / row.result()
+        if told.exists() and json.loads(told.read_text())["status"] == "failed":
+            yield told
+
+
+def main():
+    args = arguments()
+    try:
+        rows = table.read(args.table)
+    except table.Refused as refused:
+        print(refused, file=sys.stderr)
+        return 3
+    except OSError as error:
+        print(f"{args.table}: {error.strerror}", file=sys.stderr)
+        return 4
+    if not shutil.which("snakemake"):
+        print("snakemake is missing: apt install snakemake (scripts/packages.sh workflows)", file=sys.stderr)
+        return 4
+    args.out.mkdir(parents=True, exist_ok=True)
+    # Its own lock stays behind when Snakemake is killed; this one does not.
+    with (args.out / ".in_use").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            print(f"{args.out} is in use by another run", file=sys.stderr)
+            return 5
+        if args.again:
+            for told in failed_rows(args, rows):
+                told.unlink()
+        if snakemake(args) != 0:
+            print(f"stopped; the same command goes on: {sum((args.out / r.result()).exists() for r in rows)} of "
+                  f"{len(rows)} rows are there", file=sys.stderr)
+            return 1
+    counts = json.loads((args.out / "overview.json").read_text())["counts"]
+    print(", ".join(f"{count} {status}" for status, count in counts.items()) + f": {args.out / 'overview.html'}")
+    return 0 if counts["done"] == len(rows) else 6
+
+
+if __name__ == "__main__":
+    sys.exit(main())

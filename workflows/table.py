@@ -1,0 +1,131 @@
+"""The table of a workflow: CSV, or TSV by the file's ending .tsv. One row, one task.
+
+name      of the row, and of its folder: letters, digits, - _ .
+task      identify, diagnose, baseline, health or world
+data      logs, recordings or folders of recordings, separated by spaces (identify, diagnose, baseline, health)
+model     a model file (identify: to start from; diagnose, baseline)
+baseline  a folder of softgrip baseline, or @NAME: that of another row (diagnose, health)
+rig       a rig file that is moved (baseline)
+options   further words of the command line
+judge     whose run_world() a world goes through: judging, trial or changing (world)
+world     its settings as JSON (world)
+
+Paths are relative to the table. Every column but name and task may be missing; others are kept and ignored.
+"""
+import csv
+import dataclasses
+import json
+import pathlib
+import re
+import shlex
+
+COLUMNS = ("name", "task", "data", "model", "baseline", "rig", "options", "judge", "world")
+JUDGES = ("judging", "trial", "changing")
+# What a task cannot do without; of a tuple, one.
+NEEDED = {"identify": ("data",), "diagnose": ("data", ("model", "baseline")), "baseline": (("data", "rig"),),
+          "health": ("data", "baseline"), "world": ("judge", "world")}
+TASKS = tuple(NEEDED)
+quoted = shlex.quote
+
+
+class Refused(Exception):
+    """All that is wrong with a table, a line each."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Row:
+    folder: pathlib.Path  # of the table
+    cells: dict
+    of: dict  # tasks by name, of all rows
+
+    @property
+    def name(self):
+        return self.cells["name"]
+
+    @property
+    def task(self):
+        return self.cells["task"]
+
+    def get(self, column):
+        return (self.cells.get(column) or "").strip()
+
+    def logs(self):
+        return [self.folder / path for path in shlex.split(self.get("data"))]
+
+    def path(self, column):
+        return self.folder / self.get(column)
+
+    def result(self, name=None):
+        """row.json, relative to the output folder."""
+        return f"{self.of[name]}/{name}/row.json" if name else f"{self.task}/{self.name}/row.json"
+
+    def other_baseline(self):
+        """The row whose baseline this one reads, or None."""
+        return self.get("baseline")[1:] if self.get("baseline").startswith("@") else None
+
+    def inputs(self):
+        """Files and folders that are there; a change of one makes the row again."""
+        found = [log / "run.csv" if (log / "run.csv").exists() else log for log in self.logs()]
+        found += [self.path(column) for column in ("model", "rig") if self.get(column)]
+        other = self.other_baseline()
+        if self.get("baseline") and not other:
+            found.append(self.path("baseline") / "baseline.json")
+        return [str(path) for path in found if path.exists()] + ([self.result(other)] if other else [])
+
+    def text(self):
+        """What a change of makes the row again."""
+        return json.dumps([self.get(column) for column in COLUMNS])
+
+
+def problems_of(row, seen):
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", row.name or ""):
+        yield f"name {row.name!r}: letters, digits, - _ . are meant"
+    if row.name in seen:
+        yield f"name {row.name!r} stands in line {seen[row.name]} already"
+    if row.task not in TASKS:
+        yield f"task {row.task!r}: one of {', '.join(TASKS)} is meant"
+        return
+    for needed in NEEDED[row.task]:
+        one_of = needed if isinstance(needed, tuple) else (needed,)
+        if not any(row.get(column) for column in one_of):
+            yield f"{row.task} needs {' or '.join(one_of)}"
+    other = row.other_baseline()
+    if other and row.of.get(other) != "baseline":
+        yield f"baseline @{other}: no row of that name has the task baseline"
+    for column in ("data", "options"):
+        try:
+            shlex.split(row.get(column))
+        except ValueError as error:
+            yield f"{column}: {error}"
+    if row.task == "world":
+        if row.get("judge") not in JUDGES:
+            yield f"judge {row.get('judge')!r}: one of {', '.join(JUDGES)} is meant"
+        try:
+            json.loads(row.get("world") or "{}")
+        except ValueError as error:
+            yield f"world: {error}"
+
+
+def read(path):
+    """The rows. Raises Refused with all that is wrong."""
+    path = pathlib.Path(path)
+    with path.open(newline="", encoding="utf-8") as file:
+        reader = csv.DictReader(file, delimiter="\t" if path.suffix == ".tsv" else ",")
+        lines = [(reader.line_num, cells) for cells in reader]
+    problems = [f"{path}:1: no column {column!r}" for column in ("name", "task") if column not in (reader.fieldnames or [])]
+    if problems:
+        raise Refused("\n".join(problems))
+    tasks = {cells["name"]: cells["task"] for _, cells in lines}
+    rows, seen = [], {}
+    for number, cells in lines:
+        row = Row(path.resolve().parent, cells, tasks)
+        if None in cells:
+            problems.append(f"{path}:{number}: more cells than the header has")
+        problems += [f"{path}:{number}: {problem}" for problem in problems_of(row, seen)]
+        seen[row.name] = number
+        rows.append(row)
+    if not rows:
+        problems.append(f"{path}: no rows")
+    if problems:
+        raise Refused("\n".join(problems))
+    return rows
