@@ -14,7 +14,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", SOURCE / "build" / "release"))
 RUN = SOURCE / "workflows/run.py"
 TWIN = SOURCE / "config/models/bench_twin.yaml"
-SLOW = "--starts 60"  # long enough to be killed in
+SLOW = "--starts 250"  # long enough to be killed in
 
 
 class Workflow(unittest.TestCase):
@@ -86,7 +86,7 @@ class Workflow(unittest.TestCase):
         self.assertEqual(again, {f"{row}/row.json" for row in ("identify/a", "identify/bad", "identify/gone", "diagnose/twin")})
 
     def test_a_killed_run_goes_on(self):
-        names = [f"log{i}" for i in range(6)]
+        names = [f"log{i}" for i in range(5)]
         self.small_logs(*(f"{name}.csv" for name in names))
         table = self.table(*((name, "identify", f"{name}.csv", "", "", SLOW) for name in names))
         child = subprocess.Popen([sys.executable, RUN, table, "--out", self.folder / "out", "--cores", "2", "--build", BUILD],

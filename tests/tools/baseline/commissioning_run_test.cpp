@@ -37,7 +37,10 @@ TEST(CommissioningRun, PlaysTwiceWithOtherNoise) {
   EXPECT_EQ(runs->first[0].name, "sharp_steps");
   EXPECT_EQ(runs->first[0].channel, "left");
   EXPECT_EQ(runs->first[0].pressure_command_kpa, runs->second[0].pressure_command_kpa);
-  EXPECT_NE(runs->first[0].displacement_mm, runs->second[0].displacement_mm);
+  std::size_t equal = 0;
+  for (std::size_t i = 0; i < runs->first[0].size(); ++i)
+    equal += runs->first[0].displacement_mm[i] == runs->second[0].displacement_mm[i] ? 1U : 0U;
+  EXPECT_LT(equal, runs->first[0].size() / 10);
   ASSERT_EQ(told.size(), 4U);
   EXPECT_EQ(told[0].rfind("first: gentle_motion", 0), 0U) << told[0];
   EXPECT_EQ(told[1].rfind("first: first_load", 0), 0U) << told[1];
