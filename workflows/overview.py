@@ -47,8 +47,9 @@ document.querySelectorAll("th button").forEach((button, column) => button.onclic
 
 def line_of(told, folder):
     name = html.escape(told["name"])
-    if told.get("report"):
-        name = f'<a href="{html.escape(str(folder / told["report"]))}">{name}</a>'
+    links = [html.escape(str(folder / report)) for report in told.get("reports", [])]
+    name = f'<a href="{links[0]}">{name}</a>' if links else name
+    name += "".join(f' <a href="{link}">{i}</a>' for i, link in enumerate(links[1:], 2))
     error = f"<pre>{html.escape(told['error'])}</pre>" if told.get("error") else ""
     status = told["status"]
     return (f'<tr class="{status}"><td>{name}</td><td>{html.escape(told["task"])}</td>'

@@ -64,7 +64,7 @@ def found_in(task, out):
         told = read_json(out / "baseline.json")
         return (told.get("check") or {"verdict": "no second run"}).get("verdict", "")
     fingers = read_json(out / "health.json").get("fingers", [])
-    return ", ".join(f"{finger.get('finger')}: {finger.get('state')}" for finger in fingers)
+    return ", ".join(f"{finger.get('finger') or 'the finger'}: {finger.get('state')}" for finger in fingers)
 
 
 def run_command(row, args, out):
@@ -121,7 +121,7 @@ def main():
         if "command" in told:
             told["command"] = [word.replace(str(running), str(place)) for word in told["command"]]
     pages = sorted((place / "result").glob("*.html"), key=lambda page: page.name != "report.html")
-    told["report"] = f"result/{pages[0].name}" if pages else None
+    told["reports"] = [f"result/{page.name}" for page in pages]
     (running / "row.json").write_text(json.dumps(told, indent=1) + "\n")
     os.replace(running / "row.json", place / "row.json")
     shutil.rmtree(running, ignore_errors=True)
