@@ -146,6 +146,8 @@ class Campaign(bench.BenchTest):
             if number % 3:
                 # Some commands find the gripper holding.
                 self.master.command(plc.START, recipe=1)
+                # Until it runs, the result is that of the grip before.
+                self.master.wait("state", plc.RUNNING, plc.FAULTED)
                 self.master.wait("result", plc.HOLDING, plc.NO_PART, plc.PART_LOST, ERROR)
                 self.come_to_rest()
             self.grip()
