@@ -164,22 +164,17 @@ function(softgrip_precompile_for_tests target)
 endfunction()
 
 # softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...]
-#               [TOGETHER] [ALONE file ...])
 # a GoogleTest program; its tests are discovered one by one. REALTIME: patterns of the tests that measure real time, which
 # a shared machine may disturb: they get a second attempt (scripts/ctest.sh). LONG: of those that compute for seconds,
-# which scripts/test.sh --quick leaves out. A pattern stands in one of the two. TOGETHER: as of a room; ALONE: but not these.
+# which scripts/test.sh --quick leaves out. A pattern stands in one of the two.
 function(softgrip_test name)
-  cmake_parse_arguments(arg "TOGETHER" "" "ROOMS;LINK;REALTIME;LONG;PROPERTIES;ALONE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "ROOMS;LINK;REALTIME;LONG;PROPERTIES" ${ARGN})
   softgrip_rooms(rooms ${arg_ROOMS})
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name}
     PRIVATE softgrip_flags softgrip_test_flags ${rooms} ${arg_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE SOFTGRIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   softgrip_precompile_for_tests(${name})
-  if(arg_TOGETHER)
-    softgrip_together(${name})
-    set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  endif()
   string(JOIN ":" labelled ${arg_REALTIME} ${arg_LONG})
   softgrip_discover(${name} "*:-${labelled}" "" ${arg_PROPERTIES})
   string(JOIN ":" realtime ${arg_REALTIME})

@@ -13,7 +13,7 @@
 
 namespace softgrip::sysid {
 
-class CommandInFolder : public testing::Test {
+class CommandInFolder : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();

@@ -9,7 +9,7 @@ namespace softgrip::sysid {
 namespace {
 
 /// A base that is its echo alone: quick to fit.
-class ChangeSearch : public testing::Test {
+class ChangeSearch : public ::testing::Test {
  protected:
   ChangeSearch()
       : base_(fit_base(pressure_records(test::logs_of({}, 1, true), false), Judged::pressure, Drive::command,

@@ -95,7 +95,7 @@ std::vector<std::size_t> all_but_the_exponent(const Model& model) {
   return free;
 }
 
-class BothWays : public testing::TestWithParam<World> {};
+class BothWays : public ::testing::TestWithParam<World> {};
 
 /// The chain by automatic differentiation and the closed form are two programs for one set of equations.
 TEST_P(BothWays, ValuesAndDerivativesAgree) {

@@ -14,7 +14,7 @@ struct Case {
   double expected;
 };
 
-class Units : public testing::TestWithParam<Case> {};
+class Units : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Units, ComeToTheUnitOfALog) {
   const Case& c = GetParam();

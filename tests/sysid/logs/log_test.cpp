@@ -138,7 +138,7 @@ std::vector<Bad> bad_logs() {
   };
 }
 
-class BadLog : public testing::TestWithParam<Bad> {};
+class BadLog : public ::testing::TestWithParam<Bad> {};
 
 TEST_P(BadLog, IsRefusedWithItsPlace) {
   const Bad& bad = GetParam();

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class EventQueryTest : public testing::Test {
+class EventQueryTest : public ::testing::Test {
  protected:
   EventQueryTest() {
     ::setenv("TZ", "UTC-1", 1);  // an hour east

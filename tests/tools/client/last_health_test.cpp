@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class LastHealth : public testing::Test {
+class LastHealth : public ::testing::Test {
  protected:
   ~LastHealth() override { std::filesystem::remove_all(recordings); }
   LastHealth() = default;

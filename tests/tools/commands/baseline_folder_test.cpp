@@ -11,7 +11,7 @@
 namespace softgrip::tools {
 namespace {
 
-class BaselineFolder : public testing::Test {
+class BaselineFolder : public ::testing::Test {
  protected:
   BaselineFolder() {
     EXPECT_TRUE(write_file(folder_ + "/tp1.csv", "a log\n"));

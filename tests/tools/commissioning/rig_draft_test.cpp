@@ -52,7 +52,7 @@ std::map<std::string, std::string> with(std::map<std::string, std::string> given
   return given;
 }
 
-class RigDraftTest : public testing::Test {
+class RigDraftTest : public ::testing::Test {
  protected:
   rig::RigFile read(const RigDraft& draft) {
     const auto text = draft_text(draft, path);

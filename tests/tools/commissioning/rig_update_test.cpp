@@ -33,7 +33,7 @@ Line line(const drivers::TwoPoints& points) {
   return found;
 }
 
-class RigUpdateTest : public testing::Test {
+class RigUpdateTest : public ::testing::Test {
  protected:
   RigUpdateTest() {
     fs::create_directories(folder_);

@@ -41,7 +41,7 @@ struct Changed {
   double tolerance;
 };
 
-class ScoredChange : public testing::TestWithParam<Changed> {};
+class ScoredChange : public ::testing::TestWithParam<Changed> {};
 
 TEST_P(ScoredChange, IsSeenInItsNumberWithItsSize) {
   const Changed& changed = GetParam();

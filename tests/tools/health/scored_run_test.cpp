@@ -45,7 +45,7 @@ TEST(ScoredRun, ALineThatWasCutOffCostsItselfAlone) {
   EXPECT_TRUE(read_scores("null\n[]\n3\n").empty());
 }
 
-class FoundRuns : public testing::Test {
+class FoundRuns : public ::testing::Test {
  protected:
   ~FoundRuns() override { std::filesystem::remove_all(folder); }
   FoundRuns() = default;

@@ -55,7 +55,7 @@ sysid::Log played(const sysid::Waveform& waveform, bool after_first, std::uint64
   return sysid::slice(log, before, log.size());
 }
 
-class InvestigationTest : public testing::Test {
+class InvestigationTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("softgrip_investigation_" + std::to_string(::getpid()));

@@ -22,7 +22,7 @@ const std::string csv =
     "0.02,left,20,6,19,5.6,running\n"
     "0.02,right,20,8,19,8,running\n";
 
-class RecordingTest : public testing::Test {
+class RecordingTest : public ::testing::Test {
  protected:
   RecordingTest() { std::filesystem::create_directories(folder); }
   ~RecordingTest() override { std::filesystem::remove_all(folder); }

@@ -99,7 +99,7 @@ std::vector<std::string> crossed_words(const std::string& markup) {
   return crossed;
 }
 
-class ReportTest : public testing::Test {
+class ReportTest : public ::testing::Test {
  protected:
   model::Model given = loaded("zhang2025");
   Diagnosis diagnosis = a_diagnosis(given);
