@@ -163,7 +163,7 @@ function(softgrip_precompile_for_tests target)
   target_precompile_headers(${target} REUSE_FROM softgrip_test_headers)
 endfunction()
 
-# softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...]
+# softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...])
 # a GoogleTest program; its tests are discovered one by one. REALTIME: patterns of the tests that measure real time, which
 # a shared machine may disturb: they get a second attempt (scripts/ctest.sh). LONG: of those that compute for seconds,
 # which scripts/test.sh --quick leaves out. A pattern stands in one of the two.
