@@ -23,7 +23,7 @@ sanitized() {
   rm -rf "$reports" && mkdir -p "$reports"
   ASAN_OPTIONS=log_path=$reports/asan UBSAN_OPTIONS=print_stacktrace=1:log_path=$reports/ubsan \
     TSAN_OPTIONS=log_path=$reports/tsan \
-    run_ctest "$preset" 'blind|campaign|system|recipe' -E '_NOT_BUILT|^(systemd|packaging|repository|BlocksPage)\.' |
+    run_ctest "$preset" 'blind|campaign|system|recipe' -E '_NOT_BUILT|^(systemd|packaging|repository|workflow|BlocksPage)\.' |
     grep -v ' Start \| Passed ' || failed=1
   if [ -n "$(ls "$reports")" ]; then
     cat "$reports"/* >&2
