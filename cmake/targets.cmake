@@ -39,8 +39,8 @@ function(softgrip_room folder)
       target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
       target_compile_options(${target} PRIVATE ${softgrip_behind_a_precompiled_header})
     endif()
-    if(arg_TOGETHER)
-      softgrip_together(${target})
+    if(arg_TOGETHER AND may)
+      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
     endif()
   else()
     add_library(${target} INTERFACE)
@@ -119,14 +119,6 @@ endfunction()
 # GCC 12 takes a short std::string for its inner buffer; that it happens in a system header hides it elsewhere, but not
 # where the header is precompiled.
 set(softgrip_behind_a_precompiled_header -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
-
-# softgrip_together(TARGET)
-function(softgrip_together target)
-  softgrip_may_precompile(may)
-  if(may)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-  endif()
-endfunction()
 
 # softgrip_rooms(OUT room ...)  the targets of rooms
 function(softgrip_rooms variable)

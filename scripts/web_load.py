@@ -18,10 +18,14 @@ import selectors
 import shutil
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(SOURCE / "tests/system"))
+import bench  # noqa: E402
+
 STREAM = b"GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n"
 PAGE = b"GET /page.js HTTP/1.1\r\nHost: localhost\r\n\r\n"
 
@@ -128,9 +132,8 @@ def quantile(bins, share):
 
 def usage_of(pid):
     """Resident memory in kB, processor time in s."""
-    resident = int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{pid}/status").read_text()).group(1))
     fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return resident, (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return bench.resident_kib(pid), (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def measure(name, daemon, web, seconds, act):

@@ -250,16 +250,10 @@ std::string objection_to(const std::vector<Log>& healthy, const std::vector<Log>
 
 void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
           std::vector<std::string>& warnings) {
-  const auto largest = [](const std::vector<Log>& logs) {
-    double p = 0;
-    for (const Log& log : logs)
-      p = std::max(p, *std::max_element(log.pressure_command_kpa.begin(), log.pressure_command_kpa.end()));
-    return p;
-  };
-  if (largest(later) > 1.05 * largest(healthy))
-    warnings.push_back("The later logs go to " + significant(largest(later), 3) +
-                       " kPa, the healthy ones to " + significant(largest(healthy), 3) +
-                       " kPa: beyond it the base only guesses");
+  const double now_kpa = largest_command_kpa(later), then_kpa = largest_command_kpa(healthy);
+  if (now_kpa > 1.05 * then_kpa)
+    warnings.push_back("The later logs go to " + significant(now_kpa, 3) + " kPa, the healthy ones to " +
+                       significant(then_kpa, 3) + " kPa: beyond it the base only guesses");
   if (has_pressure(healthy) != has_pressure(later))
     warnings.emplace_back(
         "pressure_kpa is recorded in one of the two only: the valve and the finger are judged as one");

@@ -109,6 +109,14 @@ double span_mm(const Log& log) {
   return highest < lowest ? 0 : highest - lowest;
 }
 
+double largest_command_kpa(const std::vector<Log>& logs) {
+  double largest = 0;
+  for (const Log& log : logs) {
+    for (const double p : log.pressure_command_kpa) largest = std::max(largest, p);
+  }
+  return largest;
+}
+
 Log slice(const Log& log, std::size_t first, std::size_t last) {
   const auto cut = [&](const auto& values) {
     using Values = std::decay_t<decltype(values)>;

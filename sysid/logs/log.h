@@ -95,6 +95,9 @@ struct Campaign {
 /// Intervals between the samples. At least two samples.
 [[nodiscard]] Sampling sampling_of(const Log& log);
 
+/// The highest commanded pressure of some logs [kPa]; 0 without samples.
+[[nodiscard]] double largest_command_kpa(const std::vector<Log>& logs);
+
 /// The largest minus the smallest reading [mm]; 0 without readings.
 [[nodiscard]] double span_mm(const Log& log);
 

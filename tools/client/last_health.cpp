@@ -6,6 +6,7 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "base/wall_clock.h"
+#include "tools/client/json_fields.h"
 
 namespace softgrip::tools {
 namespace {
@@ -13,12 +14,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t largest_result = std::size_t{4} * 1024 * 1024;
+constexpr std::size_t longest_sentence = 4000;
 constexpr double hour_s = 3600, day_s = 86400;
-
-std::string text_in(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string("-");
-}
 
 std::string age_text(double age_s) {
   return age_s < 2 * day_s ? fixed(age_s / hour_s, 0) + " h ago" : fixed(age_s / day_s, 0) + " days ago";
@@ -58,8 +55,8 @@ std::vector<HealthLine> health_lines(const Json& health) {
   for (const Json& finger : health["fingers"]) {
     if (!finger.is_object()) continue;
     ++fingers;
-    if (text_in(finger, "state") == "alarm")
-      lines.push_back({text_in(finger, "sentence"), false, first_step(finger)});
+    if (text_at(finger, "state") == "alarm")
+      lines.push_back({text_at(finger, "sentence", longest_sentence), false, first_step(finger)});
   }
   const std::string when = "judged " + age_text(age_s);
   if (lines.empty())

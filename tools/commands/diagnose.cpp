@@ -103,12 +103,9 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
 ConsequenceOptions consequence_options(const DiagnoseOptions& options, const std::vector<sysid::Log>& logs) {
   ConsequenceOptions wanted = options.consequences;
   sysid::RigLimits limits{options.pressure_max_kpa, options.slew_kpa_per_s};
-  for (const sysid::Log& log : logs) {
-    wanted.experiment.pressure_recorded |= !log.pressure_kpa.empty();
-    if (options.pressure_max_kpa > 0) continue;
-    for (const double p : log.pressure_command_kpa)
-      limits.pressure_max_kpa = std::max(limits.pressure_max_kpa, p);
-  }
+  for (const sysid::Log& log : logs) wanted.experiment.pressure_recorded |= !log.pressure_kpa.empty();
+  if (!(options.pressure_max_kpa > 0))
+    limits.pressure_max_kpa = std::max(limits.pressure_max_kpa, sysid::largest_command_kpa(logs));
   wanted.experiment.limits = limits;
   wanted.experiment.threads = options.diagnosis.threads;
   wanted.closed_loop = !options.no_closed_loop;

@@ -56,10 +56,11 @@ class Baselines {
  public:
   explicit Baselines(std::string folder) : folder_(std::move(folder)) {}
 
-  std::optional<health::FingerBase> of(const std::string& finger) {
-    const auto known = bases_.find(finger);
-    if (known != bases_.end()) return known->second;
-    return bases_[finger] = read(folder_of(finger));
+  /// Null: it has none. It lives as long as this.
+  const health::FingerBase* of(const std::string& finger) {
+    const auto [base, is_new] = bases_.try_emplace(finger);
+    if (is_new) base->second = read(folder_of(finger));
+    return base->second ? &*base->second : nullptr;
   }
   [[nodiscard]] std::string folder_of(const std::string& finger) const {
     const fs::path own = fs::path(folder_) / finger;
@@ -79,10 +80,7 @@ class Baselines {
     if (!model) return refuse_with(model.error());
     const auto logs = read_logs(baseline->logs, {});
     if (!logs) return refuse_with(logs.error());
-    double full_kpa = 0;
-    for (const sysid::Log& log : *logs)
-      full_kpa = std::max(
-          full_kpa, *std::max_element(log.pressure_command_kpa.begin(), log.pressure_command_kpa.end()));
+    const double full_kpa = sysid::largest_command_kpa(*logs);
     if (!(full_kpa > 0))
       return refuse_with(fail(ExitCode::input_refused, folder + ": its logs know no pressure"));
     return health::FingerBase{health::score_base(*model, full_kpa),
@@ -134,7 +132,7 @@ std::vector<sysid::HealthNumber> shared_by(const std::vector<Judged>& fingers) {
 }
 
 Json result_of(const HealthOptions& options, const std::vector<Judged>& fingers,
-               const health::RunScores& scores) {
+               const std::vector<sysid::HealthNumber>& shared, const health::RunScores& scores) {
   const Nanoseconds now = wall_time_now();
   const health::ChartLimits limits = options.judge.limits();
   const bool alarm = std::any_of(fingers.begin(), fingers.end(), [](const Judged& finger) {
@@ -153,8 +151,7 @@ Json result_of(const HealthOptions& options, const std::vector<Judged>& fingers,
   for (const Judged& finger : fingers)
     json["fingers"].push_back(health::json_of(finger.health, finger.suspicion));
   json["shared"] = Json::array();
-  for (const sysid::HealthNumber number : shared_by(fingers))
-    json["shared"].push_back(sysid::info_of(number).id);
+  for (const sysid::HealthNumber number : shared) json["shared"].push_back(sysid::info_of(number).id);
   json["skipped"] = Json::array();
   for (const health::SkippedRun& skipped : scores.skipped)
     json["skipped"].push_back({{"run", skipped.run}, {"why", skipped.why}});
@@ -220,7 +217,8 @@ ExitCode run(HealthOptions options) {
   if (fingers.empty())
     return fail(ExitCode::input_refused,
                 "there is no recording that could be compared with " + options.baseline);
-  const Json json = result_of(options, fingers, scores);
+  const std::vector<sysid::HealthNumber> shared = shared_by(fingers);
+  const Json json = result_of(options, fingers, shared, scores);
   if (!options.out.empty()) {
     if (const auto written = write_results(options.out, json, fingers, kept); !written)
       return fail(ExitCode::io, written.error());
@@ -229,7 +227,7 @@ ExitCode run(HealthOptions options) {
     std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   } else {
     for (const Judged& finger : fingers) print(finger);
-    for (const sysid::HealthNumber number : shared_by(fingers))
+    for (const sysid::HealthNumber number : shared)
       std::printf(
           "All fingers have changed alike in %s: look first at what they share, the temperature and the "
           "supply.\n",

@@ -60,9 +60,9 @@ struct CampaignScales {
 
 CampaignScales scales_of(const std::vector<sysid::Log>& logs) {
   CampaignScales scales;
+  scales.largest_kpa = sysid::largest_command_kpa(logs);
   double highest_mm = 0;
   for (const sysid::Log& log : logs) {
-    for (const double p : log.pressure_command_kpa) scales.largest_kpa = std::max(scales.largest_kpa, p);
     for (const double y : log.displacement_mm) highest_mm = std::max(highest_mm, y);
     scales.pressure_recorded |= !log.pressure_kpa.empty();
   }

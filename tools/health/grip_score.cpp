@@ -144,9 +144,13 @@ double loop_of(const Compared& c, const FreeFit& fit, double full_mm) {
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
+
+double length_s(const Compared& c, const Stretch& stretch) {
+  return stretch.last > stretch.first ? c.log.time_s[stretch.last - 1] - c.log.time_s[stretch.first] : 0;
+}
+
 Stretch longest_still(const Compared& c, Part part, double full_kpa) {
   Stretch best;
-  double longest_s = 0;
   for (std::size_t begin = 0; begin < c.log.size();) {
     if (c.parts.at[begin] != part) {
       ++begin;
@@ -159,18 +163,10 @@ Stretch longest_still(const Compared& c, Part part, double full_kpa) {
       ++end;
     Stretch found{begin, end};
     while (found.first < end && c.log.time_s[found.first] < c.log.time_s[begin] + settling_s) ++found.first;
-    const double length_s = found.first < end ? c.log.time_s[end - 1] - c.log.time_s[found.first] : 0;
-    if (length_s > longest_s) {
-      longest_s = length_s;
-      best = found;
-    }
+    if (length_s(c, found) > length_s(c, best)) best = found;
     begin = end;
   }
   return best;
-}
-
-double length_s(const Compared& c, const Stretch& stretch) {
-  return stretch.last > stretch.first ? c.log.time_s[stretch.last - 1] - c.log.time_s[stretch.first] : 0;
 }
 
 /// From the first fifth to the last, in the direction of the motion before it.

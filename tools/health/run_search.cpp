@@ -13,6 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The folder's or file's own, also of "runs/" and of "runs/.".
+std::string name_of(const std::string& path) {
+  return fs::path(path).lexically_normal().filename().string();
+}
+
 bool is_run(const fs::path& path) {
   std::error_code ignored;
   return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
@@ -20,7 +25,7 @@ bool is_run(const fs::path& path) {
 
 void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores) {
   document::Problems problems;
-  const std::string name = fs::path(path).lexically_normal().filename().string();
+  const std::string name = name_of(path);
   const auto recording = read_recording(path, problems);
   if (!recording) {
     scores.skipped.push_back(
@@ -38,8 +43,8 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
   }
   for (std::size_t c = 0; c < recording->channels.size(); ++c) {
     const std::string& finger = recording->channels[c].channel;
-    const auto base = base_of(finger);
-    if (!base) {
+    const FingerBase* const base = base_of(finger);
+    if (base == nullptr) {
       scores.skipped.push_back({name, "there is no baseline of `" + finger + "`"});
       continue;
     }
@@ -72,8 +77,8 @@ std::vector<ScoredRun> current(const std::vector<ScoredRun>& runs, const BaseOf&
   std::map<std::pair<std::string, std::string>, std::size_t> place;
   std::vector<ScoredRun> kept;
   for (const ScoredRun& run : runs) {
-    const auto base = base_of(run.finger);
-    if (!base || base->id != run.baseline) continue;
+    const FingerBase* const base = base_of(run.finger);
+    if (base == nullptr || base->id != run.baseline) continue;
     const auto [at, is_new] = place.try_emplace({run.run, run.finger}, kept.size());
     if (is_new)
       kept.push_back(run);
@@ -95,8 +100,7 @@ RunScores score_runs(const std::vector<std::string>& paths, const BaseOf& base_o
   for (const auto& [run, finger] : stale) done.erase(run);
   RunScores scores;
   for (const std::string& path : paths) {
-    if (!done.contains(fs::path(path).lexically_normal().filename().string()))
-      score_one(path, base_of, scores);
+    if (!done.contains(name_of(path))) score_one(path, base_of, scores);
   }
   return scores;
 }

@@ -67,12 +67,8 @@ class FoundRuns : public ::testing::Test {
     return path.string();
   }
   [[nodiscard]] RunScores scores() const {
-    const ScoreBase base = score_base(sysid::loaded("bench_twin"), 60);
-    return score_runs(find_runs({folder.string()}),
-                      [&](const std::string&) {
-                        return FingerBase{base, "b"};
-                      },
-                      {});
+    const FingerBase base{score_base(sysid::loaded("bench_twin"), 60), "b"};
+    return score_runs(find_runs({folder.string()}), [&](const std::string&) { return &base; }, {});
   }
 
   std::filesystem::path folder =
@@ -106,9 +102,11 @@ TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {
 }
 
 TEST(ScoredRun, OnlyScoresByTodaysBaselineCountAndTheLastOfThem) {
-  const BaseOf base_of = [](const std::string& finger) -> std::optional<FingerBase> {
-    if (finger == "middle") return std::nullopt;
-    return FingerBase{{}, finger == "left" ? "new" : "old"};
+  const FingerBase replaced{{}, "new"};
+  const FingerBase kept_since{{}, "old"};
+  const BaseOf base_of = [&](const std::string& finger) -> const FingerBase* {
+    if (finger == "middle") return nullptr;
+    return finger == "left" ? &replaced : &kept_since;
   };
   ScoredRun again = example("run-1", "right", "old");
   again.score[sysid::HealthNumber::gain] = 30;
