@@ -212,11 +212,13 @@ void describe_check(const Event&, const Sequence*, EventEntry& entry) {
 void describe_lack(const Event& event, const Sequence*, EventEntry& entry) {
   const bool moves = static_cast<control::RestLack>(event.detail) == control::RestLack::moves;
   entry.code = moves ? "moves" : "off_model";
-  entry.text = moves ? std::string("The finger did not come to rest: nothing was started.")
-                     : fmt::format(
-                           "The finger rests {:.1f} mm off its model: nothing was started. Creep that a grip "
-                           "left is gone after a minute or two; what stays is the sensor's zero.",
-                           event.value);
+  entry.text =
+      moves ? std::string("The finger did not come to rest: nothing was started.")
+            : fmt::format(
+                  "The finger rests {:.1f} mm off its model: nothing was started. Creep that a grip "
+                  "left is gone after a minute or two, what an interrupted grip left after a free_stroke "
+                  "with empty fingers; what stays then is the sensor's zero.",
+                  event.value);
   entry.severity = Severity::warning;
 }
 

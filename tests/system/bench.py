@@ -285,6 +285,13 @@ class BenchTest(unittest.TestCase):
         path.write_text(text)
         return path
 
+    def creep_faster(self):
+        """Makes the finger of the shipped rigs, and its model, one that has crept back after a few seconds."""
+        path = self.folder / "config/models/bench_twin.yaml"
+        text, count = re.subn(r"c1_kpa_s_per_mm: [\d.]+", "c1_kpa_s_per_mm: 20", path.read_text())
+        self.assertEqual(count, 1)
+        path.write_text(text)
+
     def emulator(self, *arguments, **keys):
         process = Emulator(self.folder, *arguments, **keys)
         self.processes.append(process)

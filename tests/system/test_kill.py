@@ -52,6 +52,31 @@ class Kill(bench.BenchTest):
             time.sleep(0.05)
         self.assertEqual(again.status()["state"], "idle")
 
+    def test_after_a_free_stroke_the_next_daemon_grips_again(self):
+        """A finger remembers how far it was pressed; a daemon that was not there learns it by a stroke."""
+        self.creep_faster()
+        emulator = self.emulator("--object", "stone")
+        rig = self.rig(emulator.port)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        daemon.wait_for_event("grip_result", code="HOLDING", channel="left")
+        daemon.kill()
+        again = self.daemon(rig)
+        again.wait_for_state("idle")
+        bench.wait_for("creep that has gone", lambda: max(c["displacement_mm"] for c in emulator.status()["channels"]) < 3)
+
+        def grip():
+            since = again.events()[-1]["id"]
+            again.start("pick_stone")
+            return again.wait_for_event("grip_result", since, channel="left")["code"]
+        self.assertEqual(grip(), "ERROR")
+        self.assertEqual(again.wait_for_event("not_at_rest", channel="left")["code"], "off_model")
+        again.wait_for_state("idle")
+        again.start("free_stroke")
+        again.wait_for_event("sequence_finished", code="done")
+        self.assertEqual(grip(), "HOLDING")
+
     def test_at_random_moments(self):
         """A hundred of them: scripts/kill_nine.sh."""
         seed = random.SystemRandom().randrange(1 << 31)
