@@ -24,6 +24,8 @@ struct Reading {
   double displacement_mm = 0;
   /// measured, if the channel has a monitor input; else NaN
   double pressure_kpa = std::numeric_limits<double>::quiet_NaN();
+  /// of the finger's surroundings, if the channel has a temperature sensor; else NaN
+  double temperature_c = std::numeric_limits<double>::quiet_NaN();
   /// what the board says it outputs, if it can be read back; else NaN
   double command_readback_kpa = std::numeric_limits<double>::quiet_NaN();
   Nanoseconds sampled_at = 0;  ///< when the board was asked; 0 before the first reply

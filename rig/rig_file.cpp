@@ -170,7 +170,7 @@ RigReading read_rig_so_far(const document::Document& document, document::Problem
   RigFile& rig = reading.rig;
   rig.path = document.file;
   rig.inputs.push_back({InputFile::Role::rig, document.file, document.text});
-  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}, false, {}, {}};
+  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}, {}, false, {}, {}};
   Context::Sound& sound = context.sound;
   MapReader top(document, document.root, problems, "the rig");
   rig.name = read_name(top, "name");

@@ -86,6 +86,9 @@ void read_wiring(Context& context, MapReader& reader, const std::string& who,
   if (const Node* monitor = reader.child("pressure_monitor", false)) {
     wiring.pressure = read_pressure_monitor(context, *monitor, who);
   }
+  if (const Node* thermometer = reader.child("temperature_sensor", false)) {
+    wiring.temperature = read_temperature_sensor(context, *thermometer, who);
+  }
   channel.pressure_measured = wiring.pressure.has_value();
   channel.displacement_used = reader.optional_boolean("displacement_used").value_or(true);
   if (!channel.displacement_used && !channel.pressure_measured) {

@@ -32,6 +32,7 @@ struct Context {
   std::vector<drivers::ChannelWiring> wiring;       ///< one per channel
   std::map<std::string, document::Location> names;  ///< of channels, and where each stands
   UsedTerminals inputs;
+  UsedTerminals thermometers;  ///< those of the inputs that channels may share
   UsedTerminals outputs;
   std::map<std::string, std::optional<model::Model>> models;  ///< by path: each file is read once
 
@@ -102,6 +103,9 @@ void read_gpio(Context& context, MapReader& top);
                                                const std::string& who, const control::LimitSettings& limits);
 [[nodiscard]] drivers::InputWiring read_pressure_monitor(Context& context, const document::Node& node,
                                                          const std::string& who);
+/// Channels may share one.
+[[nodiscard]] drivers::InputWiring read_temperature_sensor(Context& context, const document::Node& node,
+                                                           const std::string& who);
 
 /// What only several parts of a rig show: the wiring, the watchdog, what control makes of the settings, the
 /// bus budget; each as soon as the parts that it takes are sound.

@@ -24,6 +24,8 @@ simulation::PlantSettings read_plant(Context& context, const Node& node, const s
   if (const auto model = named_model(context, reader, "model", InputFile::Role::plant)) plant.model = *model;
   plant.displacement_noise_mm = reader.number("displacement_noise_mm", {0, 100});
   plant.pressure_noise_kpa = reader.number("pressure_noise_kpa", {0, 100});
+  plant.temperature_c = reader.optional_number("temperature_c", {-50, 150}).value_or(plant.temperature_c);
+  plant.temperature_noise_c = reader.optional_number("temperature_noise_c", {0, 100}).value_or(0);
   if (const Node* object = reader.child("object", false))
     plant.object = simulation::read_object(context.document, *object, context.problems);
   plant.sample_time_s = context.period_s();
@@ -35,6 +37,7 @@ simulation::SimulatedChannel simulated_channel(const Context& context, std::size
   simulation::SimulatedChannel channel;
   channel.name = wiring.name;
   channel.measures_pressure = wiring.pressure.has_value();
+  channel.measures_temperature = wiring.temperature.has_value();
   channel.valve_min_kpa = context.rig.valves[index].range_min_kpa;
   channel.valve_max_kpa = context.rig.valves[index].range_max_kpa;
   channel.vented_kpa = std::min(0.0, context.rig.settings.channels[index].limits.pressure_min_kpa);

@@ -1,4 +1,4 @@
-// How a channel of a rig file is wired: valve, sensor, pressure monitor.
+// How a channel of a rig file is wired: valve, sensor, pressure monitor, temperature sensor.
 
 #include <algorithm>
 #include <array>
@@ -96,14 +96,16 @@ const drivers::Terminal* terminal_of(const Context& context, std::string_view ke
   return index < terminals.size() ? &terminals[index] : nullptr;
 }
 
-/// A terminal of the board, used once, and there.
+/// A terminal of the board, used once, and there. @param shared  those of `used` that may be used again;
+/// null: none.
 std::size_t read_terminal(Context& context, MapReader& reader, std::string_view key, std::size_t module,
-                          UsedTerminals& used) {
+                          UsedTerminals& used, UsedTerminals* shared = nullptr) {
   const auto terminal = static_cast<std::size_t>(reader.integer(key, 0, 255));
   const bool unknown_module = !context.modules.empty() && module >= context.modules.size();
   if (!reader.good(key) || unknown_module) return terminal;
   const auto [first, fresh] = used.try_emplace({module, terminal}, reader.where(key));
-  if (!fresh) {
+  const bool again = shared != nullptr && !shared->try_emplace({module, terminal}, reader.where(key)).second;
+  if (!fresh && !again) {
     report_repeated(reader, key, "the " + std::string(key) + " " + std::to_string(terminal), first->second);
   }
   const bool known = module < context.modules.size() && context.modules[module].terminals.has_value();
@@ -145,10 +147,11 @@ void read_error_codes(Context& context, MapReader& reader, const std::string& wh
 }
 
 drivers::InputWiring read_input(Context& context, MapReader& reader, const std::string& who,
-                                std::string_view is_key, document::Range is_range) {
+                                std::string_view is_key, document::Range is_range,
+                                UsedTerminals* shared = nullptr) {
   drivers::InputWiring wiring;
   wiring.module = read_module(context, reader, "input");
-  wiring.input = read_terminal(context, reader, "input", wiring.module, context.inputs);
+  wiring.input = read_terminal(context, reader, "input", wiring.module, context.inputs, shared);
   const ElectricalKey at = electrical_key(reader, "at");
   wiring.unit = at.unit;
   wiring.scaling = read_scaling(reader, at.name, is_key, is_range);
@@ -248,6 +251,12 @@ drivers::InputWiring read_sensor(Context& context, const Node& node, const std::
 drivers::InputWiring read_pressure_monitor(Context& context, const Node& node, const std::string& who) {
   MapReader reader(context.document, node, context.problems, "the pressure monitor of " + who);
   return read_input(context, reader, "pressure monitor of " + who, "is_kpa", {-200, 10'000});
+}
+
+drivers::InputWiring read_temperature_sensor(Context& context, const Node& node, const std::string& who) {
+  MapReader reader(context.document, node, context.problems, "the temperature sensor of " + who);
+  return read_input(context, reader, "temperature sensor of " + who, "is_c", {-100, 300},
+                    &context.thermometers);
 }
 
 }  // namespace softgrip::rig

@@ -55,7 +55,8 @@ void ChannelController::start(double command_kpa, ChannelOutput& channel) noexce
   channel = {};
   channel.command_kpa = limit(limits_, command_kpa, command_kpa, 0).command_kpa;
   channel.safe_kpa = channel.free_kpa = channel.command_kpa;
-  channel.displacement_mm = channel.pressure_kpa = not_known;  // what was never read is not 0
+  channel.displacement_mm = channel.pressure_kpa = channel.temperature_c =
+      not_known;  // what was never read is not 0
   running_.reset(channel.command_kpa);
   plausibility_.reset();
   jumps_.reset();
@@ -148,6 +149,7 @@ double ChannelController::take_reading(const ChannelInput& input, ChannelOutput&
   const bool valid = channel.validity == model::Validity::valid;
   if (valid) channel.displacement_mm = reading.displacement_mm;
   channel.pressure_kpa = reading.pressure_kpa;
+  channel.temperature_c = reading.temperature_c;
   channel.displacement_beyond =
       displacement_used_ && valid && displacement_beyond(limits_, channel.displacement_mm);
   return predicted_mm;

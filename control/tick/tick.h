@@ -92,6 +92,7 @@ struct ChannelOutput {
   double reference_mm = 0;     ///< clamped, for now; NaN while nothing is tracked
   double displacement_mm = 0;  ///< the reading used: the last valid one; NaN before the first
   double pressure_kpa = 0;     ///< measured, or NaN
+  double temperature_c = 0;    ///< measured, or NaN; nothing depends on it
   double feedforward_kpa = 0;  ///< 0 while nothing is tracked
   double feedback_kpa = 0;     ///< 0 while nothing is tracked
   double residual_mm = 0;      ///< reading minus (model + offset), both at the time the reading was sampled;

@@ -14,10 +14,11 @@ namespace {
 constexpr double decimals_scale = 1e6;
 constexpr double largest_scaled = 9e18;  // below 2^63
 constexpr std::string_view columns =
-    "time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,reference_mm,feedforward_kpa,feedback_"
+    "time_s,channel,pressure_command_kpa,displacement_mm,pressure_kpa,temperature_c,reference_mm,feedforward_"
+    "kpa,feedback_"
     "kpa,"
     "residual_mm,deficit_mm,age_s,state,step,validity,result,saturated,slewing";
-constexpr std::string_view pressure_column = "pressure_kpa,";
+constexpr std::string_view pressure_column = "pressure_kpa,", temperature_column = "temperature_c,";
 /// Everything in a row but numbers and the channel's name.
 constexpr std::size_t longest_words = 128;
 
@@ -74,21 +75,27 @@ char* write_seconds(char* to, Nanoseconds duration) noexcept {
   return write_fraction<10>(write_whole(to, magnitude / scale), magnitude % scale * 10);
 }
 
-CsvRows::CsvRows(std::vector<std::string> channel_names, bool with_pressure)
-    : channel_names_(std::move(channel_names)), with_pressure_(with_pressure) {
+CsvRows::CsvRows(std::vector<std::string> channel_names, bool with_pressure, bool with_temperature)
+    : channel_names_(std::move(channel_names)),
+      with_pressure_(with_pressure),
+      with_temperature_(with_temperature) {
   for (const std::string& name : channel_names_) longest_name_ = std::max(longest_name_, name.size());
 }
 
 std::string CsvRows::header() const {
   std::string text(columns);
-  if (!with_pressure_) text.erase(text.find("," + std::string(pressure_column)) + 1, pressure_column.size());
+  const auto leave_out = [&](std::string_view column) {
+    text.erase(text.find("," + std::string(column)) + 1, column.size());
+  };
+  if (!with_pressure_) leave_out(pressure_column);
+  if (!with_temperature_) leave_out(temperature_column);
   return text + '\n';
 }
 
 void CsvRows::append(std::string& text, const Record& record, Nanoseconds begin) const {
   const control::ChannelOutput& row = record.output;
   const std::size_t old_size = text.size();
-  text.resize(old_size + 10 * longest_decimal + longest_name_ + longest_words);
+  text.resize(old_size + 11 * longest_decimal + longest_name_ + longest_words);
   char* to = text.data() + old_size;
   const auto number = [&to](double value) {
     to = write_decimal(to, value);
@@ -109,6 +116,7 @@ void CsvRows::append(std::string& text, const Record& record, Nanoseconds begin)
     *to++ = ',';
   }
   if (with_pressure_) number(row.pressure_kpa);
+  if (with_temperature_) number(row.temperature_c);
   number(row.reference_mm);
   number(row.feedforward_kpa);
   number(row.feedback_kpa);

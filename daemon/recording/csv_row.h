@@ -24,8 +24,9 @@ inline constexpr std::size_t longest_decimal = 32;
 /// The rows of one recording. Columns: see docs/reference/recording.md.
 class CsvRows {
  public:
-  /// `with_pressure`: some channel measures its pressure, so there is a column for it.
-  CsvRows(std::vector<std::string> channel_names, bool with_pressure);
+  /// `with_pressure`: some channel measures its pressure, so there is a column for it; `with_temperature`
+  /// likewise.
+  CsvRows(std::vector<std::string> channel_names, bool with_pressure, bool with_temperature = false);
 
   [[nodiscard]] std::string header() const;
   /// Appends a row; `begin` is the recording's time 0.
@@ -34,7 +35,7 @@ class CsvRows {
  private:
   std::vector<std::string> channel_names_;
   std::size_t longest_name_ = 0;
-  bool with_pressure_;
+  bool with_pressure_, with_temperature_;
 };
 
 /// "valid", "none_yet", ... as the column `validity` has them.

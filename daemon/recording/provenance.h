@@ -23,6 +23,7 @@ struct Provenance {
   std::vector<std::string> channel_names;
   bool simulated = false;          ///< no board: fingers, valves and sensors are computed
   bool measures_pressure = false;  ///< some channel does
+  bool measures_temperature = false;
   double rate_hz = 0;
   std::uint32_t decimation = 1;
   std::optional<std::uint64_t> seed;  ///< of a simulated board

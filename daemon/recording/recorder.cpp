@@ -65,7 +65,7 @@ Recorder::Recorder(const rig::RecorderSettings& settings, const Provenance& prov
       loop_events_(wires.events),
       events_(events),
       shelf_(shelf),
-      rows_(provenance.channel_names, provenance.measures_pressure),
+      rows_(provenance.channel_names, provenance.measures_pressure, provenance.measures_temperature),
       batch_(batch_records) {}
 
 Recorder::~Recorder() = default;

@@ -55,6 +55,11 @@ bool measures_pressure(const rig::RigFile& rig) {
                      [](const control::ChannelSettings& channel) { return channel.pressure_measured; });
 }
 
+bool measures_temperature(const rig::RigFile& rig) {
+  return std::any_of(rig.wiring.begin(), rig.wiring.end(),
+                     [](const drivers::ChannelWiring& channel) { return channel.temperature.has_value(); });
+}
+
 Provenance provenance_of(const rig::RigFile& rig, const DaemonOptions& options) {
   Provenance provenance;
   provenance.software_version = software_version();
@@ -67,6 +72,7 @@ Provenance provenance_of(const rig::RigFile& rig, const DaemonOptions& options) 
   }
   provenance.simulated = std::holds_alternative<simulation::SimulatedBoardSettings>(rig.board);
   provenance.measures_pressure = measures_pressure(rig);
+  provenance.measures_temperature = measures_temperature(rig);
   provenance.rate_hz = rig.settings.rate_hz;
   provenance.decimation = rig.recorder.decimation;
   provenance.seed = rig.seed;

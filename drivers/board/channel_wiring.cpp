@@ -30,14 +30,15 @@ class Checker {
     const std::string where = of_channel(channel, part);
     if (!known(where, input.module)) return;
     terminal(where, "input", input.module, input.input, modules_[input.module].inputs, inputs_, input.unit);
-    scaling(where, input.scaling);
-    if (!(input.valid_min < input.valid_max)) {
-      problems_.push_back(where + "the electrical range of valid readings is empty");
-    }
-    for (const SensorErrorCode& code : input.error_codes) {
-      if (!(code.tolerance >= 0)) {
-        problems_.push_back(where + "the tolerance of an error code is below 0");
-      }
+    scales(where, input);
+  }
+
+  /// One thermometer may be several channels'.
+  void thermometer(const ChannelWiring& channel, const InputWiring& input) {
+    if (!thermometers_.emplace(input.module, input.input).second) {
+      scales(of_channel(channel, "temperature"), input);
+    } else {
+      sensor(channel, input, "temperature");
     }
   }
 
@@ -53,6 +54,18 @@ class Checker {
   }
 
  private:
+  void scales(const std::string& where, const InputWiring& input) {
+    scaling(where, input.scaling);
+    if (!(input.valid_min < input.valid_max)) {
+      problems_.push_back(where + "the electrical range of valid readings is empty");
+    }
+    for (const SensorErrorCode& code : input.error_codes) {
+      if (!(code.tolerance >= 0)) {
+        problems_.push_back(where + "the tolerance of an error code is below 0");
+      }
+    }
+  }
+
   using Used = std::set<std::pair<std::size_t, std::size_t>>;
 
   bool known(const std::string& where, std::size_t module) {
@@ -90,6 +103,7 @@ class Checker {
   std::vector<std::string>& problems_;
   Used outputs_;
   Used inputs_;
+  Used thermometers_;
 };
 
 std::vector<Terminal> terminals_of(const TerminalBlock& block) {
@@ -113,6 +127,7 @@ std::vector<std::string> wiring_problems(std::span<const ModuleTerminals> module
     checker.valve(channel);
     checker.sensor(channel, channel.displacement, "displacement");
     if (channel.pressure.has_value()) checker.sensor(channel, *channel.pressure, "pressure");
+    if (channel.temperature.has_value()) checker.thermometer(channel, *channel.temperature);
   }
   if (!wiring.empty()) checker.modules_without_a_wire();
   return problems;

@@ -24,7 +24,7 @@ struct SensorErrorCode {
 struct InputWiring {
   std::size_t input = 0;                       ///< terminal, from 0
   ElectricalUnit unit = ElectricalUnit::volt;  ///< as the rig file states it; must be the board's
-  TwoPoints scaling;                           ///< x: V or mA, y: mm or kPa; slope sign free
+  TwoPoints scaling;                           ///< x: V or mA, y: mm, kPa or degrees Celsius; slope sign free
   double valid_min = 0;  ///< electrical range in which a reading is valid, both ends included
   double valid_max = 0;
   std::vector<SensorErrorCode> error_codes;
@@ -39,12 +39,14 @@ struct OutputWiring {
   std::size_t module = 0;  ///< of a board that has several
 };
 
-/// One channel: one valve, one displacement sensor, perhaps the valve's pressure monitor.
+/// One channel: one valve, one displacement sensor, perhaps the valve's pressure monitor and a temperature
+/// sensor, which several channels may share.
 struct ChannelWiring {
   std::string name;
   OutputWiring valve;
   InputWiring displacement;
   std::optional<InputWiring> pressure;
+  std::optional<InputWiring> temperature{};
 };
 
 /// One terminal that can be wired to.
@@ -63,8 +65,8 @@ struct ModuleTerminals {
 [[nodiscard]] ModuleTerminals terminals_of(const BoardMap& map);
 
 /// What does not fit together, one sentence each; empty: the board can be made. Checks terminals against what
-/// the modules have and their units, terminals used twice, modules without a wire, two equal scaling points,
-/// empty validity ranges.
+/// the modules have and their units, terminals used twice (but by temperature sensors alone), modules without
+/// a wire, two equal scaling points, empty validity ranges.
 [[nodiscard]] std::vector<std::string> wiring_problems(std::span<const ModuleTerminals> modules,
                                                        std::span<const ChannelWiring> wiring);
 /// The same for a board of one module.

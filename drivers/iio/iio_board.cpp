@@ -220,6 +220,13 @@ BusStatus IioBoard::Parts::read_channel(std::size_t channel, Reading& reading) n
     if (const BusStatus status = read(*wiring.pressure, pressure); status != BusStatus::ok) return status;
     if (pressure.validity == model::Validity::valid) reading.pressure_kpa = pressure.physical;
   }
+  reading.temperature_c = std::numeric_limits<double>::quiet_NaN();
+  if (wiring.temperature.has_value()) {
+    JudgedInput temperature;
+    if (const BusStatus status = read(*wiring.temperature, temperature); status != BusStatus::ok)
+      return status;
+    if (temperature.validity == model::Validity::valid) reading.temperature_c = temperature.physical;
+  }
   return BusStatus::ok;
 }
 
@@ -301,7 +308,8 @@ std::string IioBoard::describe() const {
 Board::Budget IioBoard::budget() const {
   const Parts& parts = *parts_;
   std::size_t reads = 0;
-  for (const ChannelWiring& channel : parts.settings.wiring) reads += channel.pressure.has_value() ? 2U : 1U;
+  for (const ChannelWiring& channel : parts.settings.wiring)
+    reads += 1U + (channel.pressure.has_value() ? 1U : 0U) + (channel.temperature.has_value() ? 1U : 0U);
   const std::size_t writes = parts.settings.wiring.size();
   // A write is taken to be as long as a conversion: it cannot be measured without moving something.
   const double each_s = parts.reads.median_s();

@@ -84,6 +84,11 @@ std::vector<std::size_t> wired_inputs(const std::vector<ChannelWiring>& wiring, 
     if (channel.pressure.has_value() && channel.pressure->module == module) {
       inputs.push_back(channel.pressure->input);
     }
+    const auto& temperature = channel.temperature;
+    if (temperature.has_value() && temperature->module == module &&
+        std::find(inputs.begin(), inputs.end(), temperature->input) == inputs.end()) {
+      inputs.push_back(temperature->input);
+    }
   }
   return inputs;
 }
@@ -178,6 +183,8 @@ ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>
     ChannelSlots& slots = plan.channels[i];
     place_input(channel.displacement, slots.displacement, slots.displacement_status);
     if (channel.pressure.has_value()) place_input(*channel.pressure, slots.pressure, slots.pressure_status);
+    if (channel.temperature.has_value())
+      place_input(*channel.temperature, slots.temperature, slots.temperature_status);
     if (map.read_back.has_value() && channel.valve.module == module) {
       slots.read_back = slot(map.read_back->registers, channel.valve.output);
     }

@@ -47,6 +47,8 @@ struct ChannelSlots {
   std::optional<Slot> displacement_status;
   std::optional<Slot> pressure;
   std::optional<Slot> pressure_status;
+  std::optional<Slot> temperature;
+  std::optional<Slot> temperature_status;
   std::optional<Slot> read_back;
 };
 

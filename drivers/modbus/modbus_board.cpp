@@ -161,6 +161,7 @@ BusStatus ModbusBoard::Parts::transact(Nanoseconds deadline) noexcept {
 void ModbusBoard::Parts::fill(std::span<Reading> readings) const noexcept {
   for (std::size_t i = 0; i < readings.size(); ++i) {
     readings[i].pressure_kpa = std::numeric_limits<double>::quiet_NaN();
+    readings[i].temperature_c = std::numeric_limits<double>::quiet_NaN();
     readings[i].command_readback_kpa = std::numeric_limits<double>::quiet_NaN();
     for (const ModbusModule& module : modules) module.fill(i, readings[i]);
     ++readings[i].sequence;

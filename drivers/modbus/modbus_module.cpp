@@ -282,6 +282,10 @@ void ModbusModule::fill(std::size_t channel, Reading& reading) const noexcept {
                                ? pressure.physical
                                : std::numeric_limits<double>::quiet_NaN();
   }
+  if (slots.temperature.has_value()) {
+    const JudgedInput temperature = input(*wiring.temperature, *slots.temperature, slots.temperature_status);
+    if (temperature.validity == model::Validity::valid) reading.temperature_c = temperature.physical;
+  }
   if (slots.read_back.has_value()) {
     const double raw = raw_at(*slots.read_back, settings_.map.read_back->registers.kind);
     reading.command_readback_kpa = wiring.valve.scaling.y_at(settings_.map.outputs.scaling.y_at(raw));

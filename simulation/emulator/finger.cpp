@@ -22,6 +22,10 @@ void Finger::show(std::span<EmulatedBoard> modules) const {
   } else {
     board.set_input_error(sensor.input);
   }
+  if (wiring_.temperature) {
+    modules[wiring_.temperature->module].set_input(
+        wiring_.temperature->input, wiring_.temperature->scaling.x_at(plant_.measured_temperature_c()));
+  }
   if (wiring_.pressure) {
     modules[wiring_.pressure->module].set_input(
         wiring_.pressure->input, wiring_.pressure->scaling.x_at(plant_.measured_pressure_kpa()));

@@ -53,16 +53,23 @@ struct Plant::Parts {
         chain(model, {}, settings.sample_time_s, derived_seed(settings.seed, 0)),
         displacement_noise_mm(settings.displacement_noise_mm),
         pressure_noise_kpa(settings.pressure_noise_kpa),
+        temperature_noise_c(settings.temperature_noise_c),
         displacement_seed(derived_seed(settings.seed, 1)),
-        pressure_seed(derived_seed(settings.seed, 2)) {}
+        pressure_seed(derived_seed(settings.seed, 2)),
+        temperature_seed(derived_seed(settings.seed, 3)) {
+    around.temperature_c = settings.temperature_c;
+  }
 
   model::Model model;
   std::size_t place;
   Chain<double> chain;
   double displacement_noise_mm;
   double pressure_noise_kpa;
+  double temperature_noise_c;
   std::uint64_t displacement_seed;
   std::uint64_t pressure_seed;
+  std::uint64_t temperature_seed;
+  model::Surroundings around;
   std::optional<PlantObject> object;
   LineFault line;
   SensorFault sensor;
@@ -105,10 +112,10 @@ void Plant::advance(double duration_s) noexcept {
   Parts& parts = *parts_;
   if (!(duration_s > 0)) return;
   // A held output: the jump first, then time passes under it.
-  if (parts.chain.command_kpa() != parts.applied_kpa) parts.chain.step(0, parts.applied_kpa);
+  if (parts.chain.command_kpa() != parts.applied_kpa) parts.chain.step(0, parts.applied_kpa, parts.around);
   const long pieces = std::max(1L, std::lround(std::ceil(duration_s / longest_step_s - 1e-6)));
   const double piece_s = duration_s / static_cast<double>(pieces);
-  for (long i = 0; i < pieces; ++i) parts.chain.step(piece_s, parts.applied_kpa);
+  for (long i = 0; i < pieces; ++i) parts.chain.step(piece_s, parts.applied_kpa, parts.around);
   ++parts.samples;
   parts.sense();
 }
@@ -124,6 +131,10 @@ double Plant::displacement_mm() const noexcept {
 }
 double Plant::measured_pressure_kpa() const noexcept {
   return parts_->pressure_kpa;
+}
+double Plant::measured_temperature_c() const noexcept {
+  return parts_->around.temperature_c +
+         parts_->temperature_noise_c * normal_at(parts_->temperature_seed, parts_->samples);
 }
 double Plant::pressure_kpa() const noexcept {
   return parts_->chain.pressure_kpa();

@@ -48,6 +48,8 @@ struct PlantSettings {
   double sample_time_s = 0;           ///< usual duration of advance(), 0 if irregular
   double displacement_noise_mm = 0;   ///< standard deviation, besides the model's own sensor blocks
   double pressure_noise_kpa = 0;      ///< of the measured pressure
+  double temperature_c = 20;          ///< of the finger's surroundings
+  double temperature_noise_c = 0;     ///< of the measured temperature
   std::uint64_t seed = 0;
 };
 
@@ -77,6 +79,8 @@ class Plant {
   [[nodiscard]] double measured_pressure_kpa() const noexcept;
   /// Without noise.
   [[nodiscard]] double pressure_kpa() const noexcept;
+  /// What a temperature sensor shows, with noise.
+  [[nodiscard]] double measured_temperature_c() const noexcept;
   /// True while the sensor is out of range: reading_mm() means nothing.
   [[nodiscard]] bool sees_nothing() const noexcept;
 

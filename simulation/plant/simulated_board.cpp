@@ -161,6 +161,8 @@ void SimulatedBoard::Parts::make_reading(std::size_t i, Nanoseconds now,
     reading.pressure_kpa = quantised(plant.measured_pressure_kpa(), channel.valve_min_kpa,
                                      channel.valve_max_kpa, channel.input_bits);
   }
+  reading.temperature_c = channel.measures_temperature ? plant.measured_temperature_c()
+                                                       : std::numeric_limits<double>::quiet_NaN();
   reading.command_readback_kpa = plant.held_command_kpa();
   reading.sampled_at = now;
   ++reading.sequence;

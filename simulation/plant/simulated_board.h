@@ -43,6 +43,7 @@ struct SimulatedChannel {
   std::string name;
   PlantSettings plant;
   bool measures_pressure = false;
+  bool measures_temperature = false;
   double valve_min_kpa = 0;  ///< lowest output, below 0 for vacuum
   double valve_max_kpa = 0;  ///< full scale of the output, above the lowest; commands outside are refused
   double vented_kpa = 0;     ///< what the watchdog puts out

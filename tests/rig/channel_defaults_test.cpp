@@ -55,6 +55,34 @@ TEST_F(ChannelDefaultsTest, AChannelHasWhatItLeavesOut) {
   }
 }
 
+TEST_F(ChannelDefaultsTest, OneThermometerIsAllChannels) {
+  const std::string sensor =
+      "  temperature_sensor: {input: 7, at_v: [0, 10], is_c: [-20, 80], valid_v: [0.1, 9.9]}\n";
+  change("channel_defaults:", "    # the same\nchannel_defaults:");
+  change("  model: models/bench_twin.yaml   #", sensor + "  model: models/bench_twin.yaml   #");
+  change("        pressure_noise_kpa: 0.1\n",
+         "        pressure_noise_kpa: 0.1\n        temperature_c: 26.5\n");
+  const auto rig = read();
+  ASSERT_TRUE(rig) << problems.format();
+  for (const drivers::ChannelWiring& channel : rig->wiring) {
+    ASSERT_TRUE(channel.temperature);
+    EXPECT_EQ(channel.temperature->input, 7U);
+    EXPECT_EQ(channel.temperature->scaling, (drivers::TwoPoints{0, -20, 10, 80}));
+  }
+  const auto& board = std::get<simulation::SimulatedBoardSettings>(rig->board);
+  EXPECT_TRUE(board.channels[1].measures_temperature);
+  EXPECT_EQ(board.channels[0].plant.temperature_c, 26.5);
+  EXPECT_EQ(board.channels[1].plant.temperature_c, 20);
+}
+
+TEST_F(ChannelDefaultsTest, AThermometerIsNoOtherSensorsInput) {
+  change("    sensor: {input: 1}",
+         "    sensor: {input: 1}\n"
+         "    temperature_sensor: {input: 0, at_v: [0, 10], is_c: [-20, 80], valid_v: [0.1, 9.9]}");
+  EXPECT_FALSE(read());
+  EXPECT_NE(problems.format().find("the input 0 is already"), std::string::npos) << problems.format();
+}
+
 TEST_F(ChannelDefaultsTest, WhatAChannelSaysItselfCountsKeyByKey) {
   change("  - name: right\n", "  - name: right\n    feedforward: none\n    limits: {pressure_max_kpa: 40}\n");
   change("    sensor: {input: 1}", "    sensor: {input: 1, is_mm: [45, -5]}");

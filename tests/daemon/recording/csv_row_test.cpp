@@ -100,6 +100,20 @@ TEST(CsvRow, HasOneCellPerColumn) {
   }
 }
 
+TEST(CsvRow, ATemperatureHasAColumnWhereOneIsMeasured) {
+  const CsvRows rows({"left"}, true, true);
+  EXPECT_NE(rows.header().find(",pressure_kpa,temperature_c,reference_mm,"), std::string::npos);
+  EXPECT_EQ(CsvRows({"left"}, true).header().find("temperature_c"), std::string::npos);
+  Record record;
+  record.output.displacement_mm = 3.5;
+  record.output.pressure_kpa = 19.75;
+  record.output.temperature_c = 21.5;
+  record.output.validity = model::Validity::valid;
+  std::string text;
+  rows.append(text, record, 0);
+  EXPECT_EQ(text, "0,left,0,3.5,19.75,21.5,0,0,0,0,0,0,starting,0,valid,none,0,0\n");
+}
+
 TEST(CsvRow, AReadingThatIsNotValidLeavesItsCellEmpty) {
   const CsvRows rows({"left"}, false);
   Record record;

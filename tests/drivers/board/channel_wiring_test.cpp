@@ -45,5 +45,17 @@ TEST(ChannelWiring, EachMistakeIsOneProblemThatNamesItsChannel) {
   EXPECT_EQ(wiring_problems(map_of_two_outputs(), {}).size(), 1U);
 }
 
+TEST(ChannelWiring, AThermometerMayBeSharedAndNothingElse) {
+  std::vector<ChannelWiring> wiring = test::two_fingers_and_a_thermometer();
+  EXPECT_TRUE(wiring_problems(map_of_two_outputs(), wiring).empty());
+  wiring[1].temperature->valid_max = 0;
+  ASSERT_EQ(wiring_problems(map_of_two_outputs(), wiring).size(), 1U);
+  wiring[1].temperature->input = wiring[0].displacement.input;
+  wiring[1].temperature->valid_max = 10;
+  const auto problems = wiring_problems(map_of_two_outputs(), wiring);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems[0].find("input 0 is wired twice"), std::string::npos) << problems[0];
+}
+
 }  // namespace
 }  // namespace softgrip::drivers

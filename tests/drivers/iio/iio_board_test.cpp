@@ -93,6 +93,25 @@ TEST_F(IioBoardTest, WritesRawNumbersAndReadsThem) {
   EXPECT_GT(readings_[1].sampled_at, 0);
 }
 
+TEST_F(IioBoardTest, ATemperatureIsReadWhereItIsWired) {
+  put("iio:device0/in_voltage2_raw", "18400");
+  put("iio:device0/in_voltage2_scale", "0.125");
+  settings_.inputs.push_back({"ads1115", "voltage2", 0});
+  settings_.wiring[1].temperature = InputWiring{.input = 2,
+                                                .unit = ElectricalUnit::volt,
+                                                .scaling = {0, 0, 10, 100},
+                                                .valid_min = 0,
+                                                .valid_max = 5,
+                                                .error_codes = {}};
+  IioBoard board(settings_);
+  ASSERT_EQ(board.connect(5s), BusStatus::ok) << board.detail();
+  ASSERT_EQ(exchange(board, 0, 0), BusStatus::ok) << board.detail();
+  EXPECT_TRUE(std::isnan(readings_[0].temperature_c));
+  EXPECT_DOUBLE_EQ(readings_[1].temperature_c, 23);
+  EXPECT_NE(board.budget().explanation.find("3 conversions"), std::string::npos)
+      << board.budget().explanation;
+}
+
 TEST_F(IioBoardTest, OffsetsCountBeforeTheScale) {
   put("iio:device1/out_voltage_offset", "-100");
   put("iio:device0/in_voltage0_offset", "800");

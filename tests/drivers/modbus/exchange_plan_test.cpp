@@ -29,6 +29,14 @@ TEST(ExchangePlan, InputsBetweenWiredOnesAreReadAlong) {
   EXPECT_EQ(plan.channels[1].pressure, (Slot{0, 5}));
 }
 
+TEST(ExchangePlan, ASharedThermometerIsReadOnce) {
+  const ExchangePlan plan = plan_exchange(plain_map(), test::two_fingers_and_a_thermometer());
+  EXPECT_EQ(plan.reads, (std::vector<ReadStep>{{3, 0, 6}}));
+  EXPECT_EQ(plan.channels[0].temperature, (Slot{0, 2}));
+  EXPECT_EQ(plan.channels[1].temperature, (Slot{0, 2}));
+  EXPECT_FALSE(plan_exchange(plain_map(), test::two_fingers()).channels[0].temperature);
+}
+
 TEST(ExchangePlan, NeighbouringBlocksAreReadTogether) {
   BoardMap map = plain_map();
   map.input_status =

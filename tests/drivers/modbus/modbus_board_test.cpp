@@ -48,6 +48,17 @@ TEST_F(ModbusBoardTest, AdamWritesAndReadsTheRegistersOfItsManual) {
   }
 }
 
+TEST_F(ModbusBoardTest, AThermometerIsEverybodysAndMayFail) {
+  wiring_ = test::two_fingers_and_a_thermometer();
+  connect(shipped("adam-6024.yaml"));
+  server_.set_input(2, adam_raw(2.4));
+  ASSERT_EQ(exchange(0, 0), BusStatus::ok) << board_->detail();
+  for (const Reading& reading : readings_) EXPECT_NEAR(reading.temperature_c, 24, 0.01);
+  server_.set_input(2, adam_raw(0));
+  ASSERT_EQ(exchange(0, 0), BusStatus::ok);
+  for (const Reading& reading : readings_) EXPECT_TRUE(std::isnan(reading.temperature_c));
+}
+
 TEST_F(ModbusBoardTest, SampledAtIsWhenTheInputsWereAsked) {
   connect(shipped("adam-6024.yaml"));
   const Nanoseconds before = MonotonicClock().now();

@@ -37,4 +37,18 @@ inline std::vector<ChannelWiring> two_fingers(bool with_pressure = true) {
   return wiring;
 }
 
+/// The same with a thermometer that both share, on input 2: 0-10 V are 0-100 degrees, valid from 0.5 V on.
+inline std::vector<ChannelWiring> two_fingers_and_a_thermometer() {
+  std::vector<ChannelWiring> wiring = two_fingers();
+  for (ChannelWiring& channel : wiring) {
+    channel.temperature = InputWiring{.input = 2,
+                                      .unit = ElectricalUnit::volt,
+                                      .scaling = {0, 0, 10, 100},
+                                      .valid_min = 0.5,
+                                      .valid_max = 10,
+                                      .error_codes = {}};
+  }
+  return wiring;
+}
+
 }  // namespace softgrip::drivers::test

@@ -62,6 +62,39 @@ class Rig {
   std::array<Reading, 2> readings;
 };
 
+TEST(SimulatedBoard, AFingerFollowsTheTemperatureThatItMeasures) {
+  SimulatedBoardSettings settings = two_twins();
+  for (SimulatedChannel& channel : settings.channels) {
+    const auto thermal = model::find_block("thermal_gain");
+    ASSERT_TRUE(thermal);
+    channel.plant.model = model::with_block(channel.plant.model, {*thermal, {0.01}});
+  }
+  settings.channels[0].plant.temperature_c = 30;
+  settings.channels[0].measures_temperature = true;
+  Rig rig(settings);
+  ASSERT_EQ(rig.run(2, 30, 30), BusStatus::ok);
+  EXPECT_EQ(rig.readings[0].temperature_c, 30);
+  EXPECT_TRUE(std::isnan(rig.readings[1].temperature_c));
+  EXPECT_NEAR(rig.readings[0].displacement_mm / rig.readings[1].displacement_mm, 1.1, 1e-9);
+}
+
+TEST(SimulatedBoard, ThermometersHaveTheirNoise) {
+  SimulatedBoardSettings settings = two_twins();
+  settings.channels[0].measures_temperature = true;
+  settings.channels[0].plant.temperature_noise_c = 0.2;
+  Rig rig(settings);
+  double sum = 0, squares = 0;
+  constexpr int count = 400;
+  for (int i = 0; i < count; ++i) {
+    ASSERT_EQ(rig.exchange(0, 0), BusStatus::ok);
+    const double off = rig.readings[0].temperature_c - 20;
+    sum += off / count;
+    squares += off * off / count;
+  }
+  EXPECT_NEAR(sum, 0, 0.04);
+  EXPECT_NEAR(std::sqrt(squares), 0.2, 0.03);
+}
+
 TEST(SimulatedBoard, MovesWhatItIsToldAndReadsItBack) {
   SimulatedBoardSettings settings = two_twins();
   settings.channels[0].measures_pressure = true;
