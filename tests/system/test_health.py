@@ -67,6 +67,33 @@ class Health(bench.BenchTest):
             self.assertEqual(fingers[name]["grips"], 24)
             self.assertAlmostEqual(fingers[name]["numbers"]["gain_mm"]["value"], 32.09, delta=0.1)
 
+    def test_a_rig_with_a_thermometer_records_it_and_the_gain_is_compared_at_the_days_temperature(self):
+        rig = working_life.Rig(bench.SOFTGRIP, self.folder)
+        warmer = (0, 3, -2, 5, 1, -4, 4, 2, -1, 3, 6, -3)
+        finger = Finger(gain_per_c=0.005)
+        runs = [rig.play(working_life.Grip(day(number), number, {"left": finger, "right": finger}, temperature_c=20 + by,
+                                           thermometer=True)) for number, by in enumerate(warmer)]
+        self.assertIn(",pressure_kpa,temperature_c,", (runs[0] / "run.csv").read_text().splitlines()[0])
+        fingers = self.health(runs, expect=0)
+        gain = fingers["left"]["numbers"]["gain_mm"]
+        self.assertAlmostEqual(gain["per_c"], 0.005 * 32.1, delta=0.01)
+        self.assertAlmostEqual(fingers["left"]["temperature_c"], 17, delta=0.2)
+        self.assertIn("mm per °C", (self.folder / "out/health-left.html").read_text())
+
+    def test_what_both_fingers_share_is_a_warning_of_the_rig(self):
+        rig = working_life.Rig(bench.SOFTGRIP, self.folder)
+        leaking = Finger(leak=0.03)
+        runs = [rig.play(working_life.Grip(day(number, hour), 10 * number + hour, {"left": leaking, "right": leaking}))
+                for number in range(8, 12) for hour in (8, 15)]
+        fingers = self.health(self.healthy + runs, expect=0)
+        self.assertEqual({finger["state"] for finger in fingers.values()}, {"steady"})
+        result = json.loads((self.folder / "out/health.json").read_text())
+        self.assertIn("pressure_loss_kpa", result["shared"])
+        told = next(one for one in result["shared_changes"] if one["number"] == "pressure_loss_kpa")
+        self.assertEqual(told["since"], day(8)[:10])
+        self.assertEqual(told["fingers"], ["left", "right"])
+        self.assertTrue(any("changed alike" in warning for warning in result["warnings"]))
+
     def test_a_leak_is_suspected(self):
         self.check_found(Finger(leak=0.04), "pressure_loss_kpa", 1, "leak")
 

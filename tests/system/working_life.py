@@ -18,6 +18,8 @@ GAINS = {"alpha_mm_per_kpa": 0.21105, "beta_mm_per_kpa": 0.1713}
 STIFFNESSES = {"k0_kpa_per_mm": 325.9, "k1_kpa_per_mm": 18.16, "c1_kpa_s_per_mm": 299.8, "k2_kpa_per_mm": 2.761,
                "c2_kpa_s_per_mm": 1.621}
 VALVE_LAG_S = 0.044
+THERMOMETER = "temperature_sensor: {input: 7, at_v: [0, 10], is_c: [-20, 80], valid_v: [0.1, 9.9]}"
+THERMOMETER_NOISE_C = 0.2
 
 
 @dataclasses.dataclass(frozen=True)
@@ -27,6 +29,7 @@ class Finger:
     zero_mm: float = 0
     leak: float = 0  # share of the pressure
     valve_lag_s: float = VALVE_LAG_S
+    gain_per_c: float = 0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,6 +39,8 @@ class Grip:
     fingers: dict  # by name
     sequence: str = "pick_stone"
     part_mm: float = 12  # where the part stands
+    temperature_c: float = 20
+    thermometer: bool = False  # the rig has one, which all channels share
 
 
 class Rig:
@@ -89,9 +94,14 @@ class Rig:
             before, after = plants.split(f"      {name}:\n", 1)
             plants = f"{before}      {name}:\n" + after.replace("models/bench_twin.yaml", str(model), 1)
         plants = plants.replace("position_mm: 12", f"position_mm: {grip.part_mm:.4f}")
+        plants = plants.replace("        pressure_noise_kpa:", f"        temperature_c: {grip.temperature_c:.4f}\n"
+                                f"        temperature_noise_c: {THERMOMETER_NOISE_C}\n        pressure_noise_kpa:")
         rest = rest.replace("models/bench_twin.yaml", str(MODEL)).replace(
             "sequence_directory: sequences", f"sequence_directory: {SOURCE / 'config/sequences'}")
         path = self.folder / "rig.yaml"
+        if grip.thermometer:
+            comment, keys = rest.split("\n", 1)
+            rest = f"{comment}\n  {THERMOMETER}\n{keys}"
         path.write_text(f"{head}{events}    plants:{plants}\nchannel_defaults:{rest}")
         return path
 
@@ -103,6 +113,8 @@ class Rig:
             text, count = re.subn(rf"{key}: [\d.]+", f"{key}: {value:.8f}", text)
             assert count == 1, key
         text = text.replace(f"time_constant_s: {VALVE_LAG_S}", f"time_constant_s: {finger.valve_lag_s:.6f}")
+        if finger.gain_per_c:
+            text += f"  - thermal_gain:\n      gain_per_c: {finger.gain_per_c:.6f}\n"
         path = self.folder / f"{name}.yaml"
         path.write_text(text)
         return path

@@ -58,8 +58,16 @@ std::vector<HealthLine> health_lines(const Json& health) {
     if (text_at(finger, "state") == "alarm")
       lines.push_back({text_at(finger, "sentence", longest_sentence), false, first_step(finger)});
   }
+  const bool changed = !lines.empty();
+  const auto warnings = health.find("warnings");
+  if (warnings != health.end() && warnings->is_array()) {
+    for (const Json& warning : *warnings) {
+      if (warning.is_string())
+        lines.push_back({warning.get<std::string>().substr(0, longest_sentence), false, ""});
+    }
+  }
   const std::string when = "judged " + age_text(age_s);
-  if (lines.empty())
+  if (!changed)
     lines.push_back({"nothing has changed at " + std::to_string(fingers) + " fingers, " + when, true, ""});
   if (age_s > health_old_s)
     lines.push_back({"the fingers were " + when, false, "systemctl status softgrip-health.timer"});

@@ -111,31 +111,58 @@ tl::expected<std::vector<health::Note>, ExitCode> notes_of(const HealthOptions& 
   return *std::move(notes);
 }
 
-std::vector<Judged> judged(const std::vector<health::ScoredRun>& runs, const std::vector<health::Note>& notes,
-                           Baselines& baselines, const health::HealthOptions& options) {
-  std::map<std::string, std::vector<health::ScoredRun>> fingers;
-  for (const health::ScoredRun& run : runs) fingers[run.finger].push_back(run);
-  std::vector<Judged> all;
-  for (auto& [finger, own] : fingers) {
-    const health::ScoreBase base = baselines.of(finger)->base;
-    health::FingerHealth health = health::judge_finger(finger, std::move(own), notes, base, options);
+struct JudgedRig {
+  std::vector<Judged> fingers;
+  std::vector<health::SharedChange> shared;
+};
+
+JudgedRig judged(const std::vector<health::ScoredRun>& runs, const std::vector<health::Note>& notes,
+                 Baselines& baselines, const health::HealthOptions& options) {
+  std::map<std::string, std::vector<health::ScoredRun>> by_finger;
+  for (const health::ScoredRun& run : runs) by_finger[run.finger].push_back(run);
+  std::vector<health::FingerRuns> fingers;
+  for (auto& [finger, own] : by_finger)
+    fingers.push_back({finger, std::move(own), baselines.of(finger)->base});
+  health::RigHealth rig = health::judge_rig(std::move(fingers), notes, options);
+  JudgedRig all{{}, std::move(rig.shared)};
+  for (health::FingerHealth& health : rig.fingers) {
+    const health::HealthSource source{baselines.folder_of(health.finger), baselines.of(health.finger)->base,
+                                      options, all.shared};
     health::Suspicion suspicion = health::suspicion_of(health);
-    all.push_back({std::move(health), std::move(suspicion), {baselines.folder_of(finger), base, options}});
+    all.fingers.push_back({std::move(health), std::move(suspicion), source});
   }
   return all;
 }
 
-std::vector<sysid::HealthNumber> shared_by(const std::vector<Judged>& fingers) {
+/// Numbers that the fingers share a change of.
+std::vector<sysid::HealthNumber> numbers_of(const JudgedRig& rig) {
   std::vector<const health::FingerHealth*> all;
-  for (const Judged& finger : fingers) all.push_back(&finger.health);
-  return health::shared_changes(all);
+  for (const Judged& finger : rig.fingers) all.push_back(&finger.health);
+  std::vector<sysid::HealthNumber> numbers = health::shared_changes(all);
+  for (const health::SharedChange& shared : rig.shared) {
+    if (shared.stands && std::find(numbers.begin(), numbers.end(), shared.number) == numbers.end())
+      numbers.push_back(shared.number);
+  }
+  return numbers;
 }
 
-Json result_of(const HealthOptions& options, const std::vector<Judged>& fingers,
-               const std::vector<sysid::HealthNumber>& shared, const health::RunScores& scores) {
+/// What is no alarm of a finger and should be known.
+std::vector<std::string> warnings_of(const JudgedRig& rig) {
+  std::vector<std::string> warnings;
+  for (const health::SharedChange& shared : rig.shared) {
+    if (shared.stands) warnings.push_back(health::shared_sentence(shared));
+  }
+  for (const Judged& finger : rig.fingers) {
+    for (const health::HealthAlarm& unclear : finger.health.unclear)
+      warnings.push_back(health::unclear_sentence(finger.health, unclear));
+  }
+  return warnings;
+}
+
+Json result_of(const HealthOptions& options, const JudgedRig& rig, const health::RunScores& scores) {
   const Nanoseconds now = wall_time_now();
   const health::ChartLimits limits = options.judge.limits();
-  const bool alarm = std::any_of(fingers.begin(), fingers.end(), [](const Judged& finger) {
+  const bool alarm = std::any_of(rig.fingers.begin(), rig.fingers.end(), [](const Judged& finger) {
     return finger.health.state == health::FingerState::alarm;
   });
   Json json{
@@ -148,10 +175,15 @@ Json result_of(const HealthOptions& options, const std::vector<Judged>& fingers,
       {"false_alarm_points", options.judge.false_alarm_points},
       {"limits", {{"allowance", limits.allowance}, {"cusum", limits.cusum}, {"single", limits.single}}}};
   json["fingers"] = Json::array();
-  for (const Judged& finger : fingers)
+  for (const Judged& finger : rig.fingers)
     json["fingers"].push_back(health::json_of(finger.health, finger.suspicion));
   json["shared"] = Json::array();
-  for (const sysid::HealthNumber number : shared) json["shared"].push_back(sysid::info_of(number).id);
+  for (const sysid::HealthNumber number : numbers_of(rig))
+    json["shared"].push_back(sysid::info_of(number).id);
+  json["shared_changes"] = Json::array();
+  for (const health::SharedChange& shared : rig.shared)
+    json["shared_changes"].push_back(health::json_of(shared));
+  json["warnings"] = warnings_of(rig);
   json["skipped"] = Json::array();
   for (const health::SkippedRun& skipped : scores.skipped)
     json["skipped"].push_back({{"run", skipped.run}, {"why", skipped.why}});
@@ -210,28 +242,22 @@ ExitCode run(HealthOptions options) {
     kept += health::line_of(scored);
     runs.push_back(scored);
   }
-  const std::vector<Judged> fingers =
-      judged(health::current(runs, base_of), *notes, baselines, options.judge);
+  const JudgedRig rig = judged(health::current(runs, base_of), *notes, baselines, options.judge);
   for (const health::SkippedRun& skipped : scores.skipped)
     std::fprintf(stderr, "softgrip: %s is left out: %s\n", skipped.run.c_str(), skipped.why.c_str());
-  if (fingers.empty())
+  if (rig.fingers.empty())
     return fail(ExitCode::input_refused,
                 "there is no recording that could be compared with " + options.baseline);
-  const std::vector<sysid::HealthNumber> shared = shared_by(fingers);
-  const Json json = result_of(options, fingers, shared, scores);
+  const Json json = result_of(options, rig, scores);
   if (!options.out.empty()) {
-    if (const auto written = write_results(options.out, json, fingers, kept); !written)
+    if (const auto written = write_results(options.out, json, rig.fingers, kept); !written)
       return fail(ExitCode::io, written.error());
   }
   if (options.json) {
     std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   } else {
-    for (const Judged& finger : fingers) print(finger);
-    for (const sysid::HealthNumber number : shared)
-      std::printf(
-          "All fingers have changed alike in %s: look first at what they share, the temperature and the "
-          "supply.\n",
-          std::string(sysid::info_of(number).title).c_str());
+    for (const Judged& finger : rig.fingers) print(finger);
+    for (const std::string& warning : warnings_of(rig)) std::printf("%s\n", warning.c_str());
   }
   return json["state"] == "alarm" ? ExitCode::not_acceptable : ExitCode::done;
 }

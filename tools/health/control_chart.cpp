@@ -9,11 +9,8 @@
 namespace softgrip::tools::health {
 namespace {
 
-/// Of fewer values a change that is not noticed at once would pass for persistence.
-constexpr std::size_t least_for_persistence = 15;
-/// So many standard errors less than what is found.
-constexpr double surely = 0.5;
-constexpr double most_persistence = 0.95;
+/// A CUSUM beyond this share of doubt says since when: what was large at once had begun before.
+constexpr double on_its_way_share = 0.6;
 
 /// Beyond which a standard normal value lies, on either side, once in so many.
 double two_sided_limit(double once_in) {
@@ -34,50 +31,12 @@ ChartLimits ChartLimits::for_run_length(double run_length) {
   return limits;
 }
 
-double normal_of_t(double t, double degrees_of_freedom) {
-  const double n = degrees_of_freedom;
-  const double z = (8 * n + 1) / (8 * n + 3) * std::sqrt(n * std::log1p(t * t / n));
-  return std::copysign(z, t);
-}
-
-void RunningReference::learn(double value) {
-  if (count_ == 0) first_ = value;
-  products_ += (value - first_) * last_;
-  last_ = value - first_;
-  sum_ += last_;
-  ++count_;
-  const double off = value - mean_;
-  mean_ += off / static_cast<double>(count_);
-  squares_ += off * (value - mean_);
-}
-
-double RunningReference::spread() const {
-  return count_ > 1 ? std::sqrt(squares_ / static_cast<double>(count_ - 1)) : 0;
-}
-
-double RunningReference::persistence() const {
-  if (count_ < least_for_persistence || !(squares_ > 0)) return 0;
-  const auto n = static_cast<double>(count_);
-  const double mean = sum_ / n;
-  // The sum of products of neighbours, each less the mean.
-  const double together = products_ - mean * (2 * sum_ - last_) + (n - 1) * mean * mean;
-  const double correlation = together / squares_ + 1 / n;
-  return std::clamp(correlation - surely / std::sqrt(n), 0.0, most_persistence);
-}
-
-std::optional<double> RunningReference::judge(double value, double least_spread) const {
-  if (count_ < 2) return std::nullopt;
-  const auto n = static_cast<double>(count_);
-  const double t = std::sqrt(n / (n + 1)) * (value - mean_) / std::max(spread(), least_spread);
-  return normal_of_t(t, n - 1);
-}
-
 std::optional<double> ControlChart::excess_of(const ChartValues& values) const {
   double sum = 0, count = 0;
   for (const auto& [recipe, value] : values) {
     const auto reference = references_.find(recipe);
     if (reference == references_.end() || reference->second.count() < 2) continue;
-    sum += value - reference->second.mean();
+    sum += value.value - reference->second.expected(value.temperature_c);
     count += 1;
   }
   if (count == 0) return std::nullopt;
@@ -89,7 +48,7 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
   for (const auto& [recipe, value] : values) {
     const auto reference = references_.find(recipe);
     if (reference == references_.end()) continue;
-    if (const auto z = reference->second.judge(value, least_spread_)) {
+    if (const auto z = reference->second.judge(value.value, least_spread_, value.temperature_c)) {
       sum += *z;
       count += 1;
       compared += static_cast<double>(reference->second.count());
@@ -111,6 +70,18 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
     }
     return z;
   }
+  measure_change();
+  return z;
+}
+
+void ControlChart::take_alarm(std::size_t since) {
+  if (alarm_ || history_.empty()) return;
+  alarm_ = ChartAlarm{history_.size() - 1, since, 0};
+  forget_since(since);
+  measure_change();
+}
+
+void ControlChart::measure_change() {
   double excesses = 0, known = 0;
   for (std::size_t i = alarm_->since; i < history_.size(); ++i) {
     const auto excess = excess_of(history_[i]);
@@ -118,11 +89,10 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
     known += excess ? 1 : 0;
   }
   alarm_->change = known > 0 ? excesses / known : 0;
-  return z;
 }
 
 void ControlChart::learn(const ChartValues& values) {
-  for (const auto& [recipe, value] : values) references_[recipe].learn(value);
+  for (const auto& [recipe, value] : values) references_[recipe].learn(value.value, value.temperature_c);
 }
 
 void ControlChart::forget_since(std::size_t point) {
@@ -137,13 +107,14 @@ void ControlChart::judge(double z, double count, double persistence) {
   const bool in_doubt = std::max(up_, down_) > limits_.doubt;
   const double allowance = limits_.allowance + (in_doubt ? 1 / std::sqrt(count) : 0);
   const double slow = z * std::sqrt((1 - persistence) / (1 + persistence));
+  const bool on_its_way = (z > 0 ? up_ : down_) > on_its_way_share * limits_.doubt;
   up_ = std::max(0.0, up_ + slow - allowance);
   down_ = std::max(0.0, down_ - slow - allowance);
   std::optional<std::size_t> since;
   if (std::max(up_, down_) > limits_.cusum) {
     since = up_ > down_ ? up_since_ : down_since_;
   } else if (std::abs(z) > limits_.single) {
-    since = now;
+    since = !on_its_way ? now : z > 0 ? up_since_ : down_since_;
   }
   if (!since) return;
   alarm_ = ChartAlarm{now, *since, 0};

@@ -2,13 +2,14 @@
 // A self-starting control chart: says when the values of a healthy finger are no longer what they were,
 // without being told what they are.
 //
-// Every value is compared with those before it, in units of their own spread, and what Student's t makes of
-// that is turned into a standard normal value (Wallace, Annals of Mathematical Statistics 30, 1959): of
-// healthy values that are independent and normal these are independent and standard normal from the third
-// on, whatever their mean and spread (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of Quality
-// Technology 23, 1991). Two judges look at them: a two-sided CUSUM (Page, Biometrika 41, 1954) for shifts
-// that stay, a plain limit for what is large at once (Lucas, Journal of Quality Technology 14, 1982). Each is
-// given half of the false alarms that are asked for.
+// Every value is compared with those before it (running_reference.h), in units of their own spread, and what
+// Student's t makes of that is turned into a standard normal value: of healthy values that are independent
+// and normal these are independent and standard normal from the third on, whatever their mean and spread
+// (Hawkins, The Statistician 36, 1987; Quesenberry, Journal of Quality Technology 23, 1991). Where the values
+// come with a temperature that they surely follow, they are compared with their line over it (control charts
+// of regression-adjusted variables: Hawkins, Technometrics 33, 1991). Two judges look at them: a two-sided
+// CUSUM (Page, Biometrika 41, 1954) for shifts that stay, a plain limit for what is large at once (Lucas,
+// Journal of Quality Technology 14, 1982). Each is given half of the false alarms that are asked for.
 //
 // While a CUSUM is far up nothing is learnt: a change that comes soon after the start would become what is
 // usual before it is noticed. Values that are judged against the same few share what is wrong with those; the
@@ -34,6 +35,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/health/running_reference.h"
+
 namespace softgrip::tools::health {
 
 /// What a chart holds against its values.
@@ -47,32 +50,18 @@ struct ChartLimits {
   [[nodiscard]] static ChartLimits for_run_length(double run_length);
 };
 
-/// What Student's t with so many degrees of freedom (at least 1) would be if it were standard normal, by
-/// Wallace's formula.
-[[nodiscard]] double normal_of_t(double t, double degrees_of_freedom);
+/// A number, and the temperature at which it was measured.
+struct ChartValue {
+  /// A number at no temperature that is known.
+  ChartValue(double number, double at_c = RunningReference::no_temperature)
+      : value(number), temperature_c(at_c) {}
 
-/// Mean and spread of what was seen so far.
-class RunningReference {
- public:
-  void learn(double value);
-  /// The next value as a standard normal one, nothing before the third.
-  /// @param least_spread  what a spread is taken for where it is smaller, > 0.
-  [[nodiscard]] std::optional<double> judge(double value, double least_spread) const;
-  [[nodiscard]] std::size_t count() const { return count_; }
-  [[nodiscard]] double mean() const { return mean_; }
-  /// Standard deviation; 0 of fewer than two.
-  [[nodiscard]] double spread() const;
-  /// How much the next value takes after the last one, from 0 to below 1, as far as that is surely no chance.
-  [[nodiscard]] double persistence() const;
-
- private:
-  std::size_t count_ = 0;
-  double mean_ = 0, squares_ = 0;
-  double first_ = 0, last_ = 0, sum_ = 0, products_ = 0;  ///< all but `first_` counted from it
+  double value;
+  double temperature_c;
 };
 
 /// Values of one point in time, by what they may be compared with: a recipe and what it was measured in.
-using ChartValues = std::map<std::string, double>;
+using ChartValues = std::map<std::string, ChartValue>;
 
 struct ChartAlarm {
   std::size_t noticed = 0;  ///< index of the point at which it was raised
@@ -90,20 +79,26 @@ class ControlChart {
   /// The next point. Returns its standard normal value, nothing while there is nothing to compare it with.
   std::optional<double> add(const ChartValues& values);
 
+  /// Somebody else knows that the values are others since a point: from now on that is this chart's alarm.
+  /// Nothing where there is one already.
+  void take_alarm(std::size_t since);
+
   [[nodiscard]] std::size_t points() const { return history_.size(); }
   /// How many of the points were judged.
   [[nodiscard]] std::size_t judged() const { return judged_; }
   [[nodiscard]] const std::optional<ChartAlarm>& alarm() const { return alarm_; }
+  /// Of a point's values that have a reference: how much more than expected they are, on the mean.
+  [[nodiscard]] std::optional<double> excess(std::size_t point) const { return excess_of(history_[point]); }
   [[nodiscard]] double up() const { return up_; }
   [[nodiscard]] double down() const { return down_; }
   [[nodiscard]] const std::map<std::string, RunningReference>& references() const { return references_; }
 
  private:
-  /// Of the values that have a reference: how much more than it they are, on the mean.
   [[nodiscard]] std::optional<double> excess_of(const ChartValues& values) const;
   /// @param count, persistence  of the values that it was compared with, the means over recipes.
   void judge(double z, double count, double persistence);
   void learn(const ChartValues& values);
+  void measure_change();
   /// Nothing of what came since the change stays in the references.
   void forget_since(std::size_t point);
 

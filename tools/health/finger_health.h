@@ -1,6 +1,6 @@
 #pragma once
-// How a finger has been: its recorded grips in points of time, a control chart for every number, and what
-// stands out.
+// How a finger has been: its recorded grips in points of time, what is usual of every number, and what stands
+// out. judge_rig() (rig_health.h) makes it.
 //
 // A point is a day of a finger (UTC): the median of its runs of a recipe, so that what changes within a day,
 // the temperature above all, is not taken for chance from grip to grip. Runs whose time is not known are a
@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "tools/health/control_chart.h"
+#include "tools/health/grip_score.h"
 #include "tools/health/notes_file.h"
-#include "tools/health/scored_run.h"
 
 namespace softgrip::tools::health {
 
@@ -34,6 +34,9 @@ struct HealthPoint {
   std::size_t epoch = 0;                                  ///< how often something was mended before
   std::array<ChartValues, sysid::health_numbers> values;  ///< medians by recipe
   std::array<std::optional<double>, sysid::health_numbers> judged{};  ///< standard normal
+  /// How much more than its rig-mates on the same runs, beyond what is usual; absent without mates.
+  std::array<std::optional<double>, sysid::health_numbers> beside{};
+  std::optional<double> temperature_c;  ///< median of its runs
 };
 
 /// An alarm of one number.
@@ -44,6 +47,8 @@ struct HealthAlarm {
   std::size_t since = 0;
   double change = 0;      ///< in the number's unit
   std::size_t grips = 0;  ///< from the change to when it was noticed
+  /// Of the difference from these fingers; empty: of the finger's own number.
+  std::vector<std::string> beside;
 };
 
 /// What is usual of a number since the last note.
@@ -52,6 +57,12 @@ struct HealthReference {
   double mean = 0;
   double spread = 0;
   std::size_t points = 0;
+  std::optional<TemperatureSlope> slope;  ///< allowed for; absent: none is known
+
+  /// What the number would be. @param temperature_c  absent: not recorded
+  [[nodiscard]] double at(std::optional<double> temperature_c) const {
+    return slope && temperature_c ? slope->at(*temperature_c) : mean;
+  }
 };
 
 enum class FingerState : std::uint8_t {
@@ -66,6 +77,9 @@ struct FingerHealth {
   FingerState state = FingerState::learning;
   std::vector<HealthPoint> points;
   std::vector<HealthAlarm> alarms;  ///< of all epochs, in the order in which they were noticed
+  /// Differences from the mates that have changed since the last note, without it being clear whose change it
+  /// is.
+  std::vector<HealthAlarm> unclear;
   std::array<std::optional<HealthReference>, sysid::health_numbers> references{};
   std::vector<std::pair<std::size_t, Note>> notes;  ///< before which point
 
@@ -75,11 +89,6 @@ struct FingerHealth {
   /// Of a number, the median of the last point that has it; nothing where none has.
   [[nodiscard]] std::optional<double> latest(sysid::HealthNumber number) const;
 };
-
-/// @param runs  of this finger. @param base  gives the differences that matter to nobody.
-[[nodiscard]] FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs,
-                                        const std::vector<Note>& notes, const ScoreBase& base,
-                                        const HealthOptions& options);
 
 /// Numbers that alarm at all of several fingers in the same direction: what they share comes before what each
 /// of them is. None of a single finger.

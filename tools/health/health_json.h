@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "tools/health/rig_health.h"
 #include "tools/health/suspicion.h"
 
 namespace softgrip::tools::health {
@@ -16,5 +17,7 @@ inline constexpr const char* health_file = "health.json";
 
 /// One finger's part.
 [[nodiscard]] nlohmann::ordered_json json_of(const FingerHealth& health, const Suspicion& suspicion);
+/// What the rig shares.
+[[nodiscard]] nlohmann::ordered_json json_of(const SharedChange& shared);
 
 }  // namespace softgrip::tools::health

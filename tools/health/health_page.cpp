@@ -17,20 +17,35 @@ constexpr std::size_t most_recipes = 4;
 constexpr sysid::Colour recipe_colours[most_recipes] = {sysid::Colour::measured, sysid::Colour::other,
                                                         sysid::Colour::error, sysid::Colour::muted};
 
+/// Of a label that is a day.
+std::optional<std::chrono::sys_days> day_of(const std::string& label) {
+  if (label.size() != 10) return std::nullopt;
+  const auto year = to_number(label.substr(0, 4)), month = to_number(label.substr(5, 2)),
+             of_month = to_number(label.substr(8, 2));
+  if (!year || !month || !of_month) return std::nullopt;
+  return std::chrono::sys_days(std::chrono::year(static_cast<int>(*year)) /
+                               std::chrono::month(static_cast<unsigned>(*month)) /
+                               std::chrono::day(static_cast<unsigned>(*of_month)));
+}
+
+bool has_days(const FingerHealth& health) {
+  return std::all_of(health.points.begin(), health.points.end(),
+                     [](const HealthPoint& point) { return day_of(point.label).has_value(); });
+}
+
 /// Days since the first point where both are days; else how many points lie between.
 double place_of(const FingerHealth& health, std::size_t point) {
-  const auto day = [](const std::string& label) -> std::optional<std::chrono::sys_days> {
-    const auto year = to_number(label.substr(0, 4));
-    const auto month = label.size() == 10 ? to_number(label.substr(5, 2)) : std::nullopt;
-    const auto of_month = label.size() == 10 ? to_number(label.substr(8, 2)) : std::nullopt;
-    if (!year || !month || !of_month) return std::nullopt;
-    return std::chrono::sys_days(std::chrono::year(static_cast<int>(*year)) /
-                                 std::chrono::month(static_cast<unsigned>(*month)) /
-                                 std::chrono::day(static_cast<unsigned>(*of_month)));
-  };
-  const auto first = day(health.points.front().label), now = day(health.points[point].label);
+  const auto first = day_of(health.points.front().label), now = day_of(health.points[point].label);
   if (!first || !now) return static_cast<double>(point);
   return static_cast<double>((*now - *first).count());
+}
+
+sysid::Axis time_axis(const FingerHealth& health) {
+  sysid::Axis axis;
+  axis.label = (has_days(health) ? "days since " : "grips since ") + health.points.front().label;
+  axis.lower = -1;
+  axis.upper = place_of(health, health.points.size() - 1) + 1;
+  return axis;
 }
 
 std::vector<std::string> recipes_of(const FingerHealth& health, std::size_t number) {
@@ -45,14 +60,16 @@ void add_reference(const FingerHealth& health, std::size_t number, sysid::Chart&
   const auto& reference = health.references[number];
   if (!reference || reference->points < 2) return;
   sysid::Series band;
-  band.label = "usual since the last note, three spreads";
+  band.label = reference->slope ? "usual at that temperature, three spreads"
+                                : "usual since the last note, three spreads";
   band.style = sysid::Series::Style::band;
   band.colour = sysid::Colour::faint;
   for (std::size_t p = 0; p < health.points.size(); ++p) {
     if (health.points[p].epoch != health.epoch()) continue;
     band.x.push_back(place_of(health, p));
-    band.y.push_back(reference->mean - band_spreads * reference->spread);
-    band.y_upper.push_back(reference->mean + band_spreads * reference->spread);
+    const double usual = reference->at(health.points[p].temperature_c);
+    band.y.push_back(usual - band_spreads * reference->spread);
+    band.y_upper.push_back(usual + band_spreads * reference->spread);
   }
   chart.series.push_back(std::move(band));
 }
@@ -75,7 +92,7 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
   if (recipes.empty()) return std::nullopt;
   sysid::Chart chart;
   chart.title = std::string(info.title);
-  chart.x.label = "days since " + health.points.front().label;
+  chart.x = time_axis(health);
   chart.y.label = "[" + std::string(info.unit) + "]";
   chart.height = 190;
   add_reference(health, number, chart);
@@ -89,12 +106,80 @@ std::optional<sysid::Chart> chart_of(const FingerHealth& health, std::size_t num
       const auto value = health.points[p].values[number].find(recipes[r]);
       if (value == health.points[p].values[number].end()) continue;
       series.x.push_back(place_of(health, p));
-      series.y.push_back(value->second);
+      series.y.push_back(value->second.value);
     }
     chart.series.push_back(std::move(series));
   }
   add_marks(health, number, chart);
   return chart;
+}
+
+/// How far the finger is from where it usually is beside its mates.
+std::optional<sysid::Chart> chart_beside(const FingerHealth& health, std::size_t number) {
+  const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
+  sysid::Series series;
+  series.label = "beyond the usual difference";
+  series.style = sysid::Series::Style::points;
+  series.width = 2;
+  for (std::size_t p = 0; p < health.points.size(); ++p) {
+    if (!health.points[p].beside[number]) continue;
+    series.x.push_back(place_of(health, p));
+    series.y.push_back(*health.points[p].beside[number]);
+  }
+  if (series.x.empty()) return std::nullopt;
+  sysid::Chart chart;
+  chart.title = std::string(info.title) + ", beside the other fingers";
+  chart.x = time_axis(health);
+  chart.y.label = "[" + std::string(info.unit) + "]";
+  chart.height = 130;
+  chart.series.push_back(std::move(series));
+  add_marks(health, number, chart);
+  return chart;
+}
+
+std::string slope_text(const FingerHealth& health, std::size_t number) {
+  const sysid::HealthNumberInfo& info = sysid::health_number_infos[number];
+  const TemperatureSlope& slope = *health.references[number]->slope;
+  std::string text = std::string(info.title) + ": " + significant(slope.per_c, 3) + " " +
+                     std::string(info.unit) + " per °C, standard error " +
+                     significant(slope.standard_error, 2) + ", seen from " + fixed(slope.lowest_c, 1) +
+                     " to " + fixed(slope.highest_c, 1) + " °C";
+  const auto& now_c = health.points.back().temperature_c;
+  if (now_c && (*now_c < slope.lowest_c || *now_c > slope.highest_c))
+    text += "; the last point's " + fixed(*now_c, 1) +
+            " °C are beyond, where half of what the line adds is doubted";
+  return text;
+}
+
+/// Since the last note.
+bool has_mates(const FingerHealth& health) {
+  return std::any_of(health.points.begin(), health.points.end(), [&](const HealthPoint& point) {
+    return point.epoch == health.epoch() && std::any_of(point.beside.begin(), point.beside.end(),
+                                                        [](const auto& by) { return by.has_value(); });
+  });
+}
+
+void add_allowances(sysid::Page& page, const FingerHealth& health, const std::vector<SharedChange>& shared) {
+  page.section("What was allowed for");
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
+    if (health.references[i] && health.references[i]->slope) lines.push_back(slope_text(health, i));
+  }
+  const bool warm = !health.points.empty() && health.points.back().temperature_c.has_value();
+  if (!warm)
+    lines.emplace_back("The temperature is not recorded, so nothing is known of what it does.");
+  else if (lines.empty())
+    lines.emplace_back("The temperature is recorded; no number is known to follow it.");
+  lines.emplace_back(
+      has_mates(health)
+          ? "What the other fingers on the same runs do alike is no change of this one."
+          : "There is no healthy finger on the same runs to compare it with: weather that is not "
+            "recorded may pass for a change.");
+  page.list(lines);
+  for (const SharedChange& change : shared) {
+    if (change.stands) page.paragraph(shared_sentence(change));
+  }
+  for (const HealthAlarm& unclear : health.unclear) page.paragraph(unclear_sentence(health, unclear));
 }
 
 void add_suspicion(sysid::Page& page, const Suspicion& suspicion, const std::string& baseline) {
@@ -167,13 +252,21 @@ sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion, 
   page.section("The numbers");
   add_alarms(page, health);
   add_numbers(page, health);
+  add_allowances(page, health, source.shared);
   page.section("Over time");
   for (std::size_t i = 0; i < sysid::health_numbers; ++i) {
     auto chart = chart_of(health, i);
     if (!chart) continue;
     const sysid::HealthNumberInfo& info = sysid::health_number_infos[i];
-    page.figure({std::string(info.id), std::string(info.title) + ", the median of each day by recipe.",
-                 sysid::stacked({std::move(*chart)})});
+    std::vector<sysid::Chart> charts{std::move(*chart)};
+    std::string caption = std::string(info.title) + (has_days(health) ? ", the median of each day by recipe."
+                                                                      : ", of each grip by recipe.");
+    if (auto beside = chart_beside(health, i)) {
+      charts.push_back(std::move(*beside));
+      caption +=
+          " Below: how much more than the other fingers on the same runs, beyond the usual difference.";
+    }
+    page.figure({std::string(info.id), caption, sysid::stacked(std::move(charts))});
   }
   return page;
 }

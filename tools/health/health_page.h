@@ -3,8 +3,10 @@
 // mended in between.
 
 #include <string>
+#include <vector>
 
 #include "sysid/pages/page.h"
+#include "tools/health/rig_health.h"
 #include "tools/health/suspicion.h"
 
 namespace softgrip::tools::health {
@@ -14,6 +16,7 @@ struct HealthSource {
   std::string baseline;  ///< folder
   ScoreBase base;
   HealthOptions options;
+  std::vector<SharedChange> shared{};  ///< with the other fingers
 };
 
 [[nodiscard]] sysid::Page health_page(const FingerHealth& health, const Suspicion& suspicion,

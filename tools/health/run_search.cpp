@@ -1,11 +1,14 @@
 #include "tools/health/run_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "base/statistics.h"
 #include "tools/recordings/recording.h"
 
 namespace softgrip::tools::health {
@@ -21,6 +24,15 @@ std::string name_of(const std::string& path) {
 bool is_run(const fs::path& path) {
   std::error_code ignored;
   return !fs::is_directory(path, ignored) || fs::exists(path / "run.csv", ignored);
+}
+
+/// Of the whole run: a finger follows the room slower than a grip takes.
+double temperature_of(const sysid::Log& log) {
+  std::vector<double> known;
+  for (const double temperature_c : log.temperature_c) {
+    if (std::isfinite(temperature_c)) known.push_back(temperature_c);
+  }
+  return known.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span<double>(known));
 }
 
 void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores) {
@@ -49,7 +61,7 @@ void score_one(const std::string& path, const BaseOf& base_of, RunScores& scores
       continue;
     }
     scores.runs.push_back({recording->name, finger, recording->started_at, recording->recipe, base->id,
-                           score_of(*recording, c, base->base)});
+                           score_of(*recording, c, base->base), temperature_of(recording->channels[c])});
   }
 }
 

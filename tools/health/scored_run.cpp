@@ -28,6 +28,8 @@ std::vector<ScoredRun> read_scores(std::string_view text) {
       const auto value = line.find(sysid::health_number_infos[i].id);
       if (value != line.end() && value->is_number()) run.score.values[i] = value->get<double>();
     }
+    const auto temperature = line.find("temperature_c");
+    if (temperature != line.end() && temperature->is_number()) run.temperature_c = temperature->get<double>();
     runs.push_back(std::move(run));
   }
   return runs;
@@ -43,6 +45,7 @@ std::string line_of(const ScoredRun& run) {
     const double value = run.score.values[i];
     line[std::string(sysid::health_number_infos[i].id)] = std::isfinite(value) ? Json(value) : Json(nullptr);
   }
+  if (std::isfinite(run.temperature_c)) line["temperature_c"] = run.temperature_c;
   return line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

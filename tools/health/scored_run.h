@@ -2,6 +2,7 @@
 // One finger's numbers of one recorded run, and where they are kept: a line each in a file that only grows,
 // so that the numbers outlive the recordings and nobody reads a recording twice.
 
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@ struct ScoredRun {
   std::string recipe;      ///< only runs of the same one are compared
   std::string baseline;    ///< by what it was scored
   GripScore score;
+  double temperature_c = std::numeric_limits<double>::quiet_NaN();  ///< its median; NaN: not recorded
 };
 
 /// The file's name in the folder for results.

@@ -55,6 +55,15 @@ double explained(const sysid::HealthSigns& signs, const std::map<HealthNumber, d
   return hits == 0 ? 0 : worth - foreign_alarm * foreign;
 }
 
+/// What alarms is compared at the temperature of the day.
+bool allows_for_temperature(const FingerHealth& health) {
+  const std::vector<HealthAlarm> alarms = health.standing();
+  return std::any_of(alarms.begin(), alarms.end(), [&](const HealthAlarm& alarm) {
+    const auto& reference = health.references[static_cast<std::size_t>(alarm.number)];
+    return reference && reference->slope;
+  });
+}
+
 std::string change_text(const HealthAlarm& alarm) {
   const sysid::HealthNumberInfo& info = sysid::info_of(alarm.number);
   return std::string(info.title) + (alarm.change > 0 ? " +" : " -") + significant(std::abs(alarm.change), 2) +
@@ -69,6 +78,7 @@ Suspicion suspicion_of(const FingerHealth& health) {
   for (const std::string_view id : sysid::changes()) {
     const double worth = explained(sysid::signs_of(id), changes, health);
     const auto cause = sysid::find_cause(id);
+    if (cause && cause->needs == sysid::Column::temperature_c && allows_for_temperature(health)) continue;
     const bool untold = cause && cause->needs != sysid::Column::none;
     if (worth > 0) found.emplace_back(untold ? worth - lacks_column : worth, id);
   }
@@ -86,6 +96,7 @@ Suspicion suspicion_of(const FingerHealth& health) {
   for (std::size_t i = 1; i < suspicion.suspects.size(); ++i) {
     sysid::AdviceFacts facts;
     facts.separable = true;
+    facts.temperature_varies = health.points.back().temperature_c.has_value();
     facts.pressure_recorded = health.references[measured].has_value();
     for (std::string& advice :
          sysid::advice_for(suspicion.suspects.front().id, suspicion.suspects[i].id, facts)) {

@@ -57,6 +57,16 @@ TEST_F(LastHealth, SaysWhenNothingHas) {
   EXPECT_EQ(lines[0].text, "nothing has changed at 2 fingers, judged 2 h ago");
 }
 
+TEST_F(LastHealth, SaysWhatTheRigShares) {
+  Json json = aged(7200, "steady");
+  json["warnings"] = Json::array({"Since then the fingers have changed alike.", 3});
+  const auto lines = health_lines(json);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].text, "Since then the fingers have changed alike.");
+  EXPECT_FALSE(lines[0].good);
+  EXPECT_TRUE(lines[1].good);
+}
+
 TEST_F(LastHealth, IsInDoubtWhenItIsLongAgo) {
   const auto lines = health_lines(aged(10 * 86400, "steady"));
   ASSERT_EQ(lines.size(), 2U);

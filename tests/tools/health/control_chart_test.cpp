@@ -206,6 +206,32 @@ TEST(ControlChart, SaysSinceWhenAndByHowMuch) {
   EXPECT_NEAR(chart.references().at(recipe).mean(), usual, 1e-12);
 }
 
+TEST(ControlChart, WhatIsLargeAtOnceHadBegunBeforeWhereTheSumSaysSo) {
+  Healthy healthy(31, 5, 0.2);
+  ControlChart chart(ChartLimits::for_run_length(30000), least);
+  for (int i = 0; i < 60; ++i) chart.add({{recipe, healthy()}});
+  for (int day = 1; day < 30 && !chart.alarm(); ++day) chart.add({{recipe, healthy() - 0.25 * day}});
+  ASSERT_TRUE(chart.alarm());
+  EXPECT_LT(chart.alarm()->since, chart.alarm()->noticed);
+  EXPECT_NEAR(static_cast<double>(chart.alarm()->since), 61, 2);
+}
+
+TEST(ControlChart, TakesSomebodyElsesAlarm) {
+  Healthy healthy(37, 5, 0.2);
+  ControlChart chart(ChartLimits::for_run_length(30000), least);
+  for (int i = 0; i < 40; ++i) chart.add({{recipe, healthy()}});
+  for (int i = 0; i < 4; ++i) chart.add({{recipe, healthy() + 0.3}});
+  ASSERT_FALSE(chart.alarm());
+  chart.take_alarm(40);
+  ASSERT_TRUE(chart.alarm());
+  EXPECT_EQ(chart.alarm()->since, 40U);
+  EXPECT_EQ(chart.alarm()->noticed, 43U);
+  EXPECT_EQ(chart.references().at(recipe).count(), 40U);
+  for (int i = 0; i < 50; ++i) chart.add({{recipe, healthy() + 0.3}});
+  EXPECT_NEAR(chart.alarm()->change, 0.3, 0.08);
+  EXPECT_EQ(chart.references().at(recipe).count(), 40U);
+}
+
 TEST(ControlChart, KnowsNothingFromUnitsAndFromWhereZeroIs) {
   std::vector<double> values;
   Healthy healthy(11, 0, 1);

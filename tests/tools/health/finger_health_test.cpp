@@ -11,6 +11,7 @@
 #include "sysid/diagnosis/causes/cause.h"
 #include "tools/health/health_json.h"
 #include "tools/health/health_page.h"
+#include "tools/health/rig_health.h"
 #include "tools/health/suspicion.h"
 
 namespace softgrip::tools::health {

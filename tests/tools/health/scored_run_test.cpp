@@ -33,6 +33,14 @@ TEST(ScoredRun, ALineReadsBackAsItWasAndWhatIsAbsentStaysAbsent) {
   EXPECT_TRUE(std::isnan(read[0].score[sysid::HealthNumber::zero]));
 }
 
+TEST(ScoredRun, ATemperatureIsKeptAndALineWithoutOneHasNone) {
+  ScoredRun warm = example("run-1", "left", "1-abc");
+  EXPECT_EQ(line_of(warm).find("temperature_c"), std::string::npos);
+  EXPECT_TRUE(std::isnan(read_scores(line_of(warm))[0].temperature_c));
+  warm.temperature_c = 23.5;
+  EXPECT_EQ(read_scores(line_of(warm))[0].temperature_c, 23.5);
+}
+
 TEST(ScoredRun, ALineThatWasCutOffCostsItselfAlone) {
   const std::string first = line_of(example("run-1", "left", "a"));
   const std::string second = line_of(example("run-2", "left", "a"));
@@ -84,6 +92,19 @@ TEST_F(FoundRuns, AreThoseInAFolderByNameAndNothingElse) {
   EXPECT_EQ(found[0], (folder / "a").string());
   EXPECT_EQ(found[1], (folder / "b").string());
   EXPECT_EQ(found[2], (folder / "b").string());
+}
+
+TEST_F(FoundRuns, HaveTheMedianOfTheirTemperatures) {
+  const std::string path = run("a", "");
+  std::string csv = "time_s,channel,pressure_command_kpa,displacement_mm,temperature_c\n";
+  for (int i = 0; i < 200; ++i) {
+    csv += std::to_string(0.01 * i) + ",left," + std::to_string(0.1 * i) + ",0.1,";
+    csv += (i % 2 == 0 ? std::to_string(21.5 + 0.001 * (i - 100)) : "") + "\n";
+  }
+  ASSERT_TRUE(write_file(path + "/run.csv", csv));
+  const RunScores found = scores();
+  ASSERT_EQ(found.runs.size(), 1U);
+  EXPECT_NEAR(found.runs[0].temperature_c, 21.5, 0.01);
 }
 
 TEST_F(FoundRuns, WhatIsNotFinishedAndWhatIsOfNoSequenceIsLeftOut) {

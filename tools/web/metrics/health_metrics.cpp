@@ -18,6 +18,14 @@ void tell_health(const Json& health, MetricText& metrics) {
   metrics.family("softgrip_health_timestamp_seconds", gauge,
                  "When the recordings were judged last, since 1970.");
   metrics.sample(number(health, "made_unix_s"));
+  const Json& shared = member(health, "shared");
+  if (shared.is_array() && !shared.empty()) {
+    metrics.family("softgrip_health_shared", gauge,
+                   "1 for every number that has changed alike at all fingers of the rig.");
+    for (const Json& number : shared) {
+      if (number.is_string()) metrics.sample({{"number", number.get<std::string>()}}, 1);
+    }
+  }
   const Json& fingers = member(health, "fingers");
   if (!fingers.is_array()) return;
   metrics.family("softgrip_health_state", gauge,

@@ -29,6 +29,12 @@ TEST(HealthMetrics, TellStateSuspectsAndWhen) {
                            "softgrip_health_suspect{channel=\"left\",cause=\"ageing\"} 1\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
   EXPECT_EQ(text.find("channel=\"right\",cause"), std::string::npos);
+  EXPECT_EQ(text.find("softgrip_health_shared"), std::string::npos);
+}
+
+TEST(HealthMetrics, TellWhatTheFingersShare) {
+  const std::string text = told(Json::parse(R"({"fingers": [], "shared": ["gain_mm", 3]})"));
+  EXPECT_NE(text.find("softgrip_health_shared{number=\"gain_mm\"} 1\n"), std::string::npos) << text;
 }
 
 TEST(HealthMetrics, OfNothingAndOfNonsenseNothingIsTold) {

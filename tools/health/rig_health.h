@@ -1,0 +1,64 @@
+#pragma once
+// How the fingers of a rig have been, each beside the others.
+//
+// What stays for days and is nobody's doing, the weather above all, moves all fingers of a rig alike. So
+// every number has two charts: of the finger's own values, and of their difference from its rig-mates on the
+// same runs, as for the streams of a process that has several (Mortell and Runger, Journal of Quality
+// Technology 27, 1995). They tell three things:
+//
+// - The difference has changed. Whose change it is, the fingers' own numbers say: how much each moved about
+//   the time of the change, against how much such numbers wander together anyway (likelihood of the one
+//   against the other, 20 to 1). Until they do, it is told as unclear, without an alarm. With two fingers
+//   the two differences are one, and a false alarm of it is a false alarm of one of them.
+// - The own number has changed, and its mates' with it, in the same direction by half as much or more: a
+//   change that the rig shares. It is told as such, and becomes what is usual of the finger's own number.
+// - The own number has changed, and its mates' have not: an alarm, as it is of a finger without mates.
+//
+// A finger in alarm is no measure for others, and what was mended begins the differences from it anew.
+
+#include <string>
+#include <vector>
+
+#include "tools/health/finger_health.h"
+#include "tools/health/scored_run.h"
+
+namespace softgrip::tools::health {
+
+struct FingerRuns {
+  std::string finger;
+  std::vector<ScoredRun> runs;
+  ScoreBase base;  ///< gives the differences that matter to nobody
+};
+
+/// A change that several fingers have in common.
+struct SharedChange {
+  sysid::HealthNumber number = sysid::HealthNumber::gain;
+  double change = 0;           ///< of the finger that showed it first, in the number's unit
+  std::string since, noticed;  ///< labels of points
+  std::vector<std::string> fingers;
+  bool temperature_recorded = false;  ///< and allowed for, as far as it is known what it does
+  /// False: something was mended since, another one came after it, or a finger's alarm explains it.
+  bool stands = true;
+};
+
+struct RigHealth {
+  std::vector<FingerHealth> fingers;  ///< in the order given
+  std::vector<SharedChange> shared;   ///< by number, and in the order in which they were noticed
+};
+
+/// Runs of the same name are of the same grip; fingers that have some in common are mates.
+[[nodiscard]] RigHealth judge_rig(std::vector<FingerRuns> fingers, const std::vector<Note>& notes,
+                                  const HealthOptions& options);
+
+/// A finger without mates.
+[[nodiscard]] FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs,
+                                        const std::vector<Note>& notes, const ScoreBase& base,
+                                        const HealthOptions& options);
+
+/// "Since 2026-03-20 the gain of left is another beside right's: ...", of FingerHealth::unclear.
+[[nodiscard]] std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear);
+
+/// "Since 2026-03-20 left, right have changed alike: gain -0.3 mm. ...": and what to look at.
+[[nodiscard]] std::string shared_sentence(const SharedChange& shared);
+
+}  // namespace softgrip::tools::health
