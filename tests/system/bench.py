@@ -81,13 +81,13 @@ def resident_kib(pid):
 class Process:
     """A child whose output goes to files and who never outlives its test."""
 
-    def __init__(self, name, arguments, folder):
+    def __init__(self, name, arguments, folder, environment=None):
         self.name = name
         self.output_path = folder / f"{name}.out"
         self.error_path = folder / f"{name}.err"
         with open(self.output_path, "wb") as output, open(self.error_path, "wb") as error:
             self.child = subprocess.Popen([str(a) for a in arguments], stdout=output, stderr=error,
-                                          stdin=subprocess.DEVNULL, cwd=folder)
+                                          stdin=subprocess.DEVNULL, cwd=folder, env={**os.environ, **(environment or {})})
 
     def output(self):
         return self.output_path.read_text(errors="replace")
@@ -159,9 +159,9 @@ class Emulator(Process):
 class Daemon(Process):
     """softgripd on a rig file of the test's folder."""
 
-    def __init__(self, folder, rig, name="softgripd"):
+    def __init__(self, folder, rig, name="softgripd", environment=None):
         self.socket_path = folder / "softgripd.sock"
-        super().__init__(name, [SOFTGRIPD, "--config", rig], folder)
+        super().__init__(name, [SOFTGRIPD, "--config", rig], folder, environment)
         wait_for("the daemon's socket", self._listening)
         self.lines = Lines(self.socket_path)
 

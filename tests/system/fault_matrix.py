@@ -21,6 +21,7 @@ import traceback
 import yaml
 
 import bench
+import digital_lines
 import pauses
 import serial_rig
 import wire_proxy
@@ -84,6 +85,7 @@ class Table:
                 "pressure_delay_cycles": math.ceil(shipped["faults"]["pressure_delay_s"] * rate),
                 "travel_cycles": math.ceil(shipped["faults"]["pressure_tolerance_kpa"] / share / slowest_kpa_per_s * rate),
                 "readback_delay_cycles": math.ceil(shipped["faults"]["readback_delay_s"] * rate),
+                "debounce_cycles": math.ceil(digital_lines.DEBOUNCE_S * rate),
                 "frozen_cycles": math.ceil(shipped["plausibility"]["frozen_after_s"] * rate),
                 "age_cycles": math.ceil(rig["max_age_s"] * rate)}
 
@@ -112,6 +114,8 @@ class Cell:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="softgrip_matrix_"))
         self.processes = []
         self.proxy = None
+        self.lines = None
+        self.seen = 0  # events up to it were before the fault
         self.measured = {}
 
     # --- what runs
@@ -127,8 +131,11 @@ class Cell:
                          (r"path: /tmp/softgrip.sock", f"path: {self.folder}/softgripd.sock")):
             text = re.sub(old, new, text)
         path = self.folder / "config" / "matrix.yaml"
-        path.write_text(text)
+        path.write_text(text + (digital_lines.SECTION if self.has_lines() else ""))
         return path
+
+    def has_lines(self):
+        return self.fault.get("rig") == "lines"
 
     def start_emulator(self):
         arguments = ["--object", "stone"]
@@ -148,8 +155,18 @@ class Cell:
         self.rig_path = self.rig_file(self.proxy.port)
 
     def start_daemon(self):
-        self.daemon = bench.Daemon(self.folder, self.rig_path)
+        environment = digital_lines.environment(self.folder) if self.has_lines() else None
+        self.daemon = bench.Daemon(self.folder, self.rig_path, environment=environment)
         self.processes.append(self.daemon)
+        if self.has_lines():
+            self.lines = digital_lines.Lines(self.folder)
+
+    def clear_emergency_stop(self):
+        """It counts as pressed from the start."""
+        self.daemon.wait_for_state("faulted")
+        bench.wait_for("an acknowledged start", lambda: self.daemon.ask("acknowledge")["ok"], pause_s=0.05)
+        bench.wait_for("the enable output", lambda: "ENABLE" in self.lines.on())
+        self.seen = self.daemon.events()[-1]["id"]
 
     def find_origin(self):
         """time.monotonic() of the daemon's time 0. A status is as old as the last tick: the youngest of some counts."""
@@ -161,7 +178,16 @@ class Cell:
 
     def begin_fault(self):
         self.began = time.monotonic()
-        if "pause" in self.fault["do"]:
+        if self.fault["do"].get("hand") == "presses":
+            self.lines.press()
+        elif self.fault["do"].get("hand") == "pulls_the_chip":
+            self.lines.pull_out_the_chip()
+        elif self.fault["do"].get("hand") == "presses_in_pause":
+            with pauses.whole_process(self.daemon):
+                self.lines.press_for(self.fault["do"]["for_s"])
+                time.sleep(self.fault["do"]["for_s"])
+            self.lines.heard()
+        elif "pause" in self.fault["do"]:
             try:
                 pauses.pause(self.daemon, self.fault["do"]["pause"], self.fault["do"]["for_s"])
             except PermissionError as error:
@@ -173,7 +199,10 @@ class Cell:
             self.proxy.begin(self.wire_fault)
 
     def clear_fault(self):
-        if "pause" in self.fault["do"]:
+        if self.fault["do"].get("hand") == "presses":
+            self.lines.release()
+            return
+        if "pause" in self.fault["do"] or "hand" in self.fault["do"]:
             return  # it is over
         if "plant" in self.fault["do"]:
             self.emulator.ask("clear it")
@@ -191,6 +220,8 @@ class Cell:
                      if at > self.began and before and wire_proxy.noticeable(words, before[0])), self.began)
 
     def reach_phase(self):
+        if self.has_lines():
+            self.clear_emergency_stop()
         self.daemon.wait_for_state("idle")
         if self.phase in ("connect", "idle"):
             time.sleep(0.2)
@@ -212,7 +243,7 @@ class Cell:
     # --- what must come of it
 
     def latched(self):
-        return next((e for e in self.daemon.events() if e["kind"] == "fault_latched"), None)
+        return next((e for e in self.daemon.events() if e["kind"] == "fault_latched" and e["id"] > self.seen), None)
 
     def observe(self, cycles=OBSERVED_CYCLES):
         """Lets so many ticks pass."""
@@ -242,10 +273,16 @@ class Cell:
         if self.expected.get("outputs") != "spoiled":
             self.check_outputs(fault["code"])
             self.check_no_motion(writes_before)
+        if self.has_lines() and not self.expected.get("for_good"):  # a chip that is gone drives nothing
+            bench.wait_for("an enable output that has dropped", lambda: "ENABLE" not in self.lines.on(), 2)
+            bench.wait_for("the fault lamp", lambda: "FAULT" in self.lines.on(), 2)
         self.find_origin()
         self.observe(60)  # the recording's tail
         self.clear_fault()
-        self.acknowledge()
+        if self.expected.get("for_good"):
+            require(not self.daemon.ask("acknowledge")["ok"], "it was acknowledged")
+        else:
+            self.acknowledge()
         return fault
 
     def action(self, code):
@@ -254,6 +291,8 @@ class Cell:
         watched = self.fault.get("rig") != "serial"
         if watched and code.startswith("F1") or code in ("F303", "F304") or self.phase == "connect":
             return "vent"  # the ADAM's watchdog vents
+        if code in ("F501", "F502"):
+            return safety["on_emergency_stop"]
         return safety["safe_action"][PHASE_OF[self.phase]]
 
     def check_outputs(self, code):
@@ -330,9 +369,9 @@ class Cell:
 
     def reaction(self, fault):
         """Ticks from the fault's first effect to its latch, counted in the recording's rows."""
-        for recording in self.recordings():
+        for recording in reversed(self.recordings()):  # the emergency stop of the start was one of its own
             about = json.loads((recording / "run.json").read_text())
-            same = next((e for e in about["faults"] if e["code"] == fault["code"]), None)
+            same = next((e for e in reversed(about["faults"]) if e["code"] == fault["code"]), None)
             if same is None:
                 continue
             begin = fault["time_s"] - same["time_s"] + self.origin
@@ -375,6 +414,8 @@ class Cell:
     def close(self):
         if self.proxy:
             self.proxy.close()
+        if self.lines:
+            self.lines.close()
         for process in reversed(self.processes):
             if process.running():
                 process.kill()

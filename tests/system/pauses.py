@@ -1,5 +1,6 @@
 """Something of a daemon stands still for a while: all of it (SIGSTOP), or one of its threads (ptrace)."""
 
+import contextlib
 import pathlib
 import signal
 import subprocess
@@ -16,12 +17,21 @@ def thread_of(daemon, name):
     raise AssertionError(f"no thread {name}")
 
 
+@contextlib.contextmanager
+def whole_process(daemon):
+    """Stands still meanwhile."""
+    daemon.send(signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        daemon.send(signal.SIGCONT)
+
+
 def pause(daemon, what, for_s):
     """`what`: "process" or the name of a thread. PermissionError where this user may not trace another process."""
     if what == "process":
-        daemon.send(signal.SIGSTOP)
-        time.sleep(for_s)
-        daemon.send(signal.SIGCONT)
+        with whole_process(daemon):
+            time.sleep(for_s)
         return
     with subprocess.Popen([sys.executable, HANG_THREAD, thread_of(daemon, what)], stdout=subprocess.PIPE,
                           text=True) as hang:

@@ -5,6 +5,7 @@ The whole: scripts/fault_matrix.sh.
 
 import unittest
 
+import digital_lines
 import fault_matrix
 
 
@@ -40,6 +41,10 @@ class FaultMatrix(unittest.TestCase):
 
     def test_pauses(self):
         self.check("process_above/holding", "loop_above/closing", "serial_loop_above/closing")
+
+    @unittest.skipUnless(digital_lines.PRELOADED.exists(), "not built: a sanitizer's runtime must be loaded first")
+    def test_digital_lines(self):
+        self.check("lines_emergency_stop/holding", "lines_emergency_stop_in_a_pause/closing", "lines_panel_above/closing")
 
     def test_every_cell_says_what_it_expects(self):
         table = fault_matrix.Table()

@@ -8,6 +8,11 @@
 
 namespace softgrip::drivers::testing {
 
+std::unique_lock<std::recursive_mutex> hold_fake_lines() {
+  static std::recursive_mutex lines;
+  return std::unique_lock(lines);
+}
+
 std::vector<FakeChip>& fake_chips() {
   static std::vector<FakeChip> chips;
   return chips;

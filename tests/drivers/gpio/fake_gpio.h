@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,9 @@ struct FakeChip {
   std::vector<FakeLine> lines;
 };
 
+/// Whoever changes levels in another thread than the driver's holds this meanwhile; the library's functions
+/// do.
+[[nodiscard]] std::unique_lock<std::recursive_mutex> hold_fake_lines();
 /// The machine's chips. Emptied by the tests.
 std::vector<FakeChip>& fake_chips();
 /// The chip whose file is opened; nullptr, and errno, if that fails.

@@ -10,6 +10,7 @@ using softgrip::drivers::testing::FakeBias;
 using softgrip::drivers::testing::FakeChip;
 using softgrip::drivers::testing::FakeEdge;
 using softgrip::drivers::testing::FakeLine;
+using softgrip::drivers::testing::hold_fake_lines;
 
 namespace {
 
@@ -93,14 +94,17 @@ int gpiod_line_event_get_fd(gpiod_line* line) {
   return of(line).pipe[0];
 }
 int gpiod_line_get_value(gpiod_line* line) {
+  const auto held = hold_fake_lines();
   return of(line).gone ? result(EIO) : static_cast<int>(of(line).active());
 }
 int gpiod_line_set_value(gpiod_line* line, int value) {
+  const auto held = hold_fake_lines();
   if (of(line).gone) return result(EIO);
   of(line).high = (value != 0) != of(line).active_low;
   return 0;
 }
 int gpiod_line_event_read_multiple(gpiod_line* line, gpiod_line_event* events, unsigned most) {
+  const auto held = hold_fake_lines();
   if (of(line).gone) return result(EIO);
   unsigned count = 0;
   for (; count < most && !of(line).edges.empty(); ++count) {

@@ -12,6 +12,7 @@ using softgrip::drivers::testing::FakeBias;
 using softgrip::drivers::testing::FakeChip;
 using softgrip::drivers::testing::FakeEdge;
 using softgrip::drivers::testing::FakeLine;
+using softgrip::drivers::testing::hold_fake_lines;
 
 // What the library keeps opaque.
 struct gpiod_chip {
@@ -173,10 +174,12 @@ int gpiod_line_request_get_fd(gpiod_line_request* request) {
   return request->line->pipe[0];
 }
 gpiod_line_value gpiod_line_request_get_value(gpiod_line_request* request, unsigned offset) {
+  const auto held = hold_fake_lines();
   if (result(request->line->gone || offset != request->offset ? EIO : 0) != 0) return GPIOD_LINE_VALUE_ERROR;
   return request->line->active() ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
 }
 int gpiod_line_request_set_value(gpiod_line_request* request, unsigned offset, gpiod_line_value value) {
+  const auto held = hold_fake_lines();
   if (request->line->gone || offset != request->offset) return result(EIO);
   request->line->high = (value == GPIOD_LINE_VALUE_ACTIVE) != request->line->active_low;
   return 0;
@@ -189,6 +192,7 @@ void gpiod_edge_event_buffer_free(gpiod_edge_event_buffer* buffer) {
 }
 int gpiod_line_request_read_edge_events(gpiod_line_request* request, gpiod_edge_event_buffer* buffer,
                                         size_t most) {
+  const auto held = hold_fake_lines();
   if (request->line->gone) return result(EIO);
   std::size_t count = 0;
   for (; count < most && !request->line->edges.empty(); ++count) {

@@ -1,0 +1,118 @@
+// A GPIO chip without a kernel for a whole softgripd (LD_PRELOAD), which somebody outside presses and looks
+// at:
+//
+//   GPIO_CHIPS=/tmp/folder LD_PRELOAD=.../libgpio_chips.so softgripd ...
+//
+// libgpiod's functions give way to tests/drivers/gpio/fake_gpio_1.cpp or _2.cpp. The folder takes the place
+// of /dev where chips are looked for; its socket `lines` takes one line per request, for one client at a
+// time:
+//
+//   high NAME AT_NS   the level changes, and the kernel saw it then (CLOCK_MONOTONIC). `low` the same
+//   gone              the chip was pulled out
+//   levels            answers with the names of all lines that are high
+//
+// What is answered is "ok" or the names. While the process stands still nothing is answered; what was asked
+// for meanwhile comes with its own time when it goes on, as from the kernel's queue.
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "tests/drivers/gpio/fake_gpio.h"
+
+namespace {
+
+using softgrip::drivers::testing::fake_chips;
+using softgrip::drivers::testing::FakeChip;
+using softgrip::drivers::testing::FakeLine;
+
+std::string folder() {
+  const char* const named = std::getenv("GPIO_CHIPS");
+  return named == nullptr ? "" : named;
+}
+
+std::string answer(const std::string& request) {
+  const auto held = softgrip::drivers::testing::hold_fake_lines();
+  std::istringstream words(request);
+  std::string verb;
+  std::string name;
+  std::int64_t at_ns = 0;
+  words >> verb >> name >> at_ns;
+  std::string high;
+  for (FakeLine& line : fake_chips().front().lines) {
+    if (verb == "gone") line.gone = true;
+    if (line.name == name && (verb == "high" || verb == "low")) line.change(verb == "high", at_ns);
+    if (verb == "levels" && line.high) high += line.name + " ";
+  }
+  return verb == "levels" ? high : "ok";
+}
+
+void serve(int listening) {
+  for (;;) {
+    const int client = ::accept(listening, nullptr, nullptr);
+    if (client < 0) return;
+    std::FILE* const lines = ::fdopen(client, "r+");
+    char request[200];
+    while (std::fgets(request, sizeof request, lines) != nullptr) {
+      const std::string said = answer(request) + "\n";
+      if (::send(client, said.data(), said.size(), MSG_NOSIGNAL) < 0) break;
+    }
+    std::fclose(lines);
+  }
+}
+
+[[gnu::constructor]] void plug_in() {
+  if (folder().empty()) return;
+  FakeChip chip;
+  chip.name = "gpiochip0";
+  chip.label = "preloaded";
+  for (const char* name : {"ESTOP", "PART", "ENABLE", "READY", "FAULT"}) {
+    FakeLine line;
+    line.name = name;
+    chip.lines.push_back(line);
+  }
+  fake_chips().push_back(chip);
+  std::ofstream(folder() + "/gpiochip0");
+  const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::snprintf(address.sun_path, sizeof address.sun_path, "%s/lines", folder().c_str());
+  if (::bind(listening, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
+      ::listen(listening, 1) != 0) {
+    std::perror("gpio_chips");
+    std::abort();
+  }
+  // No signal that is meant for softgripd may choose this thread.
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread(serve, listening).detach();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+}  // namespace
+
+/// std::filesystem lists folders by this. The folder stands in /dev's place.
+extern "C" int openat(int at, const char* path, int flags, ...) {
+  using Openat = int (*)(int, const char*, int, ...);
+  static const auto real = reinterpret_cast<Openat>(dlsym(RTLD_NEXT, "openat"));
+  va_list more;
+  va_start(more, flags);
+  const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0;
+  va_end(more);
+  const bool devices = std::strcmp(path, "/dev") == 0 && !folder().empty();
+  return real(at, devices ? folder().c_str() : path, flags, mode);
+}
