@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/blocks/transport_delay.h"
 #include "model/exponential.h"
 #include "model/segment.h"
-#include "model/two_way_lag.h"
-#include "model/weight_cache.h"
 #include "sysid/fitting/hysteresis_step.h"
 
 namespace softgrip::sysid {
@@ -16,31 +13,58 @@ namespace {
 using Segment = model::Segment<double>;
 using Weights = model::ExponentialWeights<double>;
 
-/// The branches of a ladder, all behind the same signal.
+/// The branches of a ladder, all behind the same signal, two by two.
 class Ladder {
  public:
   Ladder(const std::vector<double>& time_constants_s, double at)
-      : time_constants_s_(time_constants_s),
-        x_(time_constants_s.size(), at),
-        weights_(time_constants_s.size()) {}
+      : time_constants_s_(time_constants_s), x_((time_constants_s.size() + 1) / 2, Pair{at, at}) {}
 
   void step(const Segment& in) {
     if (x_.empty() || in.duration_s <= 0) return;
-    const Weights* w = weights_.at(in.duration_s, [&](std::span<Weights> out) {
-      for (std::size_t i = 0; i < out.size(); ++i) {
-        const double rate = 1 / time_constants_s_[i];
-        out[i] = Weights::make(in.duration_s, rate, rate);
-      }
-    });
-    const double bend = in.bend();
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = w[i].end(x_[i], in, bend);
+    const PairWeights* w = weights(in.duration_s);
+    const double begin = in.begin, rise = in.end - in.begin, bend = in.bend();
+    for (Pair& x : x_) {
+      x = x - w->loss * x + w->begin * begin + w->rise * rise + w->bend * bend;
+      ++w;
+    }
   }
-  [[nodiscard]] const std::vector<double>& values() const { return x_; }
+  [[nodiscard]] double value(std::size_t branch) const { return x_[branch / 2][branch % 2]; }
 
  private:
+  using Pair [[gnu::vector_size(16)]] = double;
+  /// model::ExponentialWeights of the end.
+  struct PairWeights {
+    Pair loss{}, begin{}, rise{}, bend{};
+  };
+  /// Of the last few durations: the nominal sample time and the pieces that a delay cuts it into.
+  struct Kept {
+    double duration_s = 0;
+    std::vector<PairWeights> pairs;
+  };
+
+  const PairWeights* weights(double duration_s) {
+    for (const Kept& kept : kept_) {
+      if (kept.duration_s == duration_s) return kept.pairs.data();
+    }
+    Kept& kept = kept_[next_++ % kept_.size()];
+    kept.duration_s = duration_s;
+    kept.pairs.resize(x_.size());
+    for (std::size_t i = 0; i < time_constants_s_.size(); ++i) {
+      const double rate = 1 / time_constants_s_[i];
+      const Weights w = Weights::make(duration_s, rate, rate);
+      PairWeights& pair = kept.pairs[i / 2];
+      pair.loss[i % 2] = w.loss;
+      pair.begin[i % 2] = w.end_begin;
+      pair.rise[i % 2] = w.end_rise;
+      pair.bend[i % 2] = w.end_bend;
+    }
+    return kept.pairs.data();
+  }
+
   const std::vector<double>& time_constants_s_;
-  std::vector<double> x_;
-  model::WeightCache<double> weights_;
+  std::vector<Pair> x_;
+  std::array<Kept, 4> kept_;
+  std::size_t next_ = 0;
 };
 
 /// The part of a segment above a hinge, as a segment of its own.
@@ -52,67 +76,28 @@ Segment above(const Segment& in, double hinge_kpa) {
   return {in.duration_s, std::max(begin, 0.0), std::max(end, 0.0), high * high / (2 * std::abs(end - begin))};
 }
 
-/// Everything that remembers, for one record.
-class Finger {
+/// What remembers the way of the pressure: Bouc-Wen's element, or plays.
+class PressureMemory {
  public:
-  Finger(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
-         const Record& record, double peak_kpa)
-      : structure_(structure),
-        grid_(grid),
+  PressureMemory(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
+                 double first_kpa, double peak_kpa)
+      : grid_(grid),
+        bouc_wen_(structure.hysteresis == HysteresisForm::bouc_wen),
         rates_{numbers.growing_per_kpa, numbers.growing_per_kpa * (1 - 2 * numbers.narrowing)},
-        lag_(structure.lag ? numbers.filling_s : 0, structure.lag ? numbers.venting_s : 0,
-             record.sample_time_s),
-        delay_(std::vector<double>{structure.delay ? numbers.delay_s : 0},
-               {.sample_time_s = record.sample_time_s}),
-        ladder_(grid.ladder_s, record.drive_kpa.front()),
-        steepest_(steepest_state(numbers)),
-        q_(record.drive_kpa.front()) {
-    delay_.reset(q_);
-    lag_.reset(q_);
-    for (const double hinge : grid.hinges_kpa)
-      hinged_.emplace_back(grid.hinge_ladder_s, std::max(q_ - hinge, 0.0));
-    if (structure.hysteresis == HysteresisForm::play) {
+        steepest_(steepest_state(numbers)) {
+    if (!bouc_wen_) {
       plays_.resize(grid.thresholds_kpa.size(), 0);
       move(0, numbers.trained_kpa);
       move(numbers.trained_kpa, 0);
       untouched_ = plays_;
     }
-    move(0, std::max(q_, peak_kpa));
-    if (peak_kpa > q_) move(peak_kpa, q_);
+    move(0, std::max(first_kpa, peak_kpa));
+    if (peak_kpa > first_kpa) move(peak_kpa, first_kpa);
   }
 
-  void step(double duration_s, double from_kpa, double to_kpa) {
-    delay_.step(Segment::straight(duration_s, from_kpa, to_kpa), {}, [this](const Segment& delayed) {
-      lag_.step(delayed, [this](const Segment& q) { take(q); });
-    });
-  }
-
-  template <class Row>
-  void write(const ColumnLayout& layout, Row&& row) const {
-    row(ColumnLayout::elastic()) = q_;
-    for (std::size_t i = 0; i < plays_.size() && i < layout.hysteretic(); ++i)
-      row(layout.hysteresis(i)) = plays_[i] - untouched_[i];
-    if (structure_.hysteresis == HysteresisForm::bouc_wen && layout.hysteretic() == 1)
-      row(1) = steepest_ * q_ - g_;
-    for (std::size_t b = 0; b < layout.branches(); ++b) row(layout.creep(b)) = ladder_.values()[b];
-    for (std::size_t h = 0; h < layout.hinges(); ++h) {
-      for (std::size_t b = 0; b < layout.hinge_branches(); ++b)
-        row(layout.hinged(h, b)) = hinged_[h].values()[b];
-    }
-  }
-
- private:
-  void take(const Segment& q) {
-    move(q.begin, q.end);
-    q_ = q.end;
-    if (structure_.creep) ladder_.step(q);
-    if (structure_.hinged_creep) {
-      for (std::size_t h = 0; h < hinged_.size(); ++h) hinged_[h].step(above(q, grid_.hinges_kpa[h]));
-    }
-  }
-  /// The hysteresis, through a monotone change.
+  /// Through a monotone change.
   void move(double from, double to) {
-    if (structure_.hysteresis == HysteresisForm::bouc_wen) {
+    if (bouc_wen_) {
       if (to != from) g_ = stepped(g_, to - from, rates_);
       return;
     }
@@ -121,17 +106,19 @@ class Finger {
     }
   }
 
-  const BaseStructure& structure_;
+  template <class Row>
+  void write(double kpa, Row&& row) const {
+    if (bouc_wen_) row(0) = steepest_ * kpa - g_;
+    for (std::size_t i = 0; i < plays_.size(); ++i) row(i) = plays_[i] - untouched_[i];
+  }
+
+ private:
   const StructureGrid& grid_;
+  bool bouc_wen_;
   HysteresisRates rates_;
-  model::TwoWayLag<double> lag_;
-  model::TransportDelay<double> delay_;
-  Ladder ladder_;
-  std::vector<Ladder> hinged_;
   std::vector<double> plays_, untouched_;  ///< now, and where the finger's past left them
   double g_ = 0;
   double steepest_;  ///< dg/dp is never above it
-  double q_;
 };
 
 std::size_t branches_of(const BaseStructure& structure, const StructureGrid& grid) {
@@ -178,39 +165,106 @@ std::vector<RowPlace> rows_of(const std::vector<Record>& records) {
   return rows;
 }
 
-Eigen::MatrixXd structure_columns(const std::vector<Record>& records, const BaseStructure& structure,
-                                  const StructureGrid& grid, const NonlinearNumbers& numbers) {
-  const ColumnLayout layout(structure, grid, records);
-  Eigen::MatrixXd columns =
-      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_of(records).size()), layout.count());
+StructureColumns::StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
+                                   const StructureGrid& grid)
+    : records_(records),
+      structure_(structure),
+      grid_(grid),
+      layout_(structure, grid, records),
+      columns_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_of(records).size()), layout_.count())) {
+  write_own();
+}
+
+const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
+  const bool driven_alike = !driven_.empty() && numbers_.delay_s == numbers.delay_s &&
+                            numbers_.filling_s == numbers.filling_s &&
+                            numbers_.venting_s == numbers.venting_s;
+  NonlinearNumbers same = numbers;
+  same.curvature = numbers_.curvature;  // comes behind the columns
+  if (driven_alike && same == numbers_) return columns_;
+  numbers_ = numbers;
+  if (!driven_alike) {
+    driven_.clear();
+    for (const Record& record : records_) driven_.push_back(driven_pressure(record, structure_, numbers));
+    write_driven();
+  }
+  write_hysteresis();
+  return columns_;
+}
+
+/// What follows from the pressure in the finger alone.
+void StructureColumns::write_driven() {
   Eigen::Index row = 0;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const Record& record = records[r];
-    Finger finger(structure, grid, numbers, record, record.start_unknown ? numbers.peak_before_kpa[r] : 0);
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const DrivenPressure& driven = driven_[r];
+    Ladder ladder(grid_.ladder_s, driven.first_kpa);
+    std::vector<Ladder> hinged;
+    for (std::size_t h = 0; h < layout_.hinges(); ++h)
+      hinged.emplace_back(grid_.hinge_ladder_s, std::max(driven.first_kpa - grid_.hinges_kpa[h], 0.0));
+    std::size_t segment = 0;
+    for (std::size_t i = 0; i < driven.until.size(); ++i) {
+      for (; segment < driven.until[i]; ++segment) {
+        const Segment& q = driven.segments[segment];
+        if (structure_.creep) ladder.step(q);
+        for (std::size_t h = 0; h < hinged.size(); ++h) hinged[h].step(above(q, grid_.hinges_kpa[h]));
+      }
+      if (!std::isfinite(records_[r].reading_mm[i])) continue;
+      columns_(row, ColumnLayout::elastic()) = driven.at_kpa(i);
+      for (std::size_t b = 0; b < layout_.branches(); ++b) columns_(row, layout_.creep(b)) = ladder.value(b);
+      for (std::size_t h = 0; h < hinged.size(); ++h) {
+        for (std::size_t b = 0; b < layout_.hinge_branches(); ++b)
+          columns_(row, layout_.hinged(h, b)) = hinged[h].value(b);
+      }
+      ++row;
+    }
+  }
+}
+
+void StructureColumns::write_hysteresis() {
+  if (layout_.hysteretic() == 0) return;
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const DrivenPressure& driven = driven_[r];
+    PressureMemory memory(structure_, grid_, numbers_, driven.first_kpa,
+                          records_[r].start_unknown ? numbers_.peak_before_kpa[r] : 0);
+    std::size_t segment = 0;
+    for (std::size_t i = 0; i < driven.until.size(); ++i) {
+      for (; segment < driven.until[i]; ++segment)
+        memory.move(driven.segments[segment].begin, driven.segments[segment].end);
+      if (!std::isfinite(records_[r].reading_mm[i])) continue;
+      memory.write(driven.at_kpa(i),
+                   [&](std::size_t k) -> double& { return columns_(row, ColumnLayout::hysteresis(k)); });
+      ++row;
+    }
+  }
+}
+
+/// A record's own, whatever the numbers are.
+void StructureColumns::write_own() {
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < records_.size(); ++r) {
+    const Record& record = records_[r];
     for (std::size_t i = 0; i < record.size(); ++i) {
-      if (i > 0) {
-        const double end = record.held ? record.drive_kpa[i - 1] : record.drive_kpa[i];
-        const double begin = i > 1 && record.held ? record.drive_kpa[i - 2] : record.drive_kpa[i - 1];
-        if (record.held && i > 1) finger.step(0, begin, end);
-        finger.step(record.duration_s[i], record.held ? end : begin, end);
-      }
       if (!std::isfinite(record.reading_mm[i])) continue;
-      finger.write(layout, [&](Eigen::Index c) -> double& { return columns(row, c); });
-      if (layout.offset(r) >= 0) columns(row, layout.offset(r)) = 1;
-      for (std::size_t b = 0; layout.unsettled(r) >= 0 && b < layout.branches(); ++b) {
-        columns(row, layout.unsettled(r) + static_cast<Eigen::Index>(b)) =
-            std::exp(-(record.time_s[i] - record.time_s.front()) / grid.ladder_s[b]);
+      const double since_s = record.time_s[i] - record.time_s.front();
+      if (layout_.offset(r) >= 0) columns_(row, layout_.offset(r)) = 1;
+      for (std::size_t b = 0; layout_.unsettled(r) >= 0 && b < layout_.branches(); ++b) {
+        columns_(row, layout_.unsettled(r) + static_cast<Eigen::Index>(b)) =
+            std::exp(-since_s / grid_.ladder_s[b]);
       }
-      for (std::size_t k = 0; k < layout.knots(r); ++k) {
-        const double knots_away = (record.time_s[i] - record.time_s.front()) / ColumnLayout::knot_interval_s -
-                                  static_cast<double>(k + 1);
-        columns(row, layout.wandering(r) + static_cast<Eigen::Index>(k)) =
+      for (std::size_t k = 0; k < layout_.knots(r); ++k) {
+        const double knots_away = since_s / ColumnLayout::knot_interval_s - static_cast<double>(k + 1);
+        columns_(row, layout_.wandering(r) + static_cast<Eigen::Index>(k)) =
             std::max(0.0, 1 - std::abs(knots_away));
       }
       ++row;
     }
   }
-  return columns;
+}
+
+Eigen::MatrixXd structure_columns(const std::vector<Record>& records, const BaseStructure& structure,
+                                  const StructureGrid& grid, const NonlinearNumbers& numbers) {
+  return StructureColumns(records, structure, grid).at(numbers);
 }
 
 }  // namespace softgrip::sysid

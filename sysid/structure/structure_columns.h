@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "sysid/logs/record.h"
+#include "sysid/structure/driven_pressure.h"
 #include "sysid/structure/structure.h"
 
 namespace softgrip::sysid {
@@ -67,7 +68,32 @@ struct RowPlace {
 [[nodiscard]] std::vector<RowPlace> rows_of(const std::vector<Record>& records);
 
 /// One row per reading, one column per layout: mm per mm/kPa (that is, kPa) before own(), 1 and decaying
-/// exponentials from there. `structure` says which of the numbers count.
+/// exponentials from there.
+class StructureColumns {
+ public:
+  /// `records`, `structure` and `grid` outlive it.
+  StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
+                   const StructureGrid& grid);
+
+  /// `structure` says which of the numbers count. Only what differs from the last call is computed: the
+  /// delay and the lags are the dear ones. Valid until the next call.
+  [[nodiscard]] const Eigen::MatrixXd& at(const NonlinearNumbers& numbers);
+
+ private:
+  void write_driven();
+  void write_hysteresis();
+  void write_own();
+
+  const std::vector<Record>& records_;
+  const BaseStructure& structure_;
+  const StructureGrid& grid_;
+  ColumnLayout layout_;
+  Eigen::MatrixXd columns_;
+  NonlinearNumbers numbers_;            ///< of columns_
+  std::vector<DrivenPressure> driven_;  ///< of every record; empty: at() was not called yet
+};
+
+/// The same for once.
 [[nodiscard]] Eigen::MatrixXd structure_columns(const std::vector<Record>& records,
                                                 const BaseStructure& structure, const StructureGrid& grid,
                                                 const NonlinearNumbers& numbers);

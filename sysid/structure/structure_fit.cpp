@@ -28,6 +28,7 @@ struct Coordinate {
   double centre = 0;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
+  bool drives = false;  ///< the pressure in the finger depends on it: dear to move
 };
 
 Coordinate straight(double NonlinearNumbers::*member, double width, double centre, double lower,
@@ -52,7 +53,8 @@ class Search {
         structure_(structure),
         grid_(grid),
         options_(options),
-        layout_(structure, grid, records) {
+        layout_(structure, grid, records),
+        columns_(records, structure_, grid) {
     const std::vector<RowPlace> rows = rows_of(records);
     readings_.resize(static_cast<Eigen::Index>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -68,14 +70,9 @@ class Search {
   };
 
   [[nodiscard]] State at(const NonlinearNumbers& numbers, const Eigen::VectorXd* near = nullptr) {
-    if (!cached_ || !same_columns(numbers)) {
-      columns_ = structure_columns(records_, structure_, grid_, numbers);
-      cached_for_ = numbers;
-      cached_ = true;
-    }
     State state;
     state.numbers = numbers;
-    const ProjectionProblem problem{columns_,
+    const ProjectionProblem problem{columns_.at(numbers),
                                     layout_,
                                     readings_,
                                     grid_.largest_kpa,
@@ -120,13 +117,18 @@ class Search {
     Eigen::VectorXd gradient;
   };
 
+  void add_driving(Coordinate coordinate) {
+    coordinate.drives = true;
+    coordinates_.push_back(std::move(coordinate));
+  }
+
   void add_coordinates() {
     using N = NonlinearNumbers;
-    if (structure_.delay) coordinates_.push_back(straight(&N::delay_s, 0.2, 0, 0, 5));
+    if (structure_.delay) add_driving(straight(&N::delay_s, 0.2, 0, 0, 5));
     if (structure_.lag) {
       if (structure_.two_way) {
-        coordinates_.push_back(logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10));
-        coordinates_.push_back(logarithmic(&N::venting_s, 1.5, 0.1, 1e-4, 10));
+        add_driving(logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10));
+        add_driving(logarithmic(&N::venting_s, 1.5, 0.1, 1e-4, 10));
       } else {
         Coordinate both = logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10);
         const auto set = both.set;
@@ -134,7 +136,7 @@ class Search {
           set(n, t);
           n.venting_s = n.filling_s;
         };
-        coordinates_.push_back(std::move(both));
+        add_driving(std::move(both));
       }
     }
     if (structure_.characteristic) coordinates_.push_back(straight(&N::curvature, 1, 0, -4, 4));
@@ -154,22 +156,21 @@ class Search {
     }
   }
 
-  [[nodiscard]] bool same_columns(NonlinearNumbers numbers) const {
-    numbers.curvature = cached_for_.curvature;
-    return numbers == cached_for_;
-  }
-
   Normal normal_at(const State& state) {
     const auto n = static_cast<Eigen::Index>(coordinates_.size());
     Eigen::MatrixXd jacobian(state.residual.size(), n);
     Normal normal{Eigen::MatrixXd(n, n), Eigen::VectorXd(n)};
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
-      const double t = c.get(state.numbers);
-      const double h = t + 1e-4 > c.upper ? -1e-4 : 1e-4;
-      NonlinearNumbers beside = state.numbers;
-      c.set(beside, t + h);
-      jacobian.col(k) = (at(beside, &state.projection.weights).residual - state.residual) / h;
+    // First those that leave the pressure in the finger where the last look has left it.
+    for (const bool drives : {false, true}) {
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const Coordinate& c = coordinates_[static_cast<std::size_t>(k)];
+        if (c.drives != drives) continue;
+        const double t = c.get(state.numbers);
+        const double h = t + 1e-4 > c.upper ? -1e-4 : 1e-4;
+        NonlinearNumbers beside = state.numbers;
+        c.set(beside, t + h);
+        jacobian.col(k) = (at(beside, &state.projection.weights).residual - state.residual) / h;
+      }
     }
     const double sum = state.residual.squaredNorm();
     normal.curvature = jacobian.transpose() * jacobian / sum;
@@ -218,9 +219,7 @@ class Search {
   ColumnLayout layout_;
   Eigen::VectorXd readings_;
   std::vector<Coordinate> coordinates_;
-  Eigen::MatrixXd columns_;
-  NonlinearNumbers cached_for_;
-  bool cached_ = false;
+  StructureColumns columns_;
 };
 
 /// Readings for a search: every k-th; the pressure is walked through all samples.
