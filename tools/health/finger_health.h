@@ -49,6 +49,8 @@ struct HealthAlarm {
   std::size_t grips = 0;  ///< from the change to when it was noticed
   /// Of the difference from these fingers; empty: of the finger's own number.
   std::vector<std::string> beside;
+  /// Point from which on the difference was told without an owner; `noticed` where it never was.
+  std::size_t warned = 0;
 };
 
 /// What is usual of a number since the last note.

@@ -14,7 +14,8 @@ Json json_of_alarm(const FingerHealth& health, const HealthAlarm& alarm) {
           {"noticed", health.points[alarm.noticed].label},
           {"grips_until_noticed", alarm.grips},
           {"stands", alarm.epoch == health.epoch()},
-          {"beside", alarm.beside}};
+          {"beside", alarm.beside},
+          {"warned", health.points[alarm.warned].label}};
 }
 
 Json json_of_number(const FingerHealth& health, std::size_t i) {

@@ -67,7 +67,10 @@ std::vector<SharedChange> NumberWatch::run(std::size_t moments) {
   for (std::size_t i = 0; i < watched_.size(); ++i) {
     FingerHealth& health = tracks_[i].health;
     const Watched& watched = watched_[i];
-    if (!watched.alarm && watched.beside.alarm()) health.unclear.push_back(alarm_of(i, true));
+    if (!watched.alarm && watched.beside.alarm()) {
+      health.unclear.push_back(alarm_of(i, true));
+      health.unclear.back().noticed = health.unclear.back().warned;
+    }
     if (watched.own.judged() > 0 && health.state == FingerState::learning) health.state = FingerState::steady;
     if (watched.alarm) health.state = FingerState::alarm;
     for (const auto& [recipe, reference] : watched.own.references()) {
@@ -293,8 +296,10 @@ HealthAlarm NumberWatch::alarm_of(std::size_t finger, bool beside) const {
                     at[told.since],
                     told.change,
                     0,
-                    {}};
+                    {},
+                    at.back()};
   if (beside) alarm.beside = names_of(watched.mates);
+  if (watched.beside.alarm()) alarm.warned = watched.beside_at[watched.beside.alarm()->noticed];
   for (std::size_t p = alarm.since; p <= alarm.noticed; ++p)
     alarm.grips += tracks_[finger].health.points[p].grips;
   return alarm;

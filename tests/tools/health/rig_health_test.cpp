@@ -144,6 +144,8 @@ TEST(RigHealth, AnAlarmBesideTheMatesSaysBesideWhom) {
   const RigHealth rig = softening(4, -0.1, 60).judged();
   ASSERT_FALSE(rig.fingers[0].alarms.empty());
   EXPECT_EQ(rig.fingers[0].alarms.front().beside, std::vector<std::string>{"right"});
+  EXPECT_LE(rig.fingers[0].alarms.front().warned, rig.fingers[0].alarms.front().noticed);
+  EXPECT_GE(rig.fingers[0].alarms.front().warned, 60U);
   EXPECT_EQ(rig.fingers[0].state, FingerState::alarm);
   EXPECT_EQ(rig.fingers[1].state, FingerState::steady);
 }
@@ -276,6 +278,8 @@ TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
       EXPECT_TRUE(finger.alarms.empty() || finger.finger == "left");
       if (finger.unclear.empty()) continue;
       ++unclear;
+      EXPECT_LE(finger.unclear[0].warned, finger.unclear[0].noticed);
+      EXPECT_GE(finger.unclear[0].warned, 60U);
       EXPECT_NE(unclear_sentence(finger, finger.unclear[0]).find("do not tell yet"), std::string::npos);
     }
   }
