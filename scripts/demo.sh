@@ -77,7 +77,18 @@ done
   --check "$out/second_tp2.csv" "$out/second_sp1.csv" --out "$out/baseline"
 "$softgrip" diagnose --baseline "$out/baseline" --data "$out/aged_tp2.csv" "$out/aged_sp1.csv" --out "$out/changed"
 
+say "8. The same at work: 30 grips of two fingers, of which the left one softens by 0.3 % each from the 19th on"
+for grip in $(seq -w 30); do
+  awk -v gain="$(awk -v n="$grip" 'BEGIN { print 1 - 0.003 * (n > 18 ? n - 18 : 0) }')" '
+    /_mm_per_kpa:/ { sub(/[0-9.]+$/, $2 * gain) } /_per_mm:/ { sub(/[0-9.]+$/, $2 / gain) } { print }' "$twin" >"$work/worn.yaml"
+  sed -e "0,/model: models/s#model: models/bench_twin.yaml#model: $work/worn.yaml#" -e "s# models/# $PWD/config/models/#" \
+    -e "s#sequence_directory: sequences#sequence_directory: $PWD/config/sequences#" config/rig.yaml >"$work/worn_rig.yaml"
+  "$softgrip" run config/sequences/pick_stone.yaml --rig "$work/worn_rig.yaml" --virtual-time --seed "$((10#$grip))" \
+    --record "$out/grips/grip-$grip" --quiet --no-socket >/dev/null
+done
+"$softgrip" health "$out/grips" --baseline "$out/baseline" --out "$out/health" || [ $? -eq 6 ]  # 6: an alarm stands
+
 say "Everything is vented and stopped. In $out:"
-(cd "$out" && ls -1d pick_stone.svg runs/*/run.csv identified/report.html diagnosis/* changed/report.html)
+(cd "$out" && ls -1d pick_stone.svg runs/*/run.csv identified/report.html diagnosis/* changed/report.html health/*.html)
 echo
 echo "The report: $out/diagnosis/report.html"
