@@ -5,10 +5,13 @@
 #include <limits>
 
 #include "base/statistics.h"
+#include "sysid/logs/turning_points.h"
 
 namespace softgrip::sysid {
 namespace {
 
+/// What turns back by less, in units of the noise, has not turned: so far no smoothed noise comes.
+constexpr double least_turn = 5;
 /// Below this share of a column's range its noise changes no answer.
 constexpr double negligible_share = 1e-4;
 
@@ -23,56 +26,71 @@ double range_of(std::span<const double> values) {
   return high - low;
 }
 
-/// Level and slope with their covariance.
+/// Degrees of freedom of the slope's wandering: it mostly keeps still, and then it jumps. Were it normal, the
+/// jump of one fast vent would have the whole log follow its noise.
+constexpr double heavy_tail = 1;
+/// How often the shares of the wandering are found anew.
+constexpr int rounds = 12;
+
+/// Level and slope before a measurement, their covariance, and how far the measurement stood off.
 struct Estimate {
   double level = 0, slope = 0;
   double ll = 0, ls = 0, ss = 0;
+  double innovation = 0, variance = 0;  ///< variance 0: no measurement
 };
 
-Estimate predicted(const Estimate& e, double dt, double wandering) {
-  Estimate p = e;
-  p.level = e.level + dt * e.slope;
-  p.ll = e.ll + 2 * dt * e.ls + dt * dt * e.ss + wandering * dt * dt * dt / 3;
-  p.ls = e.ls + dt * e.ss + wandering * dt * dt / 2;
-  p.ss = e.ss + wandering * dt;
-  return p;
+/// Signal whose slope is a Wiener process of `wandering` times the step's own share.
+struct Path {
+  std::span<const double> time_s, values;
+  double noise = 0;
+  std::vector<double> shares;  ///< of the step that ends at a sample
+
+  [[nodiscard]] double step_s(std::size_t i) const { return time_s[i] - time_s[i - 1]; }
+};
+
+/// Level and slope a step later.
+void advance(Estimate& e, double dt, double wandering) {
+  e.level += dt * e.slope;
+  e.ll += 2 * dt * e.ls + dt * dt * e.ss + wandering * dt * dt * dt / 3;
+  e.ls += dt * e.ss + wandering * dt * dt / 2;
+  e.ss += wandering * dt;
 }
 
 /// One pass forwards. Returns minus twice the log-likelihood of the innovations.
-double filter(std::span<const double> time_s, std::span<const double> values, double noise, double wandering,
-              std::vector<Estimate>* before, std::vector<Estimate>* after) {
+double filter(const Path& path, double wandering, std::vector<Estimate>* before) {
+  const auto& values = path.values;
   const auto first = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-  const double range = std::max(range_of(values), noise);
+  const double range = std::max(range_of(values), path.noise);
   Estimate e{*first, 0, range * range, 0, 0};
-  e.ss = std::pow(range / std::max(time_s[1] - time_s[0], 1e-9), 2);
+  e.ss = std::pow(range / std::max(path.step_s(1), 1e-9), 2);
   double cost = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Estimate p = i == 0 ? e : predicted(e, time_s[i] - time_s[i - 1], wandering);
-    e = p;
-    if (std::isfinite(values[i])) {
-      const double variance = p.ll + noise * noise;
-      const double innovation = values[i] - p.level;
-      const double gain_level = p.ll / variance, gain_slope = p.ls / variance;
-      e.level += gain_level * innovation;
-      e.slope += gain_slope * innovation;
-      e.ll = p.ll * (1 - gain_level);
-      e.ls = p.ls * (1 - gain_level);
-      e.ss = p.ss - gain_slope * p.ls;
-      cost += std::log(variance) + innovation * innovation / variance;
-    }
-    if (before != nullptr) (*before)[i] = p;
-    if (after != nullptr) (*after)[i] = e;
+    if (i > 0) advance(e, path.step_s(i), wandering * path.shares[i]);
+    const bool measured = std::isfinite(values[i]);
+    e.variance = measured ? e.ll + path.noise * path.noise : 0;
+    e.innovation = measured ? values[i] - e.level : 0;
+    if (before != nullptr) (*before)[i] = e;
+    if (!measured) continue;
+    const double gain_level = e.ll / e.variance, gain_slope = e.ls / e.variance;
+    e.level += gain_level * e.innovation;
+    e.slope += gain_slope * e.innovation;
+    e.ss -= gain_slope * e.ls;
+    e.ll *= 1 - gain_level;
+    e.ls *= 1 - gain_level;
+    cost += std::log(e.variance) + e.innovation * e.innovation / e.variance;
   }
   return cost;
 }
 
 /// The wandering of the slope, per second, of greatest likelihood: golden section over its logarithm.
-double likeliest_wandering(std::span<const double> time_s, std::span<const double> values, double noise) {
+double likeliest_wandering(const Path& path) {
+  const auto& time_s = path.time_s;
   const double dt = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  const double unit = noise * noise / (dt * dt * dt);  // where a sample's wandering is as large as the noise
+  // Where a sample's wandering is as large as the noise.
+  const double unit = path.noise * path.noise / (dt * dt * dt);
   double low = std::log(unit) - 20, high = std::log(unit) + 12;
   const double golden = (std::sqrt(5.0) - 1) / 2;
-  const auto cost = [&](double x) { return filter(time_s, values, noise, std::exp(x), nullptr, nullptr); };
+  const auto cost = [&](double x) { return filter(path, std::exp(x), nullptr); };
   double left = high - golden * (high - low), right = low + golden * (high - low);
   double at_left = cost(left), at_right = cost(right);
   while (high - low > 0.2) {
@@ -93,6 +111,43 @@ double likeliest_wandering(std::span<const double> time_s, std::span<const doubl
   return std::exp((low + high) / 2);
 }
 
+/// The signal and, of every step, how much the slope has wandered on it: the mean of w' Q^-1 w, Q for a
+/// wandering of 1.
+struct Smooth {
+  std::vector<double> level, wandered;
+};
+
+/// One pass backwards over the innovations and their weights (Koopman, Biometrika 80, 1993).
+Smooth disturbances(const Path& path, double wandering) {
+  const std::size_t n = path.values.size();
+  std::vector<Estimate> before(n);
+  filter(path, wandering, &before);
+  Smooth smooth{std::vector<double>(n), std::vector<double>(n, 0.0)};
+  double r0 = 0, r1 = 0, n00 = 0, n01 = 0, n11 = 0;
+  for (std::size_t i = n; i-- > 0;) {
+    const Estimate& e = before[i];
+    if (i + 1 < n) {  // back over the step
+      const double dt = path.step_s(i + 1);
+      r1 += dt * r0;
+      n11 += 2 * dt * n01 + dt * dt * n00;
+      n01 += dt * n00;
+    }
+    if (e.variance > 0) {
+      const double keep = path.noise * path.noise / e.variance, gain_slope = e.ls / e.variance;
+      r0 = keep * r0 - gain_slope * r1 + e.innovation / e.variance;
+      n00 = keep * keep * n00 - 2 * keep * gain_slope * n01 + gain_slope * gain_slope * n11 + 1 / e.variance;
+      n01 = keep * n01 - gain_slope * n11;
+    }
+    smooth.level[i] = e.level + e.ll * r0 + e.ls * r1;
+    if (i == 0) break;
+    const double dt = path.step_s(i), q = wandering * path.shares[i];
+    const double square =
+        dt * dt * dt / 3 * (r0 * r0 - n00) + dt * dt * (r0 * r1 - n01) + dt * (r1 * r1 - n11);
+    smooth.wandered[i] = std::max(0.0, 2 * q + q * q * square);
+  }
+  return smooth;
+}
+
 }  // namespace
 
 double white_noise_of(std::span<const double> time_s, std::span<const double> values) {
@@ -108,33 +163,23 @@ double white_noise_of(std::span<const double> time_s, std::span<const double> va
 }
 
 std::vector<double> smoothed(std::span<const double> time_s, std::span<const double> values, double noise) {
-  std::vector<double> result(values.begin(), values.end());
-  if (noise <= 0 || values.size() < 3) return result;
-  const double wandering = likeliest_wandering(time_s, values, noise);
-  std::vector<Estimate> before(values.size()), after(values.size());
-  filter(time_s, values, noise, wandering, &before, &after);
-  Estimate later = after.back();
-  result.back() = later.level;
-  for (std::size_t i = values.size() - 1; i-- > 0;) {
-    const Estimate& f = after[i];
-    const Estimate& p = before[i + 1];
-    const double dt = time_s[i + 1] - time_s[i];
-    // The smoother's gain: cov(f) F' cov(p)^-1.
-    const double fl = f.ll + dt * f.ls, fs = f.ls + dt * f.ss;
-    const double determinant = p.ll * p.ss - p.ls * p.ls;
-    const double a = (fl * p.ss - f.ls * p.ls) / determinant, b = (f.ls * p.ll - fl * p.ls) / determinant;
-    const double c = (fs * p.ss - f.ss * p.ls) / determinant, d = (f.ss * p.ll - fs * p.ls) / determinant;
-    const double level = later.level - p.level, slope = later.slope - p.slope;
-    later = {f.level + a * level + b * slope, f.slope + c * level + d * slope, 0, 0, 0};
-    result[i] = later.level;
+  if (noise <= 0 || values.size() < 3) return {values.begin(), values.end()};
+  Path path{time_s, values, noise, std::vector<double>(values.size(), 1.0)};
+  double wandering = likeliest_wandering(path);
+  Smooth smooth = disturbances(path, wandering);
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 1; i < values.size(); ++i)
+      path.shares[i] = (heavy_tail + smooth.wandered[i] / wandering) / (heavy_tail + 2);
+    wandering = likeliest_wandering(path);
+    smooth = disturbances(path, wandering);
   }
-  return result;
+  return smooth.level;
 }
 
 double smooth_input(std::span<const double> time_s, std::vector<double>& values) {
   const double noise = white_noise_of(time_s, values);
   if (values.size() < 3 || !(noise > negligible_share * range_of(values))) return 0;
-  values = smoothed(time_s, values, noise);
+  values = steady_between_turns(smoothed(time_s, values, noise), least_turn * noise);
   return noise;
 }
 

@@ -11,16 +11,18 @@ namespace softgrip::sysid {
 /// between their neighbours (robust, any sampling); 0 for fewer than three values.
 [[nodiscard]] double white_noise_of(std::span<const double> time_s, std::span<const double> values);
 
-/// The signal without its noise: a Kalman filter forwards and a Rauch-Tung-Striebel smoother backwards over a
-/// signal whose slope is a Wiener process (Rauch, Tung and Striebel, AIAA Journal 3, 1965), the noise as
-/// given, the slope's wandering by greatest likelihood of the innovations. Any sampling. Not finite: no
-/// measurement there.
+/// The signal without its noise: a Kalman filter forwards and Koopman's smoother backwards (Biometrika 80,
+/// 1993) over a signal whose slope wanders, the noise as given, the wandering by greatest likelihood of the
+/// innovations. Its increments are of Student's t (a scale of every step's own, by expectation
+/// maximisation): a signal that jumps now and then is smooth between its jumps all the same. Any sampling.
+/// Not finite: no measurement there.
 /// @param time_s  increasing, as long as `values`. @param noise  standard deviation; 0 returns the values.
 [[nodiscard]] std::vector<double> smoothed(std::span<const double> time_s, std::span<const double> values,
                                            double noise);
 
-/// Smooths a column in place where its noise is more than rounding: above 1e-4 of its range. Returns the
-/// noise that it found, 0 where it left the column alone.
+/// Smooths a column in place where its noise is more than rounding: above 1e-4 of its range; what then still
+/// turns back by less than five times the noise does not turn (turning_points.h). Returns the noise that it
+/// found, 0 where it left the column alone.
 double smooth_input(std::span<const double> time_s, std::vector<double>& values);
 
 }  // namespace softgrip::sysid

@@ -49,6 +49,44 @@ TEST(InputSmoothing, TakesMostOfTheNoiseAwayAndKeepsTheCorners) {
   }
 }
 
+/// Holds of some seconds, and jumps between them that no slope of before foretells.
+Signal jumps(double noise, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Signal s;
+  constexpr double levels[] = {0, 40, 15, 55, 0, 30, 0};
+  for (int i = 0; i < 2800; ++i) {
+    s.time_s.push_back(0.01 * i);
+    s.truth.push_back(levels[i / 400]);
+    s.measured.push_back(s.truth.back() + noise * normal(random));
+  }
+  return s;
+}
+
+double total_variation(const std::vector<double>& values) {
+  double sum = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) sum += std::abs(values[i] - values[i - 1]);
+  return sum;
+}
+
+TEST(InputSmoothing, ASignalThatJumpsIsSmoothBetweenItsJumps) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    Signal s = jumps(0.05, seed);
+    EXPECT_LT(rms(smoothed(s.time_s, s.measured, 0.05), s.truth), 0.02) << "seed " << seed;
+  }
+}
+
+TEST(InputSmoothing, NoHysteresisTurnsOnWhatIsLeftOfTheNoise) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    Signal jumping = jumps(0.05, seed), slow = triangles(0.3, seed);
+    for (Signal* const s : {&jumping, &slow}) {
+      EXPECT_GT(smooth_input(s->time_s, s->measured), 0);
+      const double truth = total_variation(s->truth);
+      EXPECT_NEAR(total_variation(s->measured), truth, 0.01 * truth) << "seed " << seed;
+    }
+  }
+}
+
 TEST(InputSmoothing, HasNoDelay) {
   const Signal s = triangles(0.3, 5);
   const std::vector<double> smooth = smoothed(s.time_s, s.measured, 0.3);

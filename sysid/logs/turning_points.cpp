@@ -1,0 +1,68 @@
+#include "sysid/logs/turning_points.h"
+
+#include <span>
+
+namespace softgrip::sysid {
+namespace {
+
+/// Values that became one, their mean.
+struct Pool {
+  double sum = 0;
+  double count = 0;
+};
+
+void make_rising(std::span<double> values, double sign) {
+  std::vector<Pool> pools;
+  for (const double v : values) {
+    Pool pool{sign * v, 1};
+    while (!pools.empty() && pools.back().sum * pool.count >= pool.sum * pools.back().count) {
+      pool.sum += pools.back().sum;
+      pool.count += pools.back().count;
+      pools.pop_back();
+    }
+    pools.push_back(pool);
+  }
+  std::size_t i = 0;
+  for (const Pool& pool : pools) {
+    for (double k = 0; k < pool.count; ++k) values[i++] = sign * pool.sum / pool.count;
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> turning_points(const std::vector<double>& values, double least) {
+  std::vector<std::size_t> turns{0};
+  std::size_t highest = 0, lowest = 0;
+  bool may_fall = true, may_rise = true;  // both until it is known where the signal goes first
+  const auto turn = [&](std::size_t at) {
+    if (at > turns.back()) turns.push_back(at);
+  };
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] > values[highest]) highest = i;
+    if (values[i] < values[lowest]) lowest = i;
+    if (may_fall && values[highest] - values[i] > least) {
+      turn(highest);
+      lowest = i;
+      may_fall = false;
+      may_rise = true;
+    } else if (may_rise && values[i] - values[lowest] > least) {
+      turn(lowest);
+      highest = i;
+      may_rise = false;
+      may_fall = true;
+    }
+  }
+  turn(values.size() - 1);
+  return turns;
+}
+
+std::vector<double> steady_between_turns(std::vector<double> values, double least) {
+  const std::vector<std::size_t> turns = turning_points(values, least);
+  for (std::size_t k = 1; k < turns.size(); ++k) {
+    const std::size_t from = turns[k - 1], to = turns[k];
+    make_rising(std::span(values).subspan(from, to - from + 1), values[to] < values[from] ? -1 : 1);
+  }
+  return values;
+}
+
+}  // namespace softgrip::sysid
