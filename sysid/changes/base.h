@@ -46,6 +46,7 @@ struct Base {
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;
+  Whitener usual;               ///< without memory: by how much the base misses healthy readings
   std::vector<Record> records;  ///< the healthy ones, thinned
   Binned left;                  ///< residual of the healthy logs while held out
 };
@@ -70,7 +71,7 @@ struct BaseOptions {
                                                const Extension& extension,
                                                const Eigen::VectorXd* echo = nullptr);
 
-/// As a search for changes walks it: a valve answers sooner than a finger.
+/// As a search for changes walks it, some samples in every bin: a valve answers sooner than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);
 
 /// Reading minus prediction of the unchanged base, sample by sample.

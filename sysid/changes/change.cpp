@@ -115,7 +115,7 @@ class Judge {
       }
       const ScoredEffect& best = ranked.front();
       if (!stands_out(best)) break;
-      const Weighed weighed = weigh(readings, best, white);
+      const Weighed weighed = weigh(readings, best, white, found);
       const double excess_left = judged.misfit_left - 1;
       if (!weighed.is_a_change || !(found.empty() || best.gain > further_share * excess_left)) break;
       diagnosis.causes.push_back(cause_of(readings, ranked, weighed, judged.misfit_before - 1));
@@ -141,8 +141,10 @@ class Judge {
     const LaterReadings healthy(base_, base_.records, base_.left);
     const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
     if (!(ranked.front().gain > own_temperature_gain)) return;
-    base_.left = minus(std::move(base_.left), healthy.added({ranked.front().fit.fitted}));
-    base_.gain_per_c = ranked.front().fit.fitted.numbers.front();
+    FittedEffect own = ranked.front().fit.fitted;
+    own.numbers.back() = 0;  // the gain at the mean temperature is the base's already
+    base_.left = minus(std::move(base_.left), healthy.added({own}));
+    base_.gain_per_c = own.numbers.front();
   }
 
   /// The search on the healthy logs, their residual taken while they were held out.
@@ -175,15 +177,19 @@ class Judge {
     bool is_a_change = false;        ///< by its size and over blocks drawn anew
   };
 
-  /// @param without  the whitened readings without it.
+  /// @param without  the whitened readings without it. @param found  what is there beside it.
   [[nodiscard]] Weighed weigh(const LaterReadings& readings, const ScoredEffect& scored,
-                              const Eigen::VectorXd& without) const {
+                              const Eigen::VectorXd& without, std::vector<FittedEffect> found) const {
     Weighed weighed;
     weighed.added = readings.added({scored.fit.fitted});
     weighed.block_sums = block_sums(readings, scored.fit.white);
     weighed.spread = resampled(block_sums(readings, without), weighed.block_sums, options_.seed);
-    weighed.is_a_change =
-        rms_of(weighed.added, 0) >= least_size * usual_left(base_.left) && weighed.spread.lower > 0;
+    const double without_it = readings.plain_rms(found);
+    found.push_back(scored.fit.fitted);
+    // What takes the prediction farther from what was measured, and is there only once the readings are
+    // whitened, is the shape of the base's own misses.
+    weighed.is_a_change = rms_of(weighed.added, 0) >= least_size * usual_left(base_.left) &&
+                          weighed.spread.lower > 0 && readings.plain_rms(found) < without_it;
     return weighed;
   }
 
@@ -202,7 +208,8 @@ class Judge {
     for (std::size_t i = 1; i < ranked.size(); ++i) {
       if (!stands_out(ranked[i])) continue;
       const std::vector<double> other = block_sums(readings, ranked[i].fit.white);
-      if (resampled(other, weighed.block_sums, options_.seed).share < wins_alone)
+      const double dearer = price_of(ranked[i].fit.fitted.effect) - price_of(best.effect);
+      if (resampled(other, weighed.block_sums, options_.seed, dearer).share < wins_alone)
         cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
     }
     cause.effect_mm = rms_of(weighed.added, 0);

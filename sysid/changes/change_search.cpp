@@ -9,12 +9,34 @@
 namespace softgrip::sysid {
 namespace {
 
-/// What a number must take to be worth it, in whitened squares.
 constexpr double price_of_a_number = 8;
+/// A base is not so certain of a course that it never saw that a smaller share of what a cause takes would
+/// tell it from one that it contains.
+constexpr double alike_share = 0.01;
 constexpr double block_s = 5;
 constexpr int draws = 500;
 
+double beyond_chance(const ScoredEffect& scored) {
+  return scored.gain - scored.chance;
+}
+
+/// A line that fills and empties alike is a lag of the valve: what the first contains goes before it where
+/// it takes as much.
+void contained_first(std::vector<ScoredEffect>& ranked) {
+  if (ranked.empty() || !(beyond_chance(ranked.front()) > 0)) return;
+  const double least = (1 - alike_share) * beyond_chance(ranked.front());
+  const auto contained = std::find_if(ranked.begin(), ranked.end(), [&](const ScoredEffect& each) {
+    return each.fit.fitted.effect.id == ranked.front().fit.fitted.effect.contains &&
+           beyond_chance(each) >= least;
+  });
+  if (contained != ranked.end()) std::rotate(ranked.begin(), contained, contained + 1);
+}
+
 }  // namespace
+
+double price_of(const Effect& effect) {
+  return price_of_a_number * static_cast<double>(effect.numbers.size());
+}
 
 std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const std::vector<Effect>& effects,
                                          const std::vector<FittedEffect>& others, const Chance& chance,
@@ -25,14 +47,12 @@ std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const st
   std::vector<ScoredEffect> all(effects.size());
   parallel_for(effects.size(), threads, [&](std::size_t i) {
     all[i].fit = fit_effect(readings, effects[i], others, without);
-    all[i].gain = (before - all[i].fit.sum_of_squares -
-                   price_of_a_number * static_cast<double>(effects[i].numbers.size())) /
-                  rows;
+    all[i].gain = (before - all[i].fit.sum_of_squares - price_of(effects[i])) / rows;
     const auto known = chance.find(effects[i].id);
     all[i].chance = known == chance.end() ? 0 : known->second;
   });
   std::stable_sort(all.begin(), all.end(), [](const ScoredEffect& a, const ScoredEffect& b) {
-    return a.gain - a.chance > b.gain - b.chance;
+    return beyond_chance(a) > beyond_chance(b);
   });
   std::vector<ScoredEffect> kept;
   for (ScoredEffect& each : all) {
@@ -41,6 +61,7 @@ std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const st
     });
     if (!there) kept.push_back(std::move(each));
   }
+  contained_first(kept);
   return kept;
 }
 
@@ -59,12 +80,13 @@ std::vector<double> block_sums(const LaterReadings& readings, const Eigen::Vecto
   return sums;
 }
 
-Resampled resampled(const std::vector<double>& worse, const std::vector<double>& better, std::uint64_t seed) {
+Resampled resampled(const std::vector<double>& worse, const std::vector<double>& better, std::uint64_t seed,
+                    double dearer) {
   std::mt19937_64 random(seed * 7919 + 3);
   std::uniform_int_distribution<std::size_t> pick(0, worse.size() - 1);
   std::vector<double> totals;
   for (int d = 0; d < draws; ++d) {
-    double total = 0;
+    double total = dearer;
     for (std::size_t i = 0; i < worse.size(); ++i) {
       const std::size_t b = pick(random);
       total += worse[b] - better[b];

@@ -20,7 +20,11 @@ struct ScoredEffect {
 /// wrong.
 using Chance = std::map<std::string, double>;
 
-/// What takes most beyond chance first; one form per cause.
+/// What the numbers of an effect must take to be worth it, in whitened squares.
+[[nodiscard]] double price_of(const Effect& effect);
+
+/// What takes most beyond chance first, but that a cause which the first contains goes before it where it
+/// takes as much but for a hundredth; one form per cause.
 [[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
                                                        const std::vector<Effect>& effects,
                                                        const std::vector<FittedEffect>& others,
@@ -30,10 +34,11 @@ using Chance = std::map<std::string, double>;
 [[nodiscard]] std::vector<double> block_sums(const LaterReadings& readings, const Eigen::VectorXd& white);
 
 /// Of paired sums: how often, blocks drawn anew, `worse` is the larger, and the interval of the difference.
+/// @param dearer  what `worse` costs beside its sums more than `better`.
 struct Resampled {
   double share = 0, lower = 0, upper = 0;
 };
 [[nodiscard]] Resampled resampled(const std::vector<double>& worse, const std::vector<double>& better,
-                                  std::uint64_t seed);
+                                  std::uint64_t seed, double dearer = 0);
 
 }  // namespace softgrip::sysid

@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/statistics.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -188,6 +190,24 @@ Eigen::VectorXd LaterReadings::white(const std::vector<FittedEffect>& effects) c
 LaterReadings::Slack LaterReadings::slack(const std::vector<FittedEffect>& effects) const {
   const Split split = this->split(effects);
   return {split.zeros(0), split.gain};
+}
+
+double LaterReadings::plain_rms(const std::vector<FittedEffect>& effects) const {
+  const Binned added = this->added(effects);
+  double misses = 0, products = 0, motions = 0, count = 0;
+  for (std::size_t r = 0; r < left_.size(); ++r) {
+    PairSums own;
+    for (std::size_t b = 0; b < left_[r].size(); ++b) own.add(plain_[r][b], left_[r][b] - added[r][b]);
+    if (own.count == 0) continue;
+    misses += own.yy - own.y * own.y / own.count;
+    products += own.covariance() / own.count;
+    motions += own.variance_x() / own.count;
+    count += own.count;
+  }
+  const double bound = gain_bound * base_.gain_spread;
+  const double gain = motions > 0 ? std::clamp(products / motions, -bound, bound) : 0;
+  const double left = misses - 2 * gain * products + gain * gain * motions;
+  return count > 0 ? std::sqrt(std::max(left, 0.0) / count) : 0;
 }
 
 LaterReadings readings_of(const Base& base, const std::vector<Record>& records,

@@ -32,6 +32,9 @@ class LaterReadings {
   [[nodiscard]] const Binned& left() const { return left_; }
   /// What the effects add to the prediction, in bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
+  /// Root mean square of what is left of the readings with these effects, as they are and not whitened;
+  /// every record's zero and the common gain each at their best.
+  [[nodiscard]] double plain_rms(const std::vector<FittedEffect>& effects) const;
   /// Zero and gain that go with the effects: common zero [mm], relative gain.
   struct Slack {
     double zero_mm = 0, gain = 0;

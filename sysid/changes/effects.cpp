@@ -124,16 +124,20 @@ class Collector {
                           e.softening = {n[0], n[1]};
                         }});
   }
+  /// At which temperature the gain is still what it was, nobody knows: beside the slope goes a gain.
   void add_thermal() {
     effects_.push_back({"thermal_gain",
                         "Thermal gain",
                         model::Station::actuator,
                         "thermal_gain",
                         false,
-                        {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}},
-                        {{0.01}, {-0.01}},
-                        {0},
-                        [](Extension& e, const std::vector<double>& n) { e.gain_per_c += n[0]; }});
+                        {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}, {"gain_change", "", 0.01, -0.9, 9}},
+                        {{0.01, 0}, {-0.01, 0}},
+                        {0, 0},
+                        [](Extension& e, const std::vector<double>& n) {
+                          e.gain_per_c += n[0];
+                          e.gain *= 1 + n[1];
+                        }});
   }
   void add_leak() {
     const double p = base_.largest_kpa;
@@ -160,7 +164,8 @@ class Collector {
                         {0, 0},
                         [](Extension& e, const std::vector<double>& n) {
                           e.line = {n[0], n[1]};
-                        }});
+                        },
+                        "valve_lag"});
   }
 
   const Base& base_;

@@ -30,6 +30,8 @@ struct Effect {
   std::vector<double> nothing;  ///< where it does nothing; NaN: does not matter there
   /// Adds the effect with these numbers.
   std::function<void(Extension&, const std::vector<double>&)> apply;
+  /// The id of a cause that it is, with fewer numbers, where they agree; or none.
+  std::string contains = {};
 };
 
 /// All effects that the reading of these later records can show.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "sysid/changes/change_size.h"
 #include "tests/sysid/changes/finger.h"
 
@@ -45,6 +47,36 @@ TEST_F(ChangeSearch, WhatACauseGainsByChanceCountsAgainstIt) {
   EXPECT_EQ(ranked.back().fit.fitted.effect.id, "transport_delay");
 }
 
+TEST_F(ChangeSearch, ALineThatFillsAndEmptiesAlikeIsALagOfTheValve) {
+  const LaterReadings later = readings({.valve_lag_s = 0.08});
+  std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
+  std::erase_if(effects, [](const Effect& e) { return e.id != "valve_lag" && e.id != "blocked_line"; });
+  std::reverse(effects.begin(), effects.end());
+  const std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {}, 1);
+  ASSERT_EQ(ranked.size(), 2U);
+  EXPECT_NEAR(ranked[1].gain, ranked[0].gain, 0.01 * ranked[0].gain);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "valve_lag");
+}
+
+TEST_F(ChangeSearch, WhatIsLeftAsItIsKnowsWhetherAnEffectHelps) {
+  const LaterReadings later = readings({.delay_s = 0.06});
+  std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
+  std::erase_if(effects, [](const Effect& e) { return e.id != "transport_delay"; });
+  ASSERT_EQ(effects.size(), 1U);
+  const double without = later.plain_rms({});
+  EXPECT_LT(later.plain_rms({{effects[0], {0.06}}}), 0.5 * without);
+  EXPECT_GT(later.plain_rms({{effects[0], {0.3}}}), 2 * without);
+  EXPECT_NEAR(later.plain_rms({{effects[0], {0.0}}}), without, 1e-9);
+}
+
+TEST_F(ChangeSearch, AnotherZeroIsNothingThatIsLeft) {
+  const LaterReadings later = readings({});
+  Binned moved = later.left();
+  for (double& v : moved[0]) v += 3;
+  const LaterReadings other(base_, later.records(), moved);
+  EXPECT_NEAR(other.plain_rms({}), later.plain_rms({}), 1e-9);
+}
+
 TEST_F(ChangeSearch, WhatIsAddedAtFullPressureIsItsMean) {
   const LaterReadings later = readings({});
   Binned added = later.left();
@@ -57,6 +89,11 @@ TEST(Resampled, EqualSumsAreNoDifference) {
   EXPECT_EQ(same.share, 0);
   EXPECT_EQ(same.lower, 0);
   EXPECT_EQ(same.upper, 0);
+}
+
+TEST(Resampled, OfEqualSumsTheDearerIsWorse) {
+  EXPECT_EQ(resampled({1, 2, 3}, {1, 2, 3}, 1, 8).share, 1);
+  EXPECT_EQ(resampled({1, 2, 3}, {1, 2, 3}, 1, -8).share, 0);
 }
 
 }  // namespace

@@ -45,6 +45,23 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
 }
 
+TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {
+  const auto d = diagnose_change(logs_of({.with_temperature = true}, 1),
+                                 logs_of({.per_c = 0.01, .with_temperature = true}, 5));
+  ASSERT_TRUE(d) << d.error();
+  ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
+  EXPECT_EQ(d->causes[0].id, "thermal_gain");
+  EXPECT_EQ(d->causes.size(), 1U);
+  // Of the gain at the healthy logs' 24 degrees.
+  EXPECT_NEAR(d->causes[0].size.value, 100 * 0.01 / (1 + 0.01 * (24 - 15)), 0.1);
+}
+
+TEST(Change, AZeroThatWanderedOnTheHealthyDayTooIsNoChange) {
+  const auto d = diagnose_change(logs_of({.wander_mm = 0.1}, 1), logs_of({.wander_mm = 0.1}, 5));
+  ASSERT_TRUE(d) << d.error();
+  EXPECT_EQ(d->verdict, ChangeVerdict::unchanged) << change_sentence(*d);
+}
+
 TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
   const ChangeDiagnosis d = changed({.stop_mm = 7});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);

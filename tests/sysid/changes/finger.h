@@ -19,6 +19,10 @@ struct Finger {
   double zero_mm = 0;
   double lost_kpa_per_s = 0;  ///< while the command stands still, up to 1.5 kPa
   double delay_s = 0;
+  double valve_lag_s = 0;
+  double per_c = 0;  ///< the gain's slope, nothing at 15 degrees
+  bool with_temperature = false;
+  double wander_mm = 0;  ///< the zero goes to and fro within a quarter of a minute, never twice alike
 };
 
 /// Triangles of several heights with a hold on top, drawn by `seed`.
@@ -47,18 +51,27 @@ inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = fals
   Log log;
   log.name = "log" + std::to_string(seed);
   log.pressure_command_kpa = command_kpa(seed, 3000, rate_hz);
-  double play = 0, creep = 0, lost = 0;
+  double play = 0, creep = 0, lost = 0, behind = 0;
+  const double phase = 2 * seed;
   const auto late = static_cast<std::size_t>(finger.delay_s * rate_hz);
   for (std::size_t i = 0; i < log.pressure_command_kpa.size(); ++i) {
     const double u = log.pressure_command_kpa[i >= late ? i - late : 0];
     const double before = log.pressure_command_kpa[i > late ? i - late - 1 : 0];
     lost = u == before ? std::min(lost + finger.lost_kpa_per_s / rate_hz * u / 60, 1.5) : 0.8 * lost;
-    const double p = u - lost;
+    behind +=
+        (u - lost - behind) * (finger.valve_lag_s > 0 ? -std::expm1(-1 / (rate_hz * finger.valve_lag_s)) : 1);
+    const double p = behind;
     play = std::clamp(play, p - 3, p + 3);
     creep += (p - creep) / (rate_hz * 4);
-    const double y = finger.gain * (0.6 * p + 0.3 * play + 0.1 * creep);
-    log.time_s.push_back(static_cast<double>(i) / rate_hz);
-    log.displacement_mm.push_back(std::min(y, finger.stop_mm) + finger.zero_mm + 0.03 * noise(random));
+    const double t = static_cast<double>(i) / rate_hz;
+    const double temperature_c = 24 + 3 * std::sin(t / 8 + phase);
+    const double y =
+        finger.gain * (1 + finger.per_c * (temperature_c - 15)) * (0.6 * p + 0.3 * play + 0.1 * creep);
+    const double wander = finger.wander_mm * std::sin(t * 0.4 + phase + std::sin(t * 0.17 + 3 * phase));
+    log.time_s.push_back(t);
+    log.displacement_mm.push_back(std::min(y, finger.stop_mm) + finger.zero_mm + wander +
+                                  0.03 * noise(random));
+    if (finger.with_temperature) log.temperature_c.push_back(temperature_c);
     if (with_pressure) log.pressure_kpa.push_back(p + 0.03 * noise(random));
   }
   return log;

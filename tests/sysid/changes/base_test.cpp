@@ -1,0 +1,58 @@
+#include "sysid/changes/base.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sysid/changes/finger.h"
+
+namespace softgrip::sysid {
+namespace {
+
+Base base_of(const std::vector<Log>& healthy) {
+  return fit_base(make_records(healthy, {}), Judged::displacement, Drive::command, {});
+}
+
+/// What the base leaves of other logs, but for every log's zero.
+double left_of_mm(const Base& base, const std::vector<Log>& logs) {
+  const std::vector<Record> records = make_records(logs, {});
+  const std::vector<std::vector<double>> left = residuals_of(base, records);
+  double sum = 0, count = 0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const std::vector<double> series = binned(records[r], left[r], base.bin_s);
+    double mean = 0;
+    for (const double v : series) mean += v / static_cast<double>(series.size());
+    for (const double v : series) sum += (v - mean) * (v - mean);
+    count += static_cast<double>(series.size());
+  }
+  return std::sqrt(sum / count);
+}
+
+/// What no echo of the drive can know must not be learnt by heart from the blocks around.
+TEST(Base, LeavesOfAnotherDayWhatItLeavesOfHealthyLogsHeldOut) {
+  const test::Finger wandering{.wander_mm = 0.1};
+  const Base base = base_of(test::logs_of(wandering, 1));
+  EXPECT_GT(base.left_mm, 0.06);
+  const double later_mm = left_of_mm(base, test::logs_of(wandering, 5));
+  EXPECT_NEAR(later_mm, base.left_mm, 0.25 * base.left_mm);
+}
+
+TEST(Base, IsFittedToLogsOfAFewSeconds) {
+  std::vector<Log> healthy = test::logs_of({}, 1);
+  for (Log& log : healthy) log = slice(log, 0, 500);
+  const Base base = base_of(healthy);
+  EXPECT_TRUE(std::isfinite(base.left_mm));
+  EXPECT_LT(base.left_mm, 0.2);
+}
+
+TEST(Base, AValveIsJudgedInShorterBinsThanAFinger) {
+  std::vector<Log> logs = test::logs_of({}, 1, true);
+  for (Log& log : logs) {
+    for (double& t : log.time_s) t /= 4;  // 200 Hz
+  }
+  EXPECT_DOUBLE_EQ(fit_base(pressure_records(logs, false), Judged::pressure, Drive::command, {}).bin_s, 0.02);
+  EXPECT_DOUBLE_EQ(base_of(logs).bin_s, 0.05);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid
