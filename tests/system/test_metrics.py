@@ -65,7 +65,7 @@ class Metrics(web.WebTest):
         self.start_rig()
         results = self.folder / "runs/health"
         results.mkdir(parents=True)
-        (results / "health.json").write_text(json.dumps({"made_unix_s": 1795313181, "fingers": [
+        (results / "health.json").write_text(json.dumps({"made_unix_s": 1795313181, "shared": ["gain_mm"], "fingers": [
             {"finger": "left", "state": "alarm", "suspects": [{"id": "leak"}]}]}))
         told = self.start_web()
         bench.wait_for("statistics", lambda: "softgrip_loop_ticks_total" in told.metrics())
