@@ -128,7 +128,7 @@ JudgedRig judged(const std::vector<health::ScoredRun>& runs, const std::vector<h
   for (health::FingerHealth& health : rig.fingers) {
     const health::HealthSource source{baselines.folder_of(health.finger), baselines.of(health.finger)->base,
                                       options, all.shared};
-    health::Suspicion suspicion = health::suspicion_of(health);
+    health::Suspicion suspicion = health::suspicion_of(health, all.shared);
     all.fingers.push_back({std::move(health), std::move(suspicion), source});
   }
   return all;

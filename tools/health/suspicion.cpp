@@ -31,9 +31,17 @@ bool agrees(Moves moves, double change) {
 }
 
 /// Alarms by number. Of the time to the grip only where nothing else alarms: whatever changes, changes it.
-std::map<HealthNumber, double> changes_of(const FingerHealth& health) {
+std::map<HealthNumber, double> changes_of(const FingerHealth& health,
+                                          const std::vector<SharedChange>& shared) {
   std::map<HealthNumber, double> changes;
-  for (const HealthAlarm& alarm : health.standing()) changes[alarm.number] = alarm.change;
+  std::string latest;
+  for (const HealthAlarm& alarm : health.standing()) {
+    changes[alarm.number] = alarm.change;
+    latest = std::max(latest, health.points[alarm.since].label);
+  }
+  for (const SharedChange& one : shared) {
+    if (one.stands && !changes.empty() && one.since <= latest) changes.emplace(one.number, one.change);
+  }
   if (changes.size() > 1) changes.erase(HealthNumber::time_to_grip);
   return changes;
 }
@@ -72,8 +80,8 @@ std::string change_text(const HealthAlarm& alarm) {
 
 }  // namespace
 
-Suspicion suspicion_of(const FingerHealth& health) {
-  const std::map<HealthNumber, double> changes = changes_of(health);
+Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChange>& shared) {
+  const std::map<HealthNumber, double> changes = changes_of(health, shared);
   std::vector<std::pair<double, std::string_view>> found;
   for (const std::string_view id : sysid::changes()) {
     const double worth = explained(sysid::signs_of(id), changes, health);

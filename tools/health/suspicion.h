@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/health/finger_health.h"
+#include "tools/health/rig_health.h"
 
 namespace softgrip::tools::health {
 
@@ -22,7 +23,9 @@ struct Suspicion {
 };
 
 /// Of the alarms that stand; empty where there are none, or where no cause shows such signs.
-[[nodiscard]] Suspicion suspicion_of(const FingerHealth& health);
+/// @param shared  what the rig shares: where it came before an alarm or with it, it is a sign, too.
+[[nodiscard]] Suspicion suspicion_of(const FingerHealth& health,
+                                     const std::vector<SharedChange>& shared = {});
 
 /// The finger's state in one sentence that a technician understands.
 [[nodiscard]] std::string health_sentence(const FingerHealth& health, const Suspicion& suspicion);

@@ -256,6 +256,19 @@ TEST(RigHealth, AGainThatHasChangedAtTheSameTemperatureDoesNotFollowIt) {
   EXPECT_FALSE(ids.empty());
 }
 
+TEST(RigHealth, WhatTheRigSharesIsASignOfWhatCameWithIt) {
+  Rig rig = softening(3, -0.3, 60);
+  const RigHealth judged = rig.judged();
+  ASSERT_FALSE(judged.fingers[0].standing().empty());
+  const std::string since = judged.fingers[0].points[judged.fingers[0].standing().back().since].label;
+  SharedChange loss{HealthNumber::pressure_loss, 1, since, since, {"left", "right"}, false, true};
+  EXPECT_EQ(suspicion_of(judged.fingers[0]).suspects.front().id, "ageing");
+  EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "leak");
+  loss.since = "2026-12-01";  // it came later
+  EXPECT_EQ(suspicion_of(judged.fingers[0], {loss}).suspects.front().id, "ageing");
+  EXPECT_TRUE(suspicion_of(judged.fingers[1], {loss}).suspects.empty());
+}
+
 TEST(RigHealth, ThePageSaysWhatCouldNotBeAllowedFor) {
   Rig rig;
   rig.names = {"left"};
