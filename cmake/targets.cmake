@@ -1,12 +1,12 @@
-# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...] [TOGETHER])
+# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...] [APART file ...])
 # A room is a folder, a static library of all its .cpp files (one that has none is an interface), and the rooms that
 # its files may include. PRECOMPILE: a library's header that most of its files include and that is most of their compile
-# time. TOGETHER: most of that time are the same headers in every file, so eight files are compiled as one; names in their
-# unnamed namespaces must differ. Both only with SOFTGRIP_PRECOMPILE. The target of daemon/loop is softgrip_daemon_loop;
-# ${softgrip_room_target} names the last one.
+# time. Most of the rest are the same headers in every file, so eight files are compiled as one; APART are those whose
+# unnamed namespace has a name that another one's has. Both only with SOFTGRIP_PRECOMPILE. The target of daemon/loop is
+# softgrip_daemon_loop; ${softgrip_room_target} names the last one.
 set_property(GLOBAL PROPERTY softgrip_rooms "")
 function(softgrip_room folder)
-  cmake_parse_arguments(arg "TOGETHER" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE;APART" ${ARGN})
   softgrip_target_of(${folder} target)
   set(folders ${folder} ${arg_FOLDERS})
   set(sources "")
@@ -35,12 +35,14 @@ function(softgrip_room folder)
     target_link_libraries(${target} PUBLIC ${links})
     softgrip_arrows(${target} "${folders}" "${reachable}" ${sources} ${headers})
     softgrip_may_precompile(may)
-    if(arg_PRECOMPILE AND may)
-      target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
-      target_compile_options(${target} PRIVATE ${softgrip_behind_a_precompiled_header})
-    endif()
-    if(arg_TOGETHER AND may)
+    if(may)
+      if(arg_PRECOMPILE)
+        target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
+      endif()
       set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+      target_compile_options(${target} PRIVATE ${softgrip_misread_strings})
+      list(TRANSFORM arg_APART PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
+      set_source_files_properties(${arg_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   else()
     add_library(${target} INTERFACE)
@@ -117,8 +119,8 @@ function(softgrip_may_precompile variable)
   endif()
 endfunction()
 # GCC 12 takes a short std::string for its inner buffer; that it happens in a system header hides it elsewhere, but not
-# where the header is precompiled.
-set(softgrip_behind_a_precompiled_header -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+# where the header is precompiled or many files are one.
+set(softgrip_misread_strings -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 
 # softgrip_rooms(OUT room ...)  the targets of rooms
 function(softgrip_rooms variable)
@@ -133,11 +135,13 @@ endfunction()
 # What all tests are compiled with: they check answers, not speed, and are most of what a build compiles. What every one
 # of them includes is compiled once.
 add_library(softgrip_test_flags INTERFACE)
-if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+if(SOFTGRIP_PRECOMPILE AND NOT SOFTGRIP_SANITIZE)
+  target_compile_options(softgrip_test_flags INTERFACE -O1 -g0)  # nobody debugs a build that is made once
+elseif(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_options(softgrip_test_flags INTERFACE -O1 -g1)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(softgrip_test_flags INTERFACE ${softgrip_behind_a_precompiled_header})
+  target_compile_options(softgrip_test_flags INTERFACE ${softgrip_misread_strings})
 endif()
 function(softgrip_precompile_for_tests target)
   softgrip_may_precompile(may)

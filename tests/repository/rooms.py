@@ -21,7 +21,7 @@ def rooms():
     found = []
     for call in re.findall(r"softgrip_room\(([^)]*)\)", text):
         words, key, lists = call.split(), "FOLDER", {"FOLDER": [], "FOLDERS": [], "USES": [], "LIBRARIES": [], "PRECOMPILE": [],
-                                                    "TOGETHER": []}
+                                                    "APART": []}
         for word in words:
             if word in lists:
                 key = word
