@@ -75,8 +75,8 @@ std::optional<double> ControlChart::add(const ChartValues& values) {
 }
 
 void ControlChart::take_alarm(std::size_t since) {
-  if (alarm_ || history_.empty()) return;
-  alarm_ = ChartAlarm{history_.size() - 1, since, 0};
+  if (since == 0 || since >= history_.size() || (alarm_ && alarm_->since <= since)) return;
+  alarm_ = ChartAlarm{alarm_ ? alarm_->noticed : history_.size() - 1, since, 0};
   forget_since(since);
   measure_change();
 }

@@ -80,7 +80,7 @@ class ControlChart {
   std::optional<double> add(const ChartValues& values);
 
   /// Somebody else knows that the values are others since a point: from now on that is this chart's alarm.
-  /// Nothing where there is one already.
+  /// Nothing where it has an alarm since before, or where the point is the first or none.
   void take_alarm(std::size_t since);
 
   [[nodiscard]] std::size_t points() const { return history_.size(); }

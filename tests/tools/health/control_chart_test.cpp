@@ -222,6 +222,13 @@ TEST(ControlChart, TakesSomebodyElsesAlarm) {
   for (int i = 0; i < 40; ++i) chart.add({{recipe, healthy()}});
   for (int i = 0; i < 4; ++i) chart.add({{recipe, healthy() + 0.3}});
   ASSERT_FALSE(chart.alarm());
+  chart.take_alarm(0);
+  chart.take_alarm(44);
+  EXPECT_FALSE(chart.alarm());
+  chart.take_alarm(42);
+  EXPECT_EQ(chart.alarm()->since, 42U);
+  chart.take_alarm(43);  // it has one since before
+  EXPECT_EQ(chart.alarm()->since, 42U);
   chart.take_alarm(40);
   ASSERT_TRUE(chart.alarm());
   EXPECT_EQ(chart.alarm()->since, 40U);
