@@ -27,7 +27,7 @@ softgrip_room(control/tuning USES base model control/elements control/feedforwar
 # Boards.
 softgrip_room(drivers/board USES base model)
 softgrip_room(drivers/modbus USES base drivers/board LIBRARIES PkgConfig::modbus
-  APART modbus_link.cpp modbus_module.cpp modbus_reply.cpp modbus_rtu_link.cpp)
+  APART modbus_link.cpp modbus_module.cpp modbus_rtu_link.cpp)
 softgrip_room(drivers/modbus_server USES base drivers/modbus)
 softgrip_room(drivers/iio USES base drivers/board)
 softgrip_room(drivers/gpio USES base model LIBRARIES PkgConfig::gpiod)
@@ -151,7 +151,7 @@ softgrip_room(tools/investigation
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/studies
   USES base model control/elements control/feedforward control/tuning sysid/logs sysid/pages sysid/fitting
-       sysid/identification APART published_page.cpp published_text.cpp)
+       sysid/identification)
 # The commissioning experiment on a rig.
 softgrip_room(tools/baseline
   USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation tools/studies)

@@ -5,9 +5,6 @@
 namespace softgrip::drivers {
 namespace {
 
-constexpr std::uint8_t exception_bit = 0x80;
-constexpr std::size_t exception_pdu_size = 2;
-
 /// The defect of the header, as far as `bytes` reach.
 ReplyDefect header_defect(std::span<const std::uint8_t> bytes, std::size_t pdu_size,
                           std::uint16_t transaction, std::uint8_t unit) noexcept {

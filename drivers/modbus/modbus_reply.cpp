@@ -7,9 +7,6 @@
 namespace softgrip::drivers {
 namespace {
 
-constexpr std::uint8_t exception_bit = 0x80;
-constexpr std::size_t exception_pdu_size = 2;
-
 bool reads(std::uint8_t function) noexcept {
   return function <= MODBUS_FC_READ_INPUT_REGISTERS || function == MODBUS_FC_WRITE_AND_READ_REGISTERS;
 }

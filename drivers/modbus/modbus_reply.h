@@ -28,6 +28,10 @@ enum class ReplyDefect : std::uint8_t {
 /// A sentence for the event log.
 [[nodiscard]] const char* text_of(ReplyDefect defect) noexcept;
 
+/// In the function code of an answer that refuses; such an answer is so long, from the function code on.
+inline constexpr std::uint8_t exception_bit = 0x80;
+inline constexpr std::size_t exception_pdu_size = 2;
+
 struct ModbusReply {
   enum class State : std::uint8_t { incomplete, complete, exception, defective };
   State state = State::incomplete;

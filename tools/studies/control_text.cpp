@@ -7,25 +7,15 @@
 #include "sysid/pages/page.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/models.h"
+#include "tools/studies/study_text.h"
 
 namespace softgrip::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string cell(const std::string& text, std::size_t width) {
-  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
-}
-
 Json spread_json(const Spread& spread) {
   return {{"median", spread.median}, {"ci90", {spread.low, spread.high}}};
-}
-
-Json parameters_of(const model::Model& model) {
-  Json json = Json::object();
-  const std::vector<double> values = model::flat_values(model);
-  for (std::size_t i = 0; i < values.size(); ++i) json[model::parameter_path(model, i)] = values[i];
-  return json;
 }
 
 Json figure_json(const ControlFigure& figure) {

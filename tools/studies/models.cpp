@@ -15,8 +15,6 @@
 namespace softgrip::tools {
 namespace {
 
-constexpr double kpa_per_bar = 100;
-
 template <template <class> class Block>
 model::BlockSpec block(std::vector<double> values) {
   return {model::block_type<Block>(), std::move(values)};

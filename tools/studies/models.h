@@ -6,6 +6,8 @@
 
 namespace softgrip::tools {
 
+inline constexpr double kpa_per_bar = 100;
+
 /// The published model with the given eta [1/bar], which was never published.
 [[nodiscard]] model::Model published_model(double eta_per_bar);
 /// An ordinary actuator, beta = 0.57 (alpha + 1/k0), behind a valve (0: no such block).

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/numbers.h"
+#include "tools/studies/models.h"
 #include "tools/studies/published.h"
 
 namespace softgrip::tools {
@@ -12,8 +13,6 @@ namespace {
 using sysid::Chart;
 using sysid::Colour;
 using sysid::Series;
-
-constexpr double kpa_per_bar = 100;
 
 Series line(std::string label, std::vector<double> x, std::vector<double> y, Colour colour,
             bool dashed = false) {

@@ -5,25 +5,14 @@
 
 #include "base/numbers.h"
 #include "sysid/pages/page.h"
+#include "tools/studies/models.h"
 #include "tools/studies/published.h"
+#include "tools/studies/study_text.h"
 
 namespace softgrip::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kpa_per_bar = 100;
-
-std::string cell(const std::string& text, std::size_t width) {
-  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
-}
-
-Json parameters_of(const model::Model& model) {
-  Json json = Json::object();
-  const std::vector<double> values = model::flat_values(model);
-  for (std::size_t i = 0; i < values.size(); ++i) json[model::parameter_path(model, i)] = values[i];
-  return json;
-}
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);

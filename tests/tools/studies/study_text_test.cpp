@@ -1,0 +1,23 @@
+#include "tools/studies/study_text.h"
+
+#include <gtest/gtest.h>
+
+#include "tools/studies/models.h"
+
+namespace softgrip::tools {
+namespace {
+
+TEST(StudyText, ACellIsFilledAtTheLeftAndNeverCut) {
+  EXPECT_EQ(cell("0.5", 6), "   0.5");
+  EXPECT_EQ(cell("longer", 3), "longer");
+}
+
+TEST(StudyText, EveryParameterStandsUnderItsPath) {
+  const model::Model model = bench_twin();
+  const auto json = parameters_of(model);
+  EXPECT_EQ(json.size(), model::flat_values(model).size());
+  for (const auto& [path, value] : json.items()) EXPECT_EQ(value, value_of(model, path.c_str())) << path;
+}
+
+}  // namespace
+}  // namespace softgrip::tools
