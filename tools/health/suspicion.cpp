@@ -121,7 +121,7 @@ std::string health_sentence(const FingerHealth& health, const Suspicion& suspici
     return "Too few grips yet to say what is usual of " + health.finger + ".";
   if (alarms.empty()) return "Nothing has changed at " + health.finger + ".";
   std::string sentence =
-      "Since " + health.points[alarms.front().since].label + " " + health.finger + " is another: ";
+      health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
   for (std::size_t i = 0; i < alarms.size(); ++i) sentence += (i > 0 ? ", " : "") + change_text(alarms[i]);
   if (suspicion.suspects.empty()) return sentence + ". No cause in the library shows such signs.";
   sentence += ". Suspected: " + suspicion.suspects.front().words;
