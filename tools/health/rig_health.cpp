@@ -53,23 +53,23 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string size_text(sysid::HealthNumber number, double change) {
+}  // namespace
+
+std::string change_text(sysid::HealthNumber number, double change) {
   const sysid::HealthNumberInfo& info = sysid::info_of(number);
   return std::string(info.title) + (change > 0 ? " +" : " -") + significant(std::abs(change), 2) + " " +
          std::string(info.unit);
 }
 
-}  // namespace
-
 std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
   return "Since " + health.points[unclear.since].label + " " + health.finger + " differs from " +
-         listed(unclear.beside) + " otherwise than before: " + size_text(unclear.number, unclear.change) +
+         listed(unclear.beside) + " otherwise than before: " + change_text(unclear.number, unclear.change) +
          ". Whose change it is, their own numbers do not tell yet.";
 }
 
 std::string shared_sentence(const SharedChange& shared) {
   return "Since " + shared.since +
-         " the fingers of the rig have changed alike: " + size_text(shared.number, shared.change) +
+         " the fingers of the rig have changed alike: " + change_text(shared.number, shared.change) +
          ". Look first at what they share: " +
          (shared.temperature_recorded ? "" : "the temperature (it is not recorded), ") +
          "the supply, the line before the fingers, the parts.";

@@ -55,6 +55,9 @@ struct RigHealth {
                                         const std::vector<Note>& notes, const ScoreBase& base,
                                         const HealthOptions& options);
 
+/// "gain (at full pressure) -0.62 mm"
+[[nodiscard]] std::string change_text(sysid::HealthNumber number, double change);
+
 /// "Since 2026-03-20 the gain of left is another beside right's: ...", of FingerHealth::unclear.
 [[nodiscard]] std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear);
 

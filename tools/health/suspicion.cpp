@@ -72,12 +72,6 @@ bool allows_for_temperature(const FingerHealth& health) {
   });
 }
 
-std::string change_text(const HealthAlarm& alarm) {
-  const sysid::HealthNumberInfo& info = sysid::info_of(alarm.number);
-  return std::string(info.title) + (alarm.change > 0 ? " +" : " -") + significant(std::abs(alarm.change), 2) +
-         " " + std::string(info.unit);
-}
-
 }  // namespace
 
 Suspicion suspicion_of(const FingerHealth& health, const std::vector<SharedChange>& shared) {
@@ -122,7 +116,8 @@ std::string health_sentence(const FingerHealth& health, const Suspicion& suspici
   if (alarms.empty()) return "Nothing has changed at " + health.finger + ".";
   std::string sentence =
       health.finger + " has changed since " + health.points[alarms.front().since].label + ": ";
-  for (std::size_t i = 0; i < alarms.size(); ++i) sentence += (i > 0 ? ", " : "") + change_text(alarms[i]);
+  for (std::size_t i = 0; i < alarms.size(); ++i)
+    sentence += (i > 0 ? ", " : "") + change_text(alarms[i].number, alarms[i].change);
   if (suspicion.suspects.empty()) return sentence + ". No cause in the library shows such signs.";
   sentence += ". Suspected: " + suspicion.suspects.front().words;
   for (std::size_t i = 1; i < suspicion.suspects.size(); ++i)
