@@ -6,10 +6,14 @@
 
 namespace softgrip {
 
-Nanoseconds MonotonicClock::now() const noexcept {
+Nanoseconds monotonic_now() noexcept {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   return Nanoseconds{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+Nanoseconds MonotonicClock::now() const noexcept {
+  return monotonic_now();
 }
 
 void MonotonicClock::sleep_until(Nanoseconds due) const noexcept {

@@ -22,6 +22,8 @@ class Clock {
 };
 
 /// CLOCK_MONOTONIC.
+[[nodiscard]] Nanoseconds monotonic_now() noexcept;
+
 class MonotonicClock final : public Clock {
  public:
   [[nodiscard]] Nanoseconds now() const noexcept override;

@@ -8,6 +8,10 @@
 
 namespace softgrip {
 
+[[nodiscard]] constexpr double square(double x) noexcept {
+  return x * x;
+}
+
 /// The value that half of the others do not exceed; of an even count the upper of the two in the middle. 0 of
 /// none. Brings `values` into another order.
 template <class T>

@@ -12,7 +12,6 @@ namespace {
 
 constexpr int levels = 32;
 constexpr std::size_t points = 65;
-constexpr double rests_after_s = 3;
 constexpr double step_s = 0.02;
 
 /// Where the finger rests under a command.

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double finest_step_s = 0.002;
 constexpr int most_steps = 2000;
-constexpr double rests_after_s = 3;
 
 /// A finger that starts at rest under the lowest pressure.
 class Finger {

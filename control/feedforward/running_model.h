@@ -9,6 +9,9 @@
 
 namespace softgrip::control {
 
+/// A finger whose command has stood still for so long is at rest: all but slow creep is over [s].
+inline constexpr double rests_after_s = 3;
+
 /// Dead times commute with everything that does not change with time, so they are taken out of the chain: it
 /// runs without them, ahead of the finger, and the past is looked up. That makes a delay of any length one
 /// look-up, and gives the feedforward the state in which its plan begins.

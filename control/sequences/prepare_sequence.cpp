@@ -16,7 +16,6 @@
 namespace softgrip::control {
 
 namespace {
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// More than the bare margin, so that noise does not take a part away again.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,7 +13,6 @@
 namespace softgrip::control {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 /// How far into a hold a plan reaches: creep is all that is left to follow.
 constexpr double longest_hold_s = 20;
 /// A plan that misses its reference by more than this is told of.

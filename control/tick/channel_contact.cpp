@@ -2,7 +2,6 @@
 // (control/tick/channel_player.h) that makes a grip gentle.
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "control/tick/channel_player.h"
@@ -10,7 +9,6 @@
 namespace softgrip::control {
 
 namespace {
-constexpr double infinite = std::numeric_limits<double>::infinity();
 /// How near a command must be to one that it falls to.
 constexpr double taken_back_kpa = 0.05;
 /// How long a touch lasts before it is one: longer than what noise and a single bad reading do.

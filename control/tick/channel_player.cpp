@@ -7,7 +7,6 @@
 namespace softgrip::control {
 
 namespace {
-constexpr double infinite = std::numeric_limits<double>::infinity();
 /// How much of the past reference is kept: feedback compares a reading with the reference of its time.
 constexpr double kept_s = 1;
 using Mode = ChannelDemand::Mode;

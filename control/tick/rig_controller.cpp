@@ -16,10 +16,6 @@ constexpr std::array<std::string_view, 6> state_names{"starting", "idle",     "r
 constexpr std::array<std::string_view, 4> end_names{"done", "failed", "stopped", "faulted"};
 /// Above the lowest command by less is no pressure to speak of.
 constexpr double unnoticed_kpa = 0.1;
-constexpr std::uint32_t bit(std::size_t channel) noexcept {
-  return 1U << channel;
-}
-
 ChannelPlayer player_of(const RigSettings& rig, const ChannelSettings& channel, double preview_s) {
   return ChannelPlayer(
       {rig.detection.margin_mm, channel.limits.pressure_min_kpa, preview_s, channel.displacement_used});
@@ -123,8 +119,8 @@ Facts RigController::facts(const TickInput& input, double time_s) noexcept {
   facts.phase = player_.phase();
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const ChannelOutput& seen = output_.channels[i];
-    facts.ready |= channels_[i].valid(seen) || !channels_[i].sighted ? bit(i) : 0;
-    facts.lowest |= channels_[i].lowest(seen) ? bit(i) : 0;
+    facts.ready |= channels_[i].valid(seen) || !channels_[i].sighted ? channel_bit(i) : 0;
+    facts.lowest |= channels_[i].lowest(seen) ? channel_bit(i) : 0;
   }
   facts.answers = player_.has_answers();
   if (supervisor_.state() == State::resynchronising) {
@@ -142,12 +138,12 @@ Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_
     Channel& channel = channels_[i];
     const ChannelOutput& seen = output_.channels[i];
     channel.resynchronise = false;
-    if ((sequence.channels & bit(i)) == 0) continue;
+    if ((sequence.channels & channel_bit(i)) == 0) continue;
     const bool still = channel.rests(time_s, seen);
     const bool follows = channel.sighted && channel.lowest(seen);
     channel.resynchronise = still && follows;
-    const bool too_far =
-        (sequence.needs_detection & bit(i)) != 0 && std::abs(channel.controller.offset_mm()) > margin_mm_;
+    const bool too_far = (sequence.needs_detection & channel_bit(i)) != 0 &&
+                         std::abs(channel.controller.offset_mm()) > margin_mm_;
     const bool off_model = follows && (!seen.synchronised || too_far);
     channel.lack = !still ? RestLack::moves : off_model ? RestLack::off_model : RestLack::none;
     all = all && channel.lack == RestLack::none;
@@ -159,7 +155,7 @@ Rest RigController::look_for_rest(const PreparedSequence& sequence, double time_
 void RigController::tell_lacks(std::uint32_t channels) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const Channel& channel = channels_[i];
-    if ((channels & bit(i)) != 0 && channel.lack != RestLack::none)
+    if ((channels & channel_bit(i)) != 0 && channel.lack != RestLack::none)
       output_.events.add_of_channel(i, Event::Kind::not_at_rest, channel.lack, 0,
                                     channel.controller.offset_mm());
   }
@@ -217,7 +213,7 @@ ChannelDemand RigController::demand(std::size_t index, double time_s) const noex
   if (supervisor_.state() == State::running) return player_.demand(index, time_s);
   ChannelDemand demand;
   demand.time_s = time_s;
-  const bool vents = (supervisor_.venting() & bit(index)) != 0;
+  const bool vents = (supervisor_.venting() & channel_bit(index)) != 0;
   demand.mode = vents ? ChannelDemand::Mode::vent : ChannelDemand::Mode::hold;
   return demand;
 }
@@ -259,7 +255,7 @@ void RigController::look_for_pressure() noexcept {
   if (moves(output_.state)) return;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const bool pressed = output_.channels[i].command_kpa > channels_[i].lowest_kpa + unnoticed_kpa;
-    output_.under_pressure |= pressed ? bit(i) : 0;
+    output_.under_pressure |= pressed ? channel_bit(i) : 0;
   }
 }
 
@@ -272,7 +268,7 @@ void RigController::conclude() noexcept {
     channel.result = played.result();
     channel.evidence = played.evidence();
     channel.step = player_.step();
-    channel.safe_kpa = (venting & bit(i)) != 0 ? channels_[i].lowest_kpa : channel.command_kpa;
+    channel.safe_kpa = (venting & channel_bit(i)) != 0 ? channels_[i].lowest_kpa : channel.command_kpa;
   }
 }
 

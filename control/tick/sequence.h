@@ -18,6 +18,14 @@
 
 namespace softgrip::control {
 
+/// Of a time without end, and of a pressure without bound.
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Of a mask of channels.
+constexpr std::uint32_t channel_bit(std::size_t channel) noexcept {
+  return 1U << channel;
+}
+
 /// What a step does; the key that opens it in the file.
 enum class StepKind : std::uint8_t {
   move,      ///< to a target, with a ramp

@@ -4,16 +4,10 @@
 
 namespace softgrip::control {
 
-namespace {
-constexpr std::uint32_t bit(std::size_t channel) noexcept {
-  return 1U << channel;
-}
-}  // namespace
-
 template <class Do>
 void SequencePlayer::for_each_of_step(Do&& act) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((now().channels & bit(i)) != 0) act(i);
+    if ((now().channels & channel_bit(i)) != 0) act(i);
   }
 }
 
@@ -22,7 +16,7 @@ void SequencePlayer::start(const PreparedSequence& sequence, double time_s,
   sequence_ = &sequence;
   end_ = SequenceEnd::done;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((sequence.channels & bit(i)) != 0) channels_[i].reset();
+    if ((sequence.channels & channel_bit(i)) != 0) channels_[i].reset();
   }
   attempts_ = 0;
   begin_step(0, time_s, seen, events);
@@ -45,13 +39,13 @@ SequencePlayer::Outcome SequencePlayer::tick(double time_s, std::span<const Chan
   for_each_of_step([&](std::size_t i) {
     const Progress progress = channels_[i].tick(time_s, seen[i]);
     to_grip |= take_contact(i, seen[i], events);
-    if ((refused_ & bit(i)) != 0) return;
+    if ((refused_ & channel_bit(i)) != 0) return;
     // What was verified may be doubted again while the others are waited for.
-    if (progress == Progress::pending) done_ &= ~bit(i);
-    if (progress == Progress::pending || (done_ & bit(i)) != 0) return;
-    done_ |= bit(i);
+    if (progress == Progress::pending) done_ &= ~channel_bit(i);
+    if (progress == Progress::pending || (done_ & channel_bit(i)) != 0) return;
+    done_ |= channel_bit(i);
     if (progress == Progress::failed) {
-      refused_ |= bit(i);
+      refused_ |= channel_bit(i);
       if (holds) lose(i, events);
     }
   });
@@ -86,7 +80,7 @@ SequencePlayer::Outcome SequencePlayer::leave_for(std::size_t index, double time
                                                   EventList& events) noexcept {
   const std::uint32_t going = index < sequence_->steps.size() ? sequence_->steps[index].channels : 0;
   for_each_of_step([&](std::size_t i) {
-    if ((going & bit(i)) == 0) channels_[i].freeze();
+    if ((going & channel_bit(i)) == 0) channels_[i].freeze();
   });
   return next_step(index, time_s, seen, events);
 }
@@ -122,7 +116,7 @@ SequencePlayer::Outcome SequencePlayer::failed(double time_s, std::span<const Ch
   }
   end_ = SequenceEnd::failed;
   for_each_of_step([&](std::size_t i) {
-    if ((refused_ & bit(i)) == 0) {
+    if ((refused_ & channel_bit(i)) == 0) {
       answer_passed(i, time_s, events);
     } else if (step.kind != StepKind::hold) {
       answer(i, channels_[i].failure(), channels_[i].evidence_of(step.verify.by), events);
@@ -175,7 +169,7 @@ SequencePlayer::Outcome SequencePlayer::finished(OnFail action, EventList& event
 /// Nobody who took part stays without an answer when something went wrong.
 void SequencePlayer::answer_the_rest(EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((sequence_->channels & bit(i)) != 0 && channels_[i].result() == GripResult::none) {
+    if ((sequence_->channels & channel_bit(i)) != 0 && channels_[i].result() == GripResult::none) {
       answer(i, GripResult::error, GripEvidence::none, events);
     }
   }
@@ -191,7 +185,7 @@ void SequencePlayer::interrupt(SequenceEnd end, std::uint32_t venting, EventList
   const std::uint32_t half_released = plays(StepKind::release) ? now().channels & ~venting : 0;
   if (play_ != Play::nothing) answer_the_rest(events);
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const bool unsure = end == SequenceEnd::faulted || (half_released & bit(i)) != 0;
+    const bool unsure = end == SequenceEnd::faulted || (half_released & channel_bit(i)) != 0;
     if (unsure && channels_[i].result() == GripResult::holding) {
       answer(i, GripResult::error, GripEvidence::none, events);
     }
@@ -208,7 +202,7 @@ void SequencePlayer::idle_tick(double time_s, std::span<const ChannelOutput> see
 
 void SequencePlayer::vented(std::uint32_t channels, EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((channels & bit(i)) != 0 && channels_[i].result() == GripResult::holding) {
+    if ((channels & channel_bit(i)) != 0 && channels_[i].result() == GripResult::holding) {
       answer(i, GripResult::released, GripEvidence::none, events);
     }
   }
@@ -216,7 +210,7 @@ void SequencePlayer::vented(std::uint32_t channels, EventList& events) noexcept 
 
 void SequencePlayer::refuse(std::uint32_t channels, EventList& events) noexcept {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    if ((channels & bit(i)) != 0) answer(i, GripResult::error, GripEvidence::none, events);
+    if ((channels & channel_bit(i)) != 0) answer(i, GripResult::error, GripEvidence::none, events);
   }
 }
 

@@ -20,10 +20,6 @@ namespace {
 
 constexpr int probes = 5;
 
-Nanoseconds now() noexcept {
-  return MonotonicClock().now();
-}
-
 /// Voltages are in millivolts, currents in milliamperes.
 double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
@@ -171,10 +167,10 @@ BusStatus IioBoard::Parts::probe(Nanoseconds deadline) noexcept {
   reads.reset();
   for (int i = 0; i < probes; ++i) {
     for (const Converter& converter : inputs) {
-      const Nanoseconds before = now();
+      const Nanoseconds before = monotonic_now();
       if (i > 0 && before > deadline) return BusStatus::ok;
       if (!converter.raw.read().has_value()) return lost(converter, errno);
-      reads.add(now() - before);
+      reads.add(monotonic_now() - before);
     }
   }
   return BusStatus::ok;
@@ -207,7 +203,7 @@ BusStatus IioBoard::Parts::read(const InputWiring& wiring, JudgedInput& input) n
 
 BusStatus IioBoard::Parts::read_channel(std::size_t channel, Reading& reading) noexcept {
   const ChannelWiring& wiring = settings.wiring[channel];
-  reading.sampled_at = now();
+  reading.sampled_at = monotonic_now();
   JudgedInput displacement;
   if (const BusStatus status = read(wiring.displacement, displacement); status != BusStatus::ok)
     return status;
@@ -241,7 +237,7 @@ std::size_t IioBoard::channels() const noexcept {
 BusStatus IioBoard::connect(std::chrono::nanoseconds deadline) noexcept {
   Parts& parts = *parts_;
   parts.open = false;
-  const Nanoseconds until = now() + deadline.count();
+  const Nanoseconds until = monotonic_now() + deadline.count();
   try {
     if (const BusStatus status = parts.attach_all(); status != BusStatus::ok) return status;
   } catch (const std::exception& error) {
@@ -255,7 +251,7 @@ BusStatus IioBoard::connect(std::chrono::nanoseconds deadline) noexcept {
 BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
                              std::chrono::nanoseconds deadline) noexcept {
   Parts& parts = *parts_;
-  const Nanoseconds until = now() + deadline.count();
+  const Nanoseconds until = monotonic_now() + deadline.count();
   if (!parts.open) return BusStatus::disconnected;
   if (commands_kpa.size() != channels() || readings.size() != channels() || channels() > most_channels) {
     std::snprintf(parts.detail.data(), parts.detail.size(), "not one command and one reading per channel");
@@ -278,7 +274,7 @@ BusStatus IioBoard::exchange(std::span<const double> commands_kpa, std::span<Rea
     fresh[i] = readings[i];
     if (const BusStatus status = parts.read_channel(i, fresh[i]); status != BusStatus::ok) return status;
     ++fresh[i].sequence;
-    if (now() <= until) continue;
+    if (monotonic_now() <= until) continue;
     std::snprintf(parts.detail.data(), parts.detail.size(), "converting took longer than the deadline");
     return BusStatus::timed_out;
   }

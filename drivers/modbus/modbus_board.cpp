@@ -11,10 +11,6 @@
 namespace softgrip::drivers {
 namespace {
 
-Nanoseconds now() noexcept {
-  return MonotonicClock().now();
-}
-
 bool ends_a_session(BusStatus status) noexcept {
   return status == BusStatus::disconnected || status == BusStatus::timed_out ||
          status == BusStatus::bad_reply;
@@ -100,10 +96,10 @@ BusStatus ModbusBoard::Parts::open(Nanoseconds deadline) noexcept {
 /// while it still has the pressure of the moment in which the line failed.
 BusStatus ModbusBoard::Parts::probe(Nanoseconds deadline) noexcept {
   for (const auto& link : links) link->forget_measurements();
-  const Nanoseconds start = now();
+  const Nanoseconds start = monotonic_now();
   const Nanoseconds enough = start + (deadline - start) / 4;
   for (int i = 0; i < settings.probes; ++i) {
-    if (i > 0 && now() > enough) break;
+    if (i > 0 && monotonic_now() > enough) break;
     for (ModbusModule& module : modules) {
       ModbusLink& link = *links[module.settings().link];
       if (module.plan().reads.empty() || !link.is_open()) continue;
@@ -186,7 +182,7 @@ std::size_t ModbusBoard::channels() const noexcept {
 }
 
 BusStatus ModbusBoard::connect(std::chrono::nanoseconds deadline) noexcept {
-  const BusStatus status = parts_->open(now() + deadline.count());
+  const BusStatus status = parts_->open(monotonic_now() + deadline.count());
   if (status != BusStatus::ok) parts_->close();
   return status;
 }
@@ -194,7 +190,7 @@ BusStatus ModbusBoard::connect(std::chrono::nanoseconds deadline) noexcept {
 BusStatus ModbusBoard::exchange(std::span<const double> commands_kpa, std::span<Reading> readings,
                                 std::chrono::nanoseconds deadline) noexcept {
   Parts& parts = *parts_;
-  const Nanoseconds until = now() + deadline.count();
+  const Nanoseconds until = monotonic_now() + deadline.count();
   if (commands_kpa.size() != channels() || readings.size() != channels()) {
     return parts.say(BusStatus::write_refused, "not one command and one reading per channel");
   }

@@ -28,10 +28,6 @@ constexpr std::uint8_t filler = 0xff;
 
 constexpr int whole_frame = 0;  // in the place of an errno
 
-Nanoseconds now() noexcept {
-  return MonotonicClock().now();
-}
-
 Descriptor selectable_descriptor() noexcept {
   Descriptor place(::open("/dev/null", O_RDONLY | O_CLOEXEC));
   return place.get() < FD_SETSIZE ? std::move(place) : Descriptor();
@@ -124,7 +120,7 @@ BusStatus ModbusLink::ask(std::uint8_t unit, const ModbusRequest& request, Nanos
   if (size == 0) return fail(BusStatus::bad_reply, "asking", "no such Modbus request");
   const auto frame = std::span<const std::uint8_t>(outgoing_).first(size);
   if (const BusStatus status = before_asking(deadline); status != BusStatus::ok) return status;
-  const Nanoseconds asked_at = now();
+  const Nanoseconds asked_at = monotonic_now();
   if (const BusStatus status = send(frame, deadline); status != BusStatus::ok) return status;
   int error = whole_frame;
   const ModbusReply reply = receive(unit, request, frame, deadline, error);
@@ -137,7 +133,7 @@ ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
                                 std::span<const std::uint8_t> asked, Nanoseconds deadline,
                                 int& error) noexcept {
   incoming_.fill(filler);
-  const Nanoseconds left = deadline - now();
+  const Nanoseconds left = deadline - monotonic_now();
   int size = -1;
   errno = ETIMEDOUT;
   if (left > 0) {
@@ -145,7 +141,7 @@ ModbusReply ModbusLink::receive(std::uint8_t unit, const ModbusRequest& request,
     size = ::modbus_receive_confirmation(context_, incoming_.data());
   }
   error = size > 0 ? whole_frame : size == 0 ? EMBBADSLAVE : errno;
-  heard_at_ = now();
+  heard_at_ = monotonic_now();
   const auto bytes = std::span<const std::uint8_t>(incoming_);
   const ModbusReply reply = judge(
       size > 0 ? bytes.first(static_cast<std::size_t>(size)) : without_filler(bytes), unit, request, asked);

@@ -15,10 +15,6 @@
 namespace softgrip::drivers {
 namespace {
 
-Nanoseconds now() noexcept {
-  return MonotonicClock().now();
-}
-
 /// One exchange in so many begins with the reading, unless the one before it is no witness.
 constexpr std::uint32_t reads_first_every = 8;
 
@@ -103,7 +99,7 @@ BusStatus ModbusModule::read_step(std::size_t step, Nanoseconds deadline) noexce
 BusStatus ModbusModule::write_outputs(Nanoseconds deadline) noexcept {
   for (std::size_t i = 0; i < plan_.writes.size(); ++i) {
     const bool combined = i == 0 && combines();
-    if (combined) sampled_at_ = now();
+    if (combined) sampled_at_ = monotonic_now();
     if (const BusStatus status = ask(request_of(i, combined), deadline); status != BusStatus::ok)
       return status;
     if (combined) take_reply(*plan_.combined_read);
@@ -211,7 +207,7 @@ BusStatus ModbusModule::write(Nanoseconds deadline) noexcept {
 BusStatus ModbusModule::read(Nanoseconds deadline) noexcept {
   for (std::size_t step = 0; step < plan_.reads.size(); ++step) {
     if (combines() && plan_.combined_read == step) continue;
-    if (step == plan_.sampling_read) sampled_at_ = now();
+    if (step == plan_.sampling_read) sampled_at_ = monotonic_now();
     if (const BusStatus status = read_step(step, deadline); status != BusStatus::ok) return status;
   }
   return BusStatus::ok;

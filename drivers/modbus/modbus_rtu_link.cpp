@@ -18,14 +18,6 @@
 #include "drivers/modbus/rtu_frame.h"
 
 namespace softgrip::drivers {
-namespace {
-
-Nanoseconds now() noexcept {
-  return MonotonicClock().now();
-}
-
-}  // namespace
-
 ModbusRtuLink::ModbusRtuLink(SerialLine line)
     : ModbusLink(new_context(line)),
       line_(std::move(line)),
@@ -40,7 +32,7 @@ BusStatus ModbusRtuLink::connect(Nanoseconds deadline) noexcept {
     return refuse(BusStatus::disconnected, what.data(),
                   failure.error != 0 ? text_of_errno(failure.error) : "refused");
   }
-  heard_at_ = now();
+  heard_at_ = monotonic_now();
   return answer_may_come_ ? listen(deadline) : BusStatus::ok;
 }
 
@@ -53,7 +45,7 @@ BusStatus ModbusRtuLink::read_some(std::span<std::uint8_t> bytes, const char* wh
     return fail(BusStatus::disconnected, what, text_of_errno(errno));
   }
   got = static_cast<std::size_t>(std::max<ssize_t>(0, count));
-  heard_at_ = now();
+  heard_at_ = monotonic_now();
   return BusStatus::ok;
 }
 
@@ -62,9 +54,11 @@ BusStatus ModbusRtuLink::read_some(std::span<std::uint8_t> bytes, const char* wh
 BusStatus ModbusRtuLink::listen(Nanoseconds deadline) noexcept {
   const Nanoseconds longest_frame = static_cast<Nanoseconds>(max_rtu_frame) * character_;
   const Nanoseconds usual = nanoseconds(line_.turnaround_s + line_.adapter_latency_s);
-  Nanoseconds end = std::min(now() + longest_frame + usual + silence_, now() + (deadline - now()) / 2);
-  while (now() < end) {
-    if (now() >= deadline) return fail(BusStatus::bad_reply, "listening", "the line does not fall silent");
+  Nanoseconds end = std::min(monotonic_now() + longest_frame + usual + silence_,
+                             monotonic_now() + (deadline - monotonic_now()) / 2);
+  while (monotonic_now() < end) {
+    if (monotonic_now() >= deadline)
+      return fail(BusStatus::bad_reply, "listening", "the line does not fall silent");
     const Waited waited = wait_for(descriptor(), POLLIN, std::min(end, deadline));
     if (waited == Waited::failed) return fail(BusStatus::disconnected, "listening", text_of_errno(errno));
     if (waited == Waited::timed_out) continue;
@@ -86,7 +80,7 @@ std::size_t ModbusRtuLink::build(std::uint8_t unit, const ModbusRequest& request
 BusStatus ModbusRtuLink::before_asking(Nanoseconds deadline) noexcept {
   const Nanoseconds quiet = heard_at_ + silence_;
   if (quiet > deadline) return fail(BusStatus::timed_out, "waiting for silence", "the deadline passed");
-  if (quiet > now()) sleep_until(quiet);
+  if (quiet > monotonic_now()) sleep_until(quiet);
   pollfd line{.fd = descriptor(), .events = POLLIN, .revents = 0};
   if (::poll(&line, 1, 0) == 0) return BusStatus::ok;
   std::array<std::uint8_t, 1> first{};

@@ -5,11 +5,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Durations that differ by rounding alone are the same, and share their coefficients.
-double without_rounding(double duration_s) {
-  return std::round(duration_s * 1e9) * 1e-9;
-}
-
 std::vector<std::size_t> nearest_to_centres(const Record& record, double interval_s) {
   const auto intervals = [&](std::size_t i) {
     return (record.time_s[i] - record.time_s.front()) / interval_s + 1e-9;
@@ -28,29 +23,11 @@ std::vector<std::size_t> nearest_to_centres(const Record& record, double interva
   return kept;
 }
 
-void pick(std::vector<double>& column, const std::vector<std::size_t>& kept) {
-  if (column.empty()) return;
-  for (std::size_t to = 0; to < kept.size(); ++to) column[to] = column[kept[to]];
-  column.resize(kept.size());
-}
-
 }  // namespace
 
 Record thinned_to_centres(const Record& record, double interval_s) {
   if (interval_s <= record.mean_interval_s()) return record;
-  const std::vector<std::size_t> kept = nearest_to_centres(record, interval_s);
-  Record thin = record;
-  for (auto* column :
-       {&thin.time_s, &thin.drive_kpa, &thin.reading_mm, &thin.temperature_c, &thin.supply_kpa})
-    pick(*column, kept);
-  thin.duration_s.assign(kept.size(), 0);
-  thin.sample_time_s = 0;
-  thin.readings = 0;
-  for (std::size_t i = 0; i < thin.size(); ++i) {
-    if (i > 0) thin.duration_s[i] = without_rounding(thin.time_s[i] - thin.time_s[i - 1]);
-    if (std::isfinite(thin.reading_mm[i])) ++thin.readings;
-  }
-  return thin;
+  return thinned_record(record, nearest_to_centres(record, interval_s));
 }
 
 }  // namespace softgrip::sysid

@@ -131,27 +131,30 @@ Record averaged_to(const Record& record, double interval_s) {
   return thin;
 }
 
-Record thinned_record(const Record& record, std::size_t stride) {
+Record thinned_record(const Record& record, std::span<const std::size_t> kept) {
   Record thin = record;
+  // A held command is that of the step's begin: the thinned step takes the first of its steps for all.
+  for (auto* column :
+       {&thin.time_s, &thin.drive_kpa, &thin.reading_mm, &thin.temperature_c, &thin.supply_kpa}) {
+    if (column->empty()) continue;
+    for (std::size_t to = 0; to < kept.size(); ++to) (*column)[to] = (*column)[kept[to]];
+    column->resize(kept.size());
+  }
+  thin.duration_s.assign(kept.size(), 0);
+  thin.sample_time_s = 0;
   thin.readings = 0;
-  std::size_t to = 0;
-  double last_s = 0;
-  for (std::size_t i = 0; i < record.size(); i += stride) {
-    // A held command is that of the step's begin: the thinned step takes the first of its steps for all.
-    thin.time_s[to] = record.time_s[i];
-    thin.duration_s[to] = to == 0 ? 0 : on_grid(record.time_s[i] - last_s);
-    thin.drive_kpa[to] = record.drive_kpa[i];
-    thin.reading_mm[to] = record.reading_mm[i];
-    if (!record.temperature_c.empty()) thin.temperature_c[to] = record.temperature_c[i];
-    if (!record.supply_kpa.empty()) thin.supply_kpa[to] = record.supply_kpa[i];
-    if (std::isfinite(record.reading_mm[i])) ++thin.readings;
-    last_s = record.time_s[i];
-    ++to;
+  for (std::size_t i = 0; i < thin.size(); ++i) {
+    if (i > 0) thin.duration_s[i] = on_grid(thin.time_s[i] - thin.time_s[i - 1]);
+    if (std::isfinite(thin.reading_mm[i])) ++thin.readings;
   }
-  for (auto* column : {&thin.time_s, &thin.duration_s, &thin.drive_kpa, &thin.reading_mm}) column->resize(to);
-  for (auto* column : {&thin.temperature_c, &thin.supply_kpa}) {
-    if (!column->empty()) column->resize(to);
-  }
+  return thin;
+}
+
+Record thinned_record(const Record& record, std::size_t stride) {
+  std::vector<std::size_t> kept;
+  kept.reserve(record.size() / stride + 1);
+  for (std::size_t i = 0; i < record.size(); i += stride) kept.push_back(i);
+  Record thin = thinned_record(record, kept);
   thin.sample_time_s = record.sample_time_s * static_cast<double>(stride);
   return thin;
 }

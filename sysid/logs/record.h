@@ -2,6 +2,7 @@
 // A log as a fit sees it: steps with durations, the pressure that drives the model, readings, surroundings.
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,9 @@ struct Record {
 /// Drive::measured every log must have a pressure_kpa column.
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
+/// The samples at `kept` (ascending, the first is 0), with durations between them; of irregular sampling
+/// where nothing else is said.
+[[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
 /// Every `stride`-th sample of a record, from the first on: for a first look at many starts.
 [[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
 /// Thinned so that samples stand at most `interval_s` apart, where they are not farther apart already.

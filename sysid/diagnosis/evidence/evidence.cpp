@@ -27,10 +27,6 @@ constexpr std::size_t fewest_blocks = 12;
 /// Below this share of the noise's variance there is no structure to be divided among conditions.
 constexpr double worth = 0.01;
 
-double square(double x) {
-  return x * x;
-}
-
 /// Integral of the autocorrelation of what is not white: from the first lag on, relative to it.
 double memory_s(const Samples& samples, const std::vector<double>& residual, double interval_s) {
   const double mean =

@@ -22,10 +22,6 @@ constexpr std::size_t around = 40;
 /// Half the width of a Hann window's main lobe, and what it leaves unsure around it.
 constexpr std::size_t lobe = 3;
 
-double square(double x) {
-  return x * x;
-}
-
 /// Sum over the records of |window * residual|^2 by frequency, on one common grid.
 struct Periodogram {
   double step_hz = 0;

@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 
+#include "base/statistics.h"
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/diagnosis/causes/sensor_nonlinearity.h"
 #include "sysid/diagnosis/causes/sensor_saturation.h"
@@ -29,10 +30,6 @@ constexpr double least_covered_share = 0.5;
 constexpr double deviate = 3.09;
 
 using Line = std::pair<double, double>;  // value at 0, slope
-
-double square(double x) {
-  return x * x;
-}
 
 /// Of chi-square, by Wilson and Hilferty 1931.
 double chi_square_limit(double freedom) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/statistics.h"
 #include "sysid/diagnosis/causes/twins.h"
 
 namespace softgrip::sysid {
@@ -12,10 +13,6 @@ namespace {
 /// A candidate whose excess over the best, in mean square, is larger than this share of what the best gained
 /// is no rival whatever the blocks say.
 constexpr double rival_share = 0.05;
-
-double square(double x) {
-  return x * x;
-}
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "sysid/diagnosis/search/scored.h"
 
 namespace softgrip::sysid {
@@ -22,10 +23,6 @@ constexpr double one_more_share = 0.05;
 /// what makes up for a form does not meet it whole.
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
-double square(double x) {
-  return x * x;
-}
-
 class Selector {
  public:
   Selector(const SearchData& data, StructureFit base, double noise_mm, const Division& division,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
