@@ -185,6 +185,16 @@ std::vector<std::string> doubts_about(const Log& log) {
   return doubts;
 }
 
+namespace {
+
+bool same_samples(const Log& a, const Log& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return std::ranges::equal(a.displacement_mm, b.displacement_mm, same) &&
+         std::ranges::equal(drive_of(a), drive_of(b), same);
+}
+
+}  // namespace
+
 std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
   std::vector<std::string> doubts;
   std::vector<double> gains;
@@ -193,6 +203,13 @@ std::vector<std::string> doubts_among(const std::vector<Log>& logs) {
       doubts.push_back(logs.size() > 1 ? log.name + ": " + doubt : doubt);
     const PairSums sums = sums_of(drive_of(log), log.displacement_mm);
     gains.push_back(sums.correlation() > clear_correlation ? sums.slope() : 0);
+  }
+  for (std::size_t i = 1; i < logs.size(); ++i) {
+    const auto first = std::find_if(logs.begin(), logs.begin() + static_cast<std::ptrdiff_t>(i),
+                                    [&](const Log& log) { return same_samples(log, logs[i]); });
+    if (first != logs.begin() + static_cast<std::ptrdiff_t>(i))
+      doubts.push_back(logs[i].name + ": the same samples as " + first->name +
+                       "; given twice they make intervals narrower than they are");
   }
   std::vector<double> clear = gains;
   std::erase(clear, 0);

@@ -14,8 +14,9 @@ namespace softgrip::sysid {
 /// soft finger has, samples too far apart.
 [[nodiscard]] std::vector<std::string> doubts_about(const Log& log);
 
-/// Those about every log, each with the log's name where there are several, and logs in which the finger
-/// moves as much farther or less far than in the others as two units are apart.
+/// Those about every log, each with the log's name where there are several, logs with
+/// the samples of an earlier one, and logs in which the finger moves as much farther or less far than in the
+/// others as two units are apart.
 [[nodiscard]] std::vector<std::string> doubts_among(const std::vector<Log>& logs);
 
 /// That the readings are as many times what a model says as two units are apart; "" where they are not. NaN:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "tests/sysid/simulated.h"
@@ -86,6 +87,16 @@ TEST(Doubts, OneLogInAnotherUnitStandsOutAmongTheOthers) {
             std::string::npos)
       << doubts;
   EXPECT_EQ(doubts.find("a: "), std::string::npos);
+}
+
+TEST(Doubts, ALogThatIsGivenTwice) {
+  std::vector<Log> logs(2, simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7));
+  logs[0].name = "a", logs[1].name = "b";
+  logs[0].displacement_mm[3] = logs[1].displacement_mm[3] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(all_of(doubts_among(logs)),
+            "b: the same samples as a; given twice they make intervals narrower than they are\n");
+  logs[1].displacement_mm[4] += 0.001;
+  EXPECT_EQ(all_of(doubts_among(logs)), "");
 }
 
 TEST(Doubts, ReadingsInAnotherUnitThanTheModels) {
