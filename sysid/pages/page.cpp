@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kept_for_text = 150'000;
 constexpr std::size_t kept_for_figures = 450'000;
 /// From so many sections on there is a table of contents.
-constexpr std::size_t many_sections = 4;
+constexpr std::size_t many_sections = 3;
 
 constexpr std::string_view style = R"(
 :root{--good-paper:#eef8f5;--doubt:#b87700;--doubt-paper:#fdf6e8;--bad-paper:#fbeeed}
