@@ -41,9 +41,13 @@ Estimate estimate_of(const FittedPoint& fit, std::size_t index) {
 
 }  // namespace
 
-std::string text_of(const Interval& interval, double value, std::string_view between) {
+bool is_determined(const Interval& interval, double value) {
   constexpr double loose = 20;
-  if (interval.upper - interval.lower > loose * std::abs(value)) return "not determined by these logs";
+  return interval.upper - interval.lower <= loose * std::abs(value);
+}
+
+std::string text_of(const Interval& interval, double value, std::string_view between) {
+  if (!is_determined(interval, value)) return "not determined by these logs";
   return significant(interval.lower, 4) + std::string(between) + significant(interval.upper, 4);
 }
 

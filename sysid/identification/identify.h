@@ -26,6 +26,8 @@ struct Interval {
 /// "0.127 .. 0.133" with `between` " .. "; of an interval more than twenty times as wide as the value, that
 /// these logs do not determine it.
 [[nodiscard]] std::string text_of(const Interval& interval, double value, std::string_view between);
+/// Whether the interval says anything of the value.
+[[nodiscard]] bool is_determined(const Interval& interval, double value);
 
 /// One number that was estimated, or kept.
 struct Estimate {

@@ -30,6 +30,9 @@
 namespace softgrip::tools {
 namespace {
 
+/// Causes with more numbers than this are printed without those that the logs do not determine.
+constexpr std::size_t most_undetermined = 5;
+
 struct DiagnoseOptions {
   std::string model;
   std::vector<std::string> data;
@@ -70,10 +73,18 @@ void print_cause(const sysid::NamedCause& named) {
               fixed(named.heldout_gain_percent.value, 1).c_str(),
               fixed(named.heldout_gain_percent.lower, 1).c_str(),
               fixed(named.heldout_gain_percent.upper, 1).c_str());
+  std::size_t passed_over = 0;
   for (const sysid::CauseParameter& p : named.parameters) {
+    // Of many, those of which the logs say something.
+    if (named.parameters.size() > most_undetermined && !p.determined()) {
+      ++passed_over;
+      continue;
+    }
     const std::string interval = p.has_interval ? "(" + sysid::text_of(p.ci95, p.value, " .. ") + ")" : "";
     std::printf("      %-22s %s %s\n", p.name.c_str(), significant(p.value, 5).c_str(), interval.c_str());
   }
+  if (passed_over > 0)
+    std::printf("      %zu numbers that these logs do not determine are in diagnosis.json\n", passed_over);
   for (const sysid::Cause& rival : named.rivals) {
     std::printf("      %s explains as much\n", std::string(rival.id).c_str());
   }

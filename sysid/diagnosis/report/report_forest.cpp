@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "sysid/diagnosis/report/report_tables.h"
+#include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/pages/canvas.h"
 #include "sysid/pages/chart_scale.h"
 
@@ -42,7 +43,7 @@ std::vector<Row> rows_of(const Diagnosis& d) {
   for (const NamedCause* named : shown_causes(d)) {
     rows.push_back({std::string(named->cause.title), false, &named->heldout_gain_percent, named->inclusion});
     for (const Cause& rival : named->rivals)
-      rows.push_back({"or " + std::string(rival.title), true, gain_of(*named, rival)});
+      rows.push_back({"or " + rival_title(rival, d.causes), true, gain_of(*named, rival)});
   }
   return rows;
 }

@@ -54,12 +54,10 @@ void add_errors(Page& page, const Diagnosis& d) {
   page.section("How it was reached");
   page.paragraph(
       "The model was predicted as given, then recalibrated (the same structure, all parameters fitted), then "
-      "extended "
-      "cause by cause. Each was refitted without stretches of the logs and judged there, simulated from the "
-      "logs' "
-      "true starts; intervals by drawing whole stretches anew.");
+      "extended cause by cause. Each was refitted without stretches of the logs and judged there, simulated "
+      "from the logs' true starts; intervals by drawing whole stretches anew.");
   page.table(rmse_table(d));
-  if (is_extended(d))
+  if (is_extended(d) && d.extended_rmse_mm < d.recalibrated_rmse_mm)
     page.paragraph("The extended model's held-out error is smaller than the recalibrated one's by " +
                    range(d.gain, 1) + ".");
   if (!d.recalibrated_other_logs_rmse_mm || !d.extended_other_logs_rmse_mm || !is_extended(d)) return;

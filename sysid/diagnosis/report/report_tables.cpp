@@ -141,13 +141,14 @@ Table cause_parameter_table(const Diagnosis& d, std::size_t most) {
     std::size_t shown = 0;
     for (const CauseParameter& p : named->parameters) {
       // Of many, those that were measured.
-      if (!short_enough && (!p.has_interval || shown + 1 >= most)) continue;
+      if (!short_enough && (!p.determined() || shown + 1 >= most)) continue;
       table.rows.push_back(row(*named, p));
       ++shown;
     }
     if (shown < size)
       table.rows.push_back({std::string(named->cause.title),
-                            "and " + std::to_string(size - shown) + " more, in the appendix"});
+                            (shown > 0 ? "and " : "none determined: ") + std::to_string(size - shown) +
+                                (shown > 0 ? " more, in the appendix" : " in the appendix")});
   }
   return table;
 }

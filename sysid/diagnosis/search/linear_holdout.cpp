@@ -77,7 +77,7 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
       normal.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose(), -1);
       right -= part.transpose() * r.segment(from, length);
     }
-    normal.diagonal() += damping * normal.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
+    normal.diagonal() += damping * whole.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
     const Eigen::VectorXd step = -normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
     for (std::size_t b = 0; b < rows.size(); ++b) {
       if (division.blocks[b].fold != fold) continue;

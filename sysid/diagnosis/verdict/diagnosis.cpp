@@ -35,10 +35,6 @@ constexpr double left_by_staircase = 0.25;
 /// between a half and one (textbook worlds without an effect).
 constexpr double worth_asking = 0.5;
 
-double square(double x) {
-  return x * x;
-}
-
 /// The base fitted from the given model and, since recalibration can start far off, from the data's scale.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);

@@ -17,6 +17,8 @@ struct CauseParameter {
   double value = 0;
   Interval ci95;
   bool has_interval = false;
+
+  [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };
 
 struct NamedCause {

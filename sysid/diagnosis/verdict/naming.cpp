@@ -1,6 +1,7 @@
 #include "sysid/diagnosis/verdict/naming.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -28,7 +29,8 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     CauseParameter p;
     p.name = model::parameter_name(block, i);
-    p.unit = std::string(model::catalogue()[block.type].spec(i).unit);
+    const model::ParameterSpec& spec = model::catalogue()[block.type].spec(i);
+    p.unit = std::string(spec.unit);
     p.value = block.values[i];
     for (std::size_t j = 0; j < at.space.size(); ++j) {
       const FreeParameter& free = at.space.free()[j];
@@ -39,7 +41,11 @@ std::vector<CauseParameter> block_numbers(const UncertainPoint& at, std::size_t 
       const double deviation = std::sqrt(std::max(0.0, at.uncertainty.covariance(row, row)));
       if (deviation == 0) continue;
       const double half = at.uncertainty.quantile * deviation;
-      p.ci95 = {free.to_value(at.z[j] - half), free.to_value(at.z[j] + half)};
+      // A delay below 0 is none; what is without bound stays so, for then nothing is known.
+      const auto possible = [&](double value) {
+        return std::isfinite(value) ? std::clamp(value, spec.lower, spec.upper) : value;
+      };
+      p.ci95 = {possible(free.to_value(at.z[j] - half)), possible(free.to_value(at.z[j] + half))};
       p.has_interval = true;
     }
     list.push_back(std::move(p));
@@ -81,6 +87,18 @@ NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm) {
   const double relative = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, evidence.count)));
   named.heldout_gain_percent = {gain, gain * relative / 2, gain * (1 - relative), gain * (1 + relative)};
   return named;
+}
+
+std::string title_within(const Cause& cause) {
+  std::string text(cause.title);
+  if (!text.empty()) text.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(text.front())));
+  return text;
+}
+
+std::string rival_title(const Cause& rival, const std::vector<NamedCause>& named) {
+  const bool again =
+      std::any_of(named.begin(), named.end(), [&](const NamedCause& c) { return c.cause == rival; });
+  return (again ? "a further " : "") + title_within(rival);
 }
 
 bool any_rivals(const std::vector<NamedCause>& causes) {

@@ -33,6 +33,11 @@ struct UncertainPoint {
 
 [[nodiscard]] NamedCause outlier_cause(const OutlierEvidence& evidence, double noise_mm);
 
+/// A cause in the midst of a sentence: "valve lag".
+[[nodiscard]] std::string title_within(const Cause& cause);
+/// A rival beside what is named: "a further valve lag" where one is named already.
+[[nodiscard]] std::string rival_title(const Cause& rival, const std::vector<NamedCause>& named);
+
 /// Whether any of them has a rival.
 [[nodiscard]] bool any_rivals(const std::vector<NamedCause>& causes);
 

@@ -5,8 +5,12 @@
 #include <algorithm>
 
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/transport_delay.h"
 #include "model/named.h"
+#include "sysid/diagnosis/causes/transport_delay.h"
+#include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid {
@@ -34,6 +38,47 @@ TEST(BlockNumbers, HaveIntervalsWhereTheFitMovedThemThatHoldTheTruth) {
     EXPECT_GT(numbers[i].ci95.upper, numbers[i].value);
     EXPECT_NEAR(numbers[i].value, real.values[i], 0.1 * real.values[i]) << numbers[i].name;
   }
+}
+
+TEST(BlockNumbers, HaveNoIntervalsBelowWhatANumberMayBe) {
+  model::Model truth = loaded("bench_twin");
+  const std::size_t delay = model::block_type<model::TransportDelay>();
+  truth.blocks[*model::position_of(truth, delay)].values[0] = 0.001;
+  // A few readings behind much noise: they leave the delay free to either side.
+  const std::vector<Record> records = make_records({simulated(truth, SignalName::tp1, 5, 1.0, 5)}, {});
+  const FitPoint point{truth, rest_starts(truth, records)};
+  const FitSpace space = structure_space(records, truth, {*find_cause(causes::TransportDelay::id)});
+  const std::vector<CauseParameter> numbers = block_numbers(uncertain_point(records, point, space), delay);
+  ASSERT_TRUE(numbers[0].has_interval);
+  EXPECT_GT(numbers[0].ci95.upper, numbers[0].value);
+  EXPECT_EQ(numbers[0].ci95.lower, 0);
+}
+
+TEST(RivalTitle, TellsARivalThatIsNamedItselfFromOneThatIsNot) {
+  const Cause delay = *find_cause(causes::TransportDelay::id), lag = *find_cause(causes::ValveLag::id);
+  NamedCause first, second;
+  first.cause = delay;
+  second.cause = lag;
+  EXPECT_EQ(rival_title(lag, {first}), "valve lag");
+  EXPECT_EQ(rival_title(lag, {first, second}), "a further valve lag");
+}
+
+TEST(VerdictSentence, SaysThatAnErrorFallsWhereItFallsAlone) {
+  Diagnosis d;
+  NamedCause lag;
+  lag.cause = *find_cause(causes::ValveLag::id);
+  d.causes = {lag};
+  d.verdict = Verdict::cause_found;
+  d.recalibrated_rmse_mm = 2.3;
+  d.extended_rmse_mm = 0.4;
+  d.base = "Bouc-Wen, lag";
+  EXPECT_EQ(verdict_sentence(d),
+            "The model lacks valve lag: with it the held-out error falls from 2.3 mm to 0.4 mm.");
+  d.extended_rmse_mm = 2.5;
+  EXPECT_EQ(verdict_sentence(d),
+            "The model lacks valve lag: without it the model follows these logs only by moving the wrong way "
+            "first, as "
+            "no finger does; the held-out error is 2.3 mm without and 2.5 mm with it.");
 }
 
 TEST(DataWarnings, SayWhatALogWithoutUnloadingCannotShow) {
