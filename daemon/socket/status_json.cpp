@@ -80,6 +80,7 @@ Json json_of_channel(const control::ChannelSettings& settings, const control::Ch
   return {{"name", settings.name},
           {"command_kpa", number(channel.command_kpa)},
           {"pressure_kpa", number(channel.pressure_kpa)},
+          {"temperature_c", number(channel.temperature_c)},
           {"displacement_mm", number(channel.displacement_mm)},
           {"reference_mm", number(channel.reference_mm)},
           {"feedforward_kpa", number(channel.feedforward_kpa)},

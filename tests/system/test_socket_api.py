@@ -196,6 +196,25 @@ class SocketApi(bench.BenchTest):
         self.assertEqual(ids, list(range(1, newest + 1)))
 
 
+class Thermometer(bench.BenchTest):
+    def test_what_is_measured_is_told_by_status_and_screen(self):
+        text = (self.folder / "config/rig.yaml").read_text()
+        for old, new in (("displacement_noise_mm: 0.03", "displacement_noise_mm: 0.03\n        temperature_c: 31"),
+                         ("channel_defaults:", "channel_defaults:\n  temperature_sensor: "
+                          "{input: 7, at_v: [0, 10], is_c: [-20, 80], valid_v: [0.1, 9.9]}\n#"),
+                         ("/tmp/softgrip-runs", f"{self.folder}/runs"), ("/tmp/softgrip.sock", f"{self.folder}/softgripd.sock")):
+            self.assertIn(old, text)
+            text = text.replace(old, new, 1)
+        rig = self.folder / "config/warm.yaml"
+        rig.write_text(text)
+        softgripd = self.daemon(rig)
+        softgripd.wait_for_state("idle")
+        temperatures = [channel["temperature_c"] for channel in softgripd.status()["channels"]]
+        self.assertAlmostEqual(temperatures[0], 31, delta=0.1)
+        self.assertAlmostEqual(temperatures[1], 20, delta=0.1)
+        self.assertIn(", 31.0 C", self.softgrip("status").stdout)
+
+
 class Schema(bench.unittest.TestCase):
     def test_what_is_not_in_it_is_refused(self):
         reply = {"id": None, "ok": True, "result": {"request": 1}}

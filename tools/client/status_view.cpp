@@ -169,6 +169,8 @@ void add_channel(std::vector<std::string>& lines, const Json& channel, const Vie
                           number_at(limits, "displacement_max_mm").value_or(50), displacement, reference};
   numbers = with_decimals(displacement, 2) + " mm, reference " + with_decimals(reference, 2);
   if (displacement && reference) numbers += ", error " + fixed(*reference - *displacement, 2);
+  if (const auto temperature = number_at(channel, "temperature_c"))
+    numbers += ", " + fixed(*temperature, 1) + " C";
   add("displacement", displacements, trends != nullptr ? &trends->displacement_mm : nullptr);
   if (trends != nullptr && style.columns < columns_beside) {
     add_trends_below(lines, style, *trends, least_span(pressures), least_span(displacements));

@@ -53,6 +53,14 @@ TEST(StatusView, PressureThatStaysOnIsSaidFirstAndCompletely) {
   EXPECT_NE(line_of_status(pressed).find("idle, UNDER PRESSURE"), std::string::npos);
 }
 
+TEST(StatusView, ATemperatureStandsThereWhereItIsMeasured) {
+  Json warm = status();
+  EXPECT_EQ(joined(view_of(warm, {80, false, false})).find(" C\n"), std::string::npos);
+  warm["channels"][1]["temperature_c"] = 23.46;
+  const std::string text = joined(view_of(warm, {80, false, false}));
+  EXPECT_NE(text.find("12.25 mm, reference 12.50, error 0.25, 23.5 C\n"), std::string::npos) << text;
+}
+
 TEST(StatusView, AReadingThatWasNeverThereIsNotZero) {
   Json blind = status();
   blind["channels"][0]["displacement_mm"] = nullptr;

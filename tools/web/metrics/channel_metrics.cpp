@@ -26,6 +26,7 @@ constexpr Quantity quantities[] = {
     {"softgrip_displacement_meters", "displacement_mm", mm_per_m, "Measured displacement."},
     {"softgrip_reference_meters", "reference_mm", mm_per_m, "Displacement that is asked for."},
     {"softgrip_pressure_pascals", "pressure_kpa", kpa_per_pa, "Measured pressure, where it is measured."},
+    {"softgrip_temperature_celsius", "temperature_c", 1, "Measured temperature, where it is measured."},
     {"softgrip_pressure_command_pascals", "command_kpa", kpa_per_pa, "Pressure that is asked of the valve."},
     {"softgrip_squeeze_pascals", "squeeze_kpa", kpa_per_pa, "By how much of it the finger presses."},
     {"softgrip_model_residual_meters", "residual_mm", mm_per_m,

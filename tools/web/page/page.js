@@ -93,6 +93,7 @@ const rowsOfFinger = (channel) => [
   ["Displacement", fixed(channel.displacement_mm, 2, "mm")],
   ["Reference", fixed(channel.reference_mm, 2, "mm")],
   ["Pressure", fixed(channel.pressure_kpa, 1, "kPa")],
+  ...(typeof channel.temperature_c === "number" ? [["Temperature", fixed(channel.temperature_c, 1, "°C")]] : []),
   ["Asked for", fixed(channel.command_kpa, 1, "kPa")],
   ["Squeeze", fixed(channel.squeeze_kpa, 1, "kPa")],
   ["Reading", channel.validity === "valid" ? `${fixed(channel.age_s * 1000, 0, "ms")} old` : channel.validity,
