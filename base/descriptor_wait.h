@@ -13,7 +13,7 @@ enum class Waited : std::uint8_t {
   failed,     ///< errno says why
 };
 
-/// Waits for poll events until `deadline` on CLOCK_MONOTONIC. poll, not select: descriptors of 1024 and above
+/// Waits for poll events until `deadline` on CLOCK_BOOTTIME. poll, not select: descriptors of 1024 and above
 /// are as good as any other.
 [[nodiscard]] Waited wait_for(int descriptor, short events, Nanoseconds deadline) noexcept;
 

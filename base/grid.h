@@ -33,11 +33,11 @@ class Grid {
   Nanoseconds due_;
 };
 
-/// Returns at `due` of CLOCK_MONOTONIC or later, never before.
+/// Returns at `due` of CLOCK_BOOTTIME or later, never before.
 inline void sleep_until(Nanoseconds due) noexcept {
   // Not std::this_thread::sleep_until: libstdc++ 12 turns it into a relative sleep, which drifts.
   const timespec time{due / ns_per_s, due % ns_per_s};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr) == EINTR) {
+  while (clock_nanosleep(CLOCK_BOOTTIME, TIMER_ABSTIME, &time, nullptr) == EINTR) {
   }
 }
 

@@ -6,7 +6,7 @@
 
 namespace softgrip {
 
-/// Nanoseconds of CLOCK_MONOTONIC, or of the virtual clock.
+/// Nanoseconds of CLOCK_BOOTTIME, or of the virtual clock.
 using Nanoseconds = std::int64_t;
 
 inline constexpr Nanoseconds ns_per_s = 1'000'000'000;

@@ -3,23 +3,18 @@
 #include <array>
 #include <ctime>
 
+#include "base/clock.h"
+
 namespace softgrip {
-namespace {
 
-Nanoseconds read_clock(clockid_t clock) {
-  timespec time{};
-  clock_gettime(clock, &time);
-  return time.tv_sec * ns_per_s + time.tv_nsec;
-}
-
-}  // namespace
-
-Nanoseconds wall_time(Nanoseconds monotonic) {
-  return wall_time_now() - (read_clock(CLOCK_MONOTONIC) - monotonic);
+Nanoseconds wall_time(Nanoseconds moment) {
+  return wall_time_now() - (MonotonicClock().now() - moment);
 }
 
 Nanoseconds wall_time_now() {
-  return read_clock(CLOCK_REALTIME);
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return now.tv_sec * ns_per_s + now.tv_nsec;
 }
 
 std::string utc_text(Nanoseconds wall, int decimals) {

@@ -45,7 +45,7 @@ struct GpioLineSettings {
 struct GpioEdge {
   GpioRole role = GpioRole::emergency_stop;
   bool active = false;
-  Nanoseconds at = 0;  ///< CLOCK_MONOTONIC, taken by the kernel at the interrupt
+  Nanoseconds at = 0;  ///< of MonotonicClock, taken by the kernel at the interrupt
 };
 
 /// Lines that were requested. Reading and writing allocate nothing. All calls but write() come from one

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 
+#include "base/clock.h"
 #include "drivers/gpio/gpio_lines.h"
 #include "drivers/gpio/libgpiod.h"
 
@@ -84,10 +85,11 @@ class Line {
     const auto most = static_cast<unsigned>(std::min(to.size(), edges_at_once));
     const int count = gpiod_line_event_read_multiple(line_.get(), events.data(), most);
     if (count < 0) return std::nullopt;
+    const Nanoseconds asleep = time_asleep();
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       const timespec& at = events[i].ts;
       to[i] = {role, events[i].event_type == GPIOD_LINE_EVENT_RISING_EDGE,
-               Nanoseconds{at.tv_sec} * ns_per_s + at.tv_nsec};
+               Nanoseconds{at.tv_sec} * ns_per_s + at.tv_nsec + asleep};
     }
     return static_cast<std::size_t>(count);
   }

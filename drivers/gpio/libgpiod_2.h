@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "base/clock.h"
 #include "drivers/gpio/gpio_lines.h"
 #include "drivers/gpio/libgpiod.h"
 
@@ -105,12 +106,13 @@ class Line {
     const std::size_t most = std::min(to.size(), edges_at_once);
     const int count = gpiod_line_request_read_edge_events(request_.get(), buffer_.get(), most);
     if (count < 0) return std::nullopt;
+    const Nanoseconds asleep = time_asleep();
     for (int i = 0; i < count; ++i) {
       gpiod_edge_event* const event =
           gpiod_edge_event_buffer_get_event(buffer_.get(), static_cast<unsigned long>(i));
       to[static_cast<std::size_t>(i)] = {
           role, gpiod_edge_event_get_event_type(event) == GPIOD_EDGE_EVENT_RISING_EDGE,
-          static_cast<Nanoseconds>(gpiod_edge_event_get_timestamp_ns(event))};
+          static_cast<Nanoseconds>(gpiod_edge_event_get_timestamp_ns(event)) + asleep};
     }
     return static_cast<std::size_t>(count);
   }

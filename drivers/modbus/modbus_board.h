@@ -27,7 +27,7 @@ struct ModbusSettings {
 /// allow. Outputs come first, so that a module without outputs that fails does not keep the others' from
 /// them.
 ///
-/// `deadline` spans the whole exchange on CLOCK_MONOTONIC; a reply that comes in drips does not extend it.
+/// `deadline` spans the whole exchange on CLOCK_BOOTTIME; a reply that comes in drips does not extend it.
 /// Any error but a Modbus exception closes the links, so that a late or duplicated reply can never be taken
 /// for the answer to a later question: exchange() then returns `disconnected` until connect() made new ones.
 ///

@@ -20,7 +20,7 @@ struct _modbus;  // NOLINT(bugprone-reserved-identifier): so is libmodbus' modbu
 namespace softgrip::drivers {
 
 /// libmodbus receives; on a serial line it also opens, sends and checks the checksum. Around it: every wait
-/// ends at a point in time on CLOCK_MONOTONIC [ns], never by the time between two bytes; a raw frame is
+/// ends at a point in time on CLOCK_BOOTTIME [ns], never by the time between two bytes; a raw frame is
 /// judged by our own pure check before anything in it is used; bytes behind it are looked for.
 /// docs/explanation/libraries.md says what libmodbus leaves to us and why.
 ///

@@ -123,7 +123,7 @@ class HandDrive {
   std::uint32_t failures_ = 0;
 };
 
-/// CLOCK_MONOTONIC, and SIGINT, SIGTERM and SIGHUP as the wish to end.
+/// CLOCK_BOOTTIME, and SIGINT, SIGTERM and SIGHUP as the wish to end.
 class RealPace final : public Pace {
  public:
   RealPace();

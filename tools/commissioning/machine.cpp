@@ -76,7 +76,7 @@ void probe_timer(const rig::RigFile& rig, daemon::Histogram& wake_up) {
 
 void judge_timer(const rig::RigFile& rig, const daemon::Histogram& wake_up, Findings& findings) {
   timespec resolution{};
-  ::clock_getres(CLOCK_MONOTONIC, &resolution);
+  ::clock_getres(CLOCK_BOOTTIME, &resolution);
   const daemon::Histogram::Summary summary = wake_up.summary();
   const double period_us = 1e6 / rig.settings.rate_hz;
   const double p99_us = static_cast<double>(summary.p99_ns) * us_per_ns;

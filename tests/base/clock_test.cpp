@@ -1,0 +1,72 @@
+#include "base/clock.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+
+#include "base/grid.h"
+
+namespace softgrip {
+namespace {
+
+constexpr int no_such_namespace = 77;
+
+/// In a namespace in which the machine has slept for a day since it was booted; the exit code of `body`.
+int after_a_day_asleep(int (*body)()) {
+  std::fflush(nullptr);
+  const pid_t outer = fork();
+  if (outer == 0) {
+    if (unshare(CLONE_NEWTIME) != 0) _exit(no_such_namespace);
+    const int offsets = open("/proc/self/timens_offsets", O_WRONLY | O_CLOEXEC);
+    const std::string text = "boottime 86400 0\n";
+    if (offsets < 0 || write(offsets, text.data(), text.size()) < 0) _exit(no_such_namespace);
+    close(offsets);
+    // Only its children are in it.
+    const pid_t inner = fork();
+    if (inner == 0) _exit(body());
+    int status = 0;
+    waitpid(inner, &status, 0);
+    _exit(WIFEXITED(status) ? WEXITSTATUS(status) : 99);
+  }
+  int status = 0;
+  waitpid(outer, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 99;
+}
+
+Nanoseconds monotonic() {
+  timespec time{};
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return time.tv_sec * ns_per_s + time.tv_nsec;
+}
+
+TEST(MonotonicClock, GoesOnWhileTheMachineSleeps) {
+  const int code = after_a_day_asleep([] {
+    const MonotonicClock clock;
+    constexpr Nanoseconds day = 86'400 * ns_per_s;
+    const Nanoseconds ahead = clock.now() - monotonic();
+    if (ahead < day - ns_per_s || ahead > day + ns_per_s) return 1;
+    if (time_asleep() != day) return 2;
+    alarm(10);  // who sleeps by the other clock sleeps for a day
+    const Nanoseconds due = clock.now() + ns_per_s / 50;
+    clock.sleep_until(due);
+    return clock.now() >= due ? 0 : 3;
+  });
+  if (code == no_such_namespace) GTEST_SKIP() << "this user may make no time namespace";
+  EXPECT_EQ(code, 0);
+}
+
+TEST(MonotonicClock, OfAMachineThatNeverSleptIsTheKernelsOtherOne) {
+  const Nanoseconds slept = time_asleep();
+  const Nanoseconds before = monotonic();
+  const Nanoseconds now = MonotonicClock().now();
+  EXPECT_GE(now, before + slept - ns_per_s / 1000);
+  EXPECT_LE(now, monotonic() + slept + ns_per_s / 1000);
+}
+
+}  // namespace
+}  // namespace softgrip
