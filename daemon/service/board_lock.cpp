@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
@@ -19,14 +20,18 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// "127.0.0.1" and "127.0.0.01" are one board.
+/// Of an IPv4 address that is written as one of IPv6.
+constexpr std::array<unsigned char, 12> mapped_prefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff};
+
+/// "::1" and "0:0::1" are one board, as are "::ffff:10.0.0.5" and "10.0.0.5".
 std::string numeric(const std::string& host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   std::array<char, INET6_ADDRSTRLEN> text{};
   for (const int family : {AF_INET, AF_INET6}) {
-    if (inet_pton(family, host.c_str(), address.data()) == 1 &&
-        inet_ntop(family, address.data(), text.data(), text.size()) != nullptr)
-      return text.data();
+    if (inet_pton(family, host.c_str(), address.data()) != 1) continue;
+    const bool mapped = family == AF_INET6 && std::equal(mapped_prefix.begin(), mapped_prefix.end(), address.begin());
+    const unsigned char* const bytes = mapped ? address.data() + mapped_prefix.size() : address.data();
+    if (inet_ntop(mapped ? AF_INET : family, bytes, text.data(), text.size()) != nullptr) return text.data();
   }
   return host;
 }

@@ -32,6 +32,13 @@ TEST(BoardLock, OneMasterPerBoardUnderWhateverSpelling) {
   EXPECT_TRUE(BoardLock::take(rig_at("::1", 40502))) << "it was let go";
 }
 
+TEST(BoardLock, AnAddressWithinTheOtherFamilyIsTheSameBoard) {
+  const auto first = BoardLock::take(rig_at("127.0.0.1", 40502));
+  ASSERT_TRUE(first) << first.error();
+  EXPECT_FALSE(BoardLock::take(rig_at("::ffff:127.0.0.1", 40502)));
+  EXPECT_FALSE(BoardLock::take(rig_at("::FFFF:7f00:1", 40502)));
+}
+
 TEST(BoardLock, ASerialLineHasOneMasterWhateverUnitItAsks) {
   rig::RigFile one = rig_at("", 0, 1);
   rig::RigFile two = rig_at("", 0, 2);
