@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""How long a vent takes under attack: vent_times.py [--times 20] [--page] [--only WORD]
+
+Repeats every test of Hearing (tests/system/test_hearing.py) that vents beside an attack, each time with a rig and a daemon of
+its own, and prints the worst and the middle time from the client's line to outputs below 1 kPa. --page writes that into
+docs/reliability.md. Needs a release build (SOFTGRIP_BUILD); the full disk needs the right to mount one.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import statistics
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs/reliability.md"
+MARKS = ("<!-- vents: written by scripts/vent_times.py --page -->\n", "<!-- /vents -->")
+sys.path.insert(0, str(ROOT / "tests/system"))
+import test_hearing  # noqa: E402
+
+ATTACKS = (
+    ("test_behind_a_crowd_of_silent_connections", "1,000 silent connections"),
+    ("test_beside_floods_of_acknowledgements", "four clients that send `acknowledge` as fast as they can"),
+    ("test_beside_pipelines_of_events", "pipelines of `events`, read and unread"),
+    ("test_beside_clients_that_stand_still", "sixteen client processes under SIGSTOP: in the middle of a line, with answers "
+     "unread, with events unread, `softgrip watch`"),
+    ("test_on_a_full_disk", "a disk that is full in the middle of a recording, and when the next begins"),
+    ("test_without_a_descriptor_left", "no descriptor left and twenty connections"),
+    ("test_a_pipe_among_the_sequences", "a start whose file is a pipe"),
+    ("test_a_disk_that_does_not_answer", "a start whose file does not open"),
+)
+
+
+def repeated(name, times):
+    """Seconds of every vent, and how many runs did not go as the test wants."""
+    waited, wrong = [], 0
+    for _ in range(times):
+        test_hearing.Hearing.waited_s.clear()
+        with open(os.devnull, "w") as quiet:
+            outcome = unittest.TextTestRunner(quiet, verbosity=0).run(test_hearing.Hearing(name))
+        for _, text in outcome.failures + outcome.errors:
+            print(f"{name}:\n{text}", file=sys.stderr)
+        for _, reason in outcome.skipped:
+            sys.exit(f"{name}: {reason}")
+        wrong += not outcome.wasSuccessful()
+        waited += test_hearing.Hearing.waited_s.get(name, [])
+    return waited, wrong
+
+
+def table(times, only):
+    lines = ["| beside | vents | worst | middle | runs that failed |", "|---|---|---|---|---|"]
+    worst = 0.0
+    for name, words in ATTACKS:
+        if only and only not in name:
+            continue
+        waited, wrong = repeated(name, times)
+        if not waited:
+            sys.exit(f"{name}: no vent was heard")
+        worst = max(worst, *waited)
+        lines.append(f"| {words} | {len(waited)} | {max(waited) * 1000:.0f} ms | {statistics.median(waited) * 1000:.0f} ms | {wrong} |")
+        print(lines[-1], flush=True)
+    return "\n".join(lines) + f"\n\nThe worst of all: **{worst * 1000:.0f} ms**.\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--times", type=int, default=20, help="how often each attack is repeated")
+    parser.add_argument("--page", action="store_true", help="write the table into docs/reliability.md")
+    parser.add_argument("--only", default="", help="the attacks whose test's name holds this")
+    arguments = parser.parse_args()
+    text = table(arguments.times, arguments.only)
+    print(text)
+    if arguments.page:
+        begin, end = map(re.escape, MARKS)
+        page, count = re.subn(f"({begin}).*({end})", lambda m: m[1] + text + m[2], PAGE.read_text(), flags=re.DOTALL)
+        if count != 1:
+            sys.exit(f"{PAGE} has no place for it")
+        PAGE.write_text(page)
+
+
+if __name__ == "__main__":
+    main()
