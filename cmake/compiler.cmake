@@ -17,11 +17,14 @@ if(SOFTGRIP_SANITIZE)
     add_compile_options(-fno-sanitize-recover=undefined)
   endif()
 endif()
-if(NOT SOFTGRIP_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+if(NOT SOFTGRIP_SANITIZE)
   # What Debian's package builds with, for whoever runs another build on a rig.
   include(CheckCXXCompilerFlag)
   check_cxx_compiler_flag(-fcf-protection SOFTGRIP_HAS_CF_PROTECTION)
-  add_compile_options(-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -fstack-protector-strong -fstack-clash-protection
+  if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")  # it needs an optimiser
+    add_compile_options(-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+  endif()
+  add_compile_options(-fstack-protector-strong -fstack-clash-protection
     $<$<BOOL:${SOFTGRIP_HAS_CF_PROTECTION}>:-fcf-protection>)
   add_link_options(-Wl,-z,relro,-z,now)
 endif()
