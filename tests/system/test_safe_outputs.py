@@ -1,10 +1,11 @@
-"""softgripd --safe-outputs: what the service manager runs after a crash, against a board without a watchdog."""
+"""What a daemon leaves behind: softgripd --safe-outputs, which the service manager runs after a crash, and a hold."""
 
 import os
 import subprocess
 import time
 
 import bench
+import serial_rig
 
 
 class SafeOutputs(bench.BenchTest):
@@ -52,6 +53,44 @@ class SafeOutputs(bench.BenchTest):
         ended = self.safe_outputs()
         self.assertEqual(ended.returncode, 4, ended.stdout + ended.stderr)
         self.assertIn("not confirmed", ended.stdout)
+
+
+class Hold(bench.BenchTest):
+    """How long a hold lasts depends on the board, and is said before, at the start and at the end."""
+
+    def ends_holding(self, emulator, rig):
+        """What is said at the check and by the daemon, which is ended while it holds; and what the board has a second later."""
+        check = subprocess.run([bench.SOFTGRIPD, "--check", "--config", rig], capture_output=True, text=True, check=True)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        start = daemon.errors()
+        daemon.start("pick_stone")
+        for channel in ("left", "right"):
+            daemon.wait_for_event("grip_result", code="HOLDING", channel=channel)
+        self.assertEqual(daemon.end(), 0)
+        self.assertGreater(min(emulator.commands_kpa()), 10, "the hold is what the outputs end with")
+        time.sleep(1)
+        return check.stdout, start, daemon.errors(), emulator.commands_kpa()
+
+    def test_the_boards_watchdog_ends_it_and_that_is_said(self):
+        emulator = self.emulator("--object", "stone")
+        check, start, end, outputs_kpa = self.ends_holding(emulator, self.rig(emulator.port))
+        sentence = "hold: lasts as long as softgripd runs; 0.5 s after its end the watchdog vents what it held"
+        self.assertIn(sentence, check)
+        self.assertIn(sentence, start)
+        self.assertIn("they hold only until the board's watchdog vents them, 0.5 s from now", end)
+        self.assertEqual(max(outputs_kpa), 0)
+
+    def test_a_board_without_a_watchdog_holds_by_itself(self):
+        rig = serial_rig.rig_file(self.folder, serial_rig.RATE_HZ)
+        emulator = serial_rig.Emulator(self.folder, rig, "--object", "stone")
+        self.processes.append(emulator)
+        self.addCleanup(emulator.control.close)
+        check, start, end, outputs_kpa = self.ends_holding(emulator, rig)
+        for text in (check, start, end):
+            self.assertNotIn("vents what it held", text)
+            self.assertNotIn("hold only until", text)
+        self.assertGreater(min(outputs_kpa), 10)
 
 
 if __name__ == "__main__":

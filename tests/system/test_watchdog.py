@@ -1,4 +1,4 @@
-"""The service manager's watchdog: fed while loop and bus thread go on, starved as soon as one of them hangs."""
+"""The service manager's watchdog: fed while loop, bus and service thread go on, starved as soon as one of them hangs."""
 
 import contextlib
 import os
@@ -46,7 +46,7 @@ class Watchdog(bench.BenchTest):
                 return task.name
         raise AssertionError(f"no thread {name}")
 
-    def starves_when(self, name):
+    def starves_when(self, name, patience_s=2):
         self.assertGreater(self.notices_for(2).count("WATCHDOG=1"), 4)
         hang = subprocess.Popen([sys.executable, HANG_THREAD, self.thread(name)], stdout=subprocess.PIPE, text=True)
         self.addCleanup(hang.stdout.close)
@@ -54,7 +54,7 @@ class Watchdog(bench.BenchTest):
         self.addCleanup(self.daemon_.kill)
         if hang.stdout.readline() != "hangs\n":
             self.skipTest("this user may not trace another process")
-        self.notices_for(2)  # the daemon's patience, and what was on its way
+        self.notices_for(patience_s)  # the daemon's patience, and what was on its way
         notices = self.notices_for(2)
         self.assertNotIn("WATCHDOG=1", notices)
         self.assertTrue(self.daemon_.running())  # it is the service manager that ends it
@@ -64,6 +64,9 @@ class Watchdog(bench.BenchTest):
 
     def test_a_hung_bus_thread_starves_it(self):
         self.starves_when("softgrip-bus")
+
+    def test_a_hung_service_thread_starves_it(self):
+        self.starves_when("softgrip-serve", patience_s=4)
 
 
 if __name__ == "__main__":

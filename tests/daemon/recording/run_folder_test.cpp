@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "tests/daemon/temporary_folder.h"
@@ -73,6 +74,29 @@ TEST(RunFolder, AFullDiskCutsTheFileAtAWholeLineAndIsRemembered) {
   EXPECT_EQ(text_of(temporary.path() + "/run.csv"), "header\n0,1\n");
   EXPECT_FALSE(folder->append("4,5\n"));
   EXPECT_TRUE(folder->replace_json("{}"));
+}
+
+TEST(RunFolder, ALinkThatSomebodyLaidIsNeverWrittenThrough) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder temporary;
+  const std::string victim = temporary.path() + "/victim";
+  std::ofstream(victim) << "mine";
+  const std::string path = temporary.path() + "/run";
+  fs::create_directory(path);
+  fs::create_symlink(victim, path + "/run.csv");
+  EXPECT_FALSE(RunFolder::create(path, "header\n", true));
+  fs::remove(path + "/run.csv");
+  auto folder = RunFolder::create(path, "header\n", true);
+  ASSERT_TRUE(folder) << folder.error();
+  for (const char* name : {"/run.json.tmp", "/run.json"}) {
+    fs::create_symlink(victim, path + name);
+    EXPECT_TRUE(folder->replace_json("{}")) << folder->error();
+    EXPECT_FALSE(fs::exists(path + "/run.json.tmp"));
+    EXPECT_FALSE(fs::is_symlink(path + "/run.json"));
+    EXPECT_EQ(text_of(path + "/run.json"), "{}");
+    fs::remove(path + "/run.json");
+  }
+  EXPECT_EQ(text_of(victim), "mine");
 }
 
 TEST(RunFolder, RunJsonIsTheOldOneOrTheNewOne) {
