@@ -1,6 +1,6 @@
 #pragma once
-// Where everything that keeps time takes it from, and sleeps by: the machine's clock since it was booted, or one
-// that only its owner moves.
+// Where everything that keeps time takes it from, and sleeps by: the machine's clock since it was booted, or
+// one that only its owner moves.
 
 #include <algorithm>
 
@@ -21,8 +21,8 @@ class Clock {
   virtual void sleep_until(Nanoseconds due) const noexcept = 0;
 };
 
-/// CLOCK_BOOTTIME: never set, and, unlike CLOCK_MONOTONIC, it goes on while the machine sleeps. To a board, whose
-/// watchdog vents meanwhile, a lid that was closed is a pause like any other.
+/// CLOCK_BOOTTIME: never set, and, unlike CLOCK_MONOTONIC, it goes on while the machine sleeps. To a board,
+/// whose watchdog vents meanwhile, a lid that was closed is a pause like any other.
 [[nodiscard]] Nanoseconds monotonic_now() noexcept;
 
 /// monotonic_now() for whoever may be given another clock.
@@ -44,8 +44,8 @@ class VirtualClock final : public Clock {
   mutable Nanoseconds now_ = 0;
 };
 
-/// How far MonotonicClock is ahead of CLOCK_MONOTONIC, by which the kernel stamps edges: for how long the machine has
-/// slept, in whole milliseconds.
+/// How far MonotonicClock is ahead of CLOCK_MONOTONIC, by which the kernel stamps edges: for how long the
+/// machine has slept, in whole milliseconds.
 [[nodiscard]] Nanoseconds time_asleep() noexcept;
 
 }  // namespace softgrip

@@ -7,8 +7,8 @@
 
 namespace softgrip {
 
-/// What the wall clock showed, or will show, at a moment of the machine's clock (base/clock.h): nanoseconds since
-/// 1970 (UTC). By what both clocks show now, so a clock that was set moves the past as well.
+/// What the wall clock showed, or will show, at a moment of the machine's clock (base/clock.h): nanoseconds
+/// since 1970 (UTC). By what both clocks show now, so a clock that was set moves the past as well.
 [[nodiscard]] Nanoseconds wall_time(Nanoseconds moment);
 /// What it shows now.
 [[nodiscard]] Nanoseconds wall_time_now();

@@ -29,7 +29,8 @@ std::string numeric(const std::string& host) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   for (const int family : {AF_INET, AF_INET6}) {
     if (inet_pton(family, host.c_str(), address.data()) != 1) continue;
-    const bool mapped = family == AF_INET6 && std::equal(mapped_prefix.begin(), mapped_prefix.end(), address.begin());
+    const bool mapped =
+        family == AF_INET6 && std::equal(mapped_prefix.begin(), mapped_prefix.end(), address.begin());
     const unsigned char* const bytes = mapped ? address.data() + mapped_prefix.size() : address.data();
     if (inet_ntop(mapped ? AF_INET : family, bytes, text.data(), text.size()) != nullptr) return text.data();
   }
