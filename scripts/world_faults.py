@@ -34,6 +34,8 @@ FAULTS = (
      "if (facts.cause_present) {", "if (false) {"),
     ("a fault holds where it should vent", "control/tick/supervisor.cpp",
      "if (action_for(fault.code, fault_phase_) == SafeAction::vent) venting_ = all_;", ""),
+    ("what another master wrote is no fault", "daemon/loop/bus.cpp", "return FaultCode::outputs_overwritten;",
+     "return FaultCode::none;"),
     ("every report of the bus is kept", "daemon/loop/bus.cpp",
      "wires_.bus.publish(report_);",
      "wires_.bus.publish(report_);\n  static auto& kept = *new std::vector<BusReport>;\n  kept.push_back(report_);", 600),

@@ -98,7 +98,8 @@ void WorldBoard::carry() {
       }
       if (!hardware_.ignores_writes()) on_write_(request.began, request.sent);
       request.taken = hardware_.write(now, request.sent);
-      for (std::size_t i = 0; i < request.read.size(); ++i) hardware_.read(i, now, request.read[i]);
+      for (std::size_t i = 0; i < request.read.size(); ++i)
+        hardware_.read(i, scheduler_.shown(), request.read[i]);
       request.there = true;
     }
     const bool under_way = request_ && !request_->there;

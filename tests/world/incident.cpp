@@ -16,18 +16,18 @@ namespace {
 
 using Kind = Incident::Kind;
 
-constexpr std::array<const char*, 23> names{"start",       "start and stop at once",
-                                            "stop",        "vent",
-                                            "release",     "acknowledge",
-                                            "flood",       "terminate",
-                                            "kill",        "pause",
-                                            "pause late",  "pause all",
-                                            "line",        "replies lost",
-                                            "slow line",   "writes refused",
-                                            "foreign",     "sensor stuck",
-                                            "sensor lost", "line leaks",
-                                            "part gone",   "emergency stop",
-                                            "disk full"};
+constexpr std::array<const char*, 24> names{"start",          "start and stop at once",
+                                            "stop",           "vent",
+                                            "release",        "acknowledge",
+                                            "flood",          "terminate",
+                                            "kill",           "pause",
+                                            "pause late",     "pause all",
+                                            "clock stalls",   "line",
+                                            "replies lost",   "slow line",
+                                            "writes refused", "foreign",
+                                            "sensor stuck",   "sensor lost",
+                                            "line leaks",     "part gone",
+                                            "emergency stop", "disk full"};
 constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
 
 /// How often each happens, of all that happens.
@@ -45,6 +45,8 @@ constexpr std::array shares{
     Share{Kind::sensor_lost, 2},    Share{Kind::line_leaks, 2},   Share{Kind::part_gone, 6},
     Share{Kind::emergency_stop, 3}, Share{Kind::disk_full, 2},
 };
+
+constexpr double mean_time_between_stalls_s = 20;
 
 class Drawing {
  public:
@@ -127,6 +129,19 @@ bool lasts(Kind kind) {
   return kind >= Kind::pause;
 }
 
+/// Drawn apart from all others, which are the same with and without them.
+void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
+  Drawing drawing(derived_seed(draw.seed, 3));
+  for (double at_s = 1;;) {
+    at_s += -mean_time_between_stalls_s * std::log(drawing.uniform());
+    const Nanoseconds at = nanoseconds(at_s);
+    if (at >= draw.length) return;
+    Incident stall{at, Kind::clock_stalls, nanoseconds(pause_s(drawing, draw.watchdog)), 0, 0};
+    stall.value = draw.late_bus && drawing.uniform() < 0.5 ? 1 : 0;
+    incidents.push_back(stall);
+  }
+}
+
 }  // namespace
 
 std::string text_of(const Incident& incident) {
@@ -145,6 +160,9 @@ std::string text_of(const Incident& incident) {
     case Kind::pause:
     case Kind::pause_late:
       text += fmt::format(" {}", parts[incident.target]);
+      break;
+    case Kind::clock_stalls:
+      text += incident.value > 0 ? ", loses the time," : "";
       break;
     case Kind::line:
       text += fmt::format(" {}", drivers::name_of(static_cast<drivers::BusStatus>(incident.target)));
@@ -186,6 +204,7 @@ std::vector<Incident> draw_incidents(const Draw& draw) {
     clear.kind = Kind::acknowledge;
     incidents.insert(std::prev(incidents.end()), clear);
   }
+  draw_stalls(draw, incidents);
   std::stable_sort(incidents.begin(), incidents.end(),
                    [](const Incident& a, const Incident& b) { return a.at < b.at; });
   return incidents;

@@ -16,6 +16,9 @@ constexpr double equal_kpa = 1e-9;
 constexpr Nanoseconds vent_bound = ns_per_s / 10;
 /// A watchdog that has tripped is a latched fault by then.
 constexpr Nanoseconds trip_bound = ns_per_s / 2;
+/// So is another master: one exchange in eight begins with a reading, and some of its writes fall between two
+/// of ours.
+constexpr Nanoseconds foreign_bound = ns_per_s / 2;
 
 double lowest(const control::RigSettings& rig, std::size_t channel) {
   return rig.channels[channel].limits.pressure_min_kpa;
@@ -62,6 +65,7 @@ void Monitor::boots() {
   steps_ = {};
   vent_waits_.reset();
   trip_untold_.reset();
+  foreign_unseen_.reset();
   dead_.reset();
 }
 
@@ -205,6 +209,7 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
       violate(now, "a board with a watchdog vents when the daemon is gone", "outputs are still up");
     return;
   }
+  watch_foreign(now, excuse, duration);
   if (excuse.paused || excuse.no_line) return;
   if (vent_waits_) {
     *vent_waits_ += duration;
@@ -217,6 +222,28 @@ void Monitor::passed(Nanoseconds now, const Excuse& excuse, std::span<const doub
   if (trip_untold_) *trip_untold_ += duration;
   if (trip_untold_ && *trip_untold_ > trip_bound)
     violate(now, "a watchdog that has tripped is a fault", "none was latched");
+}
+
+void Monitor::foreign_wrote(std::span<const double> outputs_kpa) noexcept {
+  foreign_ = true;
+  bool differs = false;
+  for (std::size_t i = 0; i < outputs_kpa.size(); ++i)
+    differs = differs || std::abs(outputs_kpa[i] - last_kpa_[i]) > equal_kpa;
+  if (!differs) {
+    foreign_unseen_.reset();
+  } else if (!foreign_unseen_) {
+    foreign_unseen_ = 0;
+  }
+}
+
+void Monitor::watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration) {
+  if (!foreign_unseen_ || excuse.paused || excuse.line_but_for_foreign) return;
+  // Who is faulted already, or has not begun, writes the lowest pressures, and so may the other.
+  const bool answered = state_ == State::faulted || state_ == State::starting;
+  foreign_unseen_ = answered ? 0 : *foreign_unseen_ + duration;
+  if (*foreign_unseen_ > foreign_bound)
+    violate(now, "another master is noticed",
+            fmt::format("it has written for {:.3f} s of undisturbed time", seconds(*foreign_unseen_)));
 }
 
 void Monitor::left(Nanoseconds now, std::span<const double> outputs_kpa) {

@@ -25,6 +25,7 @@ struct Violation {
 struct Excuse {
   bool paused = false;   ///< a thread or the whole process stands still
   bool no_line = false;  ///< something on the line or the board hinders exchanges, or none was good since
+  bool line_but_for_foreign = false;  ///< the same, where another master does not count
   bool no_daemon = false;
 };
 
@@ -32,14 +33,16 @@ class Monitor {
  public:
   Monitor(const control::RigSettings& rig, Nanoseconds watchdog);
 
-  /// After a tick of the loop.
+  /// After a tick of the loop; `now` by the daemon's clock.
   void ticked(Nanoseconds now, const control::TickOutput& output);
   /// Before a write of the daemon reaches the board, whose outputs are as given. `began`: its exchange.
   void write(Nanoseconds began, Nanoseconds now, std::span<const double> outputs_kpa,
              std::span<const double> commands_kpa, bool safe_outputs);
   /// The daemon looked at its permission to move when this exchange began.
   void exchange_begins() noexcept { armed_at_entry_ = armed_; }
-  void foreign_wrote() noexcept { foreign_ = true; }
+  /// Another master has written these.
+  void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
+  void foreign_ended() noexcept { foreign_unseen_.reset(); }
   /// The board's watchdog has vented. `has_spoken`: the daemon has had a good exchange, so it can know.
   void tripped(bool has_spoken);
   void asked(control::Request::Kind kind);
@@ -63,6 +66,7 @@ class Monitor {
   void watch_events(Nanoseconds now, const control::TickOutput& output);
   void watch_state(Nanoseconds now, const control::TickOutput& output);
   void watch_grips(Nanoseconds now, const control::TickOutput& output);
+  void watch_foreign(Nanoseconds now, const Excuse& excuse, Nanoseconds duration);
 
   const control::RigSettings& rig_;
   Nanoseconds watchdog_;
@@ -85,7 +89,9 @@ class Monitor {
   std::array<control::GripResult, control::max_channels> results_{};
   std::array<std::uint16_t, control::max_channels> steps_{};
   std::array<Nanoseconds, control::max_channels> step_began_{};
-  std::optional<Nanoseconds> vent_waits_;   // unexcused time since it was asked
+  std::optional<Nanoseconds> vent_waits_;  // unexcused time since it was asked
+  std::optional<Nanoseconds>
+      foreign_unseen_;  // unexcused time in which another master has written something else
   std::optional<Nanoseconds> trip_untold_;  // unexcused time since the board vented
   std::optional<Nanoseconds> dead_;         // time without a daemon
 };

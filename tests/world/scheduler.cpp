@@ -72,6 +72,25 @@ void Scheduler::sleep_until(Nanoseconds due) {
   fibre.give_back();
 }
 
+void Scheduler::stall_clock(Nanoseconds duration, bool loses) {
+  if (clock_stalled()) return;
+  stall_shows_ = now_ - lost_;
+  stall_ends_ = now_ + duration;
+  if (loses) lost_ += duration;
+  for (Actor& actor : actors_) {
+    if (!actor.by_clock || actor.due < now_) continue;
+    actor.due = loses ? actor.due + duration : std::max(actor.due, stall_ends_);
+  }
+}
+
+void Scheduler::sleep_until_shown(Nanoseconds due) {
+  const ActorId self = running_;
+  actors_[self].by_clock = true;
+  const Nanoseconds at = due + lost_;
+  sleep_until(clock_stalled() && due > stall_shows_ ? std::max(at, stall_ends_) : at);
+  actors_[self].by_clock = false;
+}
+
 void Scheduler::looked() {
   if (!inside_) return;
   Actor& self = actors_[running_];

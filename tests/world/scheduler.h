@@ -40,6 +40,16 @@ class Scheduler {
   void stop() noexcept { stopped_ = true; }
 
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
+
+  /// The daemon's clock stands still for `duration`, and who sleeps by it sleeps on. Then it has lost the
+  /// time, or catches up. Another stall meanwhile is none.
+  void stall_clock(Nanoseconds duration, bool loses);
+  [[nodiscard]] bool clock_stalled() const noexcept { return now_ < stall_ends_; }
+  /// What that clock shows.
+  [[nodiscard]] Nanoseconds shown() const noexcept { return clock_stalled() ? stall_shows_ : now_ - lost_; }
+  /// From within an actor: until that clock shows `due`.
+  void sleep_until_shown(Nanoseconds due);
+
   /// From within an actor. A sleep ends a little late, as the kernel's do.
   void sleep_until(Nanoseconds due);
   /// From within an actor, which has just looked at the clock.
@@ -52,6 +62,7 @@ class Scheduler {
     Nanoseconds due = 0;
     Nanoseconds paused_until = 0;
     Nanoseconds pause_after_look = 0;
+    bool by_clock = false;  // it sleeps by the daemon's clock
     bool over = false;
 
     [[nodiscard]] Nanoseconds goes_on() const noexcept { return due > paused_until ? due : paused_until; }
@@ -61,6 +72,9 @@ class Scheduler {
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
   Nanoseconds now_;
+  Nanoseconds lost_ = 0;  // by the clock, from the end of the present stall on
+  Nanoseconds stall_ends_ = 0;
+  Nanoseconds stall_shows_ = 0;
   std::vector<Actor> actors_;
   ActorId running_ = 0;
   bool inside_ = false;
@@ -72,13 +86,13 @@ class WorldClock final : public Clock {
  public:
   explicit WorldClock(Scheduler& scheduler) : scheduler_(scheduler) {}
   [[nodiscard]] Nanoseconds now() const noexcept override {
-    const Nanoseconds seen = scheduler_.now();
+    const Nanoseconds seen = scheduler_.shown();
     if (std::exchange(slept_, false)) woke_ = seen;
     scheduler_.looked();
     return seen;
   }
   void sleep_until(Nanoseconds due) const noexcept override {
-    scheduler_.sleep_until(due);
+    scheduler_.sleep_until_shown(due);
     slept_ = true;
   }
   /// What it showed at the first look after the last sleep.

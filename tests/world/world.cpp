@@ -195,6 +195,7 @@ class World {
       excuse.no_daemon = daemon_ == nullptr;
       excuse.paused = daemon_ && is_paused();
       excuse.no_line = line_hindered_ > 0 || !good_since_;
+      excuse.line_but_for_foreign = line_hindered_ > (foreign_ != nullptr ? 1 : 0) || !good_since_;
       monitor_.passed(now, excuse, hardware_.outputs_kpa());
       if (monitor_.violation()) {
         scheduler_.stop();
@@ -237,7 +238,7 @@ class World {
   }
 
   bool is_paused() {
-    bool any = false;
+    bool any = scheduler_.clock_stalled();
     for (std::size_t i = 0; i < part_count; ++i)
       any = any || scheduler_.paused(daemon_->actor(static_cast<Part>(i)));
     if (any) undisturbed_since_ = scheduler_.now();
@@ -267,7 +268,7 @@ class World {
     if (scheduler_.now() - last_tick_ > longest_tick_gap) last_tick_gap_end_ = scheduler_.now();
     last_tick_ = scheduler_.now();
     const control::TickOutput& output = daemon_->controller.output();
-    monitor_.ticked(scheduler_.now(), output);
+    monitor_.ticked(scheduler_.shown(), output);
     recorded_.push_back(daemon_->loop_clock.woke() - daemon_->origin);
     for (const control::Event& event : output.events) note(event);
   }
@@ -347,6 +348,8 @@ void World::carry_out(const Incident& incident, bool begins) {
   } else if (incident.kind == Kind::pause || incident.kind == Kind::pause_late ||
              incident.kind == Kind::pause_all) {
     if (begins && daemon_) pause(incident);
+  } else if (incident.kind == Kind::clock_stalls) {
+    if (begins) scheduler_.stall_clock(incident.duration, incident.value > 0);
   } else if (incident.kind == Kind::disk_full) {
     disk_full_ = begins;
     disk_was_full_ = true;
@@ -433,11 +436,12 @@ void World::to_line(const Incident& incident, bool begins) {
       break;
     case Kind::foreign:
       foreign_ = begins ? &incident : nullptr;
+      monitor_.foreign_ended();
       if (begins) {
         scheduler_.add("foreign", [this, &incident] {
           const std::vector<double> outputs(hardware_.channels(), incident.value);
           while (foreign_ == &incident) {
-            monitor_.foreign_wrote();
+            monitor_.foreign_wrote(outputs);
             hardware_.write(scheduler_.now(), outputs);
             scheduler_.sleep_until(scheduler_.now() + foreign_period);
           }
