@@ -66,6 +66,7 @@ class Recording:
             self.check_range(name, rows)
             for before, row in zip(rows, rows[1:]):
                 self.check_step(name, before, row)
+                self.check_fall(name, before, row, last=row is rows[-1])
             self.check_results(rows)
         self.check_events()
         return self.wrong
@@ -112,6 +113,16 @@ class Recording:
             allowed = limits["slew_up_kpa_per_s"] * self.about["decimation"] / self.about["rate_hz"]
             if change > allowed + CELL:
                 self.says(row, f"the command rises by {change:.6f} kPa in a tick, {allowed:.6f} are its slew")
+
+    def check_fall(self, name, before, row, last):
+        """Within the slew, but for what is written in one step: under a fault, and as the last of all."""
+        limits = self.limits.get(name)
+        if limits is None or row["state"] == "faulted" or last:
+            return
+        fall = float(before["pressure_command_kpa"]) - float(row["pressure_command_kpa"])
+        allowed = limits["slew_down_kpa_per_s"] * self.about["decimation"] / self.about["rate_hz"]
+        if fall > allowed + CELL:
+            self.says(row, f"the command falls by {fall:.6f} kPa in a tick, {allowed:.6f} are its slew")
 
     # --- answers
 

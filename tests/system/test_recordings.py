@@ -62,6 +62,9 @@ class Recordings(bench.BenchTest):
             row = last(rows, "running")
             row["pressure_command_kpa"] = str(float(row["pressure_command_kpa"]) + 10)
 
+        def fall(rows):
+            last(rows, "running")["pressure_command_kpa"] = "0"
+
         def lose_a_row(rows):
             del rows[len(rows) // 2]
 
@@ -78,7 +81,8 @@ class Recordings(bench.BenchTest):
         def go_on_under_a_fault(rows):
             rows[-1]["state"] = rows[-2]["state"] = "running"
 
-        for change, sentence in ((rise, "while faulted"), (leave_range, "out of the range"), (jump, "its slew"),
+        for change, sentence in ((rise, "while faulted"), (leave_range, "out of the range"), (jump, "the command rises by 1"),
+                                 (fall, "the command falls by"),
                                  (lose_a_row, "out of order"), (lose_a_tick, "run.json says"), (swap, "its time follows"),
                                  (hold_blindly, "HOLDING from a reading that is stale"),
                                  (go_on_under_a_fault, "faulted is followed by running")):
