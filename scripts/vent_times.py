@@ -7,6 +7,7 @@ docs/reliability.md. Needs a release build (SOFTGRIP_BUILD); the full disk needs
 """
 
 import argparse
+import contextlib
 import os
 import pathlib
 import re
@@ -38,7 +39,7 @@ def repeated(name, times):
     waited, wrong = [], 0
     for _ in range(times):
         test_hearing.Hearing.waited_s.clear()
-        with open(os.devnull, "w") as quiet:
+        with open(os.devnull, "w") as quiet, contextlib.redirect_stdout(quiet):
             outcome = unittest.TextTestRunner(quiet, verbosity=0).run(test_hearing.Hearing(name))
         for _, text in outcome.failures + outcome.errors:
             print(f"{name}:\n{text}", file=sys.stderr)
