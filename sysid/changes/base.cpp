@@ -25,9 +25,13 @@ constexpr std::array ridges{1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
 /// by heart passes: on the next day it is a zero that wanders.
 constexpr double longest_block_s = 10;
 constexpr std::size_t folds = 8;
-/// A valve answers sooner than a finger.
-constexpr double shortest_finger_bin_s = 0.05, shortest_valve_bin_s = 0.02;
+/// A valve answers sooner than a finger: whatever the command drives is judged in shorter bins, and so is a
+/// finger's own delay told from its lag.
+constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
+/// In bins, of what is left; of a finger, which forgets later than a valve, so many seconds where that is
+/// more.
 constexpr std::size_t whitening_order = 8;
+constexpr double finger_memory_s = 0.4;
 /// From day to day no gain and no zero stays nearer than this.
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
@@ -36,7 +40,15 @@ constexpr double least_zero_share = 0.0005;
 struct Choice {
   std::string description;
   FitPoint point;
+  std::optional<Regulator> regulator = {};
 };
+
+std::vector<Record> behind(const std::optional<Regulator>& regulator, const std::vector<Record>& records) {
+  if (!regulator) return records;
+  std::vector<Record> driven;
+  for (const Record& record : records) driven.push_back(behind(*regulator, record));
+  return driven;
+}
 
 double mean_temperature(const std::vector<Record>& records) {
   double sum = 0, count = 0;
@@ -62,8 +74,8 @@ std::vector<double> started_prediction(const Choice& choice, const std::vector<R
 
 class EchoFit {
  public:
-  EchoFit(const std::vector<Record>& records, const Choice& choice, const Base& base)
-      : records_(records), base_(base) {
+  EchoFit(const std::vector<Record>& records, const Choice& choice, EchoKind kind, const Base& base)
+      : records_(records), base_(base), kind_(kind) {
     double whole_s = 0;
     for (const Record& record : records) whole_s += record.length_s();
     const double block_s = std::min(longest_block_s, whole_s / folds);
@@ -118,6 +130,7 @@ class EchoFit {
   [[nodiscard]] double left_mm() const { return left_mm_; }
 
   void write(Base& base) const {
+    base.kind = kind_;
     base.echo_weights = weights_.head(echo_count_);
     base.left_mm = left_mm_;
     base.left.clear();
@@ -131,7 +144,7 @@ class EchoFit {
  private:
   void add(std::size_t r, const std::vector<double>& prediction) {
     const Record& record = records_[r];
-    const Eigen::MatrixXd echo = echo_columns(record, record.drive_kpa, base_.kind, base_.largest_kpa);
+    const Eigen::MatrixXd echo = echo_columns(record, record.drive_kpa, kind_, base_.largest_kpa);
     echo_count_ = echo.cols();
     std::vector<std::vector<double>> series;
     for (Eigen::Index c = 0; c < echo.cols(); ++c)
@@ -188,6 +201,7 @@ class EchoFit {
 
   const std::vector<Record>& records_;
   const Base& base_;
+  EchoKind kind_;
   Eigen::MatrixXd columns_;
   Eigen::VectorXd target_, weights_, left_;
   std::vector<std::size_t> fold_, record_, bin_;
@@ -211,6 +225,14 @@ std::vector<Choice> choices(const std::vector<Record>& records, const Base& base
         return Choice{"Bouc-Wen and two creep branches",
                       fit_published(records, base.drive, 6, options.seed).point};
       }};
+  if (command) {
+    makes.emplace_back([&] {
+      const Regulator regulator = fit_regulator(records, base.largest_kpa);
+      const std::vector<Record> driven = behind(regulator, records);
+      const FittedStructure fit = fit_form(driven, play, grid_for(driven), {});
+      return Choice{"a regulator, " + description_of(play), point_of(fit, driven, base.drive), regulator};
+    });
+  }
   if (options.given) {
     makes.emplace_back([&] {
       const model::Model model = deterministic_part(*options.given, base.drive);
@@ -220,6 +242,18 @@ std::vector<Choice> choices(const std::vector<Record>& records, const Base& base
   std::vector<Choice> made(makes.size());
   parallel_for(makes.size(), options.threads, [&](std::size_t i) { made[i] = makes[i](); });
   return made;
+}
+
+/// Behind a valve whose pressure is not recorded, a finger shows what either of them does.
+std::vector<EchoKind> kinds_for(Judged judged, Drive drive) {
+  if (judged == Judged::pressure) return {EchoKind::valve};
+  if (drive == Drive::measured) return {EchoKind::finger};
+  return {EchoKind::finger, EchoKind::valve_and_finger};
+}
+
+std::size_t order_for(const Base& base) {
+  if (base.judged == Judged::pressure) return whitening_order;
+  return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
 }
 
 /// How far gain and zero of the healthy logs differ from log to log.
@@ -241,29 +275,14 @@ void spread(Base& base) {
   base.zero_spread_mm = std::max(least_zero_share * base.span_mm, count > 0 ? std::sqrt(zeros / count) : 0);
 }
 
-}  // namespace
-
-Eigen::VectorXd echo_of(const Base& base, const Record& record) {
-  return echo_columns(record, record.drive_kpa, base.kind, base.largest_kpa) * base.echo_weights;
-}
-
-std::vector<double> predict_base(const Base& base, const Record& record, const Extension& extension,
-                                 const Eigen::VectorXd* echo) {
-  if (!extension.valve.empty()) {
-    Record driven = record;
-    driven.drive_kpa = drive_behind(extension.valve, record);
-    driven.held = false;
-    Extension rest = extension;
-    rest.valve.clear();
-    return predict_base(base, driven, rest);
-  }
+std::vector<double> driven_prediction(const Base& base, const Driven& driven, const Extension& extension) {
+  const Record& record = driven.record;
   model::Model model = base.model;
   for (const model::BlockSpec& block : extension.chain) model = model::with_block(std::move(model), block);
   std::vector<double> y = plain_prediction(model, record);
-  const Eigen::VectorXd added = echo != nullptr ? *echo : echo_of(base, record);
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double warmer = record.temperature_c.empty() ? 0 : record.temperature_c[i] - base.temperature_c;
-    y[i] = (y[i] + added(static_cast<Eigen::Index>(i))) * extension.gain *
+    y[i] = (y[i] + driven.echo(static_cast<Eigen::Index>(i))) * extension.gain *
            (1 + (base.gain_per_c + extension.gain_per_c) * warmer);
   }
   if (extension.softening.share != 0) {
@@ -273,6 +292,25 @@ std::vector<double> predict_base(const Base& base, const Record& record, const E
   if (base.judged == Judged::pressure)
     y = pressure_behind(extension.line, extension.loss, record, std::move(y));
   return y;
+}
+
+}  // namespace
+
+Driven driven_by(const Base& base, const Record& record) {
+  Driven driven{base.regulator ? behind(*base.regulator, record) : record, {}};
+  driven.echo =
+      weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa, base.echo_weights);
+  return driven;
+}
+
+std::vector<double> predict_base(const Base& base, const Record& record, const Extension& extension,
+                                 const Driven* driven) {
+  if (extension.valve.empty())
+    return driven_prediction(base, driven != nullptr ? *driven : driven_by(base, record), extension);
+  Record after = record;
+  after.drive_kpa = drive_behind(extension.valve, record);
+  after.held = false;
+  return driven_prediction(base, driven_by(base, after), extension);
 }
 
 Record thinned_for(const Base& base, const Record& record) {
@@ -291,8 +329,7 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
   Base base;
   base.judged = judged;
   base.drive = drive;
-  base.kind = judged == Judged::pressure ? EchoKind::valve : EchoKind::finger;
-  base.bin_s = bin_s(records, judged == Judged::pressure ? shortest_valve_bin_s : shortest_finger_bin_s);
+  base.bin_s = bin_s(records, drive == Drive::command ? shortest_commanded_bin_s : shortest_finger_bin_s);
   base.temperature_c = mean_temperature(records);
   for (const Record& record : records) {
     base.largest_kpa = std::max(base.largest_kpa, record.largest_kpa);
@@ -301,17 +338,21 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
   }
   base.left_mm = std::numeric_limits<double>::infinity();
   for (const Choice& choice : choices(records, base, options)) {
-    EchoFit echo(records, choice, base);
-    echo.run();
+    const std::vector<Record> driven = behind(choice.regulator, records);
+    for (const EchoKind kind : kinds_for(judged, drive)) {
+      EchoFit echo(driven, choice, kind, base);
+      echo.run();
+      if (!(echo.left_mm() < base.left_mm)) continue;
+      base.model = choice.point.model;
+      base.regulator = choice.regulator;
+      base.description = choice.description;
+      echo.write(base);
+    }
     if (options.progress) options.progress(choice.description);
-    if (!(echo.left_mm() < base.left_mm)) continue;
-    base.model = choice.point.model;
-    base.description = choice.description;
-    echo.write(base);
   }
   Binned haste;
   for (const Record& record : records) haste.push_back(haste_of(record, base.bin_s));
-  base.whitener = whitener_of(base.left, haste, whitening_order);
+  base.whitener = whitener_of(base.left, haste, order_for(base));
   for (const Record& record : records) base.records.push_back(thinned_for(base, record));
   spread(base);
   return base;

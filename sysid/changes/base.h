@@ -14,6 +14,7 @@
 #include "sysid/changes/bins.h"
 #include "sysid/changes/echo.h"
 #include "sysid/changes/extension.h"
+#include "sysid/changes/regulator.h"
 #include "sysid/fitting/fit_space.h"
 #include "sysid/logs/record.h"
 
@@ -35,6 +36,7 @@ struct Base {
   std::string description;  ///< of the model that was chosen
   model::Model model;       ///< without blocks: the echo alone
   EchoKind kind = EchoKind::finger;
+  std::optional<Regulator> regulator;  ///< between the command and the model
   double largest_kpa = 0;
   Eigen::VectorXd echo_weights;
   double temperature_c = 20;  ///< of the healthy logs, mean
@@ -62,14 +64,17 @@ struct BaseOptions {
 [[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
                             const BaseOptions& options);
 
-/// What the echo adds to the model's prediction for a record, its drive unchanged.
-[[nodiscard]] Eigen::VectorXd echo_of(const Base& base, const Record& record);
+/// A record behind the valve of a base as it is, and what the echo adds to the model's prediction there.
+struct Driven {
+  Record record;
+  Eigen::VectorXd echo;
+};
+[[nodiscard]] Driven driven_by(const Base& base, const Record& record);
 
 /// What the base, changed by `extension`, would read; without offset.
-/// @param echo  echo_of the record, where it is known already.
+/// @param driven  driven_by() of the record, where it is known already.
 [[nodiscard]] std::vector<double> predict_base(const Base& base, const Record& record,
-                                               const Extension& extension,
-                                               const Eigen::VectorXd* echo = nullptr);
+                                               const Extension& extension, const Driven* driven = nullptr);
 
 /// As a search for changes walks it, some samples in every bin: a valve answers sooner than a finger.
 [[nodiscard]] Record thinned_for(const Base& base, const Record& record);

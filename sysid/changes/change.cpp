@@ -19,10 +19,12 @@ namespace {
 /// A gain is a change where it passes so many times what the cause gains on the healthy logs while they are
 /// held out, and a little more.
 constexpr double chance_ratio = 2.0;
-constexpr double least_gain = 0.03;
+/// In whitened squares per second, whatever the bins. A regulator repeats itself less well than a finger.
+constexpr double least_gain_per_s = 0.6, least_gain_of_pressure_per_s = 1.5;
 /// What one cause gains there another one of its kind may gain as well.
 constexpr double chance_of_others = 0.35;
-/// A change is at least so large, of what the base usually leaves of healthy readings.
+/// A change is at least so large, of what the base usually leaves of healthy readings, either as they are or
+/// whitened: a fast oscillation is seen beside slow misses that are larger.
 constexpr double least_size = 0.5;
 /// From here on the temperature is the finger's own.
 constexpr double own_temperature_gain = 0.05;
@@ -161,8 +163,14 @@ class Judge {
     return chance;
   }
 
-  static bool stands_out(const ScoredEffect& scored) {
+  [[nodiscard]] bool stands_out(const ScoredEffect& scored) const {
+    const bool pressure = base_.judged == Judged::pressure;
+    const double least_gain = base_.bin_s * (pressure ? least_gain_of_pressure_per_s : least_gain_per_s);
     return scored.gain > least_gain + chance_ratio * scored.chance;
+  }
+  [[nodiscard]] bool is_large(const LaterReadings& readings, const Binned& added) const {
+    return rms_of(added, 0) >= least_size * usual_left(base_.left) ||
+           per_bin(readings, readings.rows()(added).squaredNorm()) >= least_size * least_size;
   }
 
   static double per_bin(const LaterReadings& readings, double value) {
@@ -188,8 +196,8 @@ class Judge {
     found.push_back(scored.fit.fitted);
     // What takes the prediction farther from what was measured, and is there only once the readings are
     // whitened, is the shape of the base's own misses.
-    weighed.is_a_change = rms_of(weighed.added, 0) >= least_size * usual_left(base_.left) &&
-                          weighed.spread.lower > 0 && readings.plain_rms(found) < without_it;
+    weighed.is_a_change = is_large(readings, weighed.added) && weighed.spread.lower > 0 &&
+                          readings.plain_rms(found) < without_it;
     return weighed;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace softgrip::sysid {
 namespace {
@@ -51,8 +52,8 @@ std::vector<Series> valve_signals(const Record& record, const Series& u, double 
         each(miss, [&](std::size_t i, double v) { return within(v, part * largest_kpa) * share(u[i]); }));
   }
   all.push_back(each(miss, [&](std::size_t i, double v) { return std::abs(v) * share(u[i]); }));
-  if (record.supply_kpa.empty()) return all;
-  const double usual = *std::max_element(record.supply_kpa.begin(), record.supply_kpa.end());
+  const bool known = !record.supply_kpa.empty();
+  const double usual = known ? *std::max_element(record.supply_kpa.begin(), record.supply_kpa.end()) : 0;
   const auto loss = [&](std::size_t i) { return usual > 0 ? record.supply_kpa[i] / usual - 1 : 0; };
   all.push_back(each(u, [&](std::size_t i, double v) { return v * loss(i); }));
   all.push_back(each(miss, [&](std::size_t i, double v) { return within(v, 0.05 * largest_kpa) * loss(i); }));
@@ -69,6 +70,19 @@ std::vector<Series> finger_signals(const Series& u, double largest_kpa) {
     all.push_back(play(u, part * largest_kpa));
     all.push_back(squared(all.back()));
   }
+  return all;
+}
+
+/// Signals, and the time constants by which each of them is filtered.
+struct Bank {
+  std::vector<Series> signals;
+  std::span<const double> lags_s;
+};
+
+std::vector<Bank> banks(const Record& record, const Series& drive_kpa, EchoKind kind, double largest_kpa) {
+  std::vector<Bank> all;
+  if (kind != EchoKind::valve) all.push_back({finger_signals(drive_kpa, largest_kpa), finger_lags_s});
+  if (kind != EchoKind::finger) all.push_back({valve_signals(record, drive_kpa, largest_kpa), valve_lags_s});
   return all;
 }
 
@@ -91,19 +105,40 @@ std::vector<double> lagged(const Record& record, const std::vector<double>& sign
 
 Eigen::MatrixXd echo_columns(const Record& record, const std::vector<double>& drive_kpa, EchoKind kind,
                              double largest_kpa) {
-  const std::vector<Series> signals = kind == EchoKind::valve ? valve_signals(record, drive_kpa, largest_kpa)
-                                                              : finger_signals(drive_kpa, largest_kpa);
-  const auto& lags_s = kind == EchoKind::valve ? valve_lags_s : finger_lags_s;
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(record.size()),
-                          static_cast<Eigen::Index>(signals.size() * lags_s.size()));
+  const std::vector<Bank> all = banks(record, drive_kpa, kind, largest_kpa);
+  std::size_t count = 0;
+  for (const Bank& bank : all) count += bank.signals.size() * bank.lags_s.size();
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(record.size()), static_cast<Eigen::Index>(count));
   Eigen::Index column = 0;
-  for (const Series& signal : signals) {
-    for (const double lag_s : lags_s) {
-      const Series filtered = lagged(record, signal, lag_s);
-      columns.col(column++) = Eigen::Map<const Eigen::VectorXd>(filtered.data(), columns.rows());
+  for (const Bank& bank : all) {
+    for (const Series& signal : bank.signals) {
+      for (const double lag_s : bank.lags_s) {
+        const Series filtered = lagged(record, signal, lag_s);
+        columns.col(column++) = Eigen::Map<const Eigen::VectorXd>(filtered.data(), columns.rows());
+      }
     }
   }
   return columns;
+}
+
+Eigen::VectorXd weighted_echo(const Record& record, const std::vector<double>& drive_kpa, EchoKind kind,
+                              double largest_kpa, const Eigen::VectorXd& weights) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size()));
+  Eigen::Index first = 0;
+  for (const Bank& bank : banks(record, drive_kpa, kind, largest_kpa)) {
+    const auto lags = static_cast<Eigen::Index>(bank.lags_s.size());
+    for (Eigen::Index l = 0; l < lags; ++l) {
+      Series mixed(record.size(), 0.0);
+      for (std::size_t s = 0; s < bank.signals.size(); ++s) {
+        const double weight = weights(first + static_cast<Eigen::Index>(s) * lags + l);
+        for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] += weight * bank.signals[s][i];
+      }
+      const Series filtered = lagged(record, mixed, bank.lags_s[static_cast<std::size_t>(l)]);
+      sum += Eigen::Map<const Eigen::VectorXd>(filtered.data(), sum.size());
+    }
+    first += static_cast<Eigen::Index>(bank.signals.size()) * lags;
+  }
+  return sum;
 }
 
 }  // namespace softgrip::sysid

@@ -12,14 +12,21 @@
 namespace softgrip::sysid {
 
 enum class EchoKind {
-  valve,   ///< command to pressure: bends, directions, a stage that saturates, the supply
-  finger,  ///< pressure to displacement: bends and plays
+  valve,             ///< command to pressure: bends, directions, a stage that saturates, the supply
+  finger,            ///< pressure to displacement: bends and plays
+  valve_and_finger,  ///< command to displacement: what either of them may do
 };
 
-/// One row per sample and one column per weight, all of the size of the drive [kPa].
+/// One row per sample and one column per weight, all of the size of the drive [kPa]. As many for every
+/// record: what a supply that is not recorded would tell is 0.
 /// @param drive_kpa  in place of the record's own, as long. @param largest_kpa  what bends are scaled by.
 [[nodiscard]] Eigen::MatrixXd echo_columns(const Record& record, const std::vector<double>& drive_kpa,
                                            EchoKind kind, double largest_kpa);
+
+/// echo_columns() times `weights`, with one filter per time constant in place of one per column.
+[[nodiscard]] Eigen::VectorXd weighted_echo(const Record& record, const std::vector<double>& drive_kpa,
+                                            EchoKind kind, double largest_kpa,
+                                            const Eigen::VectorXd& weights);
 
 /// A first-order lag of a signal that is straight between samples; settled at its first value.
 [[nodiscard]] std::vector<double> lagged(const Record& record, const std::vector<double>& signal,

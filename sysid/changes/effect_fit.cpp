@@ -129,9 +129,10 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
       left_(std::move(left)),
       rows_(left_, all_haste_of(later_, base.bin_s, left_), base.whitener) {
   for (std::size_t r = 0; r < later_.size(); ++r) {
-    echo_.push_back(echo_of(base_, later_[r]));
-    plain_.push_back(with_bins(
-        binned(later_[r], predict_base(base_, later_[r], {}, &echo_.back()), base_.bin_s), left_[r].size()));
+    driven_.push_back(driven_by(base_, later_[r]));
+    plain_.push_back(
+        with_bins(binned(later_[r], predict_base(base_, later_[r], {}, &driven_.back()), base_.bin_s),
+                  left_[r].size()));
   }
   target_ = rows_(left_);
   const std::size_t n = later_.size();
@@ -161,7 +162,7 @@ Binned LaterReadings::added(const std::vector<FittedEffect>& effects) const {
   Binned added;
   for (std::size_t r = 0; r < later_.size(); ++r) {
     added.push_back(
-        with_bins(binned(later_[r], predict_base(base_, later_[r], extension, &echo_[r]), base_.bin_s),
+        with_bins(binned(later_[r], predict_base(base_, later_[r], extension, &driven_[r]), base_.bin_s),
                   left_[r].size()));
     for (std::size_t b = 0; b < added[r].size(); ++b) added[r][b] -= plain_[r][b];
   }

@@ -52,7 +52,7 @@ class LaterReadings {
   std::vector<Record> later_;
   Binned left_;
   Binned plain_;
-  std::vector<Eigen::VectorXd> echo_;
+  std::vector<Driven> driven_;
   WhiteRows rows_;
   Eigen::VectorXd target_;
   Eigen::MatrixXd slack_, solver_;        ///< columns of zeros; what turns a residual into their sizes

@@ -123,6 +123,17 @@ class Collector {
                         [](Extension& e, const std::vector<double>& n) {
                           e.softening = {n[0], n[1]};
                         }});
+    effects_.push_back({"stress_softening",
+                        "Stress softening",
+                        model::Station::actuator,
+                        "softer_since_the_largest",
+                        false,
+                        {{"share", "", 0.02, 0, 3}},
+                        {{0.03}},
+                        {0},
+                        [](Extension& e, const std::vector<double>& n) {
+                          e.softening = {n[0], 0};
+                        }});
   }
   /// At which temperature the gain is still what it was, nobody knows: beside the slope goes a gain.
   void add_thermal() {

@@ -30,8 +30,9 @@ std::vector<double> softened(const Softening& softening, const Record& record, d
   std::vector<double> factor(record.size());
   for (std::size_t i = 0; i < record.size(); ++i) {
     most_kpa = std::max(most_kpa, record.drive_kpa[i]);
-    factor[i] = 1 + softening.share * most_kpa / largest_kpa *
-                        std::tanh((most_kpa - record.drive_kpa[i]) / softening.range_kpa);
+    const double below_kpa = most_kpa - record.drive_kpa[i];
+    const double part = softening.range_kpa > 0 ? std::tanh(below_kpa / softening.range_kpa) : 1;
+    factor[i] = 1 + softening.share * most_kpa / largest_kpa * part;
   }
   return factor;
 }

@@ -24,10 +24,10 @@ struct SlowLine {
 };
 
 /// Softer below the largest pressure so far m, as before at it: y times 1 + share m/largest tanh((m -
-/// p)/range) (after Ogden and Roxburgh, Proc. R. Soc. A 455, 1999).
+/// p)/range) (after Ogden and Roxburgh, Proc. R. Soc. A 455, 1999); without a range, at it as below.
 struct Softening {
   double share = 0;
-  double range_kpa = 10;
+  double range_kpa = 10;  ///< 0: none
 };
 
 struct Extension {

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "tests/sysid/changes/finger.h"
 
@@ -45,13 +47,43 @@ TEST(Base, IsFittedToLogsOfAFewSeconds) {
   EXPECT_LT(base.left_mm, 0.2);
 }
 
-TEST(Base, AValveIsJudgedInShorterBinsThanAFinger) {
+TEST(Base, WhatAValveDoesIsJudgedInShorterBinsThanAFinger) {
   std::vector<Log> logs = test::logs_of({}, 1, true);
   for (Log& log : logs) {
     for (double& t : log.time_s) t /= 4;  // 200 Hz
   }
   EXPECT_DOUBLE_EQ(fit_base(pressure_records(logs, false), Judged::pressure, Drive::command, {}).bin_s, 0.02);
-  EXPECT_DOUBLE_EQ(base_of(logs).bin_s, 0.05);
+  EXPECT_DOUBLE_EQ(base_of(logs).bin_s, 0.02);
+  const std::vector<Record> behind_it = make_records(logs, {.drive = Drive::measured});
+  EXPECT_DOUBLE_EQ(fit_base(behind_it, Judged::displacement, Drive::measured, {}).bin_s, 0.05);
+}
+
+/// The same logs of a finger behind a regulator that is no lag.
+std::vector<Log> behind_a_narrow_port(std::vector<Log> logs) {
+  const Regulator narrow{
+      .play_kpa = 0.3, .dead_kpa = 0.9, .full_kpa = 20, .port_per_s = 0.5, .tube_per_s = 2};
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise_mm(0, 0.03);
+  for (Log& log : logs) {
+    const Record record = make_records({log}, {}).front();
+    const std::vector<double> p = regulated(narrow, record, record.drive_kpa);
+    double play = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      play = std::clamp(play, p[i] - 3, p[i] + 3);
+      log.displacement_mm[i] = 0.2 * (0.6 * p[i] + 0.4 * play) + noise_mm(random);
+    }
+  }
+  return logs;
+}
+
+TEST(Base, KnowsARegulatorThatItDoesNotSee) {
+  const std::vector<Log> healthy = behind_a_narrow_port(test::logs_of({}, 1));
+  const Base base = base_of(healthy);
+  EXPECT_TRUE(base.regulator.has_value());
+  EXPECT_LT(left_of_mm(base, behind_a_narrow_port(test::logs_of({}, 5))), 0.04);
+  const Record record = thinned_for(base, make_records(healthy, {}).front());
+  const Driven driven = driven_by(base, record);
+  EXPECT_EQ(predict_base(base, record, {}), predict_base(base, record, {}, &driven));
 }
 
 }  // namespace

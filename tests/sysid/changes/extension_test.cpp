@@ -62,11 +62,37 @@ TEST(Echo, ALagIsExactForWhatIsStraightBetweenSamples) {
 
 TEST(Echo, ColumnsKnowTheSupplyWhereItIsRecorded) {
   Record r = record();
-  const auto plain = echo_columns(r, r.drive_kpa, EchoKind::valve, 60);
+  const Eigen::MatrixXd plain = echo_columns(r, r.drive_kpa, EchoKind::valve, 60);
   EXPECT_EQ(plain.rows(), static_cast<Eigen::Index>(r.size()));
   EXPECT_TRUE(plain.allFinite());
   r.supply_kpa.assign(r.size(), 500.0);
-  EXPECT_GT(echo_columns(r, r.drive_kpa, EchoKind::valve, 60).cols(), plain.cols());
+  r.supply_kpa[r.size() / 2] = 400.0;
+  const Eigen::MatrixXd supplied = echo_columns(r, r.drive_kpa, EchoKind::valve, 60);
+  ASSERT_EQ(supplied.cols(), plain.cols());
+  EXPECT_NE(supplied, plain);
+}
+
+TEST(Echo, OfACommandHoldsWhatAFingerAndWhatAValveMayDo) {
+  const Record r = record();
+  const auto columns = [&](EchoKind kind) { return echo_columns(r, r.drive_kpa, kind, 60).cols(); };
+  EXPECT_EQ(columns(EchoKind::valve_and_finger), columns(EchoKind::valve) + columns(EchoKind::finger));
+}
+
+TEST(Echo, WeightedIsItsColumnsTimesTheWeights) {
+  const Record r = record();
+  for (const EchoKind kind : {EchoKind::valve, EchoKind::finger, EchoKind::valve_and_finger}) {
+    const Eigen::MatrixXd columns = echo_columns(r, r.drive_kpa, kind, 60);
+    const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(columns.cols(), -1, 2);
+    EXPECT_TRUE(weighted_echo(r, r.drive_kpa, kind, 60, weights).isApprox(columns * weights, 1e-9));
+  }
+}
+
+TEST(Extension, SoftenedSinceTheLargestPressureIsSofterAtIt) {
+  Record r = record();
+  for (std::size_t i = 0; i < r.size(); ++i) r.drive_kpa[i] = i < 10 ? 30 : 10;
+  const std::vector<double> factor = softened({0.2, 0}, r, 60);
+  EXPECT_DOUBLE_EQ(factor[5], 1.1);
+  EXPECT_DOUBLE_EQ(factor[20], 1.1);
 }
 
 }  // namespace

@@ -1,0 +1,250 @@
+#include "sysid/changes/regulator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "sysid/changes/bins.h"
+#include "sysid/changes/echo.h"
+#include "sysid/logs/centred_record.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double atmosphere_kpa = 101.325;
+constexpr double longest_step_s = 0.002;
+constexpr double supply_unknown = 4;  ///< times the largest command
+constexpr Eigen::Index numbers = 6;
+constexpr int most_steps = 15;
+/// Of the logarithms: a difference for a derivative, the longest move of a step.
+constexpr double beside_by = 0.03, longest_move = 1.5;
+constexpr double least_progress = 0.003;
+/// What a number costs that is e times what is usual, of the squares that are left there: the bank's own lags
+/// can stand for a wide tube, and what the readings do not tell stays where it is.
+constexpr double prior_share = 0.003;
+
+/// ISO 6358-1 with a critical ratio of 0.3, of absolute pressures; per conductance [kPa].
+double flow(double from_kpa, double to_kpa) {
+  if (from_kpa < to_kpa) return -flow(to_kpa, from_kpa);
+  constexpr double critical = 0.3, linear_above = 0.995;
+  const double ratio = to_kpa / from_kpa;
+  if (ratio <= critical) return from_kpa;
+  const auto subsonic = [](double r) {
+    const double x = (r - critical) / (1 - critical);
+    return std::sqrt(1 - x * x);
+  };
+  static const double at_linear = subsonic(linear_above);
+  return from_kpa * (ratio < linear_above ? subsonic(ratio) : at_linear * (1 - ratio) / (1 - linear_above));
+}
+
+/// One regulator at work. Pressures are absolute.
+class Walk {
+ public:
+  Walk(const Regulator& regulator, double command_kpa)
+      : regulator_(regulator),
+        seen_kpa_(command_kpa),
+        finger_kpa_(command_kpa + atmosphere_kpa),
+        valve_kpa_(finger_kpa_) {}
+
+  void step(double command_kpa, double supply_kpa, double step_s) {
+    const Regulator& r = regulator_;
+    seen_kpa_ = std::clamp(seen_kpa_, command_kpa - r.play_kpa, command_kpa + r.play_kpa);
+    const double valve_kpa = valve_kpa_ = before_the_tube(supply_kpa, step_s);
+    const double error = seen_kpa_ + atmosphere_kpa - valve_kpa;
+    const bool stopped = std::abs(error + integral_kpa_) > r.full_kpa && (error + integral_kpa_) * error > 0;
+    if (!stopped) integral_kpa_ += r.integral_per_s * error * step_s;
+    finger_kpa_ += step_s * inflow(valve_kpa, supply_kpa);
+  }
+  [[nodiscard]] double gauge_kpa() const { return finger_kpa_ - atmosphere_kpa; }
+
+ private:
+  /// What flows in through the ports [kPa/s of the finger].
+  [[nodiscard]] double inflow(double valve_kpa, double supply_kpa) const {
+    const Regulator& r = regulator_;
+    const double wanted = seen_kpa_ + atmosphere_kpa - valve_kpa + integral_kpa_;
+    const double open = std::clamp((std::abs(wanted) - r.dead_kpa) / r.full_kpa, 0.0, 1.0);
+    if (open == 0) return 0;
+    return r.port_per_s * open *
+           (wanted > 0 ? flow(supply_kpa, valve_kpa) : -flow(valve_kpa, atmosphere_kpa));
+  }
+  /// By how much that is more than the tube takes, which fills the finger meanwhile.
+  [[nodiscard]] double surplus(double valve_kpa, double supply_kpa, double step_s) const {
+    const double in = inflow(valve_kpa, supply_kpa);
+    return in - regulator_.tube_per_s * flow(valve_kpa, finger_kpa_ + step_s * in);
+  }
+  /// Where the surplus, which falls with this pressure, is none: by false position (Illinois), from where it
+  /// was last.
+  [[nodiscard]] double before_the_tube(double supply_kpa, double step_s) const {
+    const double here = surplus(finger_kpa_, supply_kpa, step_s);
+    if (here == 0) return finger_kpa_;
+    double low = here > 0 ? finger_kpa_ : atmosphere_kpa, high = here > 0 ? supply_kpa : finger_kpa_;
+    if (!(low < high)) return finger_kpa_;
+    double at_low = here > 0 ? here : surplus(low, supply_kpa, step_s);
+    double at_high = here > 0 ? surplus(high, supply_kpa, step_s) : here;
+    if (!(at_low > 0)) return low;
+    if (!(at_high < 0)) return high;
+    constexpr int most = 40;
+    constexpr double next_to_none_kpa = 1e-4;
+    double between = std::clamp(valve_kpa_, low, high);
+    bool was_low = false, was_high = false;
+    for (int i = 0; i < most; ++i) {
+      const double value = surplus(between, supply_kpa, step_s);
+      if (std::abs(value) < next_to_none_kpa * regulator_.tube_per_s) break;
+      if (value > 0) {
+        low = between;
+        at_low = value;
+        if (was_low) at_high *= 0.5;
+      } else {
+        high = between;
+        at_high = value;
+        if (was_high) at_low *= 0.5;
+      }
+      was_low = value > 0;
+      was_high = !was_low;
+      between = low + at_low / (at_low - at_high) * (high - low);
+    }
+    return between;
+  }
+
+  Regulator regulator_;
+  double seen_kpa_, finger_kpa_, valve_kpa_;
+  double integral_kpa_ = 0;
+};
+
+/// The search's numbers are logarithms, 0 where it starts.
+Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
+  const auto times = [&](Eigen::Index i) { return std::exp(std::clamp(t(i), -6.0, 6.0)); };
+  return {0.002 * largest_kpa * times(0),
+          0.01 * largest_kpa * times(1),
+          0.2 * largest_kpa * times(2),
+          2 * times(3),
+          5 * times(4),
+          10 * times(5)};
+}
+
+/// The readings in bins, and what a finger behind a regulator could read.
+class Bank {
+ public:
+  Bank(const std::vector<Record>& records, double largest_kpa) : largest_kpa_(largest_kpa) {
+    for (const Record& record : records) {
+      constexpr double interval_s = 0.02;
+      bin_s_ = std::max(0.04, 2 * record.mean_interval_s());
+      records_.push_back(thinned_to_centres(record, interval_s));
+      readings_.push_back(binned(record, record.reading_mm, bin_s_));
+      bins_ += readings_.back().size();
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return bins_; }
+
+  [[nodiscard]] Eigen::VectorXd left_by(const Regulator& regulator) const {
+    Eigen::MatrixXd columns;
+    Eigen::VectorXd target = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bins_));
+    Eigen::Index first = 0;
+    for (std::size_t r = 0; r < records_.size(); ++r) {
+      const Record driven = behind(regulator, records_[r]);
+      const Eigen::MatrixXd echo = echo_columns(driven, driven.drive_kpa, EchoKind::finger, largest_kpa_);
+      if (r == 0)
+        columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(bins_),
+                                        echo.cols() + static_cast<Eigen::Index>(records_.size()));
+      const auto own = static_cast<Eigen::Index>(readings_[r].size());
+      for (Eigen::Index c = 0; c < echo.cols(); ++c) {
+        const std::vector<double> series =
+            with_bins(binned(driven, {echo.col(c).begin(), echo.col(c).end()}, bin_s_), readings_[r].size());
+        for (Eigen::Index b = 0; b < own; ++b) columns(first + b, c) = series[static_cast<std::size_t>(b)];
+      }
+      for (Eigen::Index b = 0; b < own; ++b) {
+        const double reading = readings_[r][static_cast<std::size_t>(b)];
+        columns(first + b, echo.cols() + static_cast<Eigen::Index>(r)) = largest_kpa_;
+        if (std::isfinite(reading) && columns.row(first + b).allFinite())
+          target(first + b) = reading;
+        else
+          columns.row(first + b).setZero();
+      }
+      first += own;
+    }
+    constexpr double ridge = 1e-6;
+    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+    gram.diagonal().array() += ridge * static_cast<double>(bins_) * largest_kpa_ * largest_kpa_;
+    const Eigen::VectorXd weights =
+        gram.selfadjointView<Eigen::Lower>().ldlt().solve(columns.transpose() * target);
+    return target - columns * weights;
+  }
+
+ private:
+  double largest_kpa_;
+  double bin_s_ = 0.04;
+  std::vector<Record> records_;
+  Binned readings_;
+  std::size_t bins_ = 0;
+};
+
+}  // namespace
+
+std::vector<double> regulated(const Regulator& regulator, const Record& record,
+                              const std::vector<double>& command_kpa) {
+  Walk walk(regulator, command_kpa.front());
+  std::vector<double> out(command_kpa.size(), walk.gauge_kpa());
+  const double unknown_kpa = supply_unknown * record.largest_kpa + atmosphere_kpa;
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    const double supply_kpa = record.supply_kpa.empty() ? unknown_kpa : record.supply_kpa[i] + atmosphere_kpa;
+    const int steps = std::max(1, static_cast<int>(std::ceil(record.duration_s[i] / longest_step_s - 1e-6)));
+    const double step_s = record.duration_s[i] / steps;
+    for (int s = 0; s < steps; ++s) {
+      const double part = record.held ? 0 : (s + 0.5) / steps;
+      walk.step((1 - part) * command_kpa[i - 1] + part * command_kpa[i], supply_kpa, step_s);
+    }
+    out[i] = walk.gauge_kpa();
+  }
+  return out;
+}
+
+Record behind(const Regulator& regulator, const Record& record) {
+  Record driven = record;
+  driven.drive_kpa = regulated(regulator, record, record.drive_kpa);
+  driven.held = false;
+  return driven;
+}
+
+Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa) {
+  const Bank bank(records, largest_kpa);
+  Eigen::VectorXd at = Eigen::VectorXd::Zero(numbers);
+  const double price = std::sqrt(prior_share) * bank.left_by(regulator_at(at, largest_kpa)).norm();
+  const auto left_at = [&](const Eigen::VectorXd& t) {
+    const Eigen::VectorXd readings = bank.left_by(regulator_at(t, largest_kpa));
+    Eigen::VectorXd all(readings.size() + numbers);
+    all << readings, price * t;
+    return all;
+  };
+  Eigen::VectorXd left = left_at(at);
+  double damping = 1e-2;
+  for (int step = 0; step < most_steps; ++step) {
+    Eigen::MatrixXd jacobian(left.size(), numbers);
+    for (Eigen::Index k = 0; k < numbers; ++k) {
+      Eigen::VectorXd beside = at;
+      beside(k) += beside_by;
+      jacobian.col(k) = (left_at(beside) - left) / beside_by;
+    }
+    const Eigen::MatrixXd curvature = jacobian.transpose() * jacobian;
+    const Eigen::VectorXd gradient = jacobian.transpose() * left;
+    const double before = left.squaredNorm();
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      Eigen::MatrixXd damped = curvature;
+      damped.diagonal().array() += damping * curvature.trace() / numbers;
+      const Eigen::VectorXd by = damped.ldlt().solve(gradient);
+      const Eigen::VectorXd moved = at - by.cwiseMax(-longest_move).cwiseMin(longest_move);
+      const Eigen::VectorXd trial = left_at(moved);
+      const bool better = trial.squaredNorm() < left.squaredNorm();
+      damping = better ? std::max(damping / 10, 1e-6) : damping * 8;
+      if (!better) continue;
+      at = moved;
+      left = trial;
+      break;
+    }
+    if (!(left.squaredNorm() < (1 - least_progress) * before)) break;
+  }
+  return regulator_at(at, largest_kpa);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,37 @@
+#pragma once
+// A pressure regulator between a command and a finger: what its controller, its ports and its tube do to the
+// pressure, where that is not recorded.
+
+#include <vector>
+
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// A controller with a play and an integral moves a spool that overlaps its ports; air flows through port and
+/// tube into the finger's volume by ISO 6358-1 (choked, subsonic, linear next to no difference), at one
+/// temperature. The air before the tube is so little that its pressure is where both flows are the same.
+struct Regulator {
+  double play_kpa = 0.15;     ///< half the width of what the controller does not see
+  double dead_kpa = 0.5;      ///< error from which on a port opens
+  double full_kpa = 10;       ///< and by how much more it is fully open
+  double integral_per_s = 2;  ///< of the error
+  double port_per_s = 5;      ///< choked, fully open: by what share of the pressure before it a second fills
+  double tube_per_s = 10;     ///< likewise
+};
+
+/// The pressure at the finger [kPa], sample by sample; it begins settled.
+/// @param command_kpa  as long as the record. A supply that is not recorded counts as four times the largest
+/// command.
+[[nodiscard]] std::vector<double> regulated(const Regulator& regulator, const Record& record,
+                                            const std::vector<double>& command_kpa);
+
+/// The record as the finger sees it.
+[[nodiscard]] Record behind(const Regulator& regulator, const Record& record);
+
+/// The regulator behind which a bank of plays and lags leaves least of the readings, all its weights fitted
+/// anew for every one.
+/// @param records  driven by the command.
+[[nodiscard]] Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa);
+
+}  // namespace softgrip::sysid
