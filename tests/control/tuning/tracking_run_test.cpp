@@ -60,6 +60,29 @@ TEST(TrackingRun, TheExchangesLatencyIsMadeUpForWhenItIsKnown) {
   EXPECT_LT(track(run).rmse_mm, 0.1 * unknown);
 }
 
+TEST(TrackingRun, ItsTraceIsWhatTheErrorsAreTakenOf) {
+  TrackingRun run = run_with(FeedforwardKind::full_model, 1);
+  run.measured_cycles = 1;
+  TrackingTrace trace;
+  run.trace = &trace;
+  const TrackingResult result = track(run);
+  ASSERT_EQ(trace.time_s.size(), std::lround(1 / run.frequency_hz * run.rate_hz));
+  ASSERT_EQ(trace.reference_mm.size(), trace.time_s.size());
+  ASSERT_EQ(trace.displacement_mm.size(), trace.time_s.size());
+  EXPECT_NEAR(trace.time_s.front(), 0, 1 / run.rate_hz);
+  double worst = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
+    const double error = trace.displacement_mm[i] - trace.reference_mm[i];
+    worst = std::max(worst, std::abs(error));
+    squares += error * error;
+  }
+  // The errors are taken in the middle of every tick, too.
+  EXPECT_LE(worst, result.worst_mm);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(trace.time_s.size())), result.rmse_mm,
+              0.1 * result.rmse_mm);
+}
+
 TEST(TrackingRun, APlannedRunMakesItsPlanWhereItIsGivenNone) {
   TrackingRun run = run_with(FeedforwardKind::planned, 1);
   run.settling_cycles = 0;
