@@ -1,6 +1,8 @@
 #pragma once
 // The gain drifts across a campaign: with time, while it runs in, or with use.
 
+#include <algorithm>
+
 #include "model/blocks/ageing.h"
 #include "model/blocks/running_in.h"
 #include "model/blocks/wear.h"
@@ -25,11 +27,13 @@ struct Ageing {
   struct RunningIn : FormOf<model::RunningIn> {
     static Starts starts(const Scales& s) {
       return every({{"run_in", {-0.1, 0.1}},
-                    {"run_in_time_s", {0.07 * s.campaign_s, 0.2 * s.campaign_s, 0.5 * s.campaign_s}}});
+                    {"run_in_time_s",
+                     {std::max(s.soonest_s(), 0.07 * s.campaign_s),
+                      std::max(s.soonest_s(), 0.2 * s.campaign_s), 0.5 * s.campaign_s}}});
     }
     /// Run in sooner than this it is a load or two that differ; later only the trend shows.
     static Bounds bounds(const Scales& s, const model::Model&) {
-      return {{"run_in_time_s", 0.02 * s.campaign_s, 0.5 * s.campaign_s}};
+      return {{"run_in_time_s", s.soonest_s(), 0.5 * s.campaign_s}};
     }
   };
   struct WithUse : FormOf<model::Wear> {

@@ -1,6 +1,7 @@
 #pragma once
 // What the data say about the sizes at which causes can work.
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,11 @@ struct Scales {
   /// What stands out of the residual's spectrum, the clearest first.
   std::vector<Line> residual_lines;
 
+  /// The shortest time in which a finger runs in or a sensor warms up. What settles within seconds is how a
+  /// log begins, or creep.
+  [[nodiscard]] double soonest_s() const {
+    return std::max(0.02 * campaign_s, std::min(10.0, 0.4 * campaign_s));
+  }
   /// Of the finger over all pressures.
   [[nodiscard]] double gain_mm_per_kpa() const { return largest_kpa > 0 ? span_mm / largest_kpa : 1; }
   /// Whether the column is there and varies.

@@ -37,7 +37,7 @@ struct SensorDrift {
     }
     /// Warming up faster than this is creep of the actuator, slower a steady drift.
     static Bounds bounds(const Scales& s, const model::Model&) {
-      return {{"warm_up_time_s", 0.02 * s.campaign_s, s.campaign_s}};
+      return {{"warm_up_time_s", s.soonest_s(), s.campaign_s}};
     }
   };
 

@@ -39,7 +39,8 @@ std::string staircase_sentence(const Diagnosis& d, const std::string& before, co
 /// finger does had followed the logs as well.
 std::string with_them(const Diagnosis& d, const std::string& before, const std::string& after) {
   const std::string them = d.causes.size() > 1 ? "them" : "it";
-  if (d.extended_rmse_mm < d.recalibrated_rmse_mm)
+  constexpr double next_to_nothing = 0.02;
+  if (d.extended_rmse_mm < (1 - next_to_nothing) * d.recalibrated_rmse_mm)
     return ": with " + them + " the held-out error falls from " + before + " to " + after;
   return ": without " + them +
          " the model follows these logs only by moving the wrong way first, as no finger does; the held-out "
