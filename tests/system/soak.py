@@ -181,6 +181,13 @@ class Soak:
         self.samples.append(row)
         writer.writerow(row)
 
+    def pauses(self, count):
+        """Long pauses alone, one after the other."""
+        for _ in range(count):
+            self.disturbances.long_pause()
+            self.recover()
+            self.remove_recordings()
+
     def run(self, minutes):
         began = time.monotonic()
         due = 1.0
@@ -234,6 +241,7 @@ def main():
     parser.add_argument("minutes", type=float, nargs="?", default=60)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("soak-output"))
     parser.add_argument("--no-load", action="store_true", help="leave the machine to the daemon")
+    parser.add_argument("--pauses", type=int, metavar="N", help="nothing but N pauses longer than the board's watchdog")
     parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 31), help="of the disturbances")
     arguments = parser.parse_args()
     print(f"seed {arguments.seed}", flush=True)
@@ -244,11 +252,14 @@ def main():
         soak = Soak(folder, arguments.out, not arguments.no_load, arguments.seed)
         print((soak.daemon.errors() + soak.daemon.output()).strip(), flush=True)
         try:
-            soak.run(arguments.minutes)
+            if arguments.pauses is None:
+                soak.run(arguments.minutes)
+            else:
+                soak.pauses(arguments.pauses)
         finally:
             code = soak.end()
             (arguments.out / "softgripd.log").write_text(soak.daemon.output() + soak.daemon.errors())
-        wrong = soak.verdict(code)
+        wrong = soak.verdict(code) if arguments.pauses is None else soak.unexpected
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     for sentence in wrong:

@@ -27,7 +27,11 @@ void Scheduler::kill(ActorId actor) {
 }
 
 void Scheduler::pause(ActorId actor, Nanoseconds until) {
-  actors_[actor].paused_until = std::max(actors_[actor].paused_until, until);
+  actors_[actor].paused_until = std::max(actors_[actor].paused_until, end_of_pause(until));
+}
+
+Nanoseconds Scheduler::end_of_pause(Nanoseconds until) const {
+  return clock_stalled() && !stall_loses_ ? std::max(until, stall_ends_) : until;
 }
 
 bool Scheduler::paused(ActorId actor) const {
@@ -76,8 +80,10 @@ void Scheduler::stall_clock(Nanoseconds duration, bool loses) {
   if (clock_stalled()) return;
   stall_shows_ = now_ - lost_;
   stall_ends_ = now_ + duration;
+  stall_loses_ = loses;
   if (loses) lost_ += duration;
   for (Actor& actor : actors_) {
+    if (actor.paused_until > now_) actor.paused_until = end_of_pause(actor.paused_until);
     if (!actor.by_clock || actor.due < now_) continue;
     actor.due = loses ? actor.due + duration : std::max(actor.due, stall_ends_);
   }
@@ -96,7 +102,7 @@ void Scheduler::looked() {
   Actor& self = actors_[running_];
   if (self.pause_after_look == 0) return;
   self.due = now_;
-  self.paused_until = std::max(self.paused_until, now_ + self.pause_after_look);
+  self.paused_until = std::max(self.paused_until, end_of_pause(now_ + self.pause_after_look));
   self.pause_after_look = 0;
   Fibre& fibre = *self.fibre;
   fibre.give_back();

@@ -42,7 +42,9 @@ class Scheduler {
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
 
   /// The daemon's clock stands still for `duration`, and who sleeps by it sleeps on. Then it has lost the
-  /// time, or catches up. Another stall meanwhile is none.
+  /// time, or catches up. Another stall meanwhile is none. Who is paused does not go on before a clock that
+  /// catches up: by one that stands a long pause looks short, and of a board that clears its tripped watchdog
+  /// with any write nobody could know better.
   void stall_clock(Nanoseconds duration, bool loses);
   [[nodiscard]] bool clock_stalled() const noexcept { return now_ < stall_ends_; }
   /// What that clock shows.
@@ -56,6 +58,8 @@ class Scheduler {
   void looked();
 
  private:
+  [[nodiscard]] Nanoseconds end_of_pause(Nanoseconds until) const;
+
   struct Actor {
     std::string name;
     std::unique_ptr<Fibre> fibre;
@@ -75,6 +79,7 @@ class Scheduler {
   Nanoseconds lost_ = 0;  // by the clock, from the end of the present stall on
   Nanoseconds stall_ends_ = 0;
   Nanoseconds stall_shows_ = 0;
+  bool stall_loses_ = false;
   std::vector<Actor> actors_;
   ActorId running_ = 0;
   bool inside_ = false;
