@@ -136,9 +136,7 @@ void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
     at_s += -mean_time_between_stalls_s * std::log(drawing.uniform());
     const Nanoseconds at = nanoseconds(at_s);
     if (at >= draw.length) return;
-    Incident stall{at, Kind::clock_stalls, nanoseconds(pause_s(drawing, draw.watchdog)), 0, 0};
-    stall.value = draw.late_bus && drawing.uniform() < 0.5 ? 1 : 0;
-    incidents.push_back(stall);
+    incidents.push_back({at, Kind::clock_stalls, nanoseconds(pause_s(drawing, draw.watchdog)), 0, 0});
   }
 }
 
@@ -160,9 +158,6 @@ std::string text_of(const Incident& incident) {
     case Kind::pause:
     case Kind::pause_late:
       text += fmt::format(" {}", parts[incident.target]);
-      break;
-    case Kind::clock_stalls:
-      text += incident.value > 0 ? ", loses the time," : "";
       break;
     case Kind::line:
       text += fmt::format(" {}", drivers::name_of(static_cast<drivers::BusStatus>(incident.target)));

@@ -23,7 +23,7 @@ struct Incident {
     pause,          ///< one thread (`target`: Part) for `duration`
     pause_late,     ///< the same, right after it has looked at the clock
     pause_all,      ///< the whole process, as SIGSTOP does
-    clock_stalls,   ///< shows the same for `duration`, and has then lost it (`value` 1) or catches up
+    clock_stalls,   ///< shows the same for `duration`, and catches up then
     line,           ///< exchanges end as `target` (BusStatus) for `duration`
     replies_lost,   ///< requests arrive, replies do not, for `duration`
     slow_line,      ///< every exchange takes `value` s, for `duration`
@@ -48,8 +48,8 @@ struct Incident {
 
 /// Those of `length` after the first second.
 /// `watchdog`: pauses are drawn around it, below, at and above. `late_bus`: the bus, too, may be paused
-/// between its last look at the clock and what it then writes, and the clock may lose time: only on a board
-/// that says itself that its watchdog has vented, or has none, can anybody know.
+/// between its last look at the clock and what it then writes: only on a board that says itself that its
+/// watchdog has vented, or has none, can anybody know.
 struct Draw {
   std::uint64_t seed = 0;
   Nanoseconds length = 0;

@@ -31,7 +31,7 @@ void Scheduler::pause(ActorId actor, Nanoseconds until) {
 }
 
 Nanoseconds Scheduler::end_of_pause(Nanoseconds until) const {
-  return clock_stalled() && !stall_loses_ ? std::max(until, stall_ends_) : until;
+  return clock_stalled() ? std::max(until, stall_ends_) : until;
 }
 
 bool Scheduler::paused(ActorId actor) const {
@@ -76,24 +76,20 @@ void Scheduler::sleep_until(Nanoseconds due) {
   fibre.give_back();
 }
 
-void Scheduler::stall_clock(Nanoseconds duration, bool loses) {
+void Scheduler::stall_clock(Nanoseconds duration) {
   if (clock_stalled()) return;
-  stall_shows_ = now_ - lost_;
+  stall_shows_ = now_;
   stall_ends_ = now_ + duration;
-  stall_loses_ = loses;
-  if (loses) lost_ += duration;
   for (Actor& actor : actors_) {
     if (actor.paused_until > now_) actor.paused_until = end_of_pause(actor.paused_until);
-    if (!actor.by_clock || actor.due < now_) continue;
-    actor.due = loses ? actor.due + duration : std::max(actor.due, stall_ends_);
+    if (actor.by_clock && actor.due >= now_) actor.due = std::max(actor.due, stall_ends_);
   }
 }
 
 void Scheduler::sleep_until_shown(Nanoseconds due) {
   const ActorId self = running_;
   actors_[self].by_clock = true;
-  const Nanoseconds at = due + lost_;
-  sleep_until(clock_stalled() && due > stall_shows_ ? std::max(at, stall_ends_) : at);
+  sleep_until(clock_stalled() && due > stall_shows_ ? std::max(due, stall_ends_) : due);
   actors_[self].by_clock = false;
 }
 

@@ -41,14 +41,13 @@ class Scheduler {
 
   [[nodiscard]] Nanoseconds now() const noexcept { return now_; }
 
-  /// The daemon's clock stands still for `duration`, and who sleeps by it sleeps on. Then it has lost the
-  /// time, or catches up. Another stall meanwhile is none. Who is paused does not go on before a clock that
-  /// catches up: by one that stands a long pause looks short, and of a board that clears its tripped watchdog
-  /// with any write nobody could know better.
-  void stall_clock(Nanoseconds duration, bool loses);
+  /// The daemon's clock stands still for `duration`, then it catches up. Who sleeps by it sleeps on, and who
+  /// is paused does not go on before: by a clock that stands a long pause looks short, and of a board that
+  /// clears its tripped watchdog with any write nobody could know better. Another stall meanwhile is none.
+  void stall_clock(Nanoseconds duration);
   [[nodiscard]] bool clock_stalled() const noexcept { return now_ < stall_ends_; }
   /// What that clock shows.
-  [[nodiscard]] Nanoseconds shown() const noexcept { return clock_stalled() ? stall_shows_ : now_ - lost_; }
+  [[nodiscard]] Nanoseconds shown() const noexcept { return clock_stalled() ? stall_shows_ : now_; }
   /// From within an actor: until that clock shows `due`.
   void sleep_until_shown(Nanoseconds due);
 
@@ -76,10 +75,8 @@ class Scheduler {
   std::uint64_t seed_;
   std::uint64_t drawn_ = 0;
   Nanoseconds now_;
-  Nanoseconds lost_ = 0;  // by the clock, from the end of the present stall on
   Nanoseconds stall_ends_ = 0;
   Nanoseconds stall_shows_ = 0;
-  bool stall_loses_ = false;
   std::vector<Actor> actors_;
   ActorId running_ = 0;
   bool inside_ = false;

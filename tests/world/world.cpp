@@ -349,7 +349,7 @@ void World::carry_out(const Incident& incident, bool begins) {
              incident.kind == Kind::pause_all) {
     if (begins && daemon_) pause(incident);
   } else if (incident.kind == Kind::clock_stalls) {
-    if (begins) scheduler_.stall_clock(incident.duration, incident.value > 0);
+    if (begins) scheduler_.stall_clock(incident.duration);
   } else if (incident.kind == Kind::disk_full) {
     disk_full_ = begins;
     disk_was_full_ = true;
