@@ -228,8 +228,10 @@ TEST_F(SoftgripdTest, EndsWithItsSequenceAndSaysHowItWent) {
                                                          sequences + "pick_stone.yaml"}});
   EXPECT_EQ(failed.wait(), 6) << failed.output();
   EXPECT_NE(failed.output().find("NO PART"), std::string::npos);
-  const std::string hasty = make_rig(folder_.path(), {{"max_speed_mm_per_s: 500", "max_speed_mm_per_s: 1"}});
-  SoftgripdProcess faulted(folder_.path(), {.arguments = {"--config", hasty, "--virtual-time", "--sequence",
+  const std::string blind = make_rig(
+      folder_.path(),
+      {{"    plants:", "    events: [{at_s: 8, channel: left, sensor: out_of_range}]\n    plants:"}});
+  SoftgripdProcess faulted(folder_.path(), {.arguments = {"--config", blind, "--virtual-time", "--sequence",
                                                           sequences + "pick_stone.yaml"}});
   EXPECT_EQ(faulted.wait(), 6) << faulted.output();
   EXPECT_NE(faulted.output().find("the sequence ended: faulted"), std::string::npos) << faulted.output();
