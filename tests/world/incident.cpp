@@ -199,7 +199,7 @@ std::vector<Incident> draw_incidents(const Draw& draw) {
     clear.kind = Kind::acknowledge;
     incidents.insert(std::prev(incidents.end()), clear);
   }
-  draw_stalls(draw, incidents);
+  if (draw.late_bus) draw_stalls(draw, incidents);
   std::stable_sort(incidents.begin(), incidents.end(),
                    [](const Incident& a, const Incident& b) { return a.at < b.at; });
   return incidents;

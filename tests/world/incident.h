@@ -48,8 +48,8 @@ struct Incident {
 
 /// Those of `length` after the first second.
 /// `watchdog`: pauses are drawn around it, below, at and above. `late_bus`: the bus, too, may be paused
-/// between its last look at the clock and what it then writes: only on a board that says itself that its
-/// watchdog has vented, or has none, can anybody know.
+/// between its last look at the clock and what it then writes, and the clock may stand: only on a board that
+/// says itself that its watchdog has vented, or has none, can anybody know.
 struct Draw {
   std::uint64_t seed = 0;
   Nanoseconds length = 0;
