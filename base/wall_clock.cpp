@@ -8,7 +8,7 @@
 namespace softgrip {
 
 Nanoseconds wall_time(Nanoseconds moment) {
-  return wall_time_now() - (MonotonicClock().now() - moment);
+  return wall_time_now() - (monotonic_now() - moment);
 }
 
 Nanoseconds wall_time_now() {
