@@ -156,6 +156,7 @@ class World {
     daemon_ = std::make_unique<DaemonInWorld>(rig, scheduler_, board_, folder);
     daemon_->on_submit = [this](Request::Kind kind, std::uint32_t id) { monitor_.submitted(kind, id); };
     recorded_.clear();
+    ticked_ = 0;  // one that died at its first tick does not hide the next one's
   }
 
   /// What a daemon leaves behind, when it has ended.

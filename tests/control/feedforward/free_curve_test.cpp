@@ -62,5 +62,33 @@ TEST(FreeCurve, AModelThatDoesNotMoveNeedsTheLowestCommand) {
   EXPECT_NEAR(curve.command_kpa(0), limits.pressure_min_kpa, 1e-6);
 }
 
+// A finger that falls where the pressure rises has one rest that is above all before it: the first.
+TEST(FreeCurve, AModelThatMovesBackwardsNeedsTheLowestCommandToo) {
+  model::Model backwards = model::only(model_named("bench_twin"),
+                                       [](const model::BlockInfo& info) { return info.id == "bouc_wen"; });
+  auto values = model::flat_values(backwards);
+  values[model::find_path(backwards, "bouc_wen.alpha_mm_per_kpa").value()] = -0.2;
+  values[model::find_path(backwards, "bouc_wen.beta_mm_per_kpa").value()] = 0;
+  LimitSettings raised = limits;
+  raised.pressure_min_kpa = 4;
+  const FreeCurve curve(model::with_values(backwards, values), raised);
+  for (const double y_mm : {-12.0, -0.8, 0.0, 12.0}) {
+    EXPECT_EQ(curve.command_kpa(y_mm), 4) << y_mm;
+    EXPECT_EQ(curve.pressure_kpa(y_mm), 4) << y_mm;
+  }
+  EXPECT_EQ(curve.squeeze_for_kpa(1), 0);
+}
+
+TEST(FreeCurve, WithoutAValveTheCommandIsThePressure) {
+  const model::Model finger = model_named("bench_twin");
+  const FreeCurve bare(body_of(finger), limits);
+  const FreeCurve valved(finger, limits);
+  for (double y_mm = 1; y_mm < 25; y_mm += 3) {
+    EXPECT_EQ(bare.command_kpa(y_mm), bare.pressure_kpa(y_mm)) << y_mm;
+    EXPECT_NEAR(bare.command_kpa(y_mm), valved.command_kpa(y_mm), 0.05)
+        << y_mm << " mm: at rest a lag is over";
+  }
+}
+
 }  // namespace
 }  // namespace softgrip::control

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "control/feedforward/free_curve.h"
+#include "control/feedforward/running_model.h"
+#include "model/chain.h"
 #include "tests/control/settings_fixture.h"
 
 namespace softgrip::control {
@@ -24,6 +26,21 @@ TEST(FreeMotion, IsNoFasterThanItsSlewLimits) {
   EXPECT_GT(fast.fastest_mm_per_s, 5 * slow.fastest_mm_per_s);
   EXPECT_GT(slow.fastest_mm_per_s, 5 * (slow.highest_mm - slow.lowest_mm) / limits.pressure_max_kpa);
   EXPECT_NEAR(fast.highest_mm, slow.highest_mm, 0.1 * slow.highest_mm);
+}
+
+TEST(FreeMotion, WithoutAValveThePressureIsTheCommandAtOnce) {
+  LimitSettings limits = two_finger_settings().channels[0].limits;
+  limits.pressure_min_kpa = 6;
+  limits.slew_up_kpa_per_s = limits.slew_down_kpa_per_s = 1000;
+  const model::Model body = body_of(twin());
+  const FreeMotion bare = free_motion(body, limits);
+  const FreeMotion valved = free_motion(twin(), limits);
+  EXPECT_NEAR(bare.highest_mm, valved.highest_mm, 0.01 * valved.highest_mm) << "at rest a lag is over";
+  EXPECT_GT(bare.fastest_mm_per_s, 1.5 * valved.fastest_mm_per_s) << "a lag is what slowed it down";
+  model::Chain<double> resting(body);
+  resting.reset(limits.pressure_min_kpa);
+  resting.step(0, limits.pressure_min_kpa);
+  EXPECT_EQ(bare.lowest_mm, resting.reading_mm());
 }
 
 }  // namespace

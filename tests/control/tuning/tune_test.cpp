@@ -105,6 +105,34 @@ TEST(Tune, AValveWithoutALagIsNotSaidToHaveOne) {
   EXPECT_EQ(without.limited_by.find("s of lag"), std::string::npos) << without.limited_by;
 }
 
+// Below 0.1 Hz half a cycle is minutes of simulation: a quarter settles.
+TEST(Tune, SlowReferencesSettleForAQuarterOfACycle) {
+  TuneTask task = quick_task(FeedforwardKind::none);
+  task.iterations = 0;
+  task.draws = 1;
+  task.mismatch = 0;
+  for (const auto& [frequency_hz, settling_cycles] : {std::pair(0.08, 0.25), std::pair(0.1, 0.5)}) {
+    SCOPED_TRACE(frequency_hz);
+    task.frequencies_hz = {frequency_hz};
+    const Tuned tuned = tune(task);
+    TrackingRun run;
+    run.settings = task.channel;
+    run.settings.pid = tuned.pid;
+    run.finger = task.finger;
+    run.rate_hz = task.rate_hz;
+    run.exchange_s = task.exchange_s;
+    run.mean_mm = task.mean_mm;
+    run.amplitude_mm = task.amplitude_mm;
+    run.frequency_hz = frequency_hz;
+    run.noise_mm = 0;
+    run.settling_cycles = settling_cycles;
+    run.measured_cycles = 1;
+    EXPECT_EQ(tuned.exact_mm, track(run).rmse_mm);
+    run.settling_cycles = 0.75 - settling_cycles;
+    EXPECT_NE(tuned.exact_mm, track(run).rmse_mm);
+  }
+}
+
 TEST(Tune, OneSeedOneResult) {
   TuneTask task = quick_task(FeedforwardKind::full_model);
   task.iterations = 4;
