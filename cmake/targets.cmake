@@ -2,8 +2,8 @@
 # A room is a folder, a static library of all its .cpp files (one that has none is an interface), and the rooms that
 # its files may include. PRECOMPILE: a library's header that most of its files include and that is most of their compile
 # time. Most of the rest are the same headers in every file, so eight files are compiled as one; APART are those whose
-# unnamed namespace has a name that another one's has. Both only with SOFTGRIP_PRECOMPILE. The target of daemon/loop is
-# softgrip_daemon_loop; ${softgrip_room_target} names the last one.
+# unnamed namespace has a name that another one's has (those of tests have a named one around them). Both only with
+# SOFTGRIP_PRECOMPILE. The target of daemon/loop is softgrip_daemon_loop; ${softgrip_room_target} names the last one.
 set_property(GLOBAL PROPERTY softgrip_rooms "")
 function(softgrip_room folder)
   cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE;APART" ${ARGN})
@@ -39,8 +39,7 @@ function(softgrip_room folder)
       if(arg_PRECOMPILE)
         target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
       endif()
-      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-      target_compile_options(${target} PRIVATE ${softgrip_misread_strings})
+      softgrip_compile_together(${target})
       list(TRANSFORM arg_APART PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
       set_source_files_properties(${arg_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
@@ -122,6 +121,15 @@ endfunction()
 # where the header is precompiled or many files are one.
 set(softgrip_misread_strings -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 
+# Eight files of a target are compiled as one, where headers may be precompiled, too.
+function(softgrip_compile_together target)
+  softgrip_may_precompile(may)
+  if(may)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    target_compile_options(${target} PRIVATE ${softgrip_misread_strings})
+  endif()
+endfunction()
+
 # softgrip_rooms(OUT room ...)  the targets of rooms
 function(softgrip_rooms variable)
   set(targets "")
@@ -157,6 +165,7 @@ function(softgrip_precompile_for_tests target)
       <gtest/gtest.h>)
   endif()
   target_precompile_headers(${target} REUSE_FROM softgrip_test_headers)
+  softgrip_compile_together(${target})
 endfunction()
 
 # softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...])

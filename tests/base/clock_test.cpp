@@ -11,7 +11,7 @@
 
 #include "base/grid.h"
 
-namespace softgrip {
+namespace softgrip::clock_test {
 namespace {
 
 constexpr int no_such_namespace = 77;
@@ -69,4 +69,4 @@ TEST(MonotonicClock, OfAMachineThatNeverSleptIsTheKernelsOtherOne) {
 }
 
 }  // namespace
-}  // namespace softgrip
+}  // namespace softgrip::clock_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::grid_test {
 namespace {
 
 constexpr Nanoseconds period = 1'000'000;
@@ -63,4 +63,4 @@ TEST(Grid, SleepsToATimeNotForADuration) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::grid_test

@@ -11,7 +11,7 @@
 
 #include "base/files.h"
 
-namespace softgrip {
+namespace softgrip::kept_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ TEST_F(KeptFileTest, WhatDoesNotFitLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace softgrip
+}  // namespace softgrip::kept_file_test

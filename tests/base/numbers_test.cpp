@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip {
+namespace softgrip::numbers_test {
 namespace {
 
 TEST(Numbers, ForPeopleHaveNoZerosThatSayNothing) {
@@ -42,4 +42,4 @@ TEST(Numbers, ComeBackAsTheyWent) {
 }
 
 }  // namespace
-}  // namespace softgrip
+}  // namespace softgrip::numbers_test

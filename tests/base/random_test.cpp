@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip {
+namespace softgrip::random_test {
 namespace {
 
 TEST(Scattered, IsSplitMix64) {
@@ -14,4 +14,4 @@ TEST(Scattered, IsSplitMix64) {
 }
 
 }  // namespace
-}  // namespace softgrip
+}  // namespace softgrip::random_test

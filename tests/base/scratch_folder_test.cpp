@@ -6,7 +6,7 @@
 
 #include "base/files.h"
 
-namespace softgrip {
+namespace softgrip::scratch_folder_test {
 namespace {
 
 TEST(ScratchFolder, IsGoneWithWhatIsInIt) {
@@ -22,4 +22,4 @@ TEST(ScratchFolder, IsGoneWithWhatIsInIt) {
 }
 
 }  // namespace
-}  // namespace softgrip
+}  // namespace softgrip::scratch_folder_test

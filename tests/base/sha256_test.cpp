@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::document {
+namespace softgrip::document::sha256_test {
 namespace {
 
 // Expected digests from `printf ... | sha256sum`.
@@ -28,4 +28,4 @@ TEST(Sha256, AroundTheLengthWhereThePaddingNeedsAnotherBlock) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::sha256_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip {
+namespace softgrip::statistics_test {
 namespace {
 
 TEST(Median, IsTheUpperOneOfTwoInTheMiddle) {
@@ -41,4 +41,4 @@ TEST(TQuantile, MatchesTables) {
 }
 
 }  // namespace
-}  // namespace softgrip
+}  // namespace softgrip::statistics_test

@@ -4,7 +4,7 @@
 
 #include <ctime>
 
-namespace softgrip {
+namespace softgrip::wall_clock_test {
 namespace {
 
 TEST(WallClock, TextsAreUtcAndSortAsTheirTimes) {
@@ -23,4 +23,4 @@ TEST(WallClock, AMomentOfTheOtherClockIsFoundOnTheWall) {
 }
 
 }  // namespace
-}  // namespace softgrip
+}  // namespace softgrip::wall_clock_test

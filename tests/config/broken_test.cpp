@@ -10,7 +10,7 @@
 
 #include "rig/check.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::broken_test {
 namespace {
 
 const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/config";
@@ -39,7 +39,7 @@ rig::CheckReport check(const std::string& name) {
   return rig::check_files(paths);
 }
 
-class Broken : public testing::TestWithParam<std::string> {};
+class Broken : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Broken, SaysAllThatIsWrong) {
   const rig::CheckReport report = check(GetParam());
@@ -47,7 +47,7 @@ TEST_P(Broken, SaysAllThatIsWrong) {
   EXPECT_EQ(report.problems.format(), text_of("broken/" + GetParam() + ".expected"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Configurations, Broken, testing::ValuesIn(names()),
+INSTANTIATE_TEST_SUITE_P(Configurations, Broken, ::testing::ValuesIn(names()),
                          [](const auto& parameter) { return parameter.param; });
 
 TEST(BrokenConfigurations, AreManyAndOftenBrokenInSeveralPlaces) {
@@ -58,4 +58,4 @@ TEST(BrokenConfigurations, AreManyAndOftenBrokenInSeveralPlaces) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::broken_test

@@ -11,7 +11,7 @@
 
 #include "rig/check.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::examples_test {
 namespace {
 
 std::vector<std::string> shipped() {
@@ -97,7 +97,7 @@ TEST(Check, AFolderIsAllThatIsInItAndEachFileOnce) {
 }
 
 /// A folder with these files, which goes with it.
-class CheckFolder : public testing::Test {
+class CheckFolder : public ::testing::Test {
  protected:
   CheckFolder() { std::filesystem::create_directories(folder_ / "sub/.hidden"); }
   ~CheckFolder() override { std::filesystem::remove_all(folder_); }
@@ -171,4 +171,4 @@ TEST_F(CheckFolder, WhatComparesSeveralPartsIsToldBesideOtherErrors) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::examples_test

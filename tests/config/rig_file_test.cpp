@@ -11,7 +11,7 @@
 
 #include "base/clock.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::rig_file_test {
 namespace {
 
 using document::Document;
@@ -172,7 +172,7 @@ bool is_named(const Node::Entry& entry, const std::string& text) {
                      [&](const Node::Entry& below) { return is_named(below, text); });
 }
 
-class EveryKey : public testing::TestWithParam<std::string> {
+class EveryKey : public ::testing::TestWithParam<std::string> {
  protected:
   EveryKey() : document_(document::parse_file(shipped(GetParam()), problems_)) {}
   Problems problems_;
@@ -235,10 +235,10 @@ TEST_P(EveryKey, IsRefusedWhenItIsUnknown) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, EveryKey, testing::Values("rig.yaml", "rig_tcp.yaml"),
+INSTANTIATE_TEST_SUITE_P(Of, EveryKey, ::testing::Values("rig.yaml", "rig_tcp.yaml"),
                          [](const auto& parameter) {
                            return parameter.param == "rig.yaml" ? "simulated" : "modbus";
                          });
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::rig_file_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace softgrip::document {
+namespace softgrip::document::brackets_test {
 namespace {
 
 /// "[1:5 {2:3": what is open at the end of a text.
@@ -41,4 +41,4 @@ TEST(Brackets, OnlyWhatStandsBeforeThePlaceCounts) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::brackets_test

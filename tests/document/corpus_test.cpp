@@ -10,6 +10,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
+namespace softgrip::document::corpus_test {
 namespace {
 
 TEST(Corpus, IsHarmless) {
@@ -28,3 +29,4 @@ TEST(Corpus, IsHarmless) {
 }
 
 }  // namespace
+}  // namespace softgrip::document::corpus_test

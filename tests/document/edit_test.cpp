@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::document {
+namespace softgrip::document::edit_test {
 namespace {
 
 const std::string text =
@@ -94,4 +94,4 @@ TEST_F(EditTest, PlacesBeyondTheTextAreNowhere) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::edit_test

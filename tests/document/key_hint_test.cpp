@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::document {
+namespace softgrip::document::key_hint_test {
 namespace {
 
 TEST(UnitAtEnd, IsTheProjectsOwn) {
@@ -19,4 +19,4 @@ TEST(UnitAtEnd, IsTheProjectsOwn) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::key_hint_test

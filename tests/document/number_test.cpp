@@ -11,7 +11,7 @@
 #include <cmath>
 #include <random>
 
-namespace softgrip::document {
+namespace softgrip::document::number_test {
 namespace {
 
 Node plain(std::string text) {
@@ -138,4 +138,4 @@ TEST(Boolean, IsTrueOrFalseAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::number_test

@@ -10,7 +10,7 @@
 
 #include "tests/document/problems_of.h"
 
-namespace softgrip::document {
+namespace softgrip::document::parse_test {
 namespace {
 
 const Node& value_of(const Node& map, std::string_view key) {
@@ -266,4 +266,4 @@ TEST(ParseFile, ReadsWhatWasWritten) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::parse_test

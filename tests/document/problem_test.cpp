@@ -6,7 +6,7 @@
 
 #include "document/node.h"
 
-namespace softgrip::document {
+namespace softgrip::document::problem_test {
 namespace {
 
 Problem problem_at(int line, int column, std::string text) {
@@ -133,4 +133,4 @@ TEST(Nearest, FindsSlipsOfTheFingerOnly) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::problem_test

@@ -8,7 +8,7 @@
 
 #include "tests/document/problems_of.h"
 
-namespace softgrip::document {
+namespace softgrip::document::reader_test {
 namespace {
 
 using Use = std::function<void(MapReader&)>;
@@ -247,4 +247,4 @@ TEST(NumberIn, ReadsItemsOfLists) {
 }
 
 }  // namespace
-}  // namespace softgrip::document
+}  // namespace softgrip::document::reader_test

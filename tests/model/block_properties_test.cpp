@@ -13,7 +13,7 @@
 #include "model/signals.h"
 #include "tests/model/presets.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::block_properties_test {
 namespace {
 
 constexpr double tick_s = 5e-3;
@@ -181,4 +181,4 @@ TEST(EveryBlock, GivesTheSameWithDerivatives) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::block_properties_test

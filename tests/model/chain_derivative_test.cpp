@@ -13,7 +13,7 @@
 #include "model/signals.h"
 #include "tests/model/presets.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::chain_derivative_test {
 namespace {
 
 constexpr int most_parameters = 20;
@@ -224,4 +224,4 @@ TEST(ChainPeek, IsWhatTheStepWillGive) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::chain_derivative_test

@@ -13,7 +13,7 @@
 #include "model/signals.h"
 #include "tests/model/presets.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::chain_golden_test {
 namespace {
 
 TEST(ChainGolden, PresetsGiveTheNumbersOfScipy) {
@@ -51,4 +51,4 @@ TEST(ChainGolden, PresetsGiveTheNumbersOfScipy) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::chain_golden_test

@@ -11,7 +11,7 @@
 #include "tests/model/presets.h"
 #include "tests/model/reference.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::chain_reference_test {
 namespace {
 
 Physics physics_of(const Model& model) {
@@ -98,4 +98,4 @@ TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::chain_reference_test

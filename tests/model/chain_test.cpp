@@ -11,7 +11,7 @@
 #include "tests/model/presets.h"
 #include "tests/support/allocation_counter.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::chain_test {
 namespace {
 
 /// The twin with every block of the catalogue in it.
@@ -211,4 +211,4 @@ TEST(Chain, AnyAllowedNumbersGiveFiniteReadings) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::chain_test

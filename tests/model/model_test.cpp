@@ -7,7 +7,7 @@
 #include "model/catalogue.h"
 #include "tests/model/presets.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::model_test {
 namespace {
 
 TEST(Catalogue, EveryDeclarationIsSound) {
@@ -129,4 +129,4 @@ TEST(Model, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::model_test

@@ -6,7 +6,7 @@
 
 #include "tests/model/presets.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::named_test {
 namespace {
 
 static_assert(parameter_index<ValveLag>("time_constant_s") == 0);
@@ -59,4 +59,4 @@ TEST(Descriptor, AValueThatNoBlockHasIsAnError) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::named_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-namespace softgrip::model {
+namespace softgrip::model::signals_test {
 namespace {
 
 TEST(Signals, NamesGoBothWays) {
@@ -79,4 +79,4 @@ TEST(Signals, CornersLieOnTheGridsOfOneKilohertzAndTwoHundredHertz) {
 }
 
 }  // namespace
-}  // namespace softgrip::model
+}  // namespace softgrip::model::signals_test

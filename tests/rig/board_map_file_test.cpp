@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace softgrip::rig {
+namespace softgrip::rig::board_map_file_test {
 namespace {
 
 using namespace drivers;
@@ -273,4 +273,4 @@ TEST(BoardMapFile, AllProblemsAtOnce) {
 }
 
 }  // namespace
-}  // namespace softgrip::rig
+}  // namespace softgrip::rig::board_map_file_test

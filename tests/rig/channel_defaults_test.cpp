@@ -11,14 +11,14 @@
 
 #include "rig/rig_file.h"
 
-namespace softgrip::rig {
+namespace softgrip::rig::channel_defaults_test {
 namespace {
 
 using document::Problems;
 
 const std::string path = std::string(SOFTGRIP_SOURCE_DIR) + "/config/rig.yaml";
 
-class ChannelDefaultsTest : public testing::Test {
+class ChannelDefaultsTest : public ::testing::Test {
  protected:
   ChannelDefaultsTest() {
     std::ostringstream read;
@@ -176,4 +176,4 @@ TEST_F(ChannelDefaultsTest, AnOldFileWithoutThemIsReadAsBefore) {
 }
 
 }  // namespace
-}  // namespace softgrip::rig
+}  // namespace softgrip::rig::channel_defaults_test

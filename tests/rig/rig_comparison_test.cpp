@@ -10,14 +10,14 @@
 
 #include "control/sequences/sequence_file.h"
 
-namespace softgrip::rig {
+namespace softgrip::rig::rig_comparison_test {
 namespace {
 
 using document::Problems;
 
 const std::string folder = std::string(SOFTGRIP_SOURCE_DIR) + "/config/";
 
-class RigComparisonTest : public testing::Test {
+class RigComparisonTest : public ::testing::Test {
  protected:
   RigComparisonTest() {
     std::ostringstream read;
@@ -116,4 +116,4 @@ TEST_F(RigComparisonTest, ARecipeThatReliesOnIt) {
 }
 
 }  // namespace
-}  // namespace softgrip::rig
+}  // namespace softgrip::rig::rig_comparison_test

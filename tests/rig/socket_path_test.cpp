@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-namespace softgrip::rig {
+namespace softgrip::rig::socket_path_test {
 namespace {
 
 class SocketPath : public ::testing::Test {
@@ -40,4 +40,4 @@ TEST_F(SocketPath, WhereThereIsNoneIsAProblem) {
 }
 
 }  // namespace
-}  // namespace softgrip::rig
+}  // namespace softgrip::rig::socket_path_test

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <string>
 
-namespace softgrip::control {
+namespace softgrip::control::fault_test {
 namespace {
 
 TEST(Faults, CodesAreStable) {
@@ -90,4 +90,4 @@ TEST(Faults, TheManualSaysWhatTheCodeSays) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::fault_test

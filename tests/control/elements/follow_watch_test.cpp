@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace softgrip::control {
+namespace softgrip::control::follow_watch_test {
 namespace {
 
 /// The model goes from 5 mm to 5 + `expected` mm, the finger from 4 to 4 + `share` of that.
@@ -48,4 +48,4 @@ TEST(FollowWatch, WhatIsNotKnownChangesNothing) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::follow_watch_test

@@ -7,7 +7,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::grip_detector_test {
 namespace {
 
 constexpr double tick_s = 0.005;
@@ -162,4 +162,4 @@ TEST(GripDetection, AMarginOfThreeTimesTheRmseIsEnoughForModelsThatAreOff) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::grip_detector_test

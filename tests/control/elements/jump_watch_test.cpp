@@ -8,7 +8,7 @@
 
 #include "base/time.h"
 
-namespace softgrip::control {
+namespace softgrip::control::jump_watch_test {
 namespace {
 
 constexpr double tick_s = 0.01;
@@ -110,4 +110,4 @@ TEST(JumpWatch, ForgetsWhenReset) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::jump_watch_test

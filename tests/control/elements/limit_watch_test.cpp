@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace softgrip::control {
+namespace softgrip::control::limit_watch_test {
 namespace {
 
 constexpr double tick_s = 0.005;
@@ -66,4 +66,4 @@ TEST(LimitWatch, NoiseAcrossTheCeilingIsOneLimit) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::limit_watch_test

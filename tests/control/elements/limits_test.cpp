@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace softgrip::control {
+namespace softgrip::control::limits_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -99,4 +99,4 @@ TEST(Limits, NeverExceededUnderRandomRequests) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::limits_test

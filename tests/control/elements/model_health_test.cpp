@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace softgrip::control {
+namespace softgrip::control::model_health_test {
 namespace {
 
 constexpr double tick_s = 0.005;
@@ -186,4 +186,4 @@ TEST(ModelHealth, GapsAreNotCounted) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::model_health_test

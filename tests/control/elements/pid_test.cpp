@@ -8,7 +8,7 @@
 
 #include "control/elements/limits.h"
 
-namespace softgrip::control {
+namespace softgrip::control::pid_test {
 namespace {
 
 constexpr double tick_s = 0.005;
@@ -135,4 +135,4 @@ TEST(Pid, WithoutAnIntegralPartACutLeavesNoBias) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::pid_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace softgrip::control {
+namespace softgrip::control::plausibility_test {
 namespace {
 
 using model::Reading;
@@ -115,4 +115,4 @@ TEST(Plausibility, FreezingNeedsTheWholeTimeWithoutAChange) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::plausibility_test

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-namespace softgrip::control {
+namespace softgrip::control::reference_test {
 namespace {
 
 double peak_speed(const Reference& reference, double from_s, double to_s) {
@@ -188,4 +188,4 @@ TEST(Reference, NeverStepsUnderRandomUse) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::reference_test

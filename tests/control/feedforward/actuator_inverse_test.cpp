@@ -16,7 +16,7 @@
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::actuator_inverse_test {
 namespace {
 
 using sim::model_named;
@@ -203,4 +203,4 @@ TEST(ActuatorInverse, TheExplicitMultiplicativeInverseDiverges) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::actuator_inverse_test

@@ -9,7 +9,7 @@
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::feedforward_test {
 namespace {
 
 using sim::model_named;
@@ -322,4 +322,4 @@ TEST(BoucWenFeedforward, InvertsTheElementAlone) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::feedforward_test

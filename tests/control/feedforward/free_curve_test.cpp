@@ -6,7 +6,7 @@
 #include "model/chain.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::free_curve_test {
 namespace {
 
 using sim::model_named;
@@ -91,4 +91,4 @@ TEST(FreeCurve, WithoutAValveTheCommandIsThePressure) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::free_curve_test

@@ -7,7 +7,7 @@
 #include "model/chain.h"
 #include "tests/control/settings_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::free_motion_test {
 namespace {
 
 TEST(FreeMotion, GoesWhereTheFreeCurveSays) {
@@ -44,4 +44,4 @@ TEST(FreeMotion, WithoutAValveThePressureIsTheCommandAtOnce) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::free_motion_test

@@ -17,7 +17,7 @@
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::invertibility_test {
 namespace {
 
 using sim::model_named;
@@ -220,4 +220,4 @@ TEST(Invertibility, ExtraLatencyHasBounds) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::invertibility_test

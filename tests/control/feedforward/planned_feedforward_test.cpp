@@ -8,7 +8,7 @@
 #include "control/feedforward/feedforward_kinds.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::planned_feedforward_test {
 namespace {
 
 using sim::model_named;
@@ -160,4 +160,4 @@ TEST_F(PlannedFeedforwardTest, SaysWhatIsOutOfReach) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::planned_feedforward_test

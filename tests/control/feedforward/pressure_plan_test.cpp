@@ -5,7 +5,7 @@
 #include "model/chain.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::pressure_plan_test {
 namespace {
 
 TEST(PressurePlan, BeforeAndBehindItsEndsTheMissIsThatOfItsEnds) {
@@ -50,4 +50,4 @@ TEST(SettledLine, KnowsNeitherDeadTimeNorSensorNorNoise) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::pressure_plan_test

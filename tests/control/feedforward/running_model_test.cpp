@@ -8,7 +8,7 @@
 
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::running_model_test {
 namespace {
 
 using sim::model_named;
@@ -79,4 +79,4 @@ TEST(RunningModel, StartsAtRestUnderACommand) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::running_model_test

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace softgrip::control {
+namespace softgrip::control::blame_test {
 namespace {
 
 document::Document three_lines() {
@@ -92,4 +92,4 @@ TEST(Blame, WhatIsWrongAnywayIsNoParametersFault) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::blame_test

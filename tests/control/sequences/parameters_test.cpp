@@ -10,7 +10,7 @@
 #include "control/sequences/sequence_file.h"
 #include "tests/control/settings_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::parameters_test {
 namespace {
 
 constexpr const char* declared =
@@ -164,4 +164,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return std::string(test.param.what); });
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::parameters_test

@@ -14,7 +14,7 @@
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::planner_test {
 namespace {
 
 using sim::model_named;
@@ -222,4 +222,4 @@ TEST(PressurePlan, HoldsItsEndsAndIsStraightBetweenItsPoints) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::planner_test

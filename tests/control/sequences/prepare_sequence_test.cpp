@@ -10,7 +10,7 @@
 #include "control/tick/sequence.h"
 #include "tests/control/settings_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::prepare_sequence_test {
 namespace {
 
 TEST(Profile, IsLinearBetweenPointsAndJumpsWhereTwoShareATime) {
@@ -295,4 +295,4 @@ TEST(Prepare, TheKeyOfARigChangesWithWhatASequenceDependsOn) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::prepare_sequence_test

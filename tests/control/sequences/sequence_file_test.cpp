@@ -12,7 +12,7 @@
 #include "control/sequences/prepare_sequence.h"
 #include "tests/control/settings_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::sequence_file_test {
 namespace {
 
 std::optional<Sequence> read(const std::string& text, document::Problems& problems) {
@@ -320,4 +320,4 @@ TEST(SequenceFile, AllErrorsComeAtOnce) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::sequence_file_test

@@ -15,7 +15,7 @@
 #include "tests/control/rig_fixture.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::sequence_plans_test {
 namespace {
 
 /// Gains of `softgrip tune --model config/models/zhang2025.yaml --feedforward planned` and `... none`.
@@ -381,4 +381,4 @@ TEST(PlannedFeedforward, WithoutAPlanItFollowsAtTheSettledGainFromWhereItIs) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::sequence_plans_test

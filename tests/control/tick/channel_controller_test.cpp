@@ -9,7 +9,7 @@
 
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::channel_controller_test {
 namespace {
 
 using sim::tick_ns;
@@ -350,4 +350,4 @@ TEST(ChannelController, ARefusedFeedforwardIsNone) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::channel_controller_test

@@ -6,7 +6,7 @@
 
 #include "control/tick/sequence.h"
 
-namespace softgrip::control {
+namespace softgrip::control::channel_player_test {
 namespace {
 
 constexpr ChannelTraits traits{.margin_mm = 1, .lowest_kpa = 0, .preview_s = 0.1, .sighted = true};
@@ -79,4 +79,4 @@ TEST(ChannelPlayer, FeedbackIsHeldByATouchOnlyWhileSomethingIsGrippedOrHeld) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::channel_player_test

@@ -13,7 +13,7 @@
 #include "control/feedforward/free_curve.h"
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::contact_test {
 namespace {
 
 /// What noise and the last bit of a filter may add to a bound [kPa].
@@ -343,4 +343,4 @@ TEST_F(ContactTest, AReleaseWorksAfterASequenceAndIsRefusedWhereThereIsNothing) 
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::contact_test

@@ -10,7 +10,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::fault_reaction_test {
 namespace {
 
 struct FaultCase {
@@ -489,4 +489,4 @@ TEST_F(SingleFault, ABriefDropoutIsBridged) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::fault_reaction_test

@@ -6,7 +6,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::grip_cycle_test {
 namespace {
 
 class GripCycle : public testing::Test {
@@ -376,4 +376,4 @@ steps:
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::grip_cycle_test

@@ -4,7 +4,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::health_in_free_motion_test {
 namespace {
 
 class HealthInFreeMotionTest : public testing::Test {
@@ -106,4 +106,4 @@ TEST_F(HealthInFreeMotionTest, AndOneThatHasBecomeSofter) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::health_in_free_motion_test

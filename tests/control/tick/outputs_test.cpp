@@ -4,7 +4,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::outputs_test {
 namespace {
 
 class Outputs : public testing::Test {
@@ -161,4 +161,4 @@ TEST_F(Outputs, AStartThatAVentHasOvertakenIsRefused) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::outputs_test

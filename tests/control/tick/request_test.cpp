@@ -6,7 +6,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::request_test {
 namespace {
 
 class Requests : public testing::Test {
@@ -258,4 +258,4 @@ TEST_F(Requests, LeavingTheLoopIsSafeInEveryPhase) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::request_test

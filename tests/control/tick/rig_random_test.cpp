@@ -9,7 +9,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::rig_random_test {
 namespace {
 
 class Chaos {
@@ -154,4 +154,4 @@ TEST(RandomRig, IsDeterministic) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::rig_random_test

@@ -8,7 +8,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::sequence_player_test {
 namespace {
 
 const std::string grip_left =
@@ -189,4 +189,4 @@ TEST_F(SequencePlayback, TheEvidenceComesWithTheAnswer) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::sequence_player_test

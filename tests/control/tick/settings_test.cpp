@@ -8,7 +8,7 @@
 
 #include "tests/control/settings_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::settings_test {
 namespace {
 
 TEST(Settings, TheFixtureIsSound) {
@@ -103,4 +103,4 @@ TEST(Settings, AnUnknownRmseOfTheModelIsNoReproach) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::settings_test

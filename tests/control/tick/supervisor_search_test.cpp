@@ -12,7 +12,7 @@
 
 #include "tests/control/settings_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::supervisor_search_test {
 namespace {
 
 using Kind = Request::Kind;
@@ -161,4 +161,4 @@ TEST_F(SupervisorSearch, NoStateThatCanBeReachedBreaksAPromise) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::supervisor_search_test

@@ -7,7 +7,7 @@
 
 #include "tests/control/rig_fixture.h"
 
-namespace softgrip::control {
+namespace softgrip::control::unsteady_test {
 namespace {
 
 class UnsteadyTest : public testing::Test {
@@ -93,4 +93,4 @@ TEST_F(UnsteadyTest, ASensorThatIsNotUsedDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::unsteady_test

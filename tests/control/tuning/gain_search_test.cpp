@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace softgrip::control {
+namespace softgrip::control::gain_search_test {
 namespace {
 
 TEST(GainSearch, FindsTheBottomOfABowlFromTheGrid) {
@@ -62,4 +62,4 @@ TEST(GainSearch, NoGainIsEverNegative) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::gain_search_test

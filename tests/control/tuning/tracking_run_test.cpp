@@ -14,7 +14,7 @@
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::tracking_run_test {
 namespace {
 
 using sim::model_named;
@@ -202,4 +202,4 @@ TEST(LoopMargins, OfTheRigsGainsAreThoseThatWereAskedFor) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::tracking_run_test

@@ -4,7 +4,7 @@
 
 #include "tests/control/simulated_finger.h"
 
-namespace softgrip::control {
+namespace softgrip::control::tune_test {
 namespace {
 
 TuneTask quick_task(FeedforwardKind kind) {
@@ -161,4 +161,4 @@ TEST(Tune, PlannedOnThePublishedModelIsThreeTimesBetterThanItsPid) {
 }
 
 }  // namespace
-}  // namespace softgrip::control
+}  // namespace softgrip::control::tune_test

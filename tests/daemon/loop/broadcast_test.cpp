@@ -12,7 +12,7 @@
 
 #include "tests/daemon/loop/torn_value.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::broadcast_test {
 namespace {
 
 /// All words are equal in one that was copied in one piece.
@@ -129,4 +129,4 @@ TEST(Broadcast, NothingIsTornAndEverythingIsTakenOrCountedUnderARace) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::broadcast_test

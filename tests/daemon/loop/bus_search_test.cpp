@@ -12,7 +12,7 @@
 #include "daemon/loop/bus.h"
 #include "tests/daemon/scripted_board.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::bus_search_test {
 namespace {
 
 using control::FaultCode;
@@ -200,4 +200,4 @@ TEST(BusSearch, NoOrderOfEventsMakesAnOutputRise) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::bus_search_test

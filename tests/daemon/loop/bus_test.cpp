@@ -7,7 +7,7 @@
 
 #include "tests/daemon/scripted_board.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::bus_test {
 namespace {
 
 using control::FaultCode;
@@ -415,4 +415,4 @@ TEST(BusThread, GivesUpLeavingWhenTheBoardDoesNotAnswer) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::bus_test

@@ -4,7 +4,7 @@
 
 #include "base/grid.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::heartbeat_test {
 namespace {
 
 TEST(Heartbeat, BeatsWhileAllCountsGrow) {
@@ -46,4 +46,4 @@ TEST(Heartbeat, BeatsAgainWhenTheCountGrowsAgain) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::heartbeat_test

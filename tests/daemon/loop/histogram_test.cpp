@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::histogram_test {
 namespace {
 
 TEST(Histogram, IsEmptyAtFirst) {
@@ -87,4 +87,4 @@ TEST(Histogram, CanBeReadWhileItRecords) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::histogram_test

@@ -8,7 +8,7 @@
 
 #include "tests/daemon/loop/torn_value.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::latest_test {
 namespace {
 
 using testing::TornValue;
@@ -133,4 +133,4 @@ TEST(Latest, IsNeverTornNorOlderThanBeforeUnderARace) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::latest_test

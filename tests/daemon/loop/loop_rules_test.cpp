@@ -88,7 +88,7 @@ void free(void* memory) {
 }
 #endif
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::loop_rules_test {
 namespace {
 
 using control::Request;
@@ -320,4 +320,4 @@ TEST(LoopRules, NoTickCallsTheSystemButForClockAndSleep) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::loop_rules_test

@@ -10,7 +10,7 @@
 #include "daemon/service/daemon_parts.h"
 #include "tests/daemon/rig_under_test.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::loop_test {
 namespace {
 
 using control::FaultCode;
@@ -213,4 +213,4 @@ TEST(LoopThread, CyclesThatWereSleptThroughAreSlipsAndToldToTheController) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::loop_test

@@ -12,7 +12,7 @@
 
 #include "daemon/loop/thread.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::real_time_test {
 namespace {
 
 using Outcome = RealTimeStep::Outcome;
@@ -164,4 +164,4 @@ TEST(Thread, HasItsNameAndItsStack) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::real_time_test

@@ -11,7 +11,7 @@
 
 #include "tests/daemon/loop/torn_value.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::ring_test {
 namespace {
 
 using testing::TornValue;
@@ -151,4 +151,4 @@ TEST(Ring, LosesAndTearsNothingUnderARace) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::ring_test

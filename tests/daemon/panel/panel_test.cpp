@@ -23,7 +23,7 @@
 #include "tests/daemon/service/softgripd_process.h"
 #include "tests/daemon/temporary_folder.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::panel_test {
 namespace {
 
 using drivers::GpioRole;
@@ -457,4 +457,4 @@ TEST(PanelRun, VirtualTimeHasNoDigitalLines) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::panel_test

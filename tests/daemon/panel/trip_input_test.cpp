@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::trip_input_test {
 namespace {
 
 constexpr Nanoseconds ms = 1'000'000;
@@ -148,4 +148,4 @@ TEST(TripInput, KeepsItsBoundsOnRandomContacts) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::trip_input_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::csv_row_test {
 namespace {
 
 std::string decimal(double value) {
@@ -125,4 +125,4 @@ TEST(CsvRow, AReadingThatIsNotValidLeavesItsCellEmpty) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::csv_row_test

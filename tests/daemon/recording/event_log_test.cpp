@@ -9,7 +9,7 @@
 
 #include "daemon/recording/run_json.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::event_log_test {
 namespace {
 
 control::Event started() {
@@ -90,4 +90,4 @@ TEST(RunJson, HoldsWhatTheSequenceRanWith) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::event_log_test

@@ -15,7 +15,7 @@
 #include "base/grid.h"
 #include "tests/daemon/temporary_folder.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::recorder_test {
 namespace {
 
 using control::Event;
@@ -250,4 +250,4 @@ TEST_F(RecorderTest, BytesThatAreNoUtf8DoNotMakeRunJsonUnreadable) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::recorder_test

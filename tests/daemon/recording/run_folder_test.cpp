@@ -10,7 +10,7 @@
 
 #include "tests/daemon/temporary_folder.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::run_folder_test {
 namespace {
 
 using testing::TemporaryFolder;
@@ -115,4 +115,4 @@ TEST(RunFolder, RunJsonIsTheOldOneOrTheNewOne) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::run_folder_test

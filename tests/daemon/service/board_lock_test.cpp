@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::board_lock_test {
 namespace {
 
 rig::RigFile rig_at(const std::string& host, std::uint16_t port, std::uint8_t unit = 1) {
@@ -64,4 +64,4 @@ TEST(BoardLock, NothingIsDrivenByASimulatedBoardNorByAModuleOfInputs) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::board_lock_test

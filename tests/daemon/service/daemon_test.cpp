@@ -11,7 +11,7 @@
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/temporary_folder.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::daemon_test {
 namespace {
 
 TEST(Daemon, VirtualTimeNeedsAnEnd) {
@@ -102,4 +102,4 @@ TEST(Daemon, EveryEndingHasItsExitCode) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::daemon_test

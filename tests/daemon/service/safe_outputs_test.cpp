@@ -4,7 +4,7 @@
 
 #include "tests/daemon/scripted_board.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::safe_outputs_test {
 namespace {
 
 using drivers::BusStatus;
@@ -87,4 +87,4 @@ TEST_F(SafeOutputsTest, AfterAnOrderlyEndTheOutputsStay) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::safe_outputs_test

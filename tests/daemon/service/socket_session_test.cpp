@@ -15,7 +15,7 @@
 #include "tests/daemon/service/softgripd_process.h"
 #include "tests/daemon/temporary_folder.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::socket_session_test {
 namespace {
 
 using nlohmann::json;
@@ -196,4 +196,4 @@ TEST_F(SocketSession, HostileClientsDisturbNobody) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::socket_session_test

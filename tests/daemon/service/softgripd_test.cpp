@@ -23,7 +23,7 @@
 #include "tests/daemon/service/softgripd_process.h"
 #include "tests/daemon/temporary_folder.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::softgripd_test {
 namespace {
 
 using nlohmann::json;
@@ -306,4 +306,4 @@ TEST_F(SoftgripdTest, TellsTheServiceManagerWhenItIsReadyAliveAndStopping) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::softgripd_test

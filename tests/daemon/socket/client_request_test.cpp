@@ -16,7 +16,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::client_request_test {
 namespace {
 
 using Command = ClientRequest::Command;
@@ -178,4 +178,4 @@ TEST(ClientRequest, TheFuzzersCorpusIsHarmless) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::client_request_test

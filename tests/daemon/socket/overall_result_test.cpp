@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::overall_result_test {
 namespace {
 
 using enum control::GripResult;
@@ -30,4 +30,4 @@ TEST(OverallResult, FingersThatDoNotTakePartDoNotCount) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::overall_result_test

@@ -6,7 +6,7 @@
 
 #include "daemon/socket/socket_api.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::reply_json_test {
 namespace {
 
 TEST(ReplyJson, AGreetingSaysWhatTheRoleMay) {
@@ -33,4 +33,4 @@ TEST(ReplyJson, AnErrorIsALine) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::reply_json_test

@@ -20,7 +20,7 @@
 #include "base/grid.h"
 #include "tests/daemon/temporary_folder.h"
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::socket_server_test {
 namespace {
 
 using testing::TemporaryFolder;
@@ -422,4 +422,4 @@ TEST_F(SocketServerTest, AClientThatVanishesIsForgotten) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::socket_server_test

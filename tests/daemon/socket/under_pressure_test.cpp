@@ -4,12 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::daemon {
+namespace softgrip::daemon::under_pressure_test {
 namespace {
 
 using control::State;
 
-class UnderPressure : public testing::Test {
+class UnderPressure : public ::testing::Test {
  protected:
   UnderPressure() : channels_(2) {
     channels_[0].name = "left";
@@ -52,4 +52,4 @@ TEST_F(UnderPressure, WhatStaysOnIsNamedWithTheCommandThatEndsIt) {
 }
 
 }  // namespace
-}  // namespace softgrip::daemon
+}  // namespace softgrip::daemon::under_pressure_test

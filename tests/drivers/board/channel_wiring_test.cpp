@@ -6,7 +6,7 @@
 
 #include "tests/drivers/modbus/two_fingers.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::channel_wiring_test {
 namespace {
 
 BoardMap map_of_two_outputs() {
@@ -58,4 +58,4 @@ TEST(ChannelWiring, AThermometerMayBeSharedAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::channel_wiring_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::judged_input_test {
 namespace {
 
 using model::Validity;
@@ -75,4 +75,4 @@ TEST_F(JudgedInputTest, StatusRegister) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::judged_input_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::read_back_history_test {
 namespace {
 
 ReadBack rules(double tolerance_raw, std::uint32_t lag_exchanges) {
@@ -51,4 +51,4 @@ TEST(ReadBackHistory, NoNumberIsNeverAccepted) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::read_back_history_test

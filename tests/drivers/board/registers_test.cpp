@@ -9,7 +9,7 @@
 
 #include "drivers/board/two_points.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::registers_test {
 namespace {
 
 constexpr std::array kinds{RegisterKind::uint16, RegisterKind::int16, RegisterKind::uint32,
@@ -134,4 +134,4 @@ TEST(Scaling, QuantisedRawHasTheConvertersSteps) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::registers_test

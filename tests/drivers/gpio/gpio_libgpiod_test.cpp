@@ -11,7 +11,7 @@
 #include "drivers/gpio/gpio_lines.h"
 #include "tests/drivers/gpio/fake_gpio.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::gpio_libgpiod_test {
 namespace {
 
 using testing::FakeBias;
@@ -213,4 +213,4 @@ TEST_F(Libgpiod, GivesTheLinesBack) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::gpio_libgpiod_test

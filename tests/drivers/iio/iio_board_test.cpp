@@ -11,7 +11,7 @@
 
 #include "tests/support/allocation_counter.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::iio_board_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -199,4 +199,4 @@ TEST(IioChannel, NamesAreVoltagesAndCurrents) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::iio_board_test

@@ -18,7 +18,7 @@
 #include "tests/drivers/modbus/two_fingers.h"
 #include "tests/support/allocation_counter.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::allocation_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -164,4 +164,4 @@ TEST(SimulatedAllocation, TenSecondsWithEverythingThatCanHappen) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::allocation_test

@@ -4,7 +4,7 @@
 
 #include "tests/drivers/modbus/two_fingers.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::exchange_plan_test {
 namespace {
 
 /// 8 inputs from holding 0, their status from 8, 4 outputs from 100, read back from 20.
@@ -123,4 +123,4 @@ TEST(ExchangePlan, SixteenFingersWithFloats) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::exchange_plan_test

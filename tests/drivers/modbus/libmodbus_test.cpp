@@ -16,7 +16,7 @@
 #include "tests/drivers/modbus/on_tcp.h"
 #include "tests/drivers/modbus/two_fingers.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::libmodbus_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -124,4 +124,4 @@ TEST(Libmodbus, Function23AndExceptions) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::libmodbus_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::mbap_reply_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -164,4 +164,4 @@ TEST(ModbusReply, DataStayInsideTheBytes) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::mbap_reply_test

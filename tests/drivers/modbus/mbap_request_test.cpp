@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::mbap_request_test {
 namespace {
 
 std::vector<std::uint8_t> pdu_of(const ModbusRequest& request) {
@@ -73,4 +73,4 @@ TEST(ModbusRequest, TheLargestFitTheFrame) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::mbap_request_test

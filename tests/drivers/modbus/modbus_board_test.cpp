@@ -12,7 +12,7 @@
 #include "base/clock.h"
 #include "tests/drivers/modbus/modbus_board_fixture.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::modbus_board_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -384,4 +384,4 @@ TEST_F(WatchdogTest, ABoardThatRefusesWritesWhileTrippedIsToldByItsFlag) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::modbus_board_test

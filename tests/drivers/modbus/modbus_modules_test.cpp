@@ -8,7 +8,7 @@
 
 #include "tests/drivers/modbus/modbus_board_fixture.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::modbus_modules_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -85,4 +85,4 @@ TEST_F(TwoModules, AModuleWithoutAWireIsAProblem) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::modbus_modules_test

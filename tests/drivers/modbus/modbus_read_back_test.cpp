@@ -8,7 +8,7 @@
 
 #include "tests/drivers/modbus/modbus_board_fixture.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::modbus_read_back_test {
 namespace {
 
 using test::ModbusBoardTest;
@@ -143,4 +143,4 @@ TEST_F(ModbusBoardTest, AReadBackMayLagAsFarAsTheMapAllows) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::modbus_read_back_test

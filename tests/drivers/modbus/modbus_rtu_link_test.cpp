@@ -16,7 +16,7 @@
 #include "drivers/modbus/serial_port.h"
 #include "tests/drivers/modbus/scripted_line.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::modbus_rtu_link_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -332,4 +332,4 @@ TEST(SerialPort, TheAdaptersLatencyIsReadFromSysfs) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::modbus_rtu_link_test

@@ -20,7 +20,7 @@
 #include "drivers/modbus/big_endian.h"
 #include "tests/drivers/modbus/scripted_server.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::modbus_tcp_link_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -432,4 +432,4 @@ TEST(ModbusTcpLink, SignalsDoNotMoveTheDeadline) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::modbus_tcp_link_test

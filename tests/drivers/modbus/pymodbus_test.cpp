@@ -17,7 +17,7 @@
 #include "tests/drivers/modbus/on_tcp.h"
 #include "tests/drivers/modbus/two_fingers.h"
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::pymodbus_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -276,4 +276,4 @@ TEST(PymodbusOnALine, AUnitThatIsNotThereIsSilent) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::pymodbus_test

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace softgrip::drivers {
+namespace softgrip::drivers::rtu_frame_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -107,4 +107,4 @@ TEST(RtuFrame, NoiseIsNeverAnAnswer) {
 }
 
 }  // namespace
-}  // namespace softgrip::drivers
+}  // namespace softgrip::drivers::rtu_frame_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::modbus {
+namespace softgrip::modbus::mbap_test {
 namespace {
 
 const Bytes read_four{0x00, 0x07, 0x00, 0x00, 0x00, 0x06, 0x01, 0x03, 0x00, 0x00, 0x00, 0x04};
@@ -79,4 +79,4 @@ TEST(Frame, IsWhatTheStreamReads) {
 }
 
 }  // namespace
-}  // namespace softgrip::modbus
+}  // namespace softgrip::modbus::mbap_test

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace softgrip::modbus {
+namespace softgrip::modbus::registers_test {
 namespace {
 
 /// Holding 0-3 (2 and 3 writable), input 10-11, coil 5.
@@ -100,4 +100,4 @@ TEST_F(RegistersTest, SaysWhetherItWrote) {
 }
 
 }  // namespace
-}  // namespace softgrip::modbus
+}  // namespace softgrip::modbus::registers_test

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace softgrip::modbus {
+namespace softgrip::modbus::rtu_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -82,4 +82,4 @@ TEST(RtuRequestStream, NoiseNeverHarms) {
 }
 
 }  // namespace
-}  // namespace softgrip::modbus
+}  // namespace softgrip::modbus::rtu_test

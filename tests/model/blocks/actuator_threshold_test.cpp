@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::actuator_threshold_test {
 namespace {
 
 using Block = ActuatorThreshold<double>;
@@ -33,4 +33,4 @@ TEST(ActuatorThreshold, CutsAtEveryCorner) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::actuator_threshold_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::ageing_test {
 namespace {
 
 using Block = Ageing<double>;
@@ -24,4 +24,4 @@ TEST(Ageing, GainDriftsWithTheTimeOfTheCampaign) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::ageing_test

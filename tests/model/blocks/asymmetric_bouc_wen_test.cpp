@@ -10,7 +10,7 @@
 #include "model/chain.h"
 #include "model/dual.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::asymmetric_bouc_wen_test {
 namespace {
 
 // alpha, beta, gamma, eta, exponent of the element that is skewed.
@@ -142,4 +142,4 @@ TEST(AsymmetricBoucWen, SkewBeyondEtaCountsAsEta) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::asymmetric_bouc_wen_test

@@ -10,7 +10,7 @@
 #include "model/two_way_lag.h"
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::asymmetric_valve_lag_test {
 namespace {
 
 using Block = AsymmetricValveLag<double>;
@@ -83,4 +83,4 @@ TEST(ChamberLag, IsTheSameMechanismBehindTheMeasuringPoint) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::asymmetric_valve_lag_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::backlash_test {
 namespace {
 
 using Block = Backlash<double>;
@@ -20,4 +20,4 @@ TEST(Backlash, LosesTheGapAtEveryReversal) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::backlash_test

@@ -8,7 +8,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::bouc_wen_test {
 namespace {
 
 using Block = BoucWen<double>;
@@ -175,4 +175,4 @@ TEST(BoucWen, RefusesAStateThatGrowsWithoutBound) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::bouc_wen_test

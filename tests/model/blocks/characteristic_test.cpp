@@ -7,7 +7,7 @@
 #include "model/characteristic_map.h"
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::characteristic_test {
 namespace {
 
 using Map = CharacteristicMap<double>;
@@ -46,4 +46,4 @@ TEST(Characteristic, DoesNotDependOnTheUnit) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::characteristic_test

@@ -4,7 +4,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::contact_test {
 namespace {
 
 using Block = Contact<double>;
@@ -29,4 +29,4 @@ TEST(Contact, RestIsOnTheCurve) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::contact_test

@@ -6,7 +6,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::duhem_hysteresis_test {
 namespace {
 
 using Block = DuhemHysteresis<double>;
@@ -59,4 +59,4 @@ TEST(DuhemHysteresis, LoopIsPointSymmetricOnlyForEqualLengths) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::duhem_hysteresis_test

@@ -8,7 +8,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::inertia_test {
 namespace {
 
 using Block = Inertia<double>;
@@ -69,4 +69,4 @@ TEST(Inertia, SeesTheParabola) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::inertia_test

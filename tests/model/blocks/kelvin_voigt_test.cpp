@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::kelvin_voigt_test {
 namespace {
 
 using Block = KelvinVoigt<double>;
@@ -116,4 +116,4 @@ TEST(KelvinVoigt, EightBranches) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::kelvin_voigt_test

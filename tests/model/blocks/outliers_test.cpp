@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::outliers_test {
 namespace {
 
 using Block = Outliers<double>;
@@ -31,4 +31,4 @@ TEST(Outliers, SameSeedSameOutliers) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::outliers_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::periodic_disturbance_test {
 namespace {
 
 using Block = PeriodicDisturbance<double>;
@@ -24,4 +24,4 @@ TEST(PeriodicDisturbance, OscillatesOnTheClockOfTheCampaign) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::periodic_disturbance_test

@@ -10,7 +10,7 @@
 #include "model/model.h"
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::prandtl_ishlinskii_test {
 namespace {
 
 using Block = PrandtlIshlinskii<double>;
@@ -141,4 +141,4 @@ TEST(PrandtlIshlinskii, ThresholdsRise) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::prandtl_ishlinskii_test

@@ -7,7 +7,7 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::pressure_dependent_creep_test {
 namespace {
 
 using Block = PressureDependentCreep<double>;
@@ -48,4 +48,4 @@ TEST(PressureDependentCreep, PassesItsHingeInsideAStep) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::pressure_dependent_creep_test

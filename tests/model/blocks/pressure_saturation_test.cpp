@@ -4,7 +4,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::pressure_saturation_test {
 namespace {
 
 using Block = PressureSaturation<double>;
@@ -44,4 +44,4 @@ TEST(PressureSaturation, CutsACurvedSegmentToo) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::pressure_saturation_test

@@ -5,7 +5,7 @@
 #include "model/dual.h"
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::quantisation_test {
 namespace {
 
 TEST(Quantisation, RoundsToTheNearestStep) {
@@ -24,4 +24,4 @@ TEST(Quantisation, LetsDerivativesThrough) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::quantisation_test

@@ -8,7 +8,7 @@
 #include "model/chain.h"
 #include "model/named.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::rate_dependent_levelling_test {
 namespace {
 
 Model levelled(double levelling) {
@@ -52,4 +52,4 @@ TEST(RateDependentLevelling, SlowMotionKnowsNothingOfIt) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::rate_dependent_levelling_test

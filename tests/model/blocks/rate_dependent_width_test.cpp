@@ -9,7 +9,7 @@
 #include "model/dual.h"
 #include "model/named.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::rate_dependent_width_test {
 namespace {
 
 // A Bouc-Wen element whose loop grows with the rate, and perhaps its eta.
@@ -74,4 +74,4 @@ TEST(RateDependentWidth, PeekKnowsOfTheGrowth) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::rate_dependent_width_test

@@ -9,7 +9,7 @@
 #include "model/dual.h"
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::relaxing_friction_test {
 namespace {
 
 using Block = RelaxingFriction<double>;
@@ -58,4 +58,4 @@ TEST(RelaxingFriction, StepSizeDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::relaxing_friction_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::running_in_test {
 namespace {
 
 using Block = RunningIn<double>;
@@ -23,4 +23,4 @@ TEST(RunningIn, RunsInOverATime) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::running_in_test

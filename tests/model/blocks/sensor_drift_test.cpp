@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_drift_test {
 namespace {
 
 using Block = SensorDrift<double>;
@@ -22,4 +22,4 @@ TEST(SensorDrift, GrowsWithTheTimeOfTheCampaign) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_drift_test

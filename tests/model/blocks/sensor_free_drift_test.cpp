@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_free_drift_test {
 namespace {
 
 using Block = SensorFreeDrift<double>;
@@ -30,4 +30,4 @@ TEST(SensorFreeDrift, GoesStraightFromKnotToKnotAndStays) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_free_drift_test

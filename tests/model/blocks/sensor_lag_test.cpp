@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_lag_test {
 namespace {
 
 using Block = SensorLag<double>;
@@ -29,4 +29,4 @@ TEST(SensorLag, KeepsTheBalanceOfItsMean) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_lag_test

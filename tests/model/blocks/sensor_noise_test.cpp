@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_noise_test {
 namespace {
 
 using Block = SensorNoise<double>;
@@ -78,4 +78,4 @@ TEST(SensorNoise, AStepWithoutDurationDrawsNothing) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_noise_test

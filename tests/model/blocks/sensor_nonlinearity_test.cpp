@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_nonlinearity_test {
 namespace {
 
 using Block = SensorNonlinearity<double>;
@@ -35,4 +35,4 @@ TEST(SensorNonlinearity, GoesOnStraightOutsideItsRange) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_nonlinearity_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_saturation_test {
 namespace {
 
 using Block = SensorSaturation<double>;
@@ -21,4 +21,4 @@ TEST(SensorSaturation, Clips) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_saturation_test

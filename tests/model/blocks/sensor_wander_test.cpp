@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_wander_test {
 namespace {
 
 using Block = SensorWander<double>;
@@ -23,4 +23,4 @@ TEST(SensorWander, WandersToAndFroFromZero) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_wander_test

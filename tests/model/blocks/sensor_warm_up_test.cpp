@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::sensor_warm_up_test {
 namespace {
 
 using Block = SensorWarmUp<double>;
@@ -22,4 +22,4 @@ TEST(SensorWarmUp, DriftsOverATime) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::sensor_warm_up_test

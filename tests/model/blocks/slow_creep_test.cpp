@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::slow_creep_test {
 namespace {
 
 using Block = SlowCreep<double>;
@@ -31,4 +31,4 @@ TEST(SlowCreep, RampInOneStepOrMany) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::slow_creep_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::stiffening_test {
 namespace {
 
 using Block = Stiffening<double>;
@@ -36,4 +36,4 @@ TEST(Stiffening, MonotoneAndSmoothForEverySign) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::stiffening_test

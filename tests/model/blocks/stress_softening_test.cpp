@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::stress_softening_test {
 namespace {
 
 using Block = StressSoftening<double>;
@@ -52,4 +52,4 @@ TEST(StressSoftening, LevelsOffWithLargerLoads) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::stress_softening_test

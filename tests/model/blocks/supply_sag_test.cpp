@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::supply_sag_test {
 namespace {
 
 using Block = SupplySag<double>;
@@ -47,4 +47,4 @@ TEST(SupplySag, PiecesJoin) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::supply_sag_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::thermal_gain_test {
 namespace {
 
 using Block = ThermalGain<double>;
@@ -31,4 +31,4 @@ TEST(ThermalGain, NothingHappensAtTwentyDegrees) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::thermal_gain_test

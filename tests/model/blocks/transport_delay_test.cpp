@@ -8,7 +8,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::transport_delay_test {
 namespace {
 
 using Block = TransportDelay<double>;
@@ -136,4 +136,4 @@ TEST(TransportDelay, RestFillsTheLine) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::transport_delay_test

@@ -6,7 +6,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::valve_deadband_test {
 namespace {
 
 using Block = ValveDeadband<double>;
@@ -41,4 +41,4 @@ TEST(ValveDeadband, StepSizeDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::valve_deadband_test

@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::valve_lag_test {
 namespace {
 
 using Block = ValveLag<double>;
@@ -91,4 +91,4 @@ TEST(ValveLag, FarFasterThanASampleItFollows) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::valve_lag_test

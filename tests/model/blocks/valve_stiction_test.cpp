@@ -8,7 +8,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::valve_stiction_test {
 namespace {
 
 using Block = ValveStiction<double>;
@@ -128,4 +128,4 @@ TEST(ValveStiction, RestsWhereASlowRiseLeadsWithJumps) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::valve_stiction_test

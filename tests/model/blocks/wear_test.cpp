@@ -7,7 +7,7 @@
 
 #include "tests/model/drive.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::wear_test {
 namespace {
 
 using Block = Wear<double>;
@@ -32,4 +32,4 @@ TEST(Wear, WearsWithTheWayGoneInTheCampaign) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::wear_test

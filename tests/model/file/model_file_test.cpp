@@ -11,7 +11,7 @@
 #include "model/named.h"
 #include "tests/model/presets.h"
 
-namespace softgrip::model::testing {
+namespace softgrip::model::testing::model_file_test {
 namespace {
 
 struct Outcome {
@@ -335,4 +335,4 @@ TEST(ModelFile, AFileThatIsNotThereIsAProblem) {
 }
 
 }  // namespace
-}  // namespace softgrip::model::testing
+}  // namespace softgrip::model::testing::model_file_test

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-namespace softgrip::plc {
+namespace softgrip::plc::settings_test {
 namespace {
 
 std::string shipped() {
@@ -73,4 +73,4 @@ TEST(PlcSettings, BeyondThisMachineMastersAreNamed) {
 }
 
 }  // namespace
-}  // namespace softgrip::plc
+}  // namespace softgrip::plc::settings_test

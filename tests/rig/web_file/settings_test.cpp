@@ -7,7 +7,7 @@
 #include "base/files.h"
 #include "document/node.h"
 
-namespace softgrip::web {
+namespace softgrip::web::settings_test {
 namespace {
 
 /// What is said of the shipped file with one text in the place of another.
@@ -50,4 +50,4 @@ TEST(WebSettings, WhatIsWrongIsSaidWhereItStands) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::settings_test

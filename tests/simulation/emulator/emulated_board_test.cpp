@@ -6,7 +6,7 @@
 
 #include "rig/board_map_file.h"
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::emulated_board_test {
 namespace {
 
 constexpr Nanoseconds second = 1'000'000'000;
@@ -142,4 +142,4 @@ TEST(EmulatedBoard, AnswersEveryRequestWithAReplyOrAnException) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::emulated_board_test

@@ -9,7 +9,7 @@
 #include "simulation/emulator/control.h"
 #include "simulation/emulator/wiring.h"
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::emulator_test {
 namespace {
 
 constexpr Nanoseconds second = 1'000'000'000;
@@ -239,4 +239,4 @@ TEST_F(EmulatorTest, BoardsWithoutEnoughTerminalsAreRefused) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::emulator_test

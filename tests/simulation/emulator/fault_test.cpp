@@ -4,7 +4,7 @@
 
 #include "simulation/emulator/fault_schedule.h"
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::fault_test {
 namespace {
 
 const std::vector<std::string> channels{"left", "right"};
@@ -117,4 +117,4 @@ TEST(FaultSchedule, EndsWithItsLastReply) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::fault_test

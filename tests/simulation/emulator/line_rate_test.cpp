@@ -15,7 +15,7 @@
 #include "rig/board_map_file.h"
 #include "tests/simulation/emulator/running_rig.h"
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::line_rate_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -106,4 +106,4 @@ INSTANTIATE_TEST_SUITE_P(Baud, LineRate,
                          name_of_rate);
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::line_rate_test

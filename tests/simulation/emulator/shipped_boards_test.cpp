@@ -12,7 +12,7 @@
 #include "rig/board_map_file.h"
 #include "tests/simulation/emulator/running_rig.h"
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::shipped_boards_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -169,4 +169,4 @@ TEST(ShippedBoards, AllAreTested) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::shipped_boards_test

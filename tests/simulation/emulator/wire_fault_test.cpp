@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::wire_fault_test {
 namespace {
 
 const Request request{0x0102, 1, {0x03, 0, 0, 0, 1}};
@@ -79,4 +79,4 @@ TEST(WireFault, CutsRepeatsRefusesAndHangsUp) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::wire_fault_test

@@ -9,7 +9,7 @@
 #include "model/chain.h"
 #include "model/file/model_file.h"
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::plant_test {
 namespace {
 
 model::Model twin() {
@@ -169,4 +169,4 @@ TEST(Plant, WhatIsNoCommandIsIgnored) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::plant_test

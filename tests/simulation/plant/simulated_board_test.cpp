@@ -10,7 +10,7 @@
 #include "model/catalogue.h"
 #include "model/file/model_file.h"
 
-namespace softgrip::simulation {
+namespace softgrip::simulation::simulated_board_test {
 using namespace drivers;
 namespace {
 
@@ -274,4 +274,4 @@ TEST(SimulatedBoard, OutputsThatDoNotFollow) {
 }
 
 }  // namespace
-}  // namespace softgrip::simulation
+}  // namespace softgrip::simulation::simulated_board_test

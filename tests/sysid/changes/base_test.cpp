@@ -8,7 +8,7 @@
 
 #include "tests/sysid/changes/finger.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::base_test {
 namespace {
 
 Base base_of(const std::vector<Log>& healthy) {
@@ -87,4 +87,4 @@ TEST(Base, KnowsARegulatorThatItDoesNotSee) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::base_test

@@ -8,7 +8,7 @@
 
 #include "tests/sysid/changes/finger.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::bins_test {
 namespace {
 
 std::vector<Record> records() {
@@ -72,4 +72,4 @@ TEST(Bins, ARowNeedsFiniteBinsBeforeIt) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::bins_test

@@ -7,7 +7,7 @@
 #include "sysid/changes/change_size.h"
 #include "tests/sysid/changes/finger.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::change_search_test {
 namespace {
 
 /// A base that is its echo alone: quick to fit.
@@ -97,4 +97,4 @@ TEST(Resampled, OfEqualSumsTheDearerIsWorse) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::change_search_test

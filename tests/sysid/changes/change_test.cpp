@@ -8,7 +8,7 @@
 #include "sysid/changes/next_steps.h"
 #include "tests/sysid/changes/finger.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::change_test {
 namespace {
 
 using test::Finger;
@@ -126,4 +126,4 @@ TEST(Change, TooLittleIsRefused) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::change_test

@@ -6,7 +6,7 @@
 #include "tests/sysid/changes/finger.h"
 #include "tests/sysid/command_fixture.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::command_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -73,4 +73,4 @@ TEST_F(ChangeCommand, ABaselineThatSomebodyChangedIsRefused) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::command_test

@@ -7,7 +7,7 @@
 #include "sysid/changes/echo.h"
 #include "tests/sysid/changes/finger.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::extension_test {
 namespace {
 
 Record record() {
@@ -96,4 +96,4 @@ TEST(Extension, SoftenedSinceTheLargestPressureIsSofterAtIt) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::extension_test

@@ -4,7 +4,7 @@
 
 #include "sysid/diagnosis/causes/cause.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::next_steps_test {
 namespace {
 
 TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
@@ -23,4 +23,4 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::next_steps_test

@@ -7,7 +7,7 @@
 
 #include "tests/sysid/changes/finger.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::regulator_test {
 namespace {
 
 Record record_of(const std::vector<double>& command_kpa, double interval_s) {
@@ -76,4 +76,4 @@ TEST(Regulator, IsFoundFromWhatAFingerBehindItDoes) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::regulator_test

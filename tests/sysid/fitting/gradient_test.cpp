@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::gradient_test {
 namespace {
 
 using Number = Gradient<4>;
@@ -112,4 +112,4 @@ TEST(Gradient, DerivativesDifferInAnyPlace) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::gradient_test

@@ -8,7 +8,7 @@
 #include "model/catalogue.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::residuals_test {
 namespace {
 
 using model::Model;
@@ -194,4 +194,4 @@ TEST(SeparableResiduals, AreRefusedForOtherChains) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::residuals_test

@@ -12,7 +12,7 @@
 #include "tests/sysid/integrated.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::identify_test {
 namespace {
 
 using model::Model;
@@ -353,4 +353,4 @@ TEST(Identify, IntervalsHoldTheTruthAsOftenAsTheySay) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::identify_test

@@ -13,7 +13,7 @@
 #include "sysid/identification/validate.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::statistics_test {
 namespace {
 
 std::vector<double> autoregressive(double correlation, std::size_t count, std::uint64_t seed) {
@@ -132,4 +132,4 @@ TEST(Records, MissingMeasuredPressuresAreFilledAndReadingsAreNot) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::statistics_test

@@ -9,7 +9,7 @@
 #include "sysid/import/samples.h"
 #include "sysid/import/text_table.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::conversion_test {
 namespace {
 
 /// 200 samples, command up and down twice; `row` writes one.
@@ -194,4 +194,4 @@ TEST(Propose, LeavesWhatIsGivenAlone) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::conversion_test

@@ -10,7 +10,7 @@
 #include "sysid/import/mat_table.h"
 
 // Values of MATLAB and HDF5 files are held against the truth by tests/system/test_import.py.
-namespace softgrip::sysid {
+namespace softgrip::sysid::foreign_file_test {
 namespace {
 
 TEST(ArrayCollector, MatricesBecomeColumnsWhicheverWayTheyLie) {
@@ -68,4 +68,4 @@ TEST(ForeignFile, BrokenBinariesAreRefusedAndMissingOnesUnreadable) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::foreign_file_test

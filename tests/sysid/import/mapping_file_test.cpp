@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::mapping_file_test {
 namespace {
 
 Mapping full() {
@@ -55,4 +55,4 @@ TEST(Mapping, OptionsAreQuotedForAShell) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::mapping_file_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::moments_test {
 namespace {
 
 double seconds_of(const char* text) {
@@ -43,4 +43,4 @@ TEST(Moments, AreNotGuessed) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::moments_test

@@ -9,7 +9,7 @@
 #include "sysid/import/text_dialect.h"
 #include "sysid/import/text_encoding.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::text_table_test {
 namespace {
 
 ForeignTable table_of(const std::string& text, const TableOptions& options = {}) {
@@ -126,4 +126,4 @@ TEST(TextEncoding, AllBecomeUtf8) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::text_table_test

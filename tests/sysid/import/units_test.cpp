@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::units_test {
 namespace {
 
 struct Case {
@@ -81,4 +81,4 @@ TEST(SplitUnit, TakesNoWordForAUnitThatTheQuantityDoesNotSay) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::units_test

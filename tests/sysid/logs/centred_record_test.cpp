@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::centred_record_test {
 namespace {
 
 /// A ramp at 1 kHz, 4 s.
@@ -52,4 +52,4 @@ TEST(CentredRecord, WhatIsCoarserAlreadyStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::centred_record_test

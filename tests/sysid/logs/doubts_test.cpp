@@ -9,7 +9,7 @@
 
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::doubts_test {
 namespace {
 
 std::string all_of(const std::vector<std::string>& doubts) {
@@ -109,4 +109,4 @@ TEST(Doubts, ReadingsInAnotherUnitThanTheModels) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::doubts_test

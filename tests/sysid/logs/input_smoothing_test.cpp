@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::input_smoothing_test {
 namespace {
 
 struct Signal {
@@ -125,4 +125,4 @@ TEST(InputSmoothing, LeavesAColumnWithoutNoiseAsItIs) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::input_smoothing_test

@@ -12,7 +12,7 @@
 #include "base/files.h"
 #include "base/numbers.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::log_test {
 namespace {
 
 using document::Problems;
@@ -328,4 +328,4 @@ TEST(Log, ASliceStartsAtZero) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::log_test

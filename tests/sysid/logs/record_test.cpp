@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::record_test {
 namespace {
 
 /// A parabola in time at 1 kHz, 4 s, with noise.
@@ -64,4 +64,4 @@ TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::record_test

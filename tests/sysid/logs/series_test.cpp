@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::series_test {
 namespace {
 
 TEST(Series, IsCsvWithEmptyCellsWhereNothingIs) {
@@ -51,4 +51,4 @@ TEST(Series, ALogsNameStaysWithinTheFolder) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::series_test

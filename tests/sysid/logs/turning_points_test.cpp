@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::turning_points_test {
 namespace {
 
 using Indices = std::vector<std::size_t>;
@@ -46,4 +46,4 @@ TEST(SteadyBetweenTurns, WhatIsSteadyStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::turning_points_test

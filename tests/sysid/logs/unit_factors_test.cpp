@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::unit_factors_test {
 namespace {
 
 TEST(UnitFactors, OfPressureAreKnownBothWays) {
@@ -26,4 +26,4 @@ TEST(UnitFactors, AFingerOfAnotherSizeIsNone) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::unit_factors_test

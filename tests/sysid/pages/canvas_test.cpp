@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::canvas_test {
 namespace {
 
 TEST(Canvas, EveryElementHasItsColourWithAndWithoutAStyleSheet) {
@@ -30,4 +30,4 @@ TEST(Canvas, WordsAreEscapedAndMeasuredByCharacters) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::canvas_test

@@ -12,7 +12,7 @@
 #include "sysid/pages/chart_scale.h"
 #include "sysid/pages/figure.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::chart_test {
 namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
@@ -248,4 +248,4 @@ TEST(Chart, SameValuesSameBytes) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::chart_test

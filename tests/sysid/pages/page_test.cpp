@@ -4,7 +4,7 @@
 
 #include "sysid/pages/markup.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::page_test {
 namespace {
 
 TEST(Markup, NothingActiveSurvives) {
@@ -101,4 +101,4 @@ TEST(Page, BothColourSchemesAndAPageBreakBeforeTheAppendix) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::page_test

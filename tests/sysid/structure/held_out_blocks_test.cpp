@@ -7,7 +7,7 @@
 #include "sysid/fitting/trajectory.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::held_out_blocks_test {
 namespace {
 
 using model::SignalName;
@@ -53,4 +53,4 @@ TEST(HeldOutBlocks, TheDifferenceComesWithItsStandardError) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::held_out_blocks_test

@@ -23,7 +23,7 @@
 #include "sysid/structure/valve_stage.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::structure_test {
 namespace {
 
 using model::SignalName;
@@ -273,4 +273,4 @@ TEST(IdentifyStructure, SaysWhyItCannot) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::structure_test

@@ -8,7 +8,7 @@
 #include "document/problem.h"
 #include "model/catalogue.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::commissioning_run_test {
 namespace {
 
 /// The shipped rig with nothing between the fingers.
@@ -91,4 +91,4 @@ TEST(CommissioningRun, EveryUsualExperimentIsOnTheMenu) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::commissioning_run_test

@@ -10,7 +10,7 @@
 
 #include "drivers/modbus_server/listener.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::daemon_client_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -107,4 +107,4 @@ TEST(DaemonClient, SurvivesADaemonThatTalksNonsenseOrHangsUp) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::daemon_client_test

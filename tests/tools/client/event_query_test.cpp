@@ -8,7 +8,7 @@
 
 #include "tools/client/event_text.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::event_query_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -58,4 +58,4 @@ TEST_F(EventQueryTest, AnEventShowsTheTimeOfDayWhereItHasOne) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::event_query_test

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::tools {
+namespace softgrip::tools::json_fields_test {
 namespace {
 
 const auto json = nlohmann::ordered_json::parse(
@@ -29,4 +29,4 @@ TEST(JsonFields, ATextIsFitForATerminal) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::json_fields_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::tools {
+namespace softgrip::tools::key_dialogue_test {
 namespace {
 
 /// What goes to the daemon, or "" / "leave".
@@ -94,4 +94,4 @@ TEST_F(KeyDialogueTest, ArrowKeysAreNoLetters) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::key_dialogue_test

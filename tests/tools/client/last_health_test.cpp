@@ -9,7 +9,7 @@
 #include "base/files.h"
 #include "base/wall_clock.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::last_health_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -84,4 +84,4 @@ TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::last_health_test

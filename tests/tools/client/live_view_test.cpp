@@ -4,7 +4,7 @@
 
 #include "tools/client/key_dialogue.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::live_view_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -90,4 +90,4 @@ TEST(LiveView, EventsAreForgottenAndNonsenseIsSurvived) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::live_view_test

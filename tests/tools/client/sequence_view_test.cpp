@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::tools {
+namespace softgrip::tools::sequence_view_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -26,4 +26,4 @@ TEST(SequenceView, SaysWhatAStartMayChoose) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::sequence_view_test

@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-namespace softgrip::tools {
+namespace softgrip::tools::set_option_test {
 namespace {
 
 TEST(SetOption, TakesNamesAndNumbers) {
@@ -43,4 +43,4 @@ TEST(SetOption, LeavesTheNextWordAlone) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::set_option_test

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::tools {
+namespace softgrip::tools::status_view_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -261,4 +261,4 @@ TEST(StatusView, OneLineSaysWhatMatters) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::status_view_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::tools {
+namespace softgrip::tools::styled_line_test {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -40,4 +40,4 @@ TEST(StyledLine, TextBreaksAtBlanks) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::styled_line_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::tools {
+namespace softgrip::tools::trend_test {
 namespace {
 
 std::string joined(const std::vector<std::string>& glyphs) {
@@ -45,4 +45,4 @@ TEST(Trend, AnotherDaemonBeginsAnew) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::trend_test

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace softgrip::tools {
+namespace softgrip::tools::call_test {
 namespace {
 
 TEST(Call, IsWhatWasGivenButWhereTheOutputGoes) {
@@ -27,4 +27,4 @@ TEST(Call, IsWhatWasGivenButWhereTheOutputGoes) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::call_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace softgrip::tools {
+namespace softgrip::tools::completion_test {
 namespace {
 
 /// A program with every kind of option that a script has to know.
@@ -82,4 +82,4 @@ TEST(ShellNamed, KnowsThree) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::completion_test

@@ -6,7 +6,7 @@
 
 #include "base/files.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::import_hint_test {
 namespace {
 
 TEST(ImportHint, IsTheCommandThatWouldDoItOrTheOneThatShowsTheColumns) {
@@ -29,4 +29,4 @@ TEST(ImportHint, IsTheCommandThatWouldDoItOrTheOneThatShowsTheColumns) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::import_hint_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-namespace softgrip::tools {
+namespace softgrip::tools::progress_line_test {
 namespace {
 
 TEST(RestEstimate, IsWhatTheStageTookSoFar) {
@@ -60,4 +60,4 @@ TEST(ProgressLine, ShortWorkIsSilent) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::progress_line_test

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace softgrip::tools {
+namespace softgrip::tools::terminal_test {
 namespace {
 
 TEST(Terminal, WhatIsNoAsciiHasAStandInWhereTheLocaleIsNotUtf8) {
@@ -17,4 +17,4 @@ TEST(Terminal, WhatIsNoAsciiHasAStandInWhereTheLocaleIsNotUtf8) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::terminal_test

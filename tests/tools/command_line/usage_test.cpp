@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace softgrip::tools {
+namespace softgrip::tools::usage_test {
 namespace {
 
 struct Said {
@@ -59,4 +59,4 @@ TEST(Usage, HelpIsNoError) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::usage_test

@@ -8,7 +8,7 @@
 #include "tests/daemon/temporary_folder.h"
 #include "tools/commands/diagnose_change.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::baseline_folder_test {
 namespace {
 
 class BaselineFolder : public ::testing::Test {
@@ -81,4 +81,4 @@ TEST_F(BaselineFolder, AChangeOfNothingIsRefused) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::baseline_folder_test

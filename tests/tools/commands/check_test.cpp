@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+namespace softgrip::tools::check_test {
 namespace {
 
 const std::filesystem::path folder = std::filesystem::path(SOFTGRIP_SOURCE_DIR) / "tests/config";
@@ -119,3 +120,4 @@ TEST(Check, NeedsAFile) {
 }
 
 }  // namespace
+}  // namespace softgrip::tools::check_test

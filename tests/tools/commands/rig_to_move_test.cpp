@@ -4,7 +4,7 @@
 
 #include "daemon/service/board_lock.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::rig_to_move_test {
 namespace {
 
 const std::string simulated = SOFTGRIP_SOURCE_DIR "/config/rig.yaml";
@@ -43,4 +43,4 @@ TEST(RigToMove, WhoSaidYesIsNotAsked) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::rig_to_move_test

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-namespace softgrip::tools {
+namespace softgrip::tools::series_output_test {
 namespace {
 
 TEST(SeriesOutput, ALogThatIsGivenTwiceHasTwoFolders) {
@@ -18,4 +18,4 @@ TEST(SeriesOutput, ALogThatIsGivenTwiceHasTwoFolders) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::series_output_test

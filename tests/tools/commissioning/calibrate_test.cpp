@@ -17,7 +17,7 @@
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/snippet.h"
 
-namespace softgrip::tools::calibrate {
+namespace softgrip::tools::calibrate::calibrate_test {
 namespace {
 
 /// Four visits to two places of y = 3 - 2 x.
@@ -352,4 +352,4 @@ TEST_F(CalibrateTest, TellsWhenLessThanAFifthOfTheValveIsUsed) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::calibrate
+}  // namespace softgrip::tools::calibrate::calibrate_test

@@ -5,7 +5,7 @@
 #include "rig/rig_file.h"
 #include "tests/daemon/rig_under_test.h"
 
-namespace softgrip::tools::doctor {
+namespace softgrip::tools::doctor::crossing_test {
 namespace {
 
 constexpr double moved_mm = 6;
@@ -115,4 +115,4 @@ TEST_F(CrossingTest, NeighboursOfACrossingAreNotPartOfIt) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::doctor
+}  // namespace softgrip::tools::doctor::crossing_test

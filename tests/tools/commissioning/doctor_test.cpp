@@ -19,7 +19,7 @@
 #include "tools/commissioning/motion.h"
 #include "tools/commissioning/rig_examination.h"
 
-namespace softgrip::tools::doctor {
+namespace softgrip::tools::doctor::doctor_test {
 namespace {
 
 using simulation::LineFault;
@@ -440,4 +440,4 @@ TEST(Findings, TheTextNamesWhatToDoUnderWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::doctor
+}  // namespace softgrip::tools::doctor::doctor_test

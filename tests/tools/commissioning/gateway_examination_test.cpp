@@ -10,7 +10,7 @@
 #include "base/files.h"
 #include "drivers/modbus_server/listener.h"
 
-namespace softgrip::tools::doctor {
+namespace softgrip::tools::doctor::gateway_examination_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST_F(Gateways, AFileThatCannotBeUsedIsAWarning) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::doctor
+}  // namespace softgrip::tools::doctor::gateway_examination_test

@@ -13,7 +13,7 @@
 #include "tools/commissioning/draft_facts.h"
 #include "tools/commissioning/rig_template.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::rig_draft_test {
 namespace {
 
 const std::string config = std::string(SOFTGRIP_SOURCE_DIR) + "/config/";
@@ -175,4 +175,4 @@ TEST(DraftFacts, TheTemplateHasNoKeyTwice) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::rig_draft_test

@@ -14,7 +14,7 @@
 #include "rig/rig_file.h"
 #include "tools/commissioning/doubts.h"
 
-namespace softgrip::tools::calibrate {
+namespace softgrip::tools::calibrate::rig_update_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ TEST_F(RigUpdateTest, AGaugeThatDoesNotGoWithTheModelIsDoubted) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::calibrate
+}  // namespace softgrip::tools::calibrate::rig_update_test

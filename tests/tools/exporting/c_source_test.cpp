@@ -7,7 +7,7 @@
 #include "tools/exporting/c_fragments.h"
 
 // What it computes is held against `softgrip simulate` by tests/system/test_export.py.
-namespace softgrip::tools {
+namespace softgrip::tools::c_source_test {
 namespace {
 
 model::Model bench_twin() {
@@ -45,4 +45,4 @@ TEST(CSource, BlocksWithoutCAreNamed) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::c_source_test

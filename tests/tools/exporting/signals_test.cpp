@@ -8,7 +8,7 @@
 #include "tools/exporting/mcap_file.h"
 
 // What other people's programs read of them: tests/system/test_export.py.
-namespace softgrip::tools {
+namespace softgrip::tools::signals_test {
 namespace {
 
 std::vector<SignalGroup> two_fingers() {
@@ -48,4 +48,4 @@ TEST(McapFile, IsTheSameForTheSameSignalsAndFramedByItsMagic) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::signals_test

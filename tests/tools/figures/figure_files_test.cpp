@@ -7,7 +7,7 @@
 
 #include "base/files.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::figure_files_test {
 namespace {
 
 TEST(FigureFiles, EachFigureIsThereThreeTimes) {
@@ -38,4 +38,4 @@ TEST(FigureFiles, NoFolderNoFiles) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::figure_files_test

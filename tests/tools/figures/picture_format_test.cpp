@@ -4,7 +4,7 @@
 
 #include "tools/figures/svg_rendering.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::picture_format_test {
 namespace {
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -57,4 +57,4 @@ TEST(SvgRendering, WhatIsNoSvgIsRefused) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::picture_format_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace softgrip::tools::health {
+namespace softgrip::tools::health::control_chart_test {
 namespace {
 
 constexpr double least = 1e-9;
@@ -295,4 +295,4 @@ TEST(ControlChart, DifferencesThatMatterToNobodyAreNone) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::health
+}  // namespace softgrip::tools::health::control_chart_test

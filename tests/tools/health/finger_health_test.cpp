@@ -14,7 +14,7 @@
 #include "tools/health/rig_health.h"
 #include "tools/health/suspicion.h"
 
-namespace softgrip::tools::health {
+namespace softgrip::tools::health::finger_health_test {
 namespace {
 
 using sysid::HealthNumber;
@@ -259,4 +259,4 @@ TEST(HealthPage, OfAFingerWithoutAnyNumberIsStillOne) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::health
+}  // namespace softgrip::tools::health::finger_health_test

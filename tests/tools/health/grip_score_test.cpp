@@ -9,7 +9,7 @@
 #include "tests/tools/health/grip_fixture.h"
 #include "tools/health/grip_parts.h"
 
-namespace softgrip::tools::health {
+namespace softgrip::tools::health::grip_score_test {
 namespace {
 
 using sysid::HealthNumber;
@@ -144,4 +144,4 @@ TEST(GripParts, AStepThatEndedInHoldingWithoutATouchIsNotFree) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::health
+}  // namespace softgrip::tools::health::grip_score_test

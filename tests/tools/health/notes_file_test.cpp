@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::tools::health {
+namespace softgrip::tools::health::notes_file_test {
 namespace {
 
 std::optional<std::vector<Note>> notes_of(const std::string& text, document::Problems& problems) {
@@ -34,4 +34,4 @@ TEST(NotesFile, IsRefusedWithItsPlaceWhereItSaysNoDateOrNothing) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::health
+}  // namespace softgrip::tools::health::notes_file_test

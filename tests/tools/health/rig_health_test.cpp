@@ -12,7 +12,7 @@
 #include "tools/health/health_page.h"
 #include "tools/health/number_watch.h"
 
-namespace softgrip::tools::health {
+namespace softgrip::tools::health::rig_health_test {
 namespace {
 
 using sysid::HealthNumber;
@@ -311,4 +311,4 @@ TEST(RigHealth, ADifferenceThatHasNoOwnerYetIsNoAlarm) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::health
+}  // namespace softgrip::tools::health::rig_health_test

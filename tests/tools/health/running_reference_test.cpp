@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace softgrip::tools::health {
+namespace softgrip::tools::health::running_reference_test {
 namespace {
 
 constexpr double least = 1e-9;
@@ -127,4 +127,4 @@ TEST(RunningReference, FindsThePersistenceOfWhatTheTemperatureLeaves) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::health
+}  // namespace softgrip::tools::health::running_reference_test

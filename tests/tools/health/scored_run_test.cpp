@@ -10,7 +10,7 @@
 #include "tests/sysid/simulated.h"
 #include "tools/health/run_search.h"
 
-namespace softgrip::tools::health {
+namespace softgrip::tools::health::scored_run_test {
 namespace {
 
 ScoredRun example(const std::string& run, const std::string& finger, const std::string& baseline) {
@@ -140,4 +140,4 @@ TEST(ScoredRun, OnlyScoresByTodaysBaselineCountAndTheLastOfThem) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools::health
+}  // namespace softgrip::tools::health::scored_run_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::tools {
+namespace softgrip::tools::import_run_test {
 namespace {
 
 using sysid::Role;
@@ -40,4 +40,4 @@ TEST(ImportTargets, OneFileIsALogSeveralAreAFolder) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::import_run_test

@@ -8,7 +8,7 @@
 #include "model/file/model_file.h"
 #include "model/named.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::closed_loop_gain_test {
 namespace {
 
 model::Model loaded(const std::string& name) {
@@ -78,4 +78,4 @@ TEST(ClosedLoopGain, TheSameQuestionGivesTheSameNumbersAndEqualModelsGainNothing
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::closed_loop_gain_test

@@ -8,7 +8,7 @@
 #include "sysid/diagnosis/experiments/waveform.h"
 #include "tools/studies/simulation.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::experiment_check_test {
 namespace {
 
 constexpr double interval_s = 0.02;
@@ -65,4 +65,4 @@ TEST(ExperimentCheck, AWallOnTheWayIsNoticedAndASofterFingerIsNot) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::experiment_check_test

@@ -17,7 +17,7 @@
 #include "tools/investigation/investigation_report.h"
 #include "tools/studies/simulation.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::investigation_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -347,4 +347,4 @@ TEST(CommandGauge, CallsTheCommandWithPositionsAndReadsItsFile) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::investigation_test

@@ -14,7 +14,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-namespace softgrip::plc {
+namespace softgrip::plc::gateway_test {
 namespace {
 
 /// A gateway whose daemon is not there.
@@ -112,4 +112,4 @@ TEST(Server, LetsInWhoIsOnTheList) {
 }
 
 }  // namespace
-}  // namespace softgrip::plc
+}  // namespace softgrip::plc::gateway_test

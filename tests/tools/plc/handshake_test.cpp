@@ -4,7 +4,7 @@
 
 #include "tools/plc/master_watch.h"
 
-namespace softgrip::plc {
+namespace softgrip::plc::handshake_test {
 namespace {
 
 TEST(Handshake, ACounterIsCarriedOutOnceHoweverOftenItIsWritten) {
@@ -90,4 +90,4 @@ TEST(MasterWatch, SilenceCountsFromTheFirstBeatAndIsToldOnce) {
 }
 
 }  // namespace
-}  // namespace softgrip::plc
+}  // namespace softgrip::plc::handshake_test

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::plc {
+namespace softgrip::plc::process_image_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -120,4 +120,4 @@ TEST(Writes, KnowsWhichRegistersARequestReaches) {
 }
 
 }  // namespace
-}  // namespace softgrip::plc
+}  // namespace softgrip::plc::process_image_test

@@ -10,7 +10,7 @@
 #include "tools/recordings/recording_picture.h"
 #include "tools/recordings/recording_tracking.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::recording_test {
 namespace {
 
 const std::string csv =
@@ -139,4 +139,4 @@ TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::recording_test

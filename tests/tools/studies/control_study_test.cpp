@@ -6,7 +6,7 @@
 
 #include "tools/studies/models.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::control_study_test {
 namespace {
 
 /// One quick study serves all tests.
@@ -78,4 +78,4 @@ TEST(ControlStudy, WritesNumbersThatReadBackAndAPageOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::control_study_test

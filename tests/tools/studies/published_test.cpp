@@ -9,7 +9,7 @@
 #include "tools/studies/models.h"
 #include "tools/studies/simulation.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::published_test {
 namespace {
 
 model::Model configured(const std::string& name) {
@@ -133,4 +133,4 @@ TEST(PaperTable, TheSameStructureLeavesTheNoiseAndLatencyLeavesMore) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::published_test

@@ -6,7 +6,7 @@
 
 #include "model/file/model_file.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::simulation_test {
 namespace {
 
 model::Model twin() {
@@ -110,4 +110,4 @@ TEST(Simulate, StartsAtRestAtTheFirstCommand) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::simulation_test

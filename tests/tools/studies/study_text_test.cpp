@@ -4,7 +4,7 @@
 
 #include "tools/studies/models.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::study_text_test {
 namespace {
 
 TEST(StudyText, ACellIsFilledAtTheLeftAndNeverCut) {
@@ -20,4 +20,4 @@ TEST(StudyText, EveryParameterStandsUnderItsPath) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::study_text_test

@@ -5,7 +5,7 @@
 
 #include "model/file/model_file.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::comparison_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -74,4 +74,4 @@ TEST(Comparison, ModelsAreComparedByParameter) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::comparison_test

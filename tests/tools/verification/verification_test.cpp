@@ -9,7 +9,7 @@
 
 #include "tests/sysid/command_fixture.h"
 
-namespace softgrip::tools {
+namespace softgrip::tools::verification_test {
 namespace {
 
 class Verification : public sysid::CommandInFolder {
@@ -88,4 +88,4 @@ TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
 }
 
 }  // namespace
-}  // namespace softgrip::tools
+}  // namespace softgrip::tools::verification_test

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace softgrip::web {
+namespace softgrip::web::client_test {
 namespace {
 
 using Phase = Client::Phase;
@@ -103,4 +103,4 @@ TEST_F(ClientTest, AStreamEndsBehindWhatStillWaits) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::client_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace softgrip::web {
+namespace softgrip::web::commander_test {
 namespace {
 
 TEST(CommandInABody, IsOneThatTheDaemonHas) {
@@ -44,4 +44,4 @@ TEST(Commander, WithoutADaemonItSaysSo) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::commander_test

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace softgrip::web {
+namespace softgrip::web::live_state_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -61,4 +61,4 @@ TEST(LiveState, WithoutADaemonNothingOfItIsKnown) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::live_state_test

@@ -11,7 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-namespace softgrip::web {
+namespace softgrip::web::request_frame_test {
 namespace {
 
 using State = Frame::State;
@@ -85,4 +85,4 @@ TEST(RequestFrame, TheSeedsOfTheFuzzTargetAreServedWholeAndCutOff) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::request_frame_test

@@ -15,7 +15,7 @@
 #include "drivers/modbus_server/listener.h"
 #include "tools/web/page/page_files.h"
 
-namespace softgrip::web {
+namespace softgrip::web::server_test {
 namespace {
 
 class ServerTest : public ::testing::Test {
@@ -102,4 +102,4 @@ TEST_F(ServerTest, ACommandWithoutADaemonSaysSo) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::server_test

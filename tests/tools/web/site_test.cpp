@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-namespace softgrip::web {
+namespace softgrip::web::site_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -153,4 +153,4 @@ TEST_F(SiteTest, PartsOfAFileAreNotOffered) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::site_test

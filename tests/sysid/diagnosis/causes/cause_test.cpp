@@ -14,7 +14,7 @@
 #include "tests/model/presets.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::cause_test {
 namespace {
 
 Scales typical_scales() {
@@ -187,4 +187,4 @@ TEST(Ranges, KeepCausesWhatTheyAreCalled) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::cause_test

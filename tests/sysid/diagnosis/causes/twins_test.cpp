@@ -14,7 +14,7 @@
 #include "tests/sysid/diagnosis/campaign.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::twins_test {
 namespace {
 
 Cause cause(std::string_view id) {
@@ -108,4 +108,4 @@ TEST_F(BentRig, HasNoWaveformThatTellsThemApart) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::twins_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::valve_deadband_test {
 namespace {
 
 // Bands of a valve that jumps: wherever the true band is, a start is near enough to keep step with it.
@@ -22,4 +22,4 @@ TEST(ValveDeadband, NoStaircaseIsMissed) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::valve_deadband_test

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::clear_test {
 namespace {
 
 TEST(Clear, IsWhatChanceShowsLessThanOnceInFifty) {
@@ -26,4 +26,4 @@ TEST(Clear, WhatWasNotJudgedIsNot) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::clear_test

@@ -9,7 +9,7 @@
 #include "model/model.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::evidence_test {
 namespace {
 
 constexpr double noise_mm = 0.03;
@@ -156,4 +156,4 @@ TEST(Unphysical, AModelThatMovesTheWrongWayFirstIsRecognised) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::evidence_test

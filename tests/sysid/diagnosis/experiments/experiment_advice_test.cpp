@@ -6,7 +6,7 @@
 
 #include "sysid/diagnosis/causes/cause.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::experiment_advice_test {
 namespace {
 
 bool says(const std::vector<std::string>& advice, std::string_view words) {
@@ -47,4 +47,4 @@ TEST(Advice, IsOfWhatTheTwoHaveInCommon) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::experiment_advice_test

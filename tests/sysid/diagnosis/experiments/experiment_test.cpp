@@ -18,7 +18,7 @@
 #include "sysid/fitting/trajectory.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::experiment_test {
 namespace {
 
 constexpr double noise_mm = 0.04;
@@ -237,4 +237,4 @@ TEST(Advice, SaysWhatNoWaveformCanDo) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::experiment_test

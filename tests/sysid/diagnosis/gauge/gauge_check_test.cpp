@@ -11,7 +11,7 @@
 
 #include "model/catalogue.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::gauge_check_test {
 namespace {
 
 constexpr double span_mm = 24;
@@ -214,4 +214,4 @@ TEST(GaugeCheck, RarelyRulesOutTheTruth) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::gauge_check_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::gauge_file_test {
 namespace {
 
 std::string problems_of(const std::string& text) {
@@ -86,4 +86,4 @@ TEST(PlannedPositions, WaitInAFileThatIsRefusedUntilItIsFilledIn) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::gauge_file_test

@@ -14,7 +14,7 @@
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::gauge_verdict_test {
 namespace {
 
 constexpr double noise_mm = 0.04;
@@ -231,4 +231,4 @@ TEST(GaugeVerdict, TheCheckIsProposedOnceWhereItHelps) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::gauge_verdict_test

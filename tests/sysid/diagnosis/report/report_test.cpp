@@ -20,7 +20,7 @@
 #include "tests/sysid/diagnosis/campaign.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::report_test {
 namespace {
 
 StructureFit fit_of(const model::Model& model, const std::vector<Record>& records) {
@@ -272,4 +272,4 @@ TEST_F(ReportTest, TheClosedLoopIsDrawnOverTime) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::report_test

@@ -7,7 +7,7 @@
 
 #include "tests/sysid/diagnosis/campaign.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::outliers_test {
 namespace {
 
 constexpr double noise_mm = 0.04;
@@ -100,4 +100,4 @@ TEST(Outliers, LatenessIsNone) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::outliers_test

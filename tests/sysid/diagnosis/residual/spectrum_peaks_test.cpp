@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::spectrum_peaks_test {
 namespace {
 
 struct Campaign {
@@ -76,4 +76,4 @@ TEST(SpectrumPeaks, AWanderingZeroIsNoOscillation) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::spectrum_peaks_test

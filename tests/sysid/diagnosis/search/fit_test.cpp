@@ -9,7 +9,7 @@
 #include "model/named.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::fit_test {
 namespace {
 
 using model::SignalName;
@@ -37,4 +37,4 @@ TEST(WithoutEffects, LeavesWhatTheFingerWouldHaveReadWithoutThem) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::fit_test

@@ -7,7 +7,7 @@
 #include "sysid/diagnosis/search/fit.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::linear_holdout_test {
 namespace {
 
 constexpr double noise_mm = 0.05;
@@ -50,4 +50,4 @@ TEST(LinearHeldOutLosses, StayOfTheReadingsSizeWhereOneStretchAloneShowsANumber)
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::linear_holdout_test

@@ -13,7 +13,7 @@
 #include "sysid/diagnosis/search/scored.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::linear_selection_test {
 namespace {
 
 using model::SignalName;
@@ -121,4 +121,4 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::linear_selection_test

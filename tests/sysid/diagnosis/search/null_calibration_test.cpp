@@ -9,7 +9,7 @@
 #include "sysid/diagnosis/search/selection.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::null_calibration_test {
 namespace {
 
 constexpr std::size_t few = 4;
@@ -76,4 +76,4 @@ TEST(NullCalibration, OneSeedGivesOneAnswerWhateverTheThreads) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::null_calibration_test

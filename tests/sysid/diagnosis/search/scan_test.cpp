@@ -13,7 +13,7 @@
 #include "sysid/diagnosis/search/search.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::scan_test {
 namespace {
 
 constexpr double noise_mm = 0.04;
@@ -114,4 +114,4 @@ TEST(BestStarts, ShowEveryFormOfACauseAndEveryPlace) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::scan_test

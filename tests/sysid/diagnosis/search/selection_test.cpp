@@ -15,7 +15,7 @@
 #include "tests/sysid/diagnosis/campaign.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::selection_test {
 namespace {
 
 constexpr double noise_mm = 0.03;
@@ -68,4 +68,4 @@ TEST(Selection, ASmallEffectThatExplainsTheRestIsNamed) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::selection_test

@@ -9,7 +9,7 @@
 #include "sysid/fitting/fit_space.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::staircase_test {
 namespace {
 
 constexpr double noise_mm = 0.03;
@@ -98,4 +98,4 @@ TEST(Staircase, TakesNeitherAPlayNorALagNorAFaithfulValveForOne) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::staircase_test

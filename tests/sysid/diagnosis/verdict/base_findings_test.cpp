@@ -12,7 +12,7 @@
 #include "sysid/diagnosis/search/fit.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::base_findings_test {
 namespace {
 
 using model::SignalName;
@@ -95,4 +95,4 @@ TEST(WinningShare, CountsTheDrawsThatLoseLess) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::base_findings_test

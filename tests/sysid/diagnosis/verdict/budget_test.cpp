@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::budget_test {
 namespace {
 
 Diagnosis errors_mm(double as_given, double recalibrated, double extended, double noise) {
@@ -42,4 +42,4 @@ TEST(Budget, AShareStaysWithinTheWhole) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::budget_test

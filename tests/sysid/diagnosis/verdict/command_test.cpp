@@ -13,7 +13,7 @@
 #include "model/file/model_file.h"
 #include "tests/sysid/command_fixture.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ TEST_F(DiagnoseCommand, LogsOfTwoRigsAreNotExplainedByOneCause) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::command_test

@@ -4,7 +4,7 @@
 
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::dense_logs_test {
 namespace {
 
 std::vector<Record> records_at(double rate_hz, std::size_t count) {
@@ -35,4 +35,4 @@ TEST(DenseLogs, LongLogsAndShortOnesAreLeftAlone) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::dense_logs_test

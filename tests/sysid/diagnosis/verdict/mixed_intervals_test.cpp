@@ -6,7 +6,7 @@
 #include "sysid/diagnosis/verdict/naming.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::mixed_intervals_test {
 namespace {
 
 using model::SignalName;
@@ -57,4 +57,4 @@ TEST(MixedIntervals, HoldTheDelayWhereALagIsInQuestion) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::mixed_intervals_test

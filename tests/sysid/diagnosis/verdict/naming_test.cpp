@@ -13,7 +13,7 @@
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tests/sysid/simulated.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::naming_test {
 namespace {
 
 using model::SignalName;
@@ -97,4 +97,4 @@ TEST(DataWarnings, SayWhatALogWithoutUnloadingCannotShow) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::naming_test

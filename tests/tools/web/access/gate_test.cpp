@@ -6,7 +6,7 @@
 
 #include "tools/web/access/origin.h"
 
-namespace softgrip::web {
+namespace softgrip::web::gate_test {
 namespace {
 
 const std::string look(24, 'a');
@@ -119,4 +119,4 @@ TEST(Sessions, AreFewAndTheIdlestGoes) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::gate_test

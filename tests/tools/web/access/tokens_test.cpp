@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-namespace softgrip::web {
+namespace softgrip::web::tokens_test {
 namespace {
 
 const std::string look(24, 'a');
@@ -63,4 +63,4 @@ TEST(Tokens, EqualTextsAreEqual) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::tokens_test

@@ -6,7 +6,7 @@
 
 #include "tools/web/metrics/json_member.h"
 
-namespace softgrip::web {
+namespace softgrip::web::channel_metrics_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -39,4 +39,4 @@ TEST(JsonMember, WhatIsMissingOrOfAnotherTypeIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::channel_metrics_test

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::web {
+namespace softgrip::web::daemon_metrics_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -95,4 +95,4 @@ TEST(Metrics, WhatIsNotKnownIsNotThere) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::daemon_metrics_test

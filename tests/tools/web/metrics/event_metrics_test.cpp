@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::web {
+namespace softgrip::web::event_metrics_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -30,4 +30,4 @@ TEST(EventMetrics, NothingIsToldOfEventsThatAreNotKnown) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::event_metrics_test

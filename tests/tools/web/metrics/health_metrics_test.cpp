@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace softgrip::web {
+namespace softgrip::web::health_metrics_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -44,4 +44,4 @@ TEST(HealthMetrics, OfNothingAndOfNonsenseNothingIsTold) {
 }
 
 }  // namespace
-}  // namespace softgrip::web
+}  // namespace softgrip::web::health_metrics_test
