@@ -5,10 +5,21 @@
 #include <set>
 
 #include "document/problem.h"
+#include "sysid/logs/command_before.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/import_hint.h"
 
 namespace softgrip::tools {
+namespace {
+
+void begin_before_the_first_command(std::vector<sysid::Log>& logs) {
+  for (sysid::Log& log : logs) {
+    if (const auto before_kpa = sysid::pressure_before_kpa(log))
+      log = sysid::with_command_before(log, *before_kpa);
+  }
+}
+
+}  // namespace
 
 sysid::RecordOptions LogInput::record_options() const {
   sysid::RecordOptions options;
@@ -47,6 +58,7 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
       problems.add({log.path, {1, 1}, {}, "no column 'pressure_kpa', which --drive measured needs", {}});
     }
   }
+  if (input.drive == "command") begin_before_the_first_command(campaign.logs);
   if (problems.empty()) return std::move(campaign.logs);
   const ExitCode refused = refuse_logs(problems);
   return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);

@@ -1,0 +1,88 @@
+#include "sysid/logs/command_before.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace softgrip::sysid::command_before_test {
+namespace {
+
+constexpr double interval_s = 0.02;
+
+/// Set from `idle_kpa` to 60 kPa two samples before the log begins, held for 4 s, then a slow wave; the
+/// pressure follows with a lag of 0.3 s, read `offset_kpa` too high.
+Log begun_at_a_step(double idle_kpa, double offset_kpa = 0) {
+  Log log;
+  double pressure_kpa = idle_kpa;
+  for (int i = -2; i < 1000; ++i) {
+    const double t_s = interval_s * i;
+    const double command_kpa = t_s < 4 ? 60 : 40 + 20 * std::cos(2 * std::numbers::pi * 0.1 * (t_s - 4));
+    pressure_kpa += (command_kpa - pressure_kpa) * interval_s / 0.3;
+    if (i < 0) continue;
+    log.time_s.push_back(t_s);
+    log.pressure_command_kpa.push_back(command_kpa);
+    log.pressure_kpa.push_back(pressure_kpa + offset_kpa);
+    log.displacement_mm.push_back(0.3 * pressure_kpa);
+    log.temperature_c.push_back(21 + 0.001 * i);
+  }
+  log.others.push_back({"operator", std::vector<std::string>(log.size(), "A")});
+  return log;
+}
+
+TEST(CommandBefore, IsWhereTheMeasuredPressureStillWas) {
+  const Log log = begun_at_a_step(7);
+  const auto before_kpa = pressure_before_kpa(log);
+  ASSERT_TRUE(before_kpa);
+  EXPECT_EQ(*before_kpa, log.pressure_kpa.front());
+  const auto vented = pressure_before_kpa(begun_at_a_step(90));
+  ASSERT_TRUE(vented);
+  EXPECT_GT(*vented, 75) << "as well where the command was set down";
+}
+
+TEST(CommandBefore, ALogThatBeginsAtRestHasNone) {
+  EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60)));
+  EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(58))) << "a regulator's error";
+  Log unmeasured = begun_at_a_step(7);
+  unmeasured.pressure_kpa.clear();
+  EXPECT_FALSE(pressure_before_kpa(unmeasured));
+  Log unread = begun_at_a_step(7);
+  unread.pressure_kpa.front() = std::nan("");
+  EXPECT_FALSE(pressure_before_kpa(unread));
+}
+
+TEST(CommandBefore, APressureWithAnotherZeroIsNotOnItsWay) {
+  EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60, 25)));
+  EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60, -25)));
+}
+
+TEST(CommandBefore, OnlyTheHoldOfTheFirstCommandCounts) {
+  Log log = begun_at_a_step(7);
+  for (std::size_t i = 1; i < log.size(); ++i) log.pressure_command_kpa[i] = i < 100 ? 10 : 60;
+  EXPECT_FALSE(pressure_before_kpa(log)) << "60 kPa stood for one sample: nothing went there";
+}
+
+TEST(CommandBefore, IsASampleWithoutReadings) {
+  const Log log = begun_at_a_step(7);
+  const Log longer = with_command_before(log, 7);
+  ASSERT_EQ(longer.size(), log.size() + 1);
+  EXPECT_EQ(longer.time_s.front(), 0);
+  EXPECT_NEAR(longer.time_s[1], interval_s, 1e-12);
+  EXPECT_EQ(longer.pressure_command_kpa.front(), 7);
+  EXPECT_TRUE(std::isnan(longer.displacement_mm.front()));
+  EXPECT_TRUE(std::isnan(longer.pressure_kpa.front()));
+  EXPECT_EQ(longer.temperature_c.front(), log.temperature_c.front());
+  EXPECT_TRUE(longer.supply_kpa.empty());
+  EXPECT_EQ(longer.others.front().cells.size(), longer.size());
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    EXPECT_NEAR(longer.time_s[i + 1] - log.time_s[i], interval_s, 1e-12);
+    EXPECT_EQ(longer.displacement_mm[i + 1], log.displacement_mm[i]);
+    EXPECT_EQ(longer.pressure_kpa[i + 1], log.pressure_kpa[i]);
+  }
+  ASSERT_EQ(longer.notes.size(), 1U);
+  EXPECT_NE(longer.notes.front().text.find("from 7 to 60 kPa"), std::string::npos)
+      << longer.notes.front().text;
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::command_before_test
