@@ -58,7 +58,7 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
       problems.add({log.path, {1, 1}, {}, "no column 'pressure_kpa', which --drive measured needs", {}});
     }
   }
-  if (input.drive == "command") begin_before_the_first_command(campaign.logs);
+  if (input.drive == "command" && input.sample_before_command) begin_before_the_first_command(campaign.logs);
   if (problems.empty()) return std::move(campaign.logs);
   const ExitCode refused = refuse_logs(problems);
   return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);

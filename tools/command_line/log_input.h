@@ -24,6 +24,9 @@ struct LogInput {
   std::string drive = "command";
   std::string begin = "auto";
   bool held = false;
+  /// A log that begins as its command was set gets a sample before it (sysid/logs/command_before.h): not
+  /// where a stage of its own begins at the measured pressure.
+  bool sample_before_command = true;
 
   [[nodiscard]] sysid::RecordOptions record_options() const;
 };

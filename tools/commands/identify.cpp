@@ -144,7 +144,9 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
 }
 
 ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
-  const auto logs = read_logs(options.data, options.logs);
+  LogInput fitted = options.logs;
+  fitted.sample_before_command = !question_of(options);
+  const auto logs = read_logs(options.data, fitted);
   if (!logs) return logs.error();
   std::vector<sysid::Log> validation_logs;
   if (!options.validate.empty()) {
