@@ -15,13 +15,15 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Derivatives are carried along in groups of one of these sizes: a base with two branches and a cause's
-/// first parameters need one run of the chain.
+/// Derivatives are carried along in groups of one of these sizes: a cause's own parameters need a run of few,
+/// a base with two branches and a cause's first parameters one run of many.
+constexpr std::size_t least_group = 4;
 constexpr std::size_t small_group = 8;
 constexpr std::size_t large_group = 12;
 
 /// The size of the next group when so many derivatives are left: as few runs as possible, then as narrow.
 std::size_t group_for(std::size_t left) {
+  if (left <= least_group) return least_group;
   if (left <= small_group) return small_group;
   return left > large_group && left <= 2 * small_group ? small_group : large_group;
 }
@@ -52,7 +54,9 @@ class ChainResiduals final : public Residuals {
       const std::size_t group = group_for(dynamic.size() - first);
       const std::size_t last = std::min(first + group, dynamic.size());
       const std::span<const std::size_t> columns = std::span(dynamic).subspan(first, last - first);
-      if (group == small_group) {
+      if (group == least_group) {
+        derivatives<least_group>(point, z, columns, out, jacobian);
+      } else if (group == small_group) {
         derivatives<small_group>(point, z, columns, out, jacobian);
       } else {
         derivatives<large_group>(point, z, columns, out, jacobian);

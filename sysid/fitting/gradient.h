@@ -2,137 +2,276 @@
 // A number with many derivatives carried along (forward mode), laid out for the processor's vector registers.
 // Ceres' Jet does the same; its expressions are not inlined into the steps of a chain, where all time is
 // spent.
+//
+// What an operator returns is an expression: its value is known, its derivatives are worked out pair by pair
+// when a Gradient is made of it, so that a formula goes through the derivatives once and not once per
+// operator. An expression refers to the Gradients in it: it belongs into a Gradient before they are gone, and
+// never into an `auto`.
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <type_traits>
 
 namespace softgrip::sysid {
+
+/// Two derivatives.
+using DerivativePair [[gnu::vector_size(16)]] = double;
 
 /// Derivatives with respect to `count` (even) seeded parameters.
 template <std::size_t count>
 struct Derivatives {
   static_assert(count % 2 == 0);
-  using Pair [[gnu::vector_size(16)]] = double;
-  std::array<Pair, count / 2> pairs{};
+  std::array<DerivativePair, count / 2> pairs;
 
   [[nodiscard]] double operator[](std::size_t i) const { return pairs[i / 2][i % 2]; }
   void set(std::size_t i, double value) { pairs[i / 2][i % 2] = value; }
 
   [[nodiscard]] friend bool operator==(const Derivatives& x, const Derivatives& y) {
-    Pair difference{};
+    DerivativePair difference{};
     for (std::size_t i = 0; i < count / 2; ++i) {
-      const Pair d = x.pairs[i] - y.pairs[i];
+      const DerivativePair d = x.pairs[i] - y.pairs[i];
       difference += d * d;
     }
     return difference[0] + difference[1] == 0.0;
   }
 };
 
+/// A Gradient or an expression: a value `a`, and pair(i) of its derivatives.
+template <class E>
+concept GradientLike = requires(const E& e, std::size_t i) {
+  { e.a } -> std::convertible_to<double>;
+  { E::derivatives } -> std::convertible_to<std::size_t>;
+  { e.pair(i) } -> std::same_as<DerivativePair>;
+};
+
 /// Value `a` and derivatives `v`. Comparisons look at the value alone, as decisions do.
 template <std::size_t count>
 struct Gradient {
-  using V = Derivatives<count>;
-  double a = 0;
-  V v;
+  static constexpr std::size_t derivatives = count;
+  double a;
+  Derivatives<count> v;
 
-  Gradient() = default;
-  Gradient(double value) : a(value) {}  // NOLINT(google-explicit-constructor): a constant is a number
-
-  /// Value `value` and derivatives s x.v, s x.v + t y.v.
-  [[gnu::always_inline]] static Gradient scaled(double value, double s, const Gradient& x) {
-    Gradient r(value);
-    for (std::size_t i = 0; i < count / 2; ++i) r.v.pairs[i] = x.v.pairs[i] * s;
-    return r;
+  Gradient() : Gradient(0.0) {}
+  Gradient(double value) : a(value), v{} {}  // NOLINT(google-explicit-constructor): a constant is a number
+  template <GradientLike E>
+  [[gnu::always_inline]] Gradient(const E& e) : a(e.a) {  // NOLINT(google-explicit-constructor): its value
+    for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] = e.pair(i);
   }
-  [[gnu::always_inline]] static Gradient combined(double value, double s, const Gradient& x, double t,
-                                                  const Gradient& y) {
-    Gradient r(value);
-    for (std::size_t i = 0; i < count / 2; ++i) r.v.pairs[i] = x.v.pairs[i] * s + y.v.pairs[i] * t;
-    return r;
-  }
-
-  [[gnu::always_inline]] Gradient& operator+=(const Gradient& y) {
-    a += y.a;
-    for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] += y.v.pairs[i];
+  /// It may stand in the expression itself: that looks at pair i alone where pair i is written.
+  template <GradientLike E>
+  [[gnu::always_inline]] Gradient& operator=(const E& e) {
+    for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] = e.pair(i);
+    a = e.a;
     return *this;
   }
-  [[gnu::always_inline]] Gradient& operator-=(const Gradient& y) {
-    a -= y.a;
-    for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] -= y.v.pairs[i];
+  [[nodiscard, gnu::always_inline]] DerivativePair pair(std::size_t i) const { return v.pairs[i]; }
+
+  template <GradientLike E>
+  [[gnu::always_inline]] Gradient& operator+=(const E& e) {
+    for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] += e.pair(i);
+    a += e.a;
     return *this;
   }
-  [[gnu::always_inline]] Gradient& operator*=(const Gradient& y) { return *this = *this * y; }
-  [[gnu::always_inline]] Gradient& operator/=(const Gradient& y) { return *this = *this / y; }
-
-  [[gnu::always_inline]] friend Gradient operator+(const Gradient& x) { return x; }
-  [[gnu::always_inline]] friend Gradient operator-(const Gradient& x) { return scaled(-x.a, -1.0, x); }
-  [[gnu::always_inline]] friend Gradient operator+(Gradient x, const Gradient& y) { return x += y; }
-  [[gnu::always_inline]] friend Gradient operator-(Gradient x, const Gradient& y) { return x -= y; }
-  [[gnu::always_inline]] friend Gradient operator*(const Gradient& x, const Gradient& y) {
-    return combined(x.a * y.a, y.a, x, x.a, y);
+  template <GradientLike E>
+  [[gnu::always_inline]] Gradient& operator-=(const E& e) {
+    for (std::size_t i = 0; i < count / 2; ++i) v.pairs[i] -= e.pair(i);
+    a -= e.a;
+    return *this;
   }
-  [[gnu::always_inline]] friend Gradient operator/(const Gradient& x, const Gradient& y) {
-    const double inverse = 1.0 / y.a;
-    const double quotient = x.a / y.a;
-    return combined(quotient, inverse, x, -quotient * inverse, y);
+  template <class Y>
+  [[gnu::always_inline]] Gradient& operator*=(const Y& y) {
+    return *this = *this * y;
   }
-  [[gnu::always_inline]] friend Gradient operator+(Gradient x, double y) {
-    x.a += y;
-    return x;
+  template <class Y>
+  [[gnu::always_inline]] Gradient& operator/=(const Y& y) {
+    return *this = *this / y;
   }
-  [[gnu::always_inline]] friend Gradient operator+(double x, Gradient y) {
-    y.a = x + y.a;
-    return y;
-  }
-  [[gnu::always_inline]] friend Gradient operator-(Gradient x, double y) {
-    x.a -= y;
-    return x;
-  }
-  [[gnu::always_inline]] friend Gradient operator-(double x, const Gradient& y) {
-    return scaled(x - y.a, -1.0, y);
-  }
-  [[gnu::always_inline]] friend Gradient operator*(const Gradient& x, double y) {
-    return scaled(x.a * y, y, x);
-  }
-  [[gnu::always_inline]] friend Gradient operator*(double x, const Gradient& y) {
-    return scaled(x * y.a, x, y);
-  }
-  [[gnu::always_inline]] friend Gradient operator/(const Gradient& x, double y) {
-    return scaled(x.a / y, 1.0 / y, x);
-  }
-  [[gnu::always_inline]] friend Gradient operator/(double x, const Gradient& y) {
-    const double quotient = x / y.a;
-    return scaled(quotient, -quotient / y.a, y);
-  }
-
-  friend bool operator<(const Gradient& x, const Gradient& y) { return x.a < y.a; }
-  friend bool operator>(const Gradient& x, const Gradient& y) { return x.a > y.a; }
-  friend bool operator<=(const Gradient& x, const Gradient& y) { return x.a <= y.a; }
-  friend bool operator>=(const Gradient& x, const Gradient& y) { return x.a >= y.a; }
-  friend bool operator==(const Gradient& x, const Gradient& y) { return x.a == y.a; }
-
-  friend Gradient exp(const Gradient& x) {
-    const double e = std::exp(x.a);
-    return scaled(e, e, x);
-  }
-  friend Gradient expm1(const Gradient& x) {
-    const double e = std::expm1(x.a);
-    return scaled(e, e + 1.0, x);
-  }
-  friend Gradient log(const Gradient& x) { return scaled(std::log(x.a), 1.0 / x.a, x); }
-  friend Gradient log1p(const Gradient& x) { return scaled(std::log1p(x.a), 1.0 / (1.0 + x.a), x); }
-  friend Gradient sqrt(const Gradient& x) {
-    const double root = std::sqrt(x.a);
-    return scaled(root, 0.5 / root, x);
-  }
-  friend Gradient sin(const Gradient& x) { return scaled(std::sin(x.a), std::cos(x.a), x); }
-  friend Gradient cos(const Gradient& x) { return scaled(std::cos(x.a), -std::sin(x.a), x); }
-  friend Gradient tanh(const Gradient& x) {
-    const double t = std::tanh(x.a);
-    return scaled(t, 1.0 - t * t, x);
-  }
-  friend Gradient abs(const Gradient& x) { return x.a < 0.0 ? -x : x; }
 };
+
+/// How an expression keeps what it is made of: a Gradient where it stands, another expression as a copy.
+template <class E>
+struct HeldInExpression {
+  using Type = const E;
+};
+template <std::size_t count>
+struct HeldInExpression<Gradient<count>> {
+  using Type = const Gradient<count>&;
+};
+template <class E>
+using Held = typename HeldInExpression<E>::Type;
+
+/// Value `a` and derivatives s x.
+template <class X>
+struct ScaledGradient {
+  static constexpr std::size_t derivatives = X::derivatives;
+  double a;
+  double s;
+  Held<X> x;
+  [[nodiscard, gnu::always_inline]] DerivativePair pair(std::size_t i) const { return x.pair(i) * s; }
+};
+/// Value `a` and derivatives s x + t y.
+template <class X, class Y>
+struct CombinedGradient {
+  static_assert(X::derivatives == Y::derivatives);
+  static constexpr std::size_t derivatives = X::derivatives;
+  double a;
+  double s;
+  Held<X> x;
+  double t;
+  Held<Y> y;
+  [[nodiscard, gnu::always_inline]] DerivativePair pair(std::size_t i) const {
+    return x.pair(i) * s + y.pair(i) * t;
+  }
+};
+/// x + y or x - y, by the sign: of one type, so that a formula may choose between them.
+template <class X, class Y>
+struct AddedGradient {
+  static_assert(X::derivatives == Y::derivatives);
+  static constexpr std::size_t derivatives = X::derivatives;
+  double a;
+  Held<X> x;
+  double sign;
+  Held<Y> y;
+  [[nodiscard, gnu::always_inline]] DerivativePair pair(std::size_t i) const {
+    return x.pair(i) + y.pair(i) * sign;
+  }
+};
+/// Value `a` and the derivatives of x.
+template <class X>
+struct MovedGradient {
+  static constexpr std::size_t derivatives = X::derivatives;
+  double a;
+  Held<X> x;
+  [[nodiscard, gnu::always_inline]] DerivativePair pair(std::size_t i) const { return x.pair(i); }
+};
+
+#define SOFTGRIP_OPERATOR [[nodiscard, gnu::always_inline]] inline auto
+template <GradientLike X>
+SOFTGRIP_OPERATOR operator+(const X& x) {
+  return MovedGradient<X>{x.a, x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR operator-(const X& x) {
+  return ScaledGradient<X>{-x.a, -1.0, x};
+}
+template <GradientLike X, GradientLike Y>
+SOFTGRIP_OPERATOR operator+(const X& x, const Y& y) {
+  return AddedGradient<X, Y>{x.a + y.a, x, 1.0, y};
+}
+template <GradientLike X, GradientLike Y>
+SOFTGRIP_OPERATOR operator-(const X& x, const Y& y) {
+  return AddedGradient<X, Y>{x.a - y.a, x, -1.0, y};
+}
+template <GradientLike X, GradientLike Y>
+SOFTGRIP_OPERATOR operator*(const X& x, const Y& y) {
+  return CombinedGradient<X, Y>{x.a * y.a, y.a, x, x.a, y};
+}
+template <GradientLike X, GradientLike Y>
+SOFTGRIP_OPERATOR operator/(const X& x, const Y& y) {
+  const double inverse = 1.0 / y.a;
+  const double quotient = x.a / y.a;
+  return CombinedGradient<X, Y>{quotient, inverse, x, -quotient * inverse, y};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR operator+(const X& x, double y) {
+  return MovedGradient<X>{x.a + y, x};
+}
+template <GradientLike Y>
+SOFTGRIP_OPERATOR operator+(double x, const Y& y) {
+  return MovedGradient<Y>{x + y.a, y};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR operator-(const X& x, double y) {
+  return MovedGradient<X>{x.a - y, x};
+}
+template <GradientLike Y>
+SOFTGRIP_OPERATOR operator-(double x, const Y& y) {
+  return ScaledGradient<Y>{x - y.a, -1.0, y};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR operator*(const X& x, double y) {
+  return ScaledGradient<X>{x.a * y, y, x};
+}
+template <GradientLike Y>
+SOFTGRIP_OPERATOR operator*(double x, const Y& y) {
+  return ScaledGradient<Y>{x * y.a, x, y};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR operator/(const X& x, double y) {
+  return ScaledGradient<X>{x.a / y, 1.0 / y, x};
+}
+template <GradientLike Y>
+SOFTGRIP_OPERATOR operator/(double x, const Y& y) {
+  const double quotient = x / y.a;
+  return ScaledGradient<Y>{quotient, -quotient / y.a, y};
+}
+
+template <GradientLike X>
+SOFTGRIP_OPERATOR exp(const X& x) {
+  const double e = std::exp(x.a);
+  return ScaledGradient<X>{e, e, x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR expm1(const X& x) {
+  const double e = std::expm1(x.a);
+  return ScaledGradient<X>{e, e + 1.0, x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR log(const X& x) {
+  return ScaledGradient<X>{std::log(x.a), 1.0 / x.a, x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR log1p(const X& x) {
+  return ScaledGradient<X>{std::log1p(x.a), 1.0 / (1.0 + x.a), x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR sqrt(const X& x) {
+  const double root = std::sqrt(x.a);
+  return ScaledGradient<X>{root, 0.5 / root, x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR sin(const X& x) {
+  return ScaledGradient<X>{std::sin(x.a), std::cos(x.a), x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR cos(const X& x) {
+  return ScaledGradient<X>{std::cos(x.a), -std::sin(x.a), x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR tanh(const X& x) {
+  const double t = std::tanh(x.a);
+  return ScaledGradient<X>{t, 1.0 - t * t, x};
+}
+template <GradientLike X>
+SOFTGRIP_OPERATOR abs(const X& x) {
+  const double sign = x.a < 0.0 ? -1.0 : 1.0;
+  return ScaledGradient<X>{sign * x.a, sign, x};
+}
+#undef SOFTGRIP_OPERATOR
+
+/// The value of a Gradient, an expression or a constant.
+template <class X>
+[[nodiscard]] constexpr double compared(const X& x) {
+  if constexpr (GradientLike<X>) {
+    return x.a;
+  } else {
+    return x;
+  }
+}
+template <class X, class Y>
+concept GradientsCompared = (GradientLike<X> && (GradientLike<Y> || std::is_arithmetic_v<Y>)) ||
+                            (std::is_arithmetic_v<X> && GradientLike<Y>);
+template <class X, class Y>
+requires GradientsCompared<X, Y>
+[[nodiscard]] bool operator==(const X& x, const Y& y) {
+  return compared(x) == compared(y);
+}
+template <class X, class Y>
+requires GradientsCompared<X, Y>
+[[nodiscard]] auto operator<=>(const X& x, const Y& y) {
+  return compared(x) <=> compared(y);
+}
 
 }  // namespace softgrip::sysid

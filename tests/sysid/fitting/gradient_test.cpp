@@ -106,6 +106,23 @@ TEST(Gradient, AssignmentsAreTheirOperators) {
   EXPECT_TRUE(z.v == same.v);
 }
 
+TEST(Gradient, IsAssignedWhatItStandsInItself) {
+  const Number x = seeded(0.7, 0, 1), y = seeded(1.9, 3, 1);
+  Number z = x;
+  z = y - z * z / (z + y);
+  const Number other = y - x * x / (x + y);
+  EXPECT_EQ(z.a, other.a);
+  EXPECT_TRUE(z.v == other.v);
+}
+
+TEST(Gradient, ComparesValuesOfFormulas) {
+  const Number x = seeded(0.7, 0, 1), y = seeded(1.9, 1, 1);
+  EXPECT_TRUE(x + y > 2.5);
+  EXPECT_TRUE(x * y < y);
+  EXPECT_TRUE(y - x == y - x * 1.0);
+  EXPECT_FALSE(1.0 >= y);
+}
+
 TEST(Gradient, DerivativesDifferInAnyPlace) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_FALSE(seeded(1, i, 1).v == Number(1.0).v) << i;
   EXPECT_TRUE(seeded(1, 2, 0).v == Number(2.0).v);
