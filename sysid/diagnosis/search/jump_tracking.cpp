@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "model/chain.h"
@@ -39,11 +40,41 @@ struct Track {
   std::size_t last = no_jump;
 };
 
+/// Tracks whose chains stay where they are when they are dropped: another one is then copied into them, which
+/// allocates nothing.
+class Tracks {
+ public:
+  void clear() { count_ = 0; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] Track& operator[](std::size_t i) { return all_[i]; }
+  [[nodiscard]] std::span<Track> span() { return std::span(all_).first(count_); }
+
+  Track& add_copy(const Track& track) {
+    if (count_ == all_.size())
+      all_.push_back(track);
+    else
+      all_[count_] = track;
+    return all_[count_++];
+  }
+  /// Leaves `track` with any chain.
+  Track& take(Track& track) {
+    if (count_ == all_.size())
+      all_.push_back(track);
+    else
+      std::swap(all_[count_], track);
+    return all_[count_++];
+  }
+
+ private:
+  std::vector<Track> all_;  ///< the first `count_` are in use
+  std::size_t count_ = 0;
+};
+
 class JumpTracker {
  public:
   JumpTracker(const Record& record, const FitPoint& point, const StartState& start, double band_kpa,
-              double resolution_kpa)
-      : record_(record), band_kpa_(band_kpa), resolution_kpa_(resolution_kpa) {
+              double resolution_kpa, double worth_mm2)
+      : record_(record), band_kpa_(band_kpa), resolution_kpa_(resolution_kpa), worth_mm2_(worth_mm2) {
     Track first{model::Chain<double>(point.model, {}, record.sample_time_s), record.drive_kpa.front(), 0,
                 no_jump};
     sysid::start(first.chain, record, start.peak_before_kpa);
@@ -51,11 +82,14 @@ class JumpTracker {
     add_start(point.model, record, start, start_mm_);
     const double gain = record.largest_kpa > 0 ? record.span_mm / record.largest_kpa : 1;
     give_up_mm2_ = hopeless * resolution_kpa * resolution_kpa * gain * gain;
-    tracks_.push_back(std::move(first));
+    tracks_.take(first);
   }
 
   ValveCourse run() {
-    for (std::size_t i = 1; i < record_.size(); ++i) step(i);
+    for (std::size_t i = 1; i < record_.size(); ++i) {
+      step(i);
+      if (is_beaten_) return {{}, {}, std::numeric_limits<double>::infinity()};
+    }
     return course();
   }
 
@@ -66,21 +100,20 @@ class JumpTracker {
     const double from = record_.held ? to : record_.drive_kpa[i - 1];
     next_.clear();
     bool any_jump = false;
-    for (Track& track : tracks_) {
+    for (Track& track : tracks_.span()) {
       const std::vector<double>& landings = landings_of(track.held_kpa, from, to);
       any_jump |= !landings.empty();
       for (const double held : landings) {
-        Track child = track;
+        Track& child = next_.add_copy(track);
         child.last = jumps_.size();
         jumps_.push_back({i, held, std::abs(held - track.held_kpa),
                           !record_.held && std::abs(to - from) < slow_share * band_kpa_ && to != from,
                           track.last});
         advance(child, i, held);
-        next_.push_back(std::move(child));
       }
       if (std::abs(to - track.held_kpa) <= breaks_loose_by * band_kpa_ || landings.empty()) {
         advance(track, i, track.held_kpa);
-        next_.push_back(std::move(track));
+        next_.take(track);
       }
     }
     if (any_jump || i % look_again == 0 || i + 1 == record_.size()) {
@@ -124,24 +157,26 @@ class JumpTracker {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::sort(order_.begin(), order_.end(),
               [&](std::size_t a, std::size_t b) { return next_[a].cost_mm2 < next_[b].cost_mm2; });
-    const double most_mm2 = next_[order_.front()].cost_mm2 + give_up_mm2_;
+    const double least_mm2 = next_[order_.front()].cost_mm2;
+    is_beaten_ = least_mm2 > worth_mm2_;  // and grows with every sample
+    const double most_mm2 = least_mm2 + give_up_mm2_;
     tracks_.clear();
     for (const std::size_t at : order_) {
       Track& track = next_[at];
       if (tracks_.size() >= most_tracks || track.cost_mm2 > most_mm2) break;
-      const bool twin = std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& kept) {
+      const bool twin = std::ranges::any_of(tracks_.span(), [&](const Track& kept) {
         return std::abs(kept.held_kpa - track.held_kpa) < 0.25 * resolution_kpa_;
       });
-      if (!twin) tracks_.push_back(std::move(track));
+      if (!twin) tracks_.take(track);
     }
   }
 
-  [[nodiscard]] ValveCourse course() const {
+  [[nodiscard]] ValveCourse course() {
     ValveCourse found;
     found.held_kpa.assign(record_.size(), record_.drive_kpa.front());
-    found.sum_of_squares_mm2 = tracks_.front().cost_mm2;
+    found.sum_of_squares_mm2 = tracks_[0].cost_mm2;
     std::size_t end = record_.size();
-    for (std::size_t at = tracks_.front().last; at != no_jump; at = jumps_[at].before) {
+    for (std::size_t at = tracks_[0].last; at != no_jump; at = jumps_[at].before) {
       const Jump& jump = jumps_[at];
       std::fill(found.held_kpa.begin() + static_cast<long>(jump.sample),
                 found.held_kpa.begin() + static_cast<long>(end), jump.held_kpa);
@@ -153,11 +188,12 @@ class JumpTracker {
   }
 
   const Record& record_;
-  double band_kpa_, resolution_kpa_;
+  double band_kpa_, resolution_kpa_, worth_mm2_;
   double give_up_mm2_ = 0;
+  bool is_beaten_ = false;
   std::vector<double> start_mm_;
   model::Surroundings around_;
-  std::vector<Track> tracks_, next_;
+  Tracks tracks_, next_;
   std::vector<Jump> jumps_;
   std::vector<double> landings_;
   std::vector<std::size_t> order_;
@@ -166,8 +202,8 @@ class JumpTracker {
 }  // namespace
 
 ValveCourse track_jumps(const Record& record, std::size_t index, const FitPoint& point, double band_kpa,
-                        double resolution_kpa) {
-  return JumpTracker(record, point, point.starts[index], band_kpa, resolution_kpa).run();
+                        double resolution_kpa, double worth_mm2) {
+  return JumpTracker(record, point, point.starts[index], band_kpa, resolution_kpa, worth_mm2).run();
 }
 
 Record driven_by(const Record& record, const ValveCourse& course) {

@@ -8,6 +8,7 @@
 // no jump, as in Viterbi's algorithm).
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "sysid/fitting/fit_space.h"
@@ -34,8 +35,11 @@ struct ValveCourse {
 /// @param index  of the record.
 /// @param band_kpa  > 0.
 /// @param resolution_kpa  > 0: differences in pressure that the readings cannot show.
+/// @param worth_mm2  a course that leaves more is not followed to its end: an infinite sum of squares, and
+///                   nothing else.
 [[nodiscard]] ValveCourse track_jumps(const Record& record, std::size_t index, const FitPoint& point,
-                                      double band_kpa, double resolution_kpa);
+                                      double band_kpa, double resolution_kpa,
+                                      double worth_mm2 = std::numeric_limits<double>::infinity());
 
 /// The record with where the valve stood as its drive.
 [[nodiscard]] Record driven_by(const Record& record, const ValveCourse& course);

@@ -1,6 +1,7 @@
 #include "sysid/diagnosis/search/staircase.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -21,6 +22,8 @@ constexpr double narrowest = 0.004, widest = 0.25;
 /// The band and what stands behind the valve are estimated in turns, until the band stays.
 constexpr int most_rounds = 12;
 constexpr double stays = 5e-4;
+/// A sum that is larger by more than rounding can make it.
+constexpr double clearly_more = 1 + 1e-9;
 
 struct Courses {
   std::vector<ValveCourse> by_record;
@@ -28,13 +31,32 @@ struct Courses {
 };
 
 Courses track_all(const std::vector<Record>& records, const FitPoint& point, double band_kpa,
-                  double resolution_kpa) {
+                  double resolution_kpa, unsigned threads) {
   Courses all;
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    all.by_record.push_back(track_jumps(records[k], k, point, band_kpa, resolution_kpa));
-    all.sum_of_squares_mm2 += all.by_record.back().sum_of_squares_mm2;
-  }
+  all.by_record.resize(records.size());
+  parallel_for(records.size(), threads, [&](std::size_t k) {
+    all.by_record[k] = track_jumps(records[k], k, point, band_kpa, resolution_kpa);
+  });
+  for (const ValveCourse& course : all.by_record) all.sum_of_squares_mm2 += course.sum_of_squares_mm2;
   return all;
+}
+
+/// The band whose courses leave least, the first of those that leave as little. A band that has already left
+/// more than another one in all is not followed further.
+double best_band(const std::vector<Record>& records, const FitPoint& point, const std::vector<double>& bands,
+                 double resolution_kpa, unsigned threads) {
+  std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
+  std::atomic<double> least{std::numeric_limits<double>::infinity()};
+  parallel_for(bands.size(), threads, [&](std::size_t i) {
+    double sum_mm2 = 0;
+    for (std::size_t k = 0; k < records.size() && std::isfinite(sum_mm2); ++k)
+      sum_mm2 += track_jumps(records[k], k, point, bands[i], resolution_kpa, clearly_more * (least - sum_mm2))
+                     .sum_of_squares_mm2;
+    left[i] = sum_mm2;
+    for (double known = least; sum_mm2 < known && !least.compare_exchange_weak(known, sum_mm2);) {
+    }
+  });
+  return bands[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
 }
 
 /// The bands whose jumps the readings can show.
@@ -85,17 +107,13 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
   // Half the noise, in pressure.
   const double resolution_kpa = 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
-  std::vector<double> left(bands.size(), std::numeric_limits<double>::infinity());
-  parallel_for(bands.size(), threads, [&](std::size_t i) {
-    left[i] = track_all(records, behind.point, bands[i], resolution_kpa).sum_of_squares_mm2;
-  });
-  if (left.empty()) return std::nullopt;
+  if (bands.empty()) return std::nullopt;
   Staircase found;
-  found.band_kpa = bands[static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin())];
+  found.band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
   found.fit = behind;
   for (int round = 0; round < most_rounds; ++round) {
     const double before_kpa = found.band_kpa;
-    const Courses courses = track_all(records, found.fit.point, found.band_kpa, resolution_kpa);
+    const Courses courses = track_all(records, found.fit.point, found.band_kpa, resolution_kpa, threads);
     measure_band(courses, found);
     if (found.jumps < fewest_jumps) return std::nullopt;
     found.records = driven(records, courses);

@@ -1,11 +1,13 @@
 #include "sysid/diagnosis/search/staircase.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "model/catalogue.h"
+#include "sysid/diagnosis/search/jump_tracking.h"
 #include "sysid/fitting/fit_space.h"
 #include "tests/sysid/diagnosis/campaign.h"
 
@@ -69,6 +71,22 @@ TEST(Staircase, FindsTheBandOfAValveThatSticksAndJumps) {
     // The readings' noise is all that stays once it is known where the valve stood.
     EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.2 * noise_mm);
   }
+}
+
+TEST(Staircase, FollowsACourseAsFarAsItIsWorth) {
+  const auto records = answered(
+      known_campaign(2), [](double p, double u, double) { return sticking(3.1, p, u); }, 11);
+  const StructureFit model = behind(records);
+  const auto followed = [&](double band_kpa, double worth_mm2) {
+    return track_jumps(records[0], 0, model.point, band_kpa, 0.05, worth_mm2);
+  };
+  const ValveCourse right = track_jumps(records[0], 0, model.point, 3.1, 0.05);
+  EXPECT_EQ(followed(3.1, right.sum_of_squares_mm2).held_kpa, right.held_kpa);
+  const ValveCourse wrong = track_jumps(records[0], 0, model.point, 8.0, 0.05);
+  ASSERT_GT(wrong.sum_of_squares_mm2, 2 * right.sum_of_squares_mm2);
+  const ValveCourse given_up = followed(8.0, right.sum_of_squares_mm2);
+  EXPECT_EQ(given_up.sum_of_squares_mm2, std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(given_up.held_kpa.empty());
 }
 
 TEST(Staircase, SeesThatJumpsComeOverAnyDistance) {
