@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "model/catalogue.h"
+#include "sysid/changes/downstream.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/centred_record.h"
 #include "sysid/structure/published_element.h"
@@ -275,11 +276,20 @@ void spread(Base& base) {
   base.zero_spread_mm = std::max(least_zero_share * base.span_mm, count > 0 ? std::sqrt(zeros / count) : 0);
 }
 
+/// The model's prediction with the blocks of an extension, walked anew only where they reach into it.
+std::vector<double> extended_prediction(const Base& base, const Driven& driven,
+                                        const std::vector<model::BlockSpec>& blocks) {
+  if (blocks.empty()) return driven.plain;
+  if (is_downstream(blocks, base.model, driven.record))
+    return downstream(blocks, driven.record, driven.plain);
+  model::Model model = base.model;
+  for (const model::BlockSpec& block : blocks) model = model::with_block(std::move(model), block);
+  return plain_prediction(model, driven.record);
+}
+
 std::vector<double> driven_prediction(const Base& base, const Driven& driven, const Extension& extension) {
   const Record& record = driven.record;
-  model::Model model = base.model;
-  for (const model::BlockSpec& block : extension.chain) model = model::with_block(std::move(model), block);
-  std::vector<double> y = plain_prediction(model, record);
+  std::vector<double> y = extended_prediction(base, driven, extension.chain);
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double warmer = record.temperature_c.empty() ? 0 : record.temperature_c[i] - base.temperature_c;
     y[i] = (y[i] + driven.echo(static_cast<Eigen::Index>(i))) * extension.gain *
@@ -297,9 +307,10 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
 }  // namespace
 
 Driven driven_by(const Base& base, const Record& record) {
-  Driven driven{base.regulator ? behind(*base.regulator, record) : record, {}};
+  Driven driven{base.regulator ? behind(*base.regulator, record) : record, {}, {}};
   driven.echo =
       weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa, base.echo_weights);
+  driven.plain = plain_prediction(base.model, driven.record);
   return driven;
 }
 

@@ -64,10 +64,11 @@ struct BaseOptions {
 [[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
                             const BaseOptions& options);
 
-/// A record behind the valve of a base as it is, and what the echo adds to the model's prediction there.
+/// A record behind the valve of a base as it is, the model's prediction there, and what the echo adds to it.
 struct Driven {
   Record record;
   Eigen::VectorXd echo;
+  std::vector<double> plain;
 };
 [[nodiscard]] Driven driven_by(const Base& base, const Record& record);
 
