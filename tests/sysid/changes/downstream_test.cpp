@@ -8,7 +8,7 @@
 #include "sysid/fitting/fit_space.h"
 #include "sysid/fitting/trajectory.h"
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::downstream_test {
 namespace {
 
 model::BlockSpec block(const char* id) {
@@ -88,4 +88,4 @@ TEST(Downstream, IsNotOfAHeldCommandNorOfAnUnknownStart) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::downstream_test
