@@ -1,16 +1,14 @@
 #include "sysid/changes/base.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Cholesky>
 
 #include "base/parallel.h"
 #include "base/statistics.h"
 #include "model/catalogue.h"
 #include "sysid/changes/downstream.h"
+#include "sysid/changes/echo_fit.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/centred_record.h"
 #include "sysid/structure/published_element.h"
@@ -20,12 +18,6 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr std::array ridges{1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
-/// Held out in turn, in blocks, fewer seconds where there are few. Shorter than what a finger remembers, a
-/// block is known from its neighbours, and a slow echo that has merely learnt the order of the healthy logs
-/// by heart passes: on the next day it is a zero that wanders.
-constexpr double longest_block_s = 10;
-constexpr std::size_t folds = 8;
 /// A valve answers sooner than a finger: whatever the command drives is judged in shorter bins, and so is a
 /// finger's own delay told from its lag.
 constexpr double shortest_finger_bin_s = 0.05, shortest_commanded_bin_s = 0.02;
@@ -73,144 +65,13 @@ std::vector<double> started_prediction(const Choice& choice, const std::vector<R
   return predict(choice.point.model, records[r], choice.point.starts[r]);
 }
 
-class EchoFit {
- public:
-  EchoFit(const std::vector<Record>& records, const Choice& choice, EchoKind kind, const Base& base)
-      : records_(records), base_(base), kind_(kind) {
-    double whole_s = 0;
-    for (const Record& record : records) whole_s += record.length_s();
-    const double block_s = std::min(longest_block_s, whole_s / folds);
-    per_block_ = std::max<std::size_t>(1, static_cast<std::size_t>(block_s / base.bin_s));
-    for (std::size_t r = 0; r < records.size(); ++r) add(r, started_prediction(choice, records, r));
-  }
-
-  /// Held-out residuals of the best ridge, by row; and the weights of all rows with it.
-  void run() {
-    double best = std::numeric_limits<double>::infinity();
-    std::vector<Eigen::MatrixXd> gram(folds);
-    std::vector<Eigen::VectorXd> moment(folds);
-    const Eigen::Index n = columns_.cols();
-    for (std::size_t f = 0; f < folds; ++f) {
-      const Eigen::MatrixXd part = rows_of_fold(f);
-      gram[f] = Eigen::MatrixXd::Zero(n, n);
-      moment[f] = Eigen::VectorXd::Zero(n);
-      if (part.rows() == 0) continue;
-      gram[f].selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-      moment[f] = part.transpose() * target_of_fold(f);
-    }
-    for (const double ridge : ridges) {
-      Eigen::VectorXd left(target_.size());
-      for (std::size_t f = 0; f < folds; ++f) {
-        Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(n, n);
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-        for (std::size_t g = 0; g < folds; ++g) {
-          if (g == f) continue;
-          rest += gram[g];
-          right += moment[g];
-        }
-        const Eigen::VectorXd w = solved(rest, right, ridge);
-        for (Eigen::Index i = 0; i < target_.size(); ++i) {
-          if (fold_[static_cast<std::size_t>(i)] == f) left(i) = target_(i) - columns_.row(i).dot(w);
-        }
-      }
-      const double rms_mm = std::sqrt(left.squaredNorm() / static_cast<double>(left.size()));
-      if (rms_mm >= best) continue;
-      best = rms_mm;
-      left_ = left;
-      Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, n);
-      Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-      for (std::size_t g = 0; g < folds; ++g) {
-        all += gram[g];
-        right += moment[g];
-      }
-      weights_ = solved(all, right, ridge);
-    }
-    left_mm_ = best;
-  }
-
-  [[nodiscard]] double left_mm() const { return left_mm_; }
-
-  void write(Base& base) const {
-    base.kind = kind_;
-    base.echo_weights = weights_.head(echo_count_);
-    base.left_mm = left_mm_;
-    base.left.clear();
-    for (const Record& record : records_)
-      base.left.emplace_back(binned(record, record.reading_mm, base.bin_s).size(),
-                             std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < fold_.size(); ++i)
-      base.left[record_[i]][bin_[i]] = left_(static_cast<Eigen::Index>(i));
-  }
-
- private:
-  void add(std::size_t r, const std::vector<double>& prediction) {
-    const Record& record = records_[r];
-    const Eigen::MatrixXd echo = echo_columns(record, record.drive_kpa, kind_, base_.largest_kpa);
-    echo_count_ = echo.cols();
-    std::vector<std::vector<double>> series;
-    for (Eigen::Index c = 0; c < echo.cols(); ++c)
-      series.push_back(binned(record, {echo.col(c).begin(), echo.col(c).end()}, base_.bin_s));
-    const std::vector<double> left = binned(record, residual(record, prediction), base_.bin_s);
-    std::vector<std::size_t> usable;
-    for (std::size_t b = 0; b < left.size(); ++b) {
-      if (std::isfinite(left[b])) usable.push_back(b);
-    }
-    const Eigen::Index first = columns_.rows();
-    const auto own = static_cast<Eigen::Index>(series.size());
-    // An offset of each record's own stands behind the columns.
-    const auto width = own + static_cast<Eigen::Index>(records_.size());
-    columns_.conservativeResize(first + static_cast<Eigen::Index>(usable.size()), width);
-    target_.conservativeResize(columns_.rows());
-    for (std::size_t i = 0; i < usable.size(); ++i) {
-      const Eigen::Index row = first + static_cast<Eigen::Index>(i);
-      columns_.row(row).setZero();
-      for (Eigen::Index c = 0; c < own; ++c) {
-        const double v = series[static_cast<std::size_t>(c)][usable[i]];
-        columns_(row, c) = std::isfinite(v) ? v : 0;
-      }
-      columns_(row, own + static_cast<Eigen::Index>(r)) = base_.largest_kpa;
-      target_(row) = left[usable[i]];
-      fold_.push_back((first_block_ + usable[i] / per_block_) % folds);
-      record_.push_back(r);
-      bin_.push_back(usable[i]);
-    }
-    first_block_ += left.size() / per_block_ + 1;
-  }
-
-  [[nodiscard]] Eigen::MatrixXd rows_of_fold(std::size_t f) const {
-    Eigen::MatrixXd part(std::count(fold_.begin(), fold_.end(), f), columns_.cols());
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; i < fold_.size(); ++i) {
-      if (fold_[i] == f) part.row(at++) = columns_.row(static_cast<Eigen::Index>(i));
-    }
-    return part;
-  }
-  [[nodiscard]] Eigen::VectorXd target_of_fold(std::size_t f) const {
-    Eigen::VectorXd part(std::count(fold_.begin(), fold_.end(), f));
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; i < fold_.size(); ++i) {
-      if (fold_[i] == f) part(at++) = target_(static_cast<Eigen::Index>(i));
-    }
-    return part;
-  }
-  [[nodiscard]] Eigen::VectorXd solved(Eigen::MatrixXd gram, const Eigen::VectorXd& right,
-                                       double ridge) const {
-    gram.diagonal().array() +=
-        ridge * static_cast<double>(target_.size()) * base_.largest_kpa * base_.largest_kpa;
-    return gram.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  }
-
-  const std::vector<Record>& records_;
-  const Base& base_;
-  EchoKind kind_;
-  Eigen::MatrixXd columns_;
-  Eigen::VectorXd target_, weights_, left_;
-  std::vector<std::size_t> fold_, record_, bin_;
-  std::size_t per_block_ = 1;    ///< bins
-  std::size_t first_block_ = 0;  ///< of the record that is added next
-  Eigen::Index echo_count_ = 0;
-  double left_mm_ = 0;
-};
+/// What a choice leaves of its records, in bins.
+Binned left_by(const Choice& choice, const std::vector<Record>& records, double bin_s) {
+  Binned left;
+  for (std::size_t r = 0; r < records.size(); ++r)
+    left.push_back(binned(records[r], residual(records[r], started_prediction(choice, records, r)), bin_s));
+  return left;
+}
 
 std::vector<Choice> choices(const std::vector<Record>& records, const Base& base,
                             const BaseOptions& options) {
@@ -250,6 +111,54 @@ std::vector<EchoKind> kinds_for(Judged judged, Drive drive) {
   if (judged == Judged::pressure) return {EchoKind::valve};
   if (drive == Drive::measured) return {EchoKind::finger};
   return {EchoKind::finger, EchoKind::valve_and_finger};
+}
+
+/// The choices that follow the same drives, and what of them is behind a regulator of its own.
+struct AlikeDriven {
+  std::vector<Record> records;
+  std::vector<std::size_t> choices;
+};
+std::vector<AlikeDriven> alike_driven(const std::vector<Choice>& all, const std::vector<Record>& records) {
+  std::vector<AlikeDriven> groups{{records, {}}};
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (all[c].regulator)
+      groups.push_back({behind(all[c].regulator, records), {c}});
+    else
+      groups.front().choices.push_back(c);
+  }
+  return groups;
+}
+
+/// The choice that leaves least with an echo beside it, the first of those that leave as little.
+void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record>& records,
+            const BaseOptions& options) {
+  const std::vector<EchoKind> kinds = kinds_for(base.judged, base.drive);
+  const std::vector<AlikeDriven> groups = alike_driven(all, records);
+  std::vector<std::vector<FittedEcho>> fits(all.size(), std::vector<FittedEcho>(kinds.size()));
+  parallel_for(groups.size() * kinds.size(), options.threads, [&](std::size_t task) {
+    const auto& [driven, members] = groups[task / kinds.size()];
+    const std::size_t k = task % kinds.size();
+    std::vector<Binned> left;
+    for (const std::size_t c : members) left.push_back(left_by(all[c], driven, base.bin_s));
+    if (left.empty()) return;
+    std::vector<FittedEcho> fitted = fit_echo(driven, kinds[k], base.bin_s, base.largest_kpa, left);
+    for (std::size_t i = 0; i < members.size(); ++i) fits[members[i]][k] = std::move(fitted[i]);
+  });
+  base.left_mm = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      FittedEcho& echo = fits[c][k];
+      if (!(echo.left_mm < base.left_mm)) continue;
+      base.model = all[c].point.model;
+      base.regulator = all[c].regulator;
+      base.description = all[c].description;
+      base.kind = kinds[k];
+      base.echo_weights = std::move(echo.weights);
+      base.left_mm = echo.left_mm;
+      base.left = std::move(echo.left);
+    }
+    if (options.progress) options.progress(all[c].description);
+  }
 }
 
 std::size_t order_for(const Base& base) {
@@ -347,20 +256,7 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
     base.span_mm = std::max(base.span_mm, record.span_mm);
     base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
   }
-  base.left_mm = std::numeric_limits<double>::infinity();
-  for (const Choice& choice : choices(records, base, options)) {
-    const std::vector<Record> driven = behind(choice.regulator, records);
-    for (const EchoKind kind : kinds_for(judged, drive)) {
-      EchoFit echo(driven, choice, kind, base);
-      echo.run();
-      if (!(echo.left_mm() < base.left_mm)) continue;
-      base.model = choice.point.model;
-      base.regulator = choice.regulator;
-      base.description = choice.description;
-      echo.write(base);
-    }
-    if (options.progress) options.progress(choice.description);
-  }
+  choose(base, choices(records, base, options), records, options);
   Binned haste;
   for (const Record& record : records) haste.push_back(haste_of(record, base.bin_s));
   base.whitener = whitener_of(base.left, haste, order_for(base));
