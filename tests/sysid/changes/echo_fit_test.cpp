@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace softgrip::sysid {
+namespace softgrip::sysid::echo_fit_test {
 namespace {
 
 constexpr double bin_s = 0.1;
@@ -55,4 +55,4 @@ TEST(EchoFit, OfSeveralModelsIsThatOfEach) {
 }
 
 }  // namespace
-}  // namespace softgrip::sysid
+}  // namespace softgrip::sysid::echo_fit_test
