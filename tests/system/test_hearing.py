@@ -297,13 +297,17 @@ class AnotherMaster(bench.BenchTest):
         self.addCleanup(other.close)
         # FC16: outputs 10 and 11 to 0, again and again, as a forgotten script would.
         frame = bytes([0, 1, 0, 0, 0, 11, 1, 16, 0, 10, 0, 2, 4, 0, 0, 0, 0])
+        # Where one of its writes falls between a write and its reading back it looks like a write that was not taken
+        # first, F302, and what is held stays held.
+        codes = []
         began = time.monotonic()
-        while time.monotonic() - began < 5 and daemon.status()["state"] != "faulted":
+        while time.monotonic() - began < 5 and "F304" not in codes:
             other.sendall(frame)
             other.recv(256)
             time.sleep(0.005)
-        codes = [e["code"] for e in daemon.events() if e["kind"] == "fault_latched"]
-        self.assertTrue(set(codes) & {"F304", "F302", "F301"}, codes)
+            codes = [e["code"] for e in daemon.events() if e["kind"] == "fault_latched"]
+        self.assertIn("F304", codes)
+        self.assertLessEqual(set(codes), {"F304", "F302", "F301"})
         bench.wait_for("vented outputs", lambda: max(emulator.commands_kpa()) < 1)
         for _ in range(50):
             self.assertLess(max(emulator.commands_kpa()), 1)
