@@ -43,6 +43,10 @@
 // besides, and `min_parts` if that is not one. A block whose parameters must fit each other declares
 // `static std::string_view objection(std::span<const double> values)`, empty when they do.
 //
+// A displacement block whose output at the end of a sample follows from its input and its surroundings there,
+// whatever the way to it was, declares `static constexpr bool at_samples = true`. Of reading blocks that is
+// so anyway; those whose random numbers depend on their place in the chain declare it false.
+//
 // A block that is a part of the chain's Bouc-Wen hysteresis declares `void shape(BoucWen<T>&) const` besides,
 // which the chain calls once when it is made.
 //

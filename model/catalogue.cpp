@@ -19,6 +19,11 @@ Descriptor describe() {
   }
   if constexpr (requires { Block::objection(std::span<const double>{}); })
     result.objection = &Block::objection;
+  if constexpr (requires { Block::at_samples; }) {
+    result.at_samples = Block::at_samples;
+  } else {
+    result.at_samples = Block::info.kind == Kind::reading;
+  }
   return result;
 }
 

@@ -21,6 +21,8 @@ struct Descriptor {
   std::size_t max_parts = 0;                  ///< most parts
   /// Why these values do not fit each other, or empty. nullptr when any do.
   std::string_view (*objection)(std::span<const double> values) = nullptr;
+  /// Its output at the end of a sample follows from its input and its surroundings there (block.h).
+  bool at_samples = false;
 
   /// How many values a block of this type may have: parameters.size() + n repeated.size().
   [[nodiscard]] bool accepts(std::size_t value_count) const;

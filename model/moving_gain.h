@@ -30,6 +30,7 @@ class MovingGain {
 template <class Block, class T>
 class SurroundingsGain {
  public:
+  static constexpr bool at_samples = true;
   /// Where the surroundings put the gain, the next step says.
   void reset(const T& input) {
     gain_.reset(T(1.0));

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Which branches of control/, of the bus and of the loop the tests take: builds them with counters under build/coverage, runs
-# control_test, daemon_test and 100 worlds, and prints branches per file, the least covered first. Every branch that is
-# not taken: build/coverage/branches.txt.
+# control_test, daemon_test and 100 worlds, and prints branches per file and folder, the least covered first. Every branch
+# that is not taken: build/coverage/branches.txt.
 #   scripts/coverage.sh
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
@@ -20,7 +20,7 @@ $build/tests/world/softgrip-world --count 100 | tail -n 2
 gcovr -r . $build --branches --exclude-throw-branches --exclude-unreachable-branches --sort-percentage \
   --filter 'control/' --filter 'daemon/loop/(bus|loop|heartbeat)' --exclude '.*\.h$' \
   --txt $build/branches.txt --csv $build/branches.csv
-awk -F, 'NR > 1 { print $1, $6, $5; split($1, part, "/"); folder = part[1] "/" part[2]; of[folder] += $5; taken[folder] += $6
-           if (part[1] == "control") { of["control"] += $5; taken["control"] += $6 } }
-         END { print ""; for (name in of) printf "%s %d of %d branches, %.1f %%\n", name, taken[name], of[name], 100 * taken[name] / of[name] }' \
-  $build/branches.csv
+awk -F, 'function add(name) { of[name] += $5; taken[name] += $6 }
+         NR > 1 { split($1, part, "/"); add($1); add(part[1] "/" part[2]); add(part[1]) }
+         END { for (name in of) if (of[name]) printf "%5.1f %% %s: %d of %d\n", 100 * taken[name] / of[name], name, taken[name], of[name] }' \
+  $build/branches.csv | sort -n

@@ -10,6 +10,7 @@ namespace softgrip::model {
 template <class T>
 class Contact {
  public:
+  static constexpr bool at_samples = true;
   static constexpr BlockInfo info = block_info(
       "contact", Station::load, Kind::displacement, Inverse::implicit, "Contact",
       "Stiffer beyond a position: an object or a stop.",

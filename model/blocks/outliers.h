@@ -12,6 +12,7 @@ namespace softgrip::model {
 template <class T>
 class Outliers {
  public:
+  static constexpr bool at_samples = false;
   static constexpr BlockInfo info =
       block_info("outliers", Station::sensor, Kind::reading, Inverse::ignored, "Outliers",
                  "Isolated wrong samples.", "z = y ± size with the given probability");

@@ -14,6 +14,7 @@ namespace softgrip::model {
 template <class T>
 class SensorNoise {
  public:
+  static constexpr bool at_samples = false;
   static constexpr BlockInfo info =
       block_info("sensor_noise", Station::sensor, Kind::reading, Inverse::ignored, "Sensor noise",
                  "Random error of the reading.", "z = y + normal noise");

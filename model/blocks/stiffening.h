@@ -10,6 +10,7 @@ namespace softgrip::model {
 template <class T>
 class Stiffening {
  public:
+  static constexpr bool at_samples = true;
   static constexpr BlockInfo info =
       block_info("stiffening", Station::actuator, Kind::displacement, Inverse::implicit, "Stiffening",
                  "The gain changes with displacement, loading and unloading alike.",

@@ -113,18 +113,21 @@ std::vector<EchoKind> kinds_for(Judged judged, Drive drive) {
   return {EchoKind::finger, EchoKind::valve_and_finger};
 }
 
-/// The choices that follow the same drives, and what of them is behind a regulator of its own.
+/// The choices that follow the same drives, and what each leaves of the records; one behind a regulator of
+/// its own is alone.
 struct AlikeDriven {
   std::vector<Record> records;
   std::vector<std::size_t> choices;
+  std::vector<Binned> left;
 };
-std::vector<AlikeDriven> alike_driven(const std::vector<Choice>& all, const std::vector<Record>& records) {
-  std::vector<AlikeDriven> groups{{records, {}}};
+std::vector<AlikeDriven> alike_driven(const std::vector<Choice>& all, const std::vector<Record>& records,
+                                      double bin_s) {
+  std::vector<AlikeDriven> groups{{records, {}, {}}};
   for (std::size_t c = 0; c < all.size(); ++c) {
-    if (all[c].regulator)
-      groups.push_back({behind(all[c].regulator, records), {c}});
-    else
-      groups.front().choices.push_back(c);
+    if (all[c].regulator) groups.push_back({behind(all[c].regulator, records), {}, {}});
+    AlikeDriven& group = all[c].regulator ? groups.back() : groups.front();
+    group.choices.push_back(c);
+    group.left.push_back(left_by(all[c], group.records, bin_s));
   }
   return groups;
 }
@@ -133,14 +136,12 @@ std::vector<AlikeDriven> alike_driven(const std::vector<Choice>& all, const std:
 void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<EchoKind> kinds = kinds_for(base.judged, base.drive);
-  const std::vector<AlikeDriven> groups = alike_driven(all, records);
+  const std::vector<AlikeDriven> groups = alike_driven(all, records, base.bin_s);
   std::vector<std::vector<FittedEcho>> fits(all.size(), std::vector<FittedEcho>(kinds.size()));
   parallel_for(groups.size() * kinds.size(), options.threads, [&](std::size_t task) {
-    const auto& [driven, members] = groups[task / kinds.size()];
+    const auto& [driven, members, left] = groups[task / kinds.size()];
+    if (members.empty()) return;
     const std::size_t k = task % kinds.size();
-    std::vector<Binned> left;
-    for (const std::size_t c : members) left.push_back(left_by(all[c], driven, base.bin_s));
-    if (left.empty()) return;
     std::vector<FittedEcho> fitted = fit_echo(driven, kinds[k], base.bin_s, base.largest_kpa, left);
     for (std::size_t i = 0; i < members.size(); ++i) fits[members[i]][k] = std::move(fitted[i]);
   });

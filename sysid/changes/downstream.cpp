@@ -3,16 +3,8 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "model/blocks/ageing.h"
-#include "model/blocks/contact.h"
-#include "model/blocks/outliers.h"
-#include "model/blocks/running_in.h"
-#include "model/blocks/sensor_noise.h"
-#include "model/blocks/stiffening.h"
-#include "model/blocks/thermal_gain.h"
 #include "model/catalogue.h"
 #include "model/chain.h"
-#include "model/named.h"
 #include "model/visit.h"
 #include "sysid/fitting/trajectory_walk.h"
 
@@ -21,15 +13,6 @@ namespace {
 
 using model::Kind;
 using Block = model::AnyBlock<double>;
-
-/// Whether a block shows at the end of a sample what follows from its input and its surroundings there. Other
-/// displacement blocks look at the way between the samples; random numbers depend on a block's place.
-bool is_sampled(const model::BlockSpec& block) {
-  if (model::is<model::SensorNoise, model::Outliers>(block)) return false;
-  return model::catalogue()[block.type].info.kind == Kind::reading ||
-         model::is<model::Stiffening, model::ThermalGain, model::Ageing, model::RunningIn, model::Contact>(
-             block);
-}
 
 template <class Any>
 constexpr Kind kind_of = std::remove_cvref_t<Any>::info.kind;
@@ -64,7 +47,7 @@ bool is_downstream(const std::vector<model::BlockSpec>& blocks, const model::Mod
   return std::all_of(blocks.begin(), blocks.end(), [&](const model::BlockSpec& block) {
     const bool behind = block.type > before;
     before = block.type;
-    return behind && is_sampled(block);
+    return behind && model::catalogue()[block.type].at_samples;
   });
 }
 

@@ -70,6 +70,21 @@ TEST(Downstream, IsWhatTheWholeChainShowsBitForBit) {
   }
 }
 
+// Whatever blocks there are or will be: what says that it shows at samples does.
+TEST(Downstream, HoldsForEveryBlockThatSaysSo) {
+  const Record record = waving();
+  const std::vector<double> plain = walked(base(), record);
+  std::size_t count = 0;
+  for (std::size_t type = 0; type < model::catalogue().size(); ++type) {
+    const model::BlockSpec one = model::default_block(type);
+    if (!is_downstream({one}, base(), record)) continue;
+    ++count;
+    EXPECT_EQ(downstream({one}, record, plain), walked(model::with_block(base(), one), record))
+        << model::catalogue()[type].info.id;
+  }
+  EXPECT_GE(count, 10U);
+}
+
 TEST(Downstream, IsNothingThatLooksAtTheWayOrStandsInFront) {
   const Record record = waving();
   for (const char* id : {"backlash", "inertia", "sensor_lag", "wear", "slow_creep", "stress_softening",

@@ -1,0 +1,55 @@
+#include "tools/command_line/log_input.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "tests/daemon/temporary_folder.h"
+
+namespace softgrip::tools::log_input_test {
+namespace {
+
+constexpr std::size_t samples = 400;
+
+/// A log that begins as its command was set from 5 to 60 kPa; the pressure follows with a lag of 0.3 s.
+std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder) {
+  const std::string path = folder.path() + "/step.csv";
+  std::ofstream out(path);
+  out << "time_s,pressure_command_kpa,displacement_mm,pressure_kpa\n";
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double t_s = 0.02 * static_cast<double>(i);
+    const double command_kpa = t_s < 4 ? 60 : 30;
+    const double pressure_kpa =
+        t_s < 4 ? 60 - 55 * std::exp(-t_s / 0.3) : 30 + 30 * std::exp(-(t_s - 4) / 0.3);
+    out << t_s << ',' << command_kpa << ',' << 0.3 * pressure_kpa + 0.01 * static_cast<double>(i % 3) << ','
+        << pressure_kpa << '\n';
+  }
+  return path;
+}
+
+TEST(LogInput, ALogThatBeginsAsItsCommandWasSetGetsASampleBeforeIt) {
+  const daemon::testing::TemporaryFolder folder;
+  const auto logs = read_logs({begun_at_a_step(folder)}, {});
+  ASSERT_TRUE(logs);
+  ASSERT_EQ(logs->front().size(), samples + 1);
+  EXPECT_EQ(logs->front().pressure_command_kpa.front(), 5);
+  EXPECT_TRUE(std::isnan(logs->front().displacement_mm.front()));
+}
+
+TEST(LogInput, NotWhereTheMeasuredPressureDrivesAStageOrAll) {
+  const daemon::testing::TemporaryFolder folder;
+  const std::string path = begun_at_a_step(folder);
+  LogInput staged;
+  staged.sample_before_command = false;
+  LogInput measured;
+  measured.drive = "measured";
+  for (const LogInput& input : {staged, measured}) {
+    const auto logs = read_logs({path}, input);
+    ASSERT_TRUE(logs);
+    EXPECT_EQ(logs->front().size(), samples) << input.drive;
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::tools::log_input_test
