@@ -37,7 +37,7 @@ void step_chain(benchmark::State& state, const Model& model) {
   const std::vector<double> u = command();
   Chain<double> chain(model, {}, dt);
   std::size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(chain.step(dt, u[i]));
     if (++i == u.size()) i = 0;
   }
@@ -47,7 +47,7 @@ void step_irregular(benchmark::State& state, const Model& model) {
   const std::vector<double> u = command();
   Chain<double> chain(model);
   std::size_t i = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(chain.step(dt * (1.0 + 1e-6 * static_cast<double>(i % 97)), u[i]));
     if (++i == u.size()) i = 0;
   }
@@ -59,7 +59,7 @@ void peek_chain(benchmark::State& state, const Model& model) {
   Chain<double> chain(model, {}, dt);
   for (std::size_t i = 0; i < 4321; ++i) chain.step(dt, u[i]);
   double p = chain.pressure_kpa();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     p += 1e-6;
     U trial(p);
     if constexpr (!std::is_same_v<U, double>) trial.v = 1.0;

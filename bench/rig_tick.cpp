@@ -92,7 +92,7 @@ void rig_tick(benchmark::State& state, const model::Model& model) {
     return took.count();
   };
   while (output.state != control::State::running) one_period();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const double took_s = one_period();
     state.SetIterationTime(took_s);
     if (times_ns.size() < times_ns.capacity()) times_ns.push_back(1e9 * took_s);

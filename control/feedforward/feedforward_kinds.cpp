@@ -214,9 +214,10 @@ FeedforwardStep PlannedFeedforward::step(const FeedforwardQuery& query) noexcept
   const double aside_mm = query.plan != nullptr ? unplanned_mm(query, wanted_mm, then_s) : 0;
   const bool changed = entering_ || query.plan != plan_ || query.plan_origin_s != origin_s_;
   if (changed) on_plan_ = query.plan != nullptr && std::abs(aside_mm) <= off_plan_mm;
-  const double source =
-      on_plan_ ? query.plan->at(then_s - query.plan_origin_s) + aside_mm / settled_.gain_mm_per_kpa
-               : settled_.pressure_kpa(wanted_mm);
+  const auto* const plan = on_plan_ ? query.plan : nullptr;
+  const double source = plan != nullptr
+                            ? plan->at(then_s - query.plan_origin_s) + aside_mm / settled_.gain_mm_per_kpa
+                            : settled_.pressure_kpa(wanted_mm);
   if (changed) {
     entering_ = false;
     plan_ = query.plan;

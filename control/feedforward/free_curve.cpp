@@ -13,6 +13,7 @@ namespace {
 constexpr int levels = 32;
 constexpr std::size_t points = 65;
 constexpr double step_s = 0.02;
+constexpr int rest_steps = static_cast<int>(rests_after_s / step_s + 0.5);
 
 /// Where the finger rests under a command.
 struct Level {
@@ -35,7 +36,7 @@ std::vector<Level> levels_of(const model::Model& model, const LimitSettings& lim
     body.reset(has_valve ? valve.pressure_kpa() : limits.pressure_min_kpa);
     valve.step(0, level.command_kpa);
     body.step(0, pressure());
-    for (double t = 0; t < rests_after_s; t += step_s) {
+    for (int k = 0; k < rest_steps; ++k) {
       valve.step(step_s, level.command_kpa);
       body.step(step_s, pressure());
     }

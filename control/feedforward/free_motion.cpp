@@ -31,7 +31,8 @@ class Finger {
     const double step_s = std::max(finest_step_s, ramp_s / most_steps);
     const int ramp = static_cast<int>(std::ceil(ramp_s / step_s));
     for (int i = 1; i <= ramp; ++i) step(step_s, from_kpa + (to_kpa - from_kpa) * i / ramp);
-    for (double t = 0; t < rests_after_s; t += step_s) step(step_s, to_kpa);
+    const int rest = static_cast<int>(std::ceil(rests_after_s / step_s));
+    for (int i = 0; i < rest; ++i) step(step_s, to_kpa);
   }
 
  private:

@@ -5,7 +5,7 @@
 
 namespace softgrip::daemon {
 
-Heartbeat::Heartbeat(std::vector<Nanoseconds> patience) {
+Heartbeat::Heartbeat(const std::vector<Nanoseconds>& patience) {
   for (const Nanoseconds each : patience) counters_.push_back({each, 0, 0});
 }
 

@@ -13,7 +13,7 @@ namespace softgrip::daemon {
 class Heartbeat {
  public:
   /// One patience per counter. Time begins with the first beats().
-  explicit Heartbeat(std::vector<Nanoseconds> patience);
+  explicit Heartbeat(const std::vector<Nanoseconds>& patience);
 
   /// One count per counter, in the same order. False as soon as one of them has stood still for longer than
   /// its patience, however far the others are behind or ahead.
