@@ -80,6 +80,8 @@ def page(rows, command, planned):
                          f"{interval(sum(r['outcome'] in good for r in own), len(own))} | {len(own)} |")
         lines.append(f"| strength {strength}: something else named | - | "
                      f"{interval(sum(r['outcome'] == 'wrong' for r in own), len(own))} | {len(own)} |")
+    told = [one["held"] for r in changed for one in r["intervals"]]
+    lines.append(f"| 95 % intervals of numbers that hold the truth | 92 to 97 % | {interval(sum(told), len(told))} | {len(told)} |")
     lines.append("| unchanged called unchanged | at least 98 % | "
                  f"{interval(sum(r['outcome'] == 'unchanged' for r in still), len(still))} | {len(still)} |")
     lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
@@ -99,7 +101,8 @@ def changing_text():
         "the other campaigns call 8: an excess error of 8 times the noise of 0.04 mm; 0.15 of it is 0.048 mm. The later day",
         "has another zero and another temperature. `first`: the true cause is named first; `twin`: stiffening and a bent",
         "scale for each other; `listed`: named after another or among the rivals; `unnamed`: something changed, nothing is",
-        "named; `missed`: called unchanged; `wrong`: only something else is named."]
+        "named; `missed`: called unchanged; `wrong`: only something else is named. Intervals are those of numbers that mean",
+        "the same in the world and in the answer, of true changes that are named first."]
 
 
 def main():

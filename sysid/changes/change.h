@@ -10,6 +10,7 @@
 #include <tl/expected.hpp>
 
 #include "model/model.h"
+#include "sysid/changes/change_intervals.h"
 #include "sysid/changes/effect_fit.h"
 #include "sysid/logs/log.h"
 
@@ -40,6 +41,7 @@ struct ChangeCause {
   Judged judged = Judged::displacement;
   FittedEffect fitted;
   ChangeSize size;
+  EffectIntervals intervals;
   double full_pressure_mm =
       0;                     ///< what it does to the displacement at the highest pressures of the later logs
   double effect_mm = 0;      ///< root mean square over the later logs
@@ -85,6 +87,11 @@ struct ChangeDiagnosis {
 [[nodiscard]] tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log>& healthy,
                                                                          const std::vector<Log>& later,
                                                                          const ChangeOptions& options = {});
+
+/// "more dead time 0.03 s"
+[[nodiscard]] std::string size_text(const ChangeCause& cause);
+/// "0.0275 .. 0.0325" of the size, in its unit; "-" where there is none.
+[[nodiscard]] std::string interval_text(const ChangeCause& cause);
 
 /// The verdict in one sentence that a technician understands.
 [[nodiscard]] std::string change_sentence(const ChangeDiagnosis& diagnosis);

@@ -11,16 +11,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json interval_json(const std::optional<Interval>& interval) {
+  return interval ? Json{interval->lower, interval->upper} : Json(nullptr);
+}
+
 Json cause_json(const ChangeCause& cause) {
   Json parameters = Json::object();
   for (std::size_t i = 0; i < cause.fitted.numbers.size(); ++i)
-    parameters[cause.fitted.effect.numbers[i].name] = {{"value", cause.fitted.numbers[i]}, {"ci95", nullptr}};
+    parameters[cause.fitted.effect.numbers[i].name] = {{"value", cause.fitted.numbers[i]},
+                                                       {"ci95", interval_json(cause.intervals.numbers[i])}};
   const auto steps = next_steps(cause.id);
   return {{"id", cause.id},
           {"form", cause.fitted.effect.form},
           {"station", model::name_of(cause.station)},
           {"parameters", std::move(parameters)},
-          {"size", {{"what", cause.size.what}, {"value", cause.size.value}, {"unit", cause.size.unit}}},
+          {"size",
+           {{"what", cause.size.what},
+            {"value", cause.size.value},
+            {"unit", cause.size.unit},
+            {"ci95", interval_json(cause.intervals.size)}}},
           {"full_pressure", cause.full_pressure_mm},
           {"effect_rms", cause.effect_mm},
           {"unit", unit_of(cause.judged)},

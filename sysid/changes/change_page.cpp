@@ -17,15 +17,15 @@ Tone tone_of(ChangeVerdict verdict) {
 
 void add_causes(Page& page, const ChangeDiagnosis& d) {
   page.section("What changed");
-  Table table{"The causes, the largest change first",
-              {"cause", "how much", "at full pressure", "share of what its reading shows [%]", "or"},
-              {false, false, false, true, false},
-              {}};
+  Table table{
+      "The causes, the largest change first",
+      {"cause", "how much", "95 % interval", "at full pressure", "share of what its reading shows [%]", "or"},
+      {false, false, false, false, true, false},
+      {}};
   for (const ChangeCause& cause : d.causes) {
     std::string rivals;
     for (const std::string& rival : cause.rivals) rivals += (rivals.empty() ? "" : ", ") + rival;
-    table.rows.push_back({cause.id,
-                          cause.size.what + " " + significant(cause.size.value, 3) + " " + cause.size.unit,
+    table.rows.push_back({cause.id, size_text(cause), interval_text(cause),
                           significant(cause.full_pressure_mm, 2) + " " + unit_of(cause.judged),
                           fixed(cause.share_percent, 0), rivals.empty() ? "-" : rivals});
   }

@@ -12,8 +12,9 @@ namespace softgrip::sysid {
 
 struct ScoredEffect {
   EffectFit fit;
-  double gain = 0;    ///< whitened squares per row that it takes, less what its numbers cost
-  double chance = 0;  ///< what its cause took of the healthy logs while they were held out
+  double gain = 0;               ///< whitened squares per row that it takes, less what its numbers cost
+  double worth_of_a_number = 0;  ///< what one must take to be worth it, per row
+  double chance = 0;             ///< what its cause took of the healthy logs while they were held out
 };
 
 /// Of every cause, what its best form takes of healthy logs that were held out: chance, and where the base is
@@ -23,14 +24,21 @@ using Chance = std::map<std::string, double>;
 /// What the numbers of an effect must take to be worth it, in whitened squares.
 [[nodiscard]] double price_of(const Effect& effect);
 
-/// What takes most beyond chance first, but that a cause which the first contains goes before it where it
-/// takes as much but for a hundredth; one form per cause.
+/// Whether another effect takes nearly what the best one takes beyond chance: what one base is not certain
+/// enough of to tell them apart, however many bins say so.
+[[nodiscard]] bool takes_as_much(const ScoredEffect& other, const ScoredEffect& best);
+
+/// What takes most beyond chance first, but that of those which take nearly as much the one with the fewest
+/// numbers goes before the others; one form per cause.
 [[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
                                                        const std::vector<Effect>& effects,
                                                        const std::vector<FittedEffect>& others,
                                                        const Chance& chance, unsigned threads);
 
-/// Sums of whitened squares over blocks of some seconds.
+/// Of every row of the readings, which block of some seconds it is in, from 0.
+[[nodiscard]] std::vector<std::size_t> blocks_of(const LaterReadings& readings);
+
+/// Sums of whitened squares over these blocks.
 [[nodiscard]] std::vector<double> block_sums(const LaterReadings& readings, const Eigen::VectorXd& white);
 
 /// Of paired sums: how often, blocks drawn anew, `worse` is the larger, and the interval of the difference.

@@ -8,14 +8,21 @@ namespace softgrip::sysid {
 namespace {
 
 std::string named(const ChangeCause& cause) {
-  std::string text = std::string(plain_words(cause.id)) + " (" + cause.id + ": " + cause.size.what + " " +
-                     significant(cause.size.value, 3) + " " + cause.size.unit + ")";
+  std::string text = std::string(plain_words(cause.id)) + " (" + cause.id + ": " + size_text(cause) + ")";
   for (const std::string& rival : cause.rivals)
     text += ", or " + std::string(plain_words(rival)) + " (" + rival + ")";
   return text;
 }
 
 }  // namespace
+
+std::string size_text(const ChangeCause& cause) {
+  return cause.size.what + " " + significant(cause.size.value, 3) + " " + cause.size.unit;
+}
+
+std::string interval_text(const ChangeCause& cause) {
+  return cause.intervals.size ? text_of(*cause.intervals.size, cause.size.value, " .. ") : "-";
+}
 
 std::string change_sentence(const ChangeDiagnosis& diagnosis) {
   if (diagnosis.verdict == ChangeVerdict::unchanged)

@@ -13,6 +13,10 @@ namespace {
 
 constexpr int most_steps = 9;
 constexpr std::size_t followed = 2;
+/// Of the sum of all curvatures, in what numbers are counted in.
+constexpr double least_curvature = 0.01;
+/// More starts than these are so dense that none needs another size.
+constexpr std::size_t most_sized = 16;
 /// A gain is free within so many of the healthy logs' own spreads; beyond, it is a change.
 constexpr double gain_bound = 2;
 
@@ -20,6 +24,12 @@ std::vector<double> within(const Effect& effect, std::vector<double> numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i)
     numbers[i] = std::clamp(numbers[i], effect.numbers[i].lower, effect.numbers[i].upper);
   return numbers;
+}
+
+/// What a number is counted in while it is fitted.
+double unit(const FittedEffect& fitted, std::size_t i) {
+  const double scale = std::min(fitted.effect.numbers[i].scale, fitted.effect.numbers[i].upper);
+  return std::max(0.3 * std::abs(fitted.numbers[i]), 0.05 * scale);
 }
 
 class Fit {
@@ -36,18 +46,17 @@ class Fit {
     return fit;
   }
 
-  /// A start, and what it promises if it were of the right size.
-  [[nodiscard]] EffectFit sized(const std::vector<double>& start, const Eigen::VectorXd& without) const {
-    EffectFit fit = at(within(effect_, start));
+  /// The better of a start and of what it would be if it were of the right size.
+  [[nodiscard]] EffectFit sized(EffectFit fit, const Eigen::VectorXd& without) const {
     if (!std::isfinite(fit.sum_of_squares)) return fit;
     const Eigen::VectorXd change = fit.white - without;
     const double square = change.squaredNorm();
     const double share = square > 0 ? -change.dot(without) / square : 0;
     if (share <= 0.02 || share >= 0.98) return fit;
-    std::vector<double> smaller = start;
-    for (std::size_t i = 0; i < start.size(); ++i) {
+    std::vector<double> smaller = fit.fitted.numbers;
+    for (std::size_t i = 0; i < smaller.size(); ++i) {
       const double nothing = limit_of_nothing(i);
-      if (std::isfinite(nothing)) smaller[i] = nothing + share * (start[i] - nothing);
+      if (std::isfinite(nothing)) smaller[i] = nothing + share * (smaller[i] - nothing);
     }
     EffectFit other = at(within(effect_, smaller));
     return other.sum_of_squares < fit.sum_of_squares ? other : fit;
@@ -64,12 +73,13 @@ class Fit {
       bool improved = false, settled = false;
       for (int attempt = 0; attempt < 5 && !improved; ++attempt) {
         Eigen::MatrixXd damped = curvature;
-        damped.diagonal() *= 1 + damping;
-        damped.diagonal().array() += 1e-12 + 1e-9 * curvature.trace();
+        // A gain is not felt while what counts as no change takes it: its own curvature would not damp it.
+        damped.diagonal() += damping * curvature.diagonal();
+        damped.diagonal().array() += 1e-12 + damping * least_curvature * curvature.trace();
         const Eigen::VectorXd by = -damped.ldlt().solve(gradient);
         std::vector<double> moved = best.fitted.numbers;
         for (std::size_t i = 0; i < moved.size(); ++i)
-          moved[i] += by(static_cast<Eigen::Index>(i)) * unit(best.fitted.numbers, i);
+          moved[i] += by(static_cast<Eigen::Index>(i)) * unit(best.fitted, i);
         EffectFit trial = at(within(effect_, moved));
         improved = trial.sum_of_squares < best.sum_of_squares;
         settled = improved && best.sum_of_squares - trial.sum_of_squares < 1e-4 * best.sum_of_squares + 0.1;
@@ -85,22 +95,21 @@ class Fit {
   /// Where the number does nothing; of a bound far away, where it just begins to.
   [[nodiscard]] double limit_of_nothing(std::size_t i) const {
     const double nothing = effect_.nothing[i];
-    const Base& base = readings_.base();
-    const double reach = effect_.numbers[i].unit == "kPa"  ? base.largest_kpa
-                         : effect_.numbers[i].unit == "mm" ? base.span_mm
-                                                           : std::numeric_limits<double>::infinity();
+    double reach = std::numeric_limits<double>::infinity();
+    if (effect_.numbers[i].unit == "kPa") reach = largest(&Record::largest_kpa);
+    if (effect_.numbers[i].unit == "mm") reach = largest(&Record::span_mm);
     return std::abs(nothing) > 1.5 * reach ? reach : nothing;
   }
-  [[nodiscard]] double unit(const std::vector<double>& numbers, std::size_t i) const {
-    const double scale = std::min(effect_.numbers[i].scale, effect_.numbers[i].upper);
-    return std::max(0.3 * std::abs(numbers[i]), 0.05 * scale);
+  [[nodiscard]] double largest(double Record::*of_record) const {
+    double largest = 0;
+    for (const Record& record : readings_.records()) largest = std::max(largest, record.*of_record);
+    return largest;
   }
   [[nodiscard]] Eigen::VectorXd derivative(const EffectFit& from, std::size_t k) const {
     std::vector<double> beside = from.fitted.numbers;
-    double by = 0.02 * unit(from.fitted.numbers, k);
-    if (beside[k] + by > effect_.numbers[k].upper) by = -by;
+    const double by = small_move(from.fitted, k);
     beside[k] += by;
-    return (at(beside).white - from.white) * (unit(from.fitted.numbers, k) / by);
+    return (at(beside).white - from.white) * (unit(from.fitted, k) / by);
   }
 
   const LaterReadings& readings_;
@@ -116,6 +125,11 @@ Binned all_haste_of(const std::vector<Record>& records, double bin_s, const Binn
 }
 
 }  // namespace
+
+double small_move(const FittedEffect& fitted, std::size_t number) {
+  const double by = 0.02 * unit(fitted, number);
+  return fitted.numbers[number] + by > fitted.effect.numbers[number].upper ? -by : by;
+}
 
 Extension extension_of(const std::vector<FittedEffect>& effects) {
   Extension extension;
@@ -225,11 +239,13 @@ LaterReadings readings_of(const Base& base, const std::vector<Record>& records,
 EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
                      const std::vector<FittedEffect>& others, const Eigen::VectorXd& without) {
   const Fit fit(readings, effect, others);
+  const bool dense = effect.starts.size() > most_sized;
   std::vector<EffectFit> looks;
   for (const std::vector<double>& start : effect.starts) {
-    looks.push_back(fit.sized(start, without));
+    EffectFit first = fit.at(within(effect, start));
     // A base that cannot show the effect at all shows it from no other start.
-    if (!effect.free_form && looks.size() == 1 && looks[0].white == without) return looks[0];
+    if (!effect.free_form && looks.empty() && first.white == without) return first;
+    looks.push_back(dense ? std::move(first) : fit.sized(std::move(first), without));
   }
   std::sort(looks.begin(), looks.end(),
             [](const EffectFit& a, const EffectFit& b) { return a.sum_of_squares < b.sum_of_squares; });

@@ -75,6 +75,10 @@ struct EffectFit {
 [[nodiscard]] EffectFit fit_effect(const LaterReadings& readings, const Effect& effect,
                                    const std::vector<FittedEffect>& others, const Eigen::VectorXd& without);
 
+/// By how much a number of an effect is moved for a slope: little of what it is or usually is, and not out of
+/// its bounds.
+[[nodiscard]] double small_move(const FittedEffect& fitted, std::size_t number);
+
 [[nodiscard]] Extension extension_of(const std::vector<FittedEffect>& effects);
 
 }  // namespace softgrip::sysid

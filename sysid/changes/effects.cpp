@@ -13,9 +13,9 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_starts = 8;
 
-/// Thinned evenly.
+/// Thinned evenly, but for one number: where many values are worth a look, each is a valley of its own.
 std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
-  if (all.size() <= most_starts) return all;
+  if (all.size() <= most_starts || all.front().size() == 1) return all;
   std::vector<std::vector<double>> kept;
   for (std::size_t i = 0; i < most_starts; ++i) kept.push_back(all[i * all.size() / most_starts]);
   return kept;
@@ -51,6 +51,8 @@ class Collector {
     } else {
       add_gain();
       add_softening();
+      add_crescent();
+      add_stiffening();
       if (scales_.has_temperature) add_thermal();
     }
     return std::move(effects_);
@@ -134,6 +136,36 @@ class Collector {
                         [](Extension& e, const std::vector<double>& n) {
                           e.softening = {n[0], 0};
                         }});
+  }
+  /// Of a base without Bouc-Wen's loop, a loop that is wider on one side.
+  void add_crescent() {
+    effects_.push_back({"asymmetric_hysteresis",
+                        "Asymmetric hysteresis",
+                        model::Station::actuator,
+                        "crescent",
+                        false,
+                        {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}},
+                        {{0.05, 1.8}, {0.05, 3.5}},
+                        {0, nan},
+                        [](Extension& e, const std::vector<double>& n) {
+                          e.crescent = {n[0], n[1]};
+                        }});
+  }
+  /// At which displacement the gain is still what it was, nobody knows: beside the bend goes a gain.
+  void add_stiffening() {
+    const auto plain =
+        std::find_if(effects_.begin(), effects_.end(), [](const Effect& e) { return e.id == "stiffening"; });
+    if (plain == effects_.end()) return;
+    Effect effect = *plain;
+    effect.form = "stiffening_about_a_point";
+    effect.numbers.push_back({"gain_change", "", 0.01, -0.9, 9});
+    effect.nothing.push_back(0);
+    for (std::vector<double>& start : effect.starts) start.push_back(start[0] * 0.5 * base_.span_mm);
+    effect.apply = [bend = plain->apply](Extension& e, const std::vector<double>& n) {
+      bend(e, {n[0]});
+      e.gain *= 1 + n[1];
+    };
+    effects_.push_back(std::move(effect));
   }
   /// At which temperature the gain is still what it was, nobody knows: beside the slope goes a gain.
   void add_thermal() {

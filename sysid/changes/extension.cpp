@@ -37,6 +37,18 @@ std::vector<double> softened(const Softening& softening, const Record& record, d
   return factor;
 }
 
+std::vector<double> added_by(const Crescent& crescent, const Record& record, double largest_kpa) {
+  double between = 0;
+  std::vector<double> added(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double down = std::max(record.drive_kpa[i], 0.0) / largest_kpa;
+    const double up = std::pow(down, crescent.exponent);
+    between = std::clamp(between, std::min(up, down), std::max(up, down));
+    added[i] = crescent.share * (between - 0.5 * (up + down));
+  }
+  return added;
+}
+
 std::vector<double> pressure_behind(const SlowLine& line, const PressureLoss& loss, const Record& record,
                                     std::vector<double> pressure_kpa) {
   if (line.filling_s > 0 || line.venting_s > 0) {

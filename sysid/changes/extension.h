@@ -30,12 +30,21 @@ struct Softening {
   double range_kpa = 10;  ///< 0: none
 };
 
+/// Up along (p/largest)^exponent, down along p/largest, between them only where it must: what a loop of that
+/// shape adds to the mean of the two ways, as a share of the span (a generalised play: Al Janaideh, Rakheja
+/// and Su, IEEE/ASME Transactions on Mechatronics 16, 2011).
+struct Crescent {
+  double share = 0;
+  double exponent = 3;
+};
+
 struct Extension {
   std::vector<model::BlockSpec> valve;  ///< what happens to the command, before the base sees it
   std::vector<model::BlockSpec> chain;  ///< blocks of the base's model, or behind what it says
   double gain = 1;                      ///< of the displacement
   double gain_per_c = 0;                ///< beside the temperature of the healthy logs
   Softening softening;
+  Crescent crescent;
   PressureLoss loss;
   SlowLine line;
 };
@@ -46,6 +55,10 @@ struct Extension {
 
 /// By what softening multiplies the displacement, sample by sample.
 [[nodiscard]] std::vector<double> softened(const Softening& softening, const Record& record,
+                                           double largest_kpa);
+
+/// What a crescent adds, as a share of the span, sample by sample.
+[[nodiscard]] std::vector<double> added_by(const Crescent& crescent, const Record& record,
                                            double largest_kpa);
 
 /// A pressure behind a line and a leak.

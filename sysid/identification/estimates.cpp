@@ -41,16 +41,6 @@ Estimate estimate_of(const FittedPoint& fit, std::size_t index) {
 
 }  // namespace
 
-bool is_determined(const Interval& interval, double value) {
-  constexpr double loose = 20;
-  return interval.upper - interval.lower <= loose * std::abs(value);
-}
-
-std::string text_of(const Interval& interval, double value, std::string_view between) {
-  if (!is_determined(interval, value)) return "not determined by these logs";
-  return significant(interval.lower, 4) + std::string(between) + significant(interval.upper, 4);
-}
-
 std::vector<Estimate> parameter_estimates(const FittedPoint& fit) {
   const FitSpace& space = fit.residuals.space();
   const model::Model model = space.point(fit.z).model;

@@ -9,6 +9,7 @@
 #include <tl/expected.hpp>
 
 #include "model/model.h"
+#include "sysid/fitting/interval.h"
 #include "sysid/fitting/score.h"
 #include "sysid/fitting/search.h"
 #include "sysid/identification/noise_model.h"
@@ -17,17 +18,6 @@
 #include "sysid/logs/record.h"
 
 namespace softgrip::sysid {
-
-struct Interval {
-  double lower = 0;
-  double upper = 0;
-};
-
-/// "0.127 .. 0.133" with `between` " .. "; of an interval more than twenty times as wide as the value, that
-/// these logs do not determine it.
-[[nodiscard]] std::string text_of(const Interval& interval, double value, std::string_view between);
-/// Whether the interval says anything of the value.
-[[nodiscard]] bool is_determined(const Interval& interval, double value);
 
 /// One number that was estimated, or kept.
 struct Estimate {

@@ -19,6 +19,36 @@ USUAL = 8
 TWINS = {"stiffening": {"sensor_nonlinearity"}, "sensor_nonlinearity": {"stiffening"}}
 
 
+# Numbers that mean the same in a world and in the answer: the world's name and the answer's. A textbook valve lags inside
+# its regulator's loop, a textbook sensor from sample to sample, and the band of a dead band is one of sticking or of dragging.
+SAME_NUMBERS = {"transport_delay": {"delay_s": "delay_s"}, "valve_lag": {"time_constant_s": "time_constant_s"},
+                "pressure_saturation": {"limit_kpa": "limit_kpa"}, "actuator_threshold": {"threshold_kpa": "threshold_kpa"},
+                "sensor_lag": {"time_constant_s": "time_constant_s"},
+                "slow_creep": {"gain_mm_per_kpa": "gain_mm_per_kpa", "time_constant_s": "time_constant_s"},
+                "contact": {"position_mm": "position_mm"}, "sensor_saturation": {"limit_mm": "upper_mm"},
+                "periodic_disturbance": {"frequency_hz": "frequency_hz"}}
+
+
+OTHERWISE_IN_TEXTBOOKS = {"valve_lag", "sensor_lag"}
+
+
+def intervals(family, cause, diagnosis, truth):
+    """Of a true change that is named first: per number that both know, what is true, the answer, its interval, whether it
+    holds the truth."""
+    if not diagnosis["causes"] or diagnosis["causes"][0]["id"] != cause:
+        return []
+    if family == "textbook" and cause in OTHERWISE_IN_TEXTBOOKS:
+        return []
+    answer, true = diagnosis["causes"][0]["parameters"], truth["effects"][cause]["parameters"]
+    told = []
+    for name, own in SAME_NUMBERS.get(cause, {}).items():
+        interval = answer[own]["ci95"] if own in answer else None
+        if interval:
+            told.append({"number": name, "true": true[name], "value": answer[own]["value"], "ci95": interval,
+                         "held": interval[0] <= true[name] <= interval[1]})
+    return told
+
+
 def judge(cause, diagnosis):
     """unchanged, false_alarm, unexplained of an unchanged world; else first, twin (its mirror image is first), listed
     (among the rivals of the first or named after it), missed (unchanged), unnamed (unexplained), wrong."""
@@ -59,7 +89,8 @@ def run_world(build, folder, world, threads=1):
             return {**world, "outcome": "failed", "message": message}
         return {**world, "outcome": judge(world["cause"], diagnosis), "verdict": diagnosis["verdict"],
                 "named": [c["id"] for c in diagnosis["causes"]], "rivals": diagnosis["alternatives"],
-                "sizes": [c["size"] for c in diagnosis["causes"]], "readings": [
+                "sizes": [c["size"] for c in diagnosis["causes"]],
+                "intervals": intervals(world["family"], world["cause"], diagnosis, truth), "readings": [
                     {key: r[key] for key in ("reading", "healthy_heldout_rms", "later_rms", "explained_rms", "misfit")} |
                     {"tried": r["tried"][:3]} for r in diagnosis["readings"]],
                 "excess_mm": {k: e["excess_mm"] for k, e in truth["effects"].items()}, "wall_s": diagnosis["wall_s"]}

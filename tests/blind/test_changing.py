@@ -2,7 +2,7 @@
 """The judge of changed worlds."""
 import unittest
 
-from changing import judge
+from changing import intervals, judge
 
 
 def diagnosis(named=(), rivals=None, verdict="cause_found"):
@@ -23,6 +23,16 @@ class Judge(unittest.TestCase):
         self.assertEqual(judge("leak", diagnosis(["ageing"])), "wrong")
         self.assertEqual(judge("leak", diagnosis(verdict="unchanged")), "missed")
         self.assertEqual(judge("leak", diagnosis(verdict="unexplained")), "unnamed")
+
+    def test_intervals_of_numbers_that_both_know(self):
+        cause = {"id": "contact", "parameters": {"position_mm": {"value": 9.8, "ci95": [9.6, 10]}, "stiffening": {}}}
+        truth = {"effects": {"contact": {"parameters": {"position_mm": 9.9, "stiffness_ratio": 3}}}}
+        self.assertEqual([one["held"] for one in intervals("first", "contact", {"causes": [cause]}, truth)], [True])
+        truth["effects"]["contact"]["parameters"]["position_mm"] = 10.1
+        self.assertEqual([one["held"] for one in intervals("first", "contact", {"causes": [cause]}, truth)], [False])
+        cause["parameters"]["position_mm"]["ci95"] = None
+        self.assertEqual(intervals("first", "contact", {"causes": [cause]}, truth), [])
+        self.assertEqual(intervals("first", "leak", {"causes": [cause]}, {"effects": {}}), [])
 
 
 if __name__ == "__main__":

@@ -23,9 +23,9 @@ nlohmann::ordered_json sources_of(const std::vector<sysid::Log>& logs) {
 }
 
 void print_cause(const sysid::ChangeCause& cause) {
-  std::printf("  %-26s %s: %s %s (%s %s at full pressure)\n", cause.id.c_str(), cause.size.what.c_str(),
-              significant(cause.size.value, 3).c_str(), cause.size.unit.c_str(),
-              significant(cause.full_pressure_mm, 3).c_str(), unit_of(cause.judged));
+  std::printf("  %-26s %s, 95 %%: %s (%s %s at full pressure)\n", cause.id.c_str(), size_text(cause).c_str(),
+              interval_text(cause).c_str(), significant(cause.full_pressure_mm, 3).c_str(),
+              unit_of(cause.judged));
   for (const std::string& rival : cause.rivals) std::printf("      %s explains as much\n", rival.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());

@@ -58,6 +58,27 @@ TEST_F(ChangeSearch, ALineThatFillsAndEmptiesAlikeIsALagOfTheValve) {
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "valve_lag");
 }
 
+TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
+  const LaterReadings later = readings({.delay_s = 0.02});
+  std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
+  std::erase_if(effects, [](const Effect& e) { return e.id != "transport_delay"; });
+  // The same with a number that does nothing, and a little more.
+  Effect dearer = effects.front();
+  dearer.id = "dearer";
+  dearer.numbers.push_back({"idle", "", 1, 0, 1});
+  dearer.nothing.push_back(0);
+  for (std::vector<double>& start : dearer.starts) start.push_back(0.5);
+  dearer.apply = [delay = effects.front().apply](Extension& e, const std::vector<double>& n) {
+    delay(e, {n[0]});
+    e.gain *= 1.0002;
+  };
+  effects.insert(effects.begin(), dearer);
+  const std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {{"transport_delay", 0.02}}, 1);
+  ASSERT_EQ(ranked.size(), 2U);
+  EXPECT_LT(ranked[0].gain - ranked[0].chance, ranked[1].gain - ranked[1].chance);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "transport_delay");
+}
+
 TEST_F(ChangeSearch, WhatIsLeftAsItIsKnowsWhetherAnEffectHelps) {
   const LaterReadings later = readings({.delay_s = 0.06});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);

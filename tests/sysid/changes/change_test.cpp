@@ -1,6 +1,8 @@
 #include "sysid/changes/change.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "sysid/changes/change_json.h"
@@ -83,6 +85,38 @@ TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
   EXPECT_NEAR(cause.full_pressure_mm, -missing_mm / count, 0.2);
 }
 
+TEST(Change, AFingerThatBendsAboutAPointIsStiffeningAndNoSensor) {
+  const ChangeDiagnosis d = changed({.bend_per_mm = 0.02});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "stiffening");
+  const auto& found = d.causes[0].fitted;
+  EXPECT_NEAR(found.numbers.at(0), 0.02, 0.002);
+  EXPECT_NEAR(found.numbers.at(1), 12 * 0.02, 0.02);
+}
+
+TEST(Change, ALoopThatIsWiderOnOneSideIsAsymmetric) {
+  const ChangeDiagnosis d = changed({.crescent_mm = 0.4});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "asymmetric_hysteresis");
+  EXPECT_EQ(d.causes[0].fitted.effect.form, "crescent");
+  EXPECT_NEAR(d.causes[0].fitted.numbers.at(1), 2, 0.3);
+}
+
+TEST(Change, ASensorThatEndsJustBelowTheLargestReadingIsFound) {
+  double largest_mm = 0;
+  for (const Log& log : logs_of({}, 5))
+    largest_mm =
+        std::max(largest_mm, *std::max_element(log.displacement_mm.begin(), log.displacement_mm.end()));
+  // So near that a first look at another end, sized to what it takes, cuts nothing.
+  const double end_mm = largest_mm - 0.25;
+  const ChangeDiagnosis d = changed({.stop_mm = end_mm});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "sensor_saturation");
+  ASSERT_TRUE(d.causes[0].intervals.numbers.at(0));
+  EXPECT_LT(d.causes[0].intervals.numbers[0]->lower, end_mm);
+  EXPECT_GT(d.causes[0].intervals.numbers[0]->upper, end_mm);
+}
+
 TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
   const ChangeDiagnosis d = changed({.lost_kpa_per_s = 0.8}, true);
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
@@ -104,6 +138,11 @@ TEST(Change, TheJsonHasTheKeysOfEveryDiagnosis) {
                                 "gain_percent", "unexplained_percent", "next_experiment", "warnings"})
     EXPECT_TRUE(json.contains(key)) << key;
   EXPECT_EQ(json["causes"].size(), json["alternatives"].size());
+  const auto& gain = json["causes"][0]["parameters"]["gain_change"];
+  EXPECT_LT(gain["ci95"][0], gain["value"]);
+  EXPECT_LT(gain["value"], gain["ci95"][1]);
+  EXPECT_LT(json["causes"][0]["size"]["ci95"][0], -4.9);
+  EXPECT_GT(json["causes"][0]["size"]["ci95"][1], -5.1);
   EXPECT_LT(json["heldout_rmse_mm"]["extended"], json["heldout_rmse_mm"]["as_given"]);
 }
 
@@ -112,6 +151,7 @@ TEST(Change, ThePageSaysWhatToDoAndShowsTheMisfit) {
   const Page page = change_page(d, logs_of({}, 1), logs_of({}, 5), {});
   const std::string html = page.to_html();
   EXPECT_NE(html.find("What to do about ageing"), std::string::npos);
+  EXPECT_NE(html.find(interval_text(d.causes[0])), std::string::npos) << interval_text(d.causes[0]);
   EXPECT_NE(html.find(std::string(next_steps("ageing")[1]).substr(0, 30)), std::string::npos);
   ASSERT_EQ(page.figures().size(), 2U);
   EXPECT_EQ(page.figures()[0].charts.size(), 2U);  // a log each

@@ -42,6 +42,19 @@ TEST(Extension, SofteningIsAsBeforeAtTheLargestPressureAndSofterBelowIt) {
   EXPECT_NEAR(factor[20], 1.1, 1e-6);
 }
 
+TEST(Extension, ACrescentGoesUpOneWayAndDownAnother) {
+  Record r = record();
+  const auto samples = static_cast<double>(r.size());
+  for (std::size_t i = 0; i < r.size(); ++i)  // up to 60 and back
+    r.drive_kpa[i] = 60 * (1 - std::abs(2 * static_cast<double>(i) / samples - 1));
+  const std::vector<double> added = added_by({0.2, 3}, r, 60);
+  const std::size_t half = r.size() / 4;  // of the way up, where x = 1/2
+  EXPECT_NEAR(added[half], -0.2 * 0.5 * (0.5 - 0.125), 1e-3);
+  EXPECT_NEAR(added[r.size() - half], 0.2 * 0.5 * (0.5 - 0.125), 1e-3);
+  EXPECT_NEAR(added[0], 0, 1e-3);
+  EXPECT_NEAR(added[r.size() / 2], 0, 1e-3);
+}
+
 TEST(Extension, ABlockedLineFillsMoreSlowlyThanItEmpties) {
   Record r = record();
   std::vector<double> step(r.size(), 0.0);

@@ -22,7 +22,9 @@ struct Finger {
   double valve_lag_s = 0;
   double per_c = 0;  ///< the gain's slope, nothing at 15 degrees
   bool with_temperature = false;
-  double wander_mm = 0;  ///< the zero goes to and fro within a quarter of a minute, never twice alike
+  double bend_per_mm = 0;  ///< gives way less the farther it is bent, as far as before at 12 mm
+  double crescent_mm = 0;  ///< width of a loop that goes up along a parabola and down along a line
+  double wander_mm = 0;    ///< the zero goes to and fro within a quarter of a minute, never twice alike
 };
 
 /// Triangles of several heights with a hold on top, drawn by `seed`.
@@ -51,7 +53,7 @@ inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = fals
   Log log;
   log.name = "log" + std::to_string(seed);
   log.pressure_command_kpa = command_kpa(seed, 3000, rate_hz);
-  double play = 0, creep = 0, lost = 0, behind = 0;
+  double play = 0, creep = 0, lost = 0, behind = 0, between = 0;
   const double phase = 2 * seed;
   const auto late = static_cast<std::size_t>(finger.delay_s * rate_hz);
   for (std::size_t i = 0; i < log.pressure_command_kpa.size(); ++i) {
@@ -65,8 +67,11 @@ inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = fals
     creep += (p - creep) / (rate_hz * 4);
     const double t = static_cast<double>(i) / rate_hz;
     const double temperature_c = 24 + 3 * std::sin(t / 8 + phase);
-    const double y =
-        finger.gain * (1 + finger.per_c * (temperature_c - 15)) * (0.6 * p + 0.3 * play + 0.1 * creep);
+    double y = finger.gain * (1 + finger.per_c * (temperature_c - 15)) * (0.6 * p + 0.3 * play + 0.1 * creep);
+    const double part = std::max(p, 0.0) / 58;
+    between = std::clamp(between, part * part, part);
+    y += 4 * finger.crescent_mm * (between - 0.5 * (part + part * part));
+    y *= (1 + 12 * finger.bend_per_mm) / (1 + finger.bend_per_mm * std::max(y, 0.0));
     const double wander = finger.wander_mm * std::sin(t * 0.4 + phase + std::sin(t * 0.17 + 3 * phase));
     log.time_s.push_back(t);
     log.displacement_mm.push_back(std::min(y, finger.stop_mm) + finger.zero_mm + wander +

@@ -1,0 +1,94 @@
+#include "sysid/changes/change_intervals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sysid/changes/change_search.h"
+#include "tests/sysid/changes/finger.h"
+
+namespace softgrip::sysid::change_intervals_test {
+namespace {
+
+/// A base of the pressure: quick to fit.
+class ChangeIntervals : public ::testing::Test {
+ protected:
+  ChangeIntervals()
+      : base_(fit_base(pressure_records(test::logs_of({}, 1, true), false), Judged::pressure, Drive::command,
+                       {})) {}
+
+  LaterReadings readings(const test::Finger& finger, unsigned first_seed) {
+    const std::vector<Record> records = pressure_records(test::logs_of(finger, first_seed, true), false);
+    return readings_of(base_, records, residuals_of(base_, records));
+  }
+  FittedEffect fitted(const LaterReadings& readings, std::string_view id,
+                      const std::vector<FittedEffect>& others = {}) {
+    for (const Effect& effect : effects_for(base_, readings.records(), {}, true)) {
+      if (effect.id == id) return fit_effect(readings, effect, others, readings.white(others)).fitted;
+    }
+    ADD_FAILURE() << "no " << id;
+    return {};
+  }
+
+  Base base_;
+};
+
+double width(const std::optional<Interval>& interval) {
+  return interval ? interval->upper - interval->lower : 0;
+}
+
+// The judge is the scatter itself: other inputs, other noise.
+TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
+  constexpr double delay_s = 0.06;
+  constexpr int draws = 30;
+  double sum = 0, squares = 0, widths = 0;
+  int held = 0;
+  for (int i = 0; i < draws; ++i) {
+    const LaterReadings later = readings({.delay_s = delay_s}, 20 + 2 * static_cast<unsigned>(i));
+    const FittedEffect delay = fitted(later, "transport_delay");
+    const EffectIntervals intervals = intervals_of(later, {delay}).front();
+    ASSERT_TRUE(intervals.numbers.at(0));
+    held += intervals.numbers[0]->lower <= delay_s && delay_s <= intervals.numbers[0]->upper ? 1 : 0;
+    sum += delay.numbers[0];
+    squares += delay.numbers[0] * delay.numbers[0];
+    widths += width(intervals.numbers[0]) / draws;
+  }
+  const double scatter = std::sqrt((squares - sum * sum / draws) / (draws - 1));
+  RecordProperty("held", held);
+  EXPECT_GE(held, 25) << "of " << draws;  // of 95 %, fewer than 25 come once in 5000
+  // Here one base stands behind all of them: what it adds to the width does not scatter.
+  constexpr double with_the_base = 2.5;
+  EXPECT_GT(widths, 0.6 * with_the_base * 2 * 1.96 * scatter);
+  EXPECT_LT(widths, 1.7 * with_the_base * 2 * 1.96 * scatter);
+}
+
+TEST_F(ChangeIntervals, OfASizeAreThoseOfItsNumber) {
+  const LaterReadings later = readings({.delay_s = 0.06}, 5);
+  const EffectIntervals intervals = intervals_of(later, {fitted(later, "transport_delay")}).front();
+  ASSERT_TRUE(intervals.size && intervals.numbers.at(0));
+  EXPECT_NEAR(intervals.size->lower, intervals.numbers[0]->lower, 1e-6);
+  EXPECT_NEAR(intervals.size->upper, intervals.numbers[0]->upper, 1e-6);
+}
+
+TEST_F(ChangeIntervals, AreWiderBesideAnEffectThatLooksAlike) {
+  const LaterReadings later = readings({.delay_s = 0.06, .valve_lag_s = 0.05}, 5);
+  const FittedEffect delay = fitted(later, "transport_delay");
+  const FittedEffect lag = fitted(later, "valve_lag", {delay});
+  const auto together = intervals_of(later, {delay, lag});
+  ASSERT_EQ(together.size(), 2U);
+  EXPECT_GT(width(together[0].numbers.at(0)), 1.3 * width(intervals_of(later, {delay})[0].numbers.at(0)));
+  EXPECT_GT(width(together[1].numbers.at(0)), 0);
+}
+
+TEST_F(ChangeIntervals, OfANumberThatNothingShowsThereIsNone) {
+  const LaterReadings later = readings({}, 5);
+  FittedEffect stop = fitted(later, "pressure_saturation");
+  stop.numbers.at(0) = stop.effect.numbers[0].upper;  // far above what was asked for
+  const EffectIntervals intervals = intervals_of(later, {stop}).front();
+  EXPECT_FALSE(intervals.numbers.at(0));
+  EXPECT_FALSE(intervals.size);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::change_intervals_test
