@@ -75,6 +75,7 @@ class Collector {
                   {},
                   {},
                   {}};
+    effect.twin = cause.twin;
     std::vector<std::size_t> fitted;
     for (std::size_t i = 0; i < starts.front().values.size(); ++i) {
       if (!form.is_fitted(i)) continue;

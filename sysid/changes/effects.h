@@ -32,6 +32,8 @@ struct Effect {
   std::function<void(Extension&, const std::vector<double>&)> apply;
   /// The id of a cause that it is, with fewer numbers, where they agree; or none.
   std::string contains = {};
+  /// The id of a cause that gives the same readings; or none.
+  std::string twin = {};
 };
 
 /// All effects that the reading of these later records can show.

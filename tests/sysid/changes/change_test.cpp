@@ -85,13 +85,15 @@ TEST(Change, AStopIsAContactAndItsSizeIsWhatIsMissingAtFullPressure) {
   EXPECT_NEAR(cause.full_pressure_mm, -missing_mm / count, 0.2);
 }
 
-TEST(Change, AFingerThatBendsAboutAPointIsStiffeningAndNoSensor) {
+TEST(Change, AFingerThatBendsAboutAPointIsStiffeningOrItsTwin) {
   const ChangeDiagnosis d = changed({.bend_per_mm = 0.02});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
   EXPECT_EQ(d.causes[0].id, "stiffening");
   const auto& found = d.causes[0].fitted;
   EXPECT_NEAR(found.numbers.at(0), 0.02, 0.002);
   EXPECT_NEAR(found.numbers.at(1), 12 * 0.02, 0.02);
+  EXPECT_EQ(d.causes[0].rivals, std::vector<std::string>{"sensor_nonlinearity"});
+  EXPECT_EQ(d.verdict, ChangeVerdict::ambiguous);
 }
 
 TEST(Change, ALoopThatIsWiderOnOneSideIsAsymmetric) {
