@@ -99,7 +99,10 @@ class Python(bench.BenchTest):
         gripper.start("pick_stone")
         with self.assertRaises(softgrip.GripFailed):
             gripper.wait_until(softgrip.Result.HOLDING, timeout_s=PATIENCE_S)
-        self.assertEqual({event["code"] for event in again.events() if event["kind"] == "not_at_rest"}, {"off_model"})
+        codes = {event["code"] for event in again.events() if event["kind"] == "not_at_rest"}
+        # Beside where it should be, and for its first moments still on the way.
+        self.assertIn("off_model", codes)
+        self.assertLessEqual(codes, {"off_model", "moves"})
 
     def test_tasks_share_one_connection(self):
         async def work():
