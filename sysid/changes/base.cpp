@@ -200,12 +200,13 @@ std::vector<double> extended_prediction(const Base& base, const Driven& driven,
 std::vector<double> driven_prediction(const Base& base, const Driven& driven, const Extension& extension) {
   const Record& record = driven.record;
   std::vector<double> y = extended_prediction(base, driven, extension.chain);
-  std::vector<double> crescent;
-  if (extension.crescent.share != 0) crescent = added_by(extension.crescent, record, base.largest_kpa);
+  if (extension.crescent.share != 0) {
+    const std::vector<double> loop = added_by(extension.crescent, record, base.largest_kpa);
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += base.span_mm * loop[i];
+  }
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double warmer = record.temperature_c.empty() ? 0 : record.temperature_c[i] - base.temperature_c;
-    const double loop_mm = crescent.empty() ? 0 : base.span_mm * crescent[i];
-    y[i] = (y[i] + driven.echo(static_cast<Eigen::Index>(i)) + loop_mm) * extension.gain *
+    y[i] = (y[i] + driven.echo(static_cast<Eigen::Index>(i))) * extension.gain *
            (1 + (base.gain_per_c + extension.gain_per_c) * warmer);
   }
   if (extension.softening.share != 0) {

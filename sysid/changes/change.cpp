@@ -170,9 +170,9 @@ class Judge {
   }
 
   [[nodiscard]] bool stands_out(const ScoredEffect& scored) const {
-    double least_gain_per_s = base_.judged == Judged::pressure ? pressure_gain_per_s : finger_gain_per_s;
-    if (scored.fit.fitted.effect.free_form)
-      least_gain_per_s = std::max(least_gain_per_s, free_form_gain_per_s);
+    const double least_gain_per_s = scored.fit.fitted.effect.free_form ? free_form_gain_per_s
+                                    : base_.judged == Judged::pressure ? pressure_gain_per_s
+                                                                       : finger_gain_per_s;
     return scored.gain > base_.bin_s * least_gain_per_s + chance_ratio * scored.chance;
   }
   [[nodiscard]] bool is_large(const LaterReadings& readings, const Binned& added) const {

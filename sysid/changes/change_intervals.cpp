@@ -37,21 +37,12 @@ std::vector<FittedEffect> moved(std::vector<FittedEffect> found, const Place& pl
   return found;
 }
 
-/// The whitened residual, and behind it what zeros and the gain do that count as no change, each in units of
-/// how much the healthy logs vary.
-Eigen::VectorXd residual_and_slack(const LaterReadings& readings, const std::vector<FittedEffect>& found) {
-  const Eigen::VectorXd white = readings.white(found);
-  Eigen::VectorXd all(white.size() + 1);
-  all << white, readings.slack(found).gain / readings.base().gain_spread;
-  return all;
-}
-
-/// Its slopes by the numbers moved as `places` say: a move counts as 1.
+/// Slopes of white_and_gain() by the numbers moved as `places` say: a move counts as 1.
 Eigen::MatrixXd slopes_of(const LaterReadings& readings, const std::vector<FittedEffect>& found,
                           const std::vector<Place>& places, const Eigen::VectorXd& white) {
   Eigen::MatrixXd slopes(white.size(), static_cast<Eigen::Index>(places.size()));
   for (std::size_t c = 0; c < places.size(); ++c)
-    slopes.col(static_cast<Eigen::Index>(c)) = residual_and_slack(readings, moved(found, places[c])) - white;
+    slopes.col(static_cast<Eigen::Index>(c)) = readings.white_and_gain(moved(found, places[c])) - white;
   return slopes;
 }
 
@@ -108,7 +99,7 @@ double size_with(const LaterReadings& readings, const FittedEffect& effect) {
 std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
                                           const std::vector<FittedEffect>& found) {
   const std::vector<Place> places = places_of(found);
-  const Eigen::VectorXd white = residual_and_slack(readings, found);
+  const Eigen::VectorXd white = readings.white_and_gain(found);
   const Eigen::MatrixXd slopes = slopes_of(readings, found, places, white);
   const Eigen::MatrixXd covariance = covariance_of(readings, slopes, white);
   std::vector<EffectIntervals> all(found.size());

@@ -11,13 +11,11 @@ namespace {
 
 constexpr double price_of_a_number = 8;
 /// A base is not so certain of a course that it never saw that a smaller share of what a cause takes, and of
-/// what chance leaves in a bin, would tell it from a simpler one.
-constexpr double alike_share = 0.01, alike_per_bin = 0.05;
+/// what chance leaves in a bin, would tell it from a simpler one; nor what so many numbers must take.
+constexpr double alike_share = 0.01, alike_per_bin = 0.05, alike_numbers = 3;
 /// A line that is no lag of the valve takes 4 % more than one in changed worlds (of --first-seed 20261203), a
 /// lag 1.6 % less than a line at most.
 constexpr double contained_share = 0.025;
-/// Nor what so many more numbers would have to take.
-constexpr double alike_numbers = 3;
 constexpr double block_s = 5;
 constexpr int draws = 500;
 

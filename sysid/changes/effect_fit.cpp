@@ -195,10 +195,20 @@ LaterReadings::Split LaterReadings::split(const std::vector<FittedEffect>& effec
   return split;
 }
 
-Eigen::VectorXd LaterReadings::white(const std::vector<FittedEffect>& effects) const {
-  const Split split = this->split(effects);
+Eigen::VectorXd LaterReadings::white_of(const Split& split) const {
   Eigen::VectorXd out(split.left.size() + split.zeros.size());
   out << split.left, price_.cwiseProduct(split.zeros);
+  return out;
+}
+
+Eigen::VectorXd LaterReadings::white(const std::vector<FittedEffect>& effects) const {
+  return white_of(split(effects));
+}
+
+Eigen::VectorXd LaterReadings::white_and_gain(const std::vector<FittedEffect>& effects) const {
+  const Split split = this->split(effects);
+  Eigen::VectorXd out(split.left.size() + split.zeros.size() + 1);
+  out << white_of(split), split.gain / base_.gain_spread;
   return out;
 }
 

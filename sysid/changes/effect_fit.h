@@ -26,6 +26,8 @@ class LaterReadings {
   /// Whitened residual of the base with these effects, without what zero and gain take; a few rows more than
   /// rows(), for what zero and gain cost.
   [[nodiscard]] Eigen::VectorXd white(const std::vector<FittedEffect>& effects) const;
+  /// white(), and behind it the gain that counts as no change, in units of how much the healthy logs vary.
+  [[nodiscard]] Eigen::VectorXd white_and_gain(const std::vector<FittedEffect>& effects) const;
   [[nodiscard]] const WhiteRows& rows() const { return rows_; }
   [[nodiscard]] const Base& base() const { return base_; }
   [[nodiscard]] const std::vector<Record>& records() const { return later_; }
@@ -47,6 +49,7 @@ class LaterReadings {
     double gain = 0;
   };
   [[nodiscard]] Split split(const std::vector<FittedEffect>& effects) const;
+  [[nodiscard]] Eigen::VectorXd white_of(const Split& split) const;
 
   const Base& base_;
   std::vector<Record> later_;

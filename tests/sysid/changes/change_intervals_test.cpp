@@ -6,22 +6,13 @@
 #include <cmath>
 
 #include "sysid/changes/change_search.h"
-#include "tests/sysid/changes/finger.h"
+#include "tests/sysid/changes/pressure_base.h"
 
 namespace softgrip::sysid::change_intervals_test {
 namespace {
 
-/// A base of the pressure: quick to fit.
-class ChangeIntervals : public ::testing::Test {
+class ChangeIntervals : public test::PressureBase {
  protected:
-  ChangeIntervals()
-      : base_(fit_base(pressure_records(test::logs_of({}, 1, true), false), Judged::pressure, Drive::command,
-                       {})) {}
-
-  LaterReadings readings(const test::Finger& finger, unsigned first_seed) {
-    const std::vector<Record> records = pressure_records(test::logs_of(finger, first_seed, true), false);
-    return readings_of(base_, records, residuals_of(base_, records));
-  }
   FittedEffect fitted(const LaterReadings& readings, std::string_view id,
                       const std::vector<FittedEffect>& others = {}) {
     for (const Effect& effect : effects_for(base_, readings.records(), {}, true)) {
@@ -30,8 +21,6 @@ class ChangeIntervals : public ::testing::Test {
     ADD_FAILURE() << "no " << id;
     return {};
   }
-
-  Base base_;
 };
 
 double width(const std::optional<Interval>& interval) {

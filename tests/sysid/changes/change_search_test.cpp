@@ -5,25 +5,12 @@
 #include <algorithm>
 
 #include "sysid/changes/change_size.h"
-#include "tests/sysid/changes/finger.h"
+#include "tests/sysid/changes/pressure_base.h"
 
 namespace softgrip::sysid::change_search_test {
 namespace {
 
-/// A base that is its echo alone: quick to fit.
-class ChangeSearch : public ::testing::Test {
- protected:
-  ChangeSearch()
-      : base_(fit_base(pressure_records(test::logs_of({}, 1, true), false), Judged::pressure, Drive::command,
-                       {})) {}
-
-  LaterReadings readings(const test::Finger& finger) {
-    const std::vector<Record> records = pressure_records(test::logs_of(finger, 5, true), false);
-    return readings_of(base_, records, residuals_of(base_, records));
-  }
-
-  Base base_;
-};
+class ChangeSearch : public test::PressureBase {};
 
 TEST_F(ChangeSearch, ADelayTakesMostOfWhatADelayLeaves) {
   const LaterReadings later = readings({.delay_s = 0.06});
