@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "base/parallel.h"
@@ -186,28 +187,45 @@ void spread(Base& base) {
   base.zero_spread_mm = std::max(least_zero_share * base.span_mm, count > 0 ? std::sqrt(zeros / count) : 0);
 }
 
-/// The model's prediction with the blocks of an extension, walked anew only where they reach into it.
-std::vector<double> extended_prediction(const Base& base, const Driven& driven,
-                                        const std::vector<model::BlockSpec>& blocks) {
-  if (blocks.empty()) return driven.plain;
-  if (is_downstream(blocks, base.model, driven.record))
-    return downstream(blocks, driven.record, driven.plain);
-  model::Model model = base.model;
+std::vector<double> walked_with(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
+  model::Model model = driven.model;
   for (const model::BlockSpec& block : blocks) model = model::with_block(std::move(model), block);
-  return plain_prediction(model, driven.record);
+  return plain_prediction(model, driven.walked);
+}
+
+/// Model and echo with the blocks of an extension. What stands behind the model hears the echo, too; the
+/// model is walked anew only where they reach into it or look at the way to a sample.
+std::vector<double> extended_prediction(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
+  std::vector<model::BlockSpec> within, behind;
+  for (const model::BlockSpec& block : blocks) {
+    const bool is_behind = !driven.model.blocks.empty() && block.type > driven.model.blocks.back().type;
+    (is_behind ? behind : within).push_back(block);
+  }
+  std::stable_sort(behind.begin(), behind.end(),
+                   [](const model::BlockSpec& a, const model::BlockSpec& b) { return a.type < b.type; });
+  const std::vector<double> plain = within.empty() ? driven.plain : walked_with(driven, within);
+  std::vector<double> heard(plain.size());
+  std::transform(plain.begin(), plain.end(), driven.echo.begin(), heard.begin(), std::plus());
+  if (behind.empty()) return heard;
+  heard = downstream(behind, driven.walked, std::move(heard));
+  if (is_downstream(behind, driven.model, driven.walked)) return heard;
+  // Between samples only the model's own way is known: the echo's goes straight.
+  const std::vector<double> unheard = downstream(behind, driven.walked, plain);
+  std::vector<double> exact = walked_with(driven, blocks);
+  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += heard[i] - unheard[i];
+  return exact;
 }
 
 std::vector<double> driven_prediction(const Base& base, const Driven& driven, const Extension& extension) {
   const Record& record = driven.record;
-  std::vector<double> y = extended_prediction(base, driven, extension.chain);
+  std::vector<double> y = extended_prediction(driven, extension.chain);
   if (extension.crescent.share != 0) {
     const std::vector<double> loop = added_by(extension.crescent, record, base.largest_kpa);
     for (std::size_t i = 0; i < y.size(); ++i) y[i] += base.span_mm * loop[i];
   }
   for (std::size_t i = 0; i < y.size(); ++i) {
     const double warmer = record.temperature_c.empty() ? 0 : record.temperature_c[i] - base.temperature_c;
-    y[i] = (y[i] + driven.echo(static_cast<Eigen::Index>(i))) * extension.gain *
-           (1 + (base.gain_per_c + extension.gain_per_c) * warmer);
+    y[i] *= extension.gain * (1 + (base.gain_per_c + extension.gain_per_c) * warmer);
   }
   if (extension.softening.share != 0) {
     const std::vector<double> factor = softened(extension.softening, record, base.largest_kpa);
@@ -220,22 +238,29 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
 
 }  // namespace
 
-Driven driven_by(const Base& base, const Record& record) {
-  Driven driven{base.regulator ? behind(*base.regulator, record) : record, {}, {}};
+Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve) {
+  Driven driven{record, record, base.model, {}, {}};
+  if (!valve.empty()) {
+    driven.record.drive_kpa = drive_behind(valve, record);
+    driven.record.held = false;
+  }
+  if (base.regulator) driven.record = behind(*base.regulator, driven.record);
+  const bool is_walked_whole = base.drive == Drive::command && !base.regulator && !base.model.blocks.empty();
+  const auto whole = is_walked_whole ? with_valve(base.model, valve) : std::nullopt;
+  if (whole)
+    driven.model = *whole;
+  else
+    driven.walked = driven.record;
   driven.echo =
       weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa, base.echo_weights);
-  driven.plain = plain_prediction(base.model, driven.record);
+  driven.plain = plain_prediction(driven.model, driven.walked);
   return driven;
 }
 
 std::vector<double> predict_base(const Base& base, const Record& record, const Extension& extension,
                                  const Driven* driven) {
-  if (extension.valve.empty())
-    return driven_prediction(base, driven != nullptr ? *driven : driven_by(base, record), extension);
-  Record after = record;
-  after.drive_kpa = drive_behind(extension.valve, record);
-  after.held = false;
-  return driven_prediction(base, driven_by(base, after), extension);
+  if (driven != nullptr && extension.valve.empty()) return driven_prediction(base, *driven, extension);
+  return driven_prediction(base, driven_by(base, record, extension.valve), extension);
 }
 
 Record thinned_for(const Base& base, const Record& record) {

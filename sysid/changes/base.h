@@ -64,13 +64,17 @@ struct BaseOptions {
 [[nodiscard]] Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive,
                             const BaseOptions& options);
 
-/// A record behind the valve of a base as it is, the model's prediction there, and what the echo adds to it.
+/// A record behind the valve of a base, the model's prediction there, and what the echo adds to it.
 struct Driven {
-  Record record;
+  Record record;       ///< driven by what the finger sees at the samples
+  Record walked;       ///< what `model` is walked along: that, or the command itself
+  model::Model model;  ///< the base's, with what happens to the command in front where it can carry it
   Eigen::VectorXd echo;
   std::vector<double> plain;
 };
-[[nodiscard]] Driven driven_by(const Base& base, const Record& record);
+/// @param valve  what happens to the command before the base sees it.
+[[nodiscard]] Driven driven_by(const Base& base, const Record& record,
+                               const std::vector<model::BlockSpec>& valve = {});
 
 /// What the base, changed by `extension`, would read; without offset.
 /// @param driven  driven_by() of the record, where it is known already.

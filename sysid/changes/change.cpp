@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "sysid/changes/chance.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
 #include "sysid/diagnosis/residual/noise.h"
@@ -16,15 +17,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// A gain is a change where it passes so many times what the cause gains on the healthy logs while they are
-/// held out, and a little more.
-constexpr double chance_ratio = 2.0;
-/// In whitened squares per second, whatever the bins. A regulator repeats itself less well than a finger. A
-/// course that is drawn freely follows what the base misses on another day: in 29 unchanged worlds (of
-/// --first-seed 20261126) it took up to 1.2, where a drift of 0.15 of the usual strength took 10 and more.
-constexpr double finger_gain_per_s = 0.6, pressure_gain_per_s = 1.5, free_form_gain_per_s = 2;
-/// What one cause gains there another one of its kind may gain as well.
-constexpr double chance_of_others = 0.35;
 /// A change is at least so large, of what the base usually leaves of healthy readings, either as they are or
 /// whitened: a fast oscillation is seen beside slow misses that are larger.
 constexpr double least_size = 0.5;
@@ -97,7 +89,9 @@ class Judge {
   void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
     learn_temperature();
     say("what chance shows on the healthy logs");
-    const Chance chance = chance_of();
+    const Chance chance =
+        chance_of(LaterReadings(base_, base_.records, base_.left),
+                  effects_for(base_, base_.records, {}, pressure_is_judged_), options_.threads);
     const std::vector<std::vector<double>> residuals = residuals_of(base_, later);
     const LaterReadings readings = readings_of(base_, later, residuals);
     const std::vector<Effect> effects =
@@ -112,19 +106,16 @@ class Judge {
     judged.misfit_before = judged.misfit_left = per_bin(readings, white.squaredNorm());
     for (std::size_t step = 0; step < most_causes; ++step) {
       say("which changes the later logs show");
-      const std::vector<ScoredEffect> ranked =
-          ranked_effects(readings, effects, found, chance, options_.threads);
-      if (ranked.empty()) break;
+      std::vector<ScoredEffect> ranked = ranked_effects(readings, effects, found, chance, options_.threads);
       if (step == 0) {
         for (const ScoredEffect& each : ranked)
           judged.tried.push_back(
               {each.fit.fitted.effect.id, each.fit.fitted.effect.form, each.gain, each.chance});
       }
-      const ScoredEffect& best = ranked.front();
-      if (!stands_out(best)) break;
-      const Weighed weighed = weigh(readings, best, white, found);
+      const Weighed weighed = weigh_first_change(readings, ranked, white, found);
       const double excess_left = judged.misfit_left - 1;
-      if (!weighed.is_a_change || !(found.empty() || best.gain > further_share * excess_left)) break;
+      if (ranked.empty() || !(found.empty() || ranked.front().gain > further_share * excess_left)) break;
+      const ScoredEffect& best = ranked.front();
       diagnosis.causes.push_back(cause_of(readings, ranked, weighed, judged.misfit_before - 1));
       found.push_back(best.fit.fitted);
       white = best.fit.white;
@@ -155,26 +146,6 @@ class Judge {
     base_.gain_per_c = own.numbers.front();
   }
 
-  /// The search on the healthy logs, their residual taken while they were held out.
-  [[nodiscard]] Chance chance_of() const {
-    const LaterReadings healthy(base_, base_.records, base_.left);
-    const std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
-    Chance chance;
-    double largest = 0;
-    for (const ScoredEffect& each : ranked_effects(healthy, effects, {}, {}, options_.threads)) {
-      chance[each.fit.fitted.effect.id] = std::max(0.0, each.gain);
-      largest = std::max(largest, each.gain);
-    }
-    for (auto& [id, gain] : chance) gain = std::max(gain, chance_of_others * largest);
-    return chance;
-  }
-
-  [[nodiscard]] bool stands_out(const ScoredEffect& scored) const {
-    const double least_gain_per_s = scored.fit.fitted.effect.free_form ? free_form_gain_per_s
-                                    : base_.judged == Judged::pressure ? pressure_gain_per_s
-                                                                       : finger_gain_per_s;
-    return scored.gain > base_.bin_s * least_gain_per_s + chance_ratio * scored.chance;
-  }
   [[nodiscard]] bool is_large(const LaterReadings& readings, const Binned& added) const {
     return rms_of(added, 0) >= least_size * usual_left(base_.left) ||
            per_bin(readings, readings.rows()(added).squaredNorm()) >= least_size * least_size;
@@ -208,6 +179,20 @@ class Judge {
     return weighed;
   }
 
+  /// Leaves of the ranked those that stand out, the first that is a change in front: what chance alone makes
+  /// gain more does not hide it.
+  [[nodiscard]] Weighed weigh_first_change(const LaterReadings& readings, std::vector<ScoredEffect>& ranked,
+                                           const Eigen::VectorXd& without,
+                                           const std::vector<FittedEffect>& found) const {
+    std::erase_if(ranked, [&](const ScoredEffect& each) { return !stands_out(each, base_); });
+    for (; !ranked.empty(); ranked.erase(ranked.begin())) {
+      put_fewest_numbers_first(ranked);
+      Weighed weighed = weigh(readings, ranked.front(), without, found);
+      if (weighed.is_a_change) return weighed;
+    }
+    return {};
+  }
+
   /// Whether another effect explains as much as the best one.
   [[nodiscard]] bool is_rival(const LaterReadings& readings, const ScoredEffect& best,
                               const ScoredEffect& other, const Weighed& weighed) const {
@@ -232,7 +217,6 @@ class Judge {
     cause.gain_lower = per_bin(readings, weighed.spread.lower);
     cause.gain_upper = per_bin(readings, weighed.spread.upper);
     for (std::size_t i = 1; i < ranked.size(); ++i) {
-      if (!stands_out(ranked[i])) continue;
       if (is_rival(readings, ranked.front(), ranked[i], weighed))
         cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
     }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -23,22 +25,10 @@ double beyond_chance(const ScoredEffect& scored) {
   return scored.gain - scored.chance;
 }
 
-/// Of those that take as much as the first, the one with the fewest numbers goes before it. A line that fills
-/// and empties alike is a lag of the valve, however much they take.
-void fewest_numbers_first(std::vector<ScoredEffect>& ranked) {
-  if (ranked.empty() || !(beyond_chance(ranked.front()) > 0)) return;
-  const FittedEffect& first = ranked.front().fit.fitted;
-  std::size_t fewest = 0;
-  for (std::size_t i = 1; i < ranked.size(); ++i) {
-    const FittedEffect& each = ranked[i].fit.fitted;
-    const bool contained = each.effect.id == first.effect.contains &&
-                           beyond_chance(ranked[i]) >= (1 - contained_share) * beyond_chance(ranked.front());
-    if ((contained || takes_as_much(ranked[i], ranked.front())) &&
-        each.numbers.size() < ranked[fewest].fit.fitted.numbers.size())
-      fewest = i;
-  }
-  const auto chosen = ranked.begin() + static_cast<std::ptrdiff_t>(fewest);
-  std::rotate(ranked.begin(), chosen, chosen + 1);
+/// How many numbers shape it, and how many it has.
+std::pair<std::size_t, std::size_t> numbers_of(const ScoredEffect& scored) {
+  const Effect& effect = scored.fit.fitted.effect;
+  return {effect.numbers.size() - effect.slack_numbers, effect.numbers.size()};
 }
 
 }  // namespace
@@ -47,6 +37,21 @@ bool takes_as_much(const ScoredEffect& other, const ScoredEffect& best) {
   const double most = beyond_chance(best), less = most - beyond_chance(other);
   return less <= alike_numbers * best.worth_of_a_number ||
          less <= std::min(alike_share * most, alike_per_bin);
+}
+
+void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked) {
+  if (ranked.empty() || !(beyond_chance(ranked.front()) > 0)) return;
+  const FittedEffect& first = ranked.front().fit.fitted;
+  std::size_t fewest = 0;
+  for (std::size_t i = 1; i < ranked.size(); ++i) {
+    const bool contained = ranked[i].fit.fitted.effect.id == first.effect.contains &&
+                           beyond_chance(ranked[i]) >= (1 - contained_share) * beyond_chance(ranked.front());
+    if ((contained || takes_as_much(ranked[i], ranked.front())) &&
+        numbers_of(ranked[i]) < numbers_of(ranked[fewest]))
+      fewest = i;
+  }
+  const auto chosen = ranked.begin() + static_cast<std::ptrdiff_t>(fewest);
+  std::rotate(ranked.begin(), chosen, chosen + 1);
 }
 
 double price_of(const Effect& effect) {
@@ -71,13 +76,15 @@ std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const st
     return beyond_chance(a) > beyond_chance(b);
   });
   std::vector<ScoredEffect> kept;
-  for (ScoredEffect& each : all) {
-    const bool there = std::any_of(kept.begin(), kept.end(), [&](const ScoredEffect& k) {
-      return k.fit.fitted.effect.id == each.fit.fitted.effect.id;
-    });
-    if (!there) kept.push_back(std::move(each));
+  while (!all.empty()) {
+    const std::string id = all.front().fit.fitted.effect.id;
+    const auto rest = std::stable_partition(
+        all.begin(), all.end(), [&](const ScoredEffect& each) { return each.fit.fitted.effect.id == id; });
+    std::vector<ScoredEffect> forms(std::make_move_iterator(all.begin()), std::make_move_iterator(rest));
+    all.erase(all.begin(), rest);
+    put_fewest_numbers_first(forms);
+    kept.push_back(std::move(forms.front()));
   }
-  fewest_numbers_first(kept);
   return kept;
 }
 

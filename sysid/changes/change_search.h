@@ -28,12 +28,17 @@ using Chance = std::map<std::string, double>;
 /// enough of to tell them apart, however many bins say so.
 [[nodiscard]] bool takes_as_much(const ScoredEffect& other, const ScoredEffect& best);
 
-/// What takes most beyond chance first, but that of those which take nearly as much the one with the fewest
-/// numbers goes before the others; one form per cause.
+/// What takes most beyond chance first; of every cause one form, that of those which take as much the one
+/// with the fewest numbers.
 [[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
                                                        const std::vector<Effect>& effects,
                                                        const std::vector<FittedEffect>& others,
                                                        const Chance& chance, unsigned threads);
+
+/// Of those that take as much as the first, the one with the fewest numbers goes before it: those that shape
+/// it are counted before those that only say where it is counted from. A line that fills and empties alike is
+/// a lag of the valve, however much they take.
+void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked);
 
 /// Of every row of the readings, which block of some seconds it is in, from 0.
 [[nodiscard]] std::vector<std::size_t> blocks_of(const LaterReadings& readings);

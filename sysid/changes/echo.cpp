@@ -10,7 +10,8 @@ namespace {
 
 using Series = std::vector<double>;
 
-constexpr std::array valve_lags_s{0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
+/// A valve may follow at once; where its pressure is not recorded, the finger's own lag goes on top.
+constexpr std::array valve_lags_s{0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
 constexpr std::array finger_lags_s{0.02, 0.06, 0.2, 0.6, 2.0, 6.0, 20.0, 60.0};
 
 template <class F>
@@ -82,13 +83,16 @@ struct Bank {
 std::vector<Bank> banks(const Record& record, const Series& drive_kpa, EchoKind kind, double largest_kpa) {
   std::vector<Bank> all;
   if (kind != EchoKind::valve) all.push_back({finger_signals(drive_kpa, largest_kpa), finger_lags_s});
-  if (kind != EchoKind::finger) all.push_back({valve_signals(record, drive_kpa, largest_kpa), valve_lags_s});
+  if (kind != EchoKind::finger)
+    all.push_back({valve_signals(record, drive_kpa, largest_kpa),
+                   std::span(valve_lags_s).subspan(kind == EchoKind::valve ? 0 : 1)});
   return all;
 }
 
 }  // namespace
 
 std::vector<double> lagged(const Record& record, const std::vector<double>& signal, double time_constant_s) {
+  if (time_constant_s == 0) return signal;
   std::vector<double> out(signal.size(), signal.front());
   double last_s = -1, keep = 0, mean = 0;
   for (std::size_t i = 1; i < signal.size(); ++i) {

@@ -28,7 +28,8 @@ enum class EchoKind {
                                             EchoKind kind, double largest_kpa,
                                             const Eigen::VectorXd& weights);
 
-/// A first-order lag of a signal that is straight between samples; settled at its first value.
+/// A first-order lag of a signal that is straight between samples; settled at its first value. A time
+/// constant of 0 is no lag.
 [[nodiscard]] std::vector<double> lagged(const Record& record, const std::vector<double>& signal,
                                          double time_constant_s);
 

@@ -53,6 +53,7 @@ class Collector {
       add_softening();
       add_crescent();
       add_stiffening();
+      add_bow();
       if (scales_.has_temperature) add_thermal();
     }
     return std::move(effects_);
@@ -75,7 +76,9 @@ class Collector {
                   {},
                   {},
                   {}};
+    effect.contains = cause.contains;
     effect.twin = cause.twin;
+    effect.where_bases_miss = cause.where_bases_miss;
     std::vector<std::size_t> fitted;
     for (std::size_t i = 0; i < starts.front().values.size(); ++i) {
       if (!form.is_fitted(i)) continue;
@@ -157,7 +160,11 @@ class Collector {
     const auto plain =
         std::find_if(effects_.begin(), effects_.end(), [](const Effect& e) { return e.id == "stiffening"; });
     if (plain == effects_.end()) return;
+    // What gives way more the farther it is bent has not stiffened.
+    plain->numbers[0].lower = 0;
+    std::erase_if(plain->starts, [](const std::vector<double>& start) { return start[0] < 0; });
     Effect effect = *plain;
+    effect.slack_numbers = 1;
     effect.form = "stiffening_about_a_point";
     effect.numbers.push_back({"gain_change", "", 0.01, -0.9, 9});
     effect.nothing.push_back(0);
@@ -166,6 +173,19 @@ class Collector {
       bend(e, {n[0]});
       e.gain *= 1 + n[1];
     };
+    effects_.push_back(std::move(effect));
+  }
+  /// A scale that is bent to one side only.
+  void add_bow() {
+    const auto bent = std::find_if(effects_.begin(), effects_.end(),
+                                   [](const Effect& e) { return e.id == "sensor_nonlinearity"; });
+    if (bent == effects_.end()) return;
+    Effect effect = *bent;
+    effect.form = "bow";
+    effect.numbers.resize(1);
+    effect.nothing.resize(1);
+    for (std::vector<double>& start : effect.starts) start.resize(1);
+    effect.apply = [bend = bent->apply](Extension& e, const std::vector<double>& n) { bend(e, {n[0], 0}); };
     effects_.push_back(std::move(effect));
   }
   /// At which temperature the gain is still what it was, nobody knows: beside the slope goes a gain.

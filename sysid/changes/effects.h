@@ -34,6 +34,10 @@ struct Effect {
   std::string contains = {};
   /// The id of a cause that gives the same readings; or none.
   std::string twin = {};
+  /// Of its numbers, how many only say where it is counted from.
+  std::size_t slack_numbers = 0;
+  /// It shows where the drive turns or hastens, as the misses of any base do.
+  bool where_bases_miss = false;
 };
 
 /// All effects that the reading of these later records can show.

@@ -3,10 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/blocks/transport_delay.h"
+#include "model/catalogue.h"
 #include "model/chain.h"
+#include "model/named.h"
 #include "sysid/fitting/trajectory_walk.h"
 
 namespace softgrip::sysid {
+namespace {
+
+bool does_nothing(const model::BlockSpec& block) {
+  const model::Descriptor& descriptor = model::catalogue()[block.type];
+  for (std::size_t i = 0; i < block.values.size(); ++i) {
+    if (block.values[i] != descriptor.spec(i).neutral) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve, const Record& record) {
   if (valve.empty()) return record.drive_kpa;
@@ -23,6 +37,22 @@ std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve, con
     out[i] = chain.pressure_kpa();
   }
   return out;
+}
+
+std::optional<model::Model> with_valve(model::Model model, const std::vector<model::BlockSpec>& valve) {
+  for (const model::BlockSpec& block : valve) {
+    const auto own = std::find_if(model.blocks.begin(), model.blocks.end(),
+                                  [&](const model::BlockSpec& b) { return b.type == block.type; });
+    if (own == model.blocks.end())
+      model = model::with_block(std::move(model), block);
+    else if (does_nothing(*own))
+      own->values = block.values;
+    else if (model::is<model::TransportDelay>(block))
+      own->values[0] += block.values[0];
+    else
+      return std::nullopt;
+  }
+  return model;
 }
 
 std::vector<double> softened(const Softening& softening, const Record& record, double largest_kpa) {

@@ -1,6 +1,7 @@
 #pragma once
 // What may have changed since a healthy log, as numbers beside a frozen base.
 
+#include <optional>
 #include <vector>
 
 #include "model/model.h"
@@ -52,6 +53,11 @@ struct Extension {
 /// The drive of a record behind blocks of the valve.
 [[nodiscard]] std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve,
                                                const Record& record);
+
+/// A model driven by the command with these blocks of the valve in front, walked as exactly as the rest of
+/// it; nothing where it has such a block of its own that both cannot be one.
+[[nodiscard]] std::optional<model::Model> with_valve(model::Model model,
+                                                     const std::vector<model::BlockSpec>& valve);
 
 /// By what softening multiplies the displacement, sample by sample.
 [[nodiscard]] std::vector<double> softened(const Softening& softening, const Record& record,

@@ -44,12 +44,14 @@ struct Cause {
   bool found_by_fitting = true;
   Column needs = Column::none;
   std::span<const Advice> advice;
-  std::string_view twin;  ///< id; empty: none
+  std::string_view twin;      ///< id; empty: none
+  std::string_view contains;  ///< id; empty: none
   std::span<const std::string_view> counterparts;
   std::span<const std::string_view> confounded_with;
   bool is_stop = false;
   bool is_own_law = false;
   bool parts_twins = false;
+  bool where_bases_miss = false;
   std::string_view sensor_shape;  ///< empty: no sensor without memory
   WhenChanged when_changed;
 

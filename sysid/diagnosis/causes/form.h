@@ -26,6 +26,9 @@
 //   static constexpr Column needs = ...;                   a column without which nothing can be told
 //   static constexpr std::array advice{Advice::...};       what tells it from others where no waveform does
 //   static constexpr std::string_view twin = "...";        gives the same readings whatever the command
+//   static constexpr std::string_view contains = "...";    looks like this one, which has fewer numbers,
+//   where it
+//                                                          is small
 //   static constexpr std::array<std::string_view, N> counterparts{...};
 //       what the sensor may be instead of the actuator or the load, or the reverse, as asked
 //   static constexpr std::array<std::string_view, N> confounded_with{...};
@@ -35,6 +38,8 @@
 //                                                          stands for it but for a rest
 //   static constexpr bool parts_twins = true;
 //       remembers, between actuator and sensor: twins before it and behind it differ
+//   static constexpr bool where_bases_miss = true;
+//       shows where the drive turns or hastens, as what any base misses does: as a change it must show more
 //   static constexpr std::string_view sensor_shape = "...";
 //       a sensor without memory, in words: a gauge shows it
 //   static constexpr bool found_by_fitting = false;        no trajectory shows it: it has no starts

@@ -12,6 +12,7 @@ struct RateDependentHysteresis {
   static constexpr std::string_view id = "rate_dependent_hysteresis";
   static constexpr std::string_view title = "Rate-dependent hysteresis";
   static constexpr bool is_own_law = true;
+  static constexpr bool where_bases_miss = true;
   static constexpr WhenChanged when_changed{
       "fast motion costs more pressure than slow motion",
       {"Run the same stroke at three speeds and compare the loops.",

@@ -6,6 +6,11 @@
 #include <cmath>
 #include <random>
 
+#include "model/blocks/sensor_lag.h"
+#include "model/blocks/sensor_saturation.h"
+#include "model/blocks/transport_delay.h"
+#include "model/named.h"
+#include "sysid/changes/echo.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::base_test {
@@ -84,6 +89,45 @@ TEST(Base, KnowsARegulatorThatItDoesNotSee) {
   const Record record = thinned_for(base, make_records(healthy, {}).front());
   const Driven driven = driven_by(base, record);
   EXPECT_EQ(predict_base(base, record, {}), predict_base(base, record, {}, &driven));
+}
+
+TEST(Base, OfAPressureThatFollowsAtOnceADelayOfHalfASampleIsTheMeanOfTwo) {
+  const std::vector<Record> records = pressure_records(test::logs_of({}, 1, true), false);
+  const Base base = fit_base(records, Judged::pressure, Drive::command, {});
+  Extension late;
+  late.valve.push_back({model::block_type<model::TransportDelay>(), {0.01}});  // sampled at 50 Hz
+  const std::vector<double> p = predict_base(base, records[0], late);
+  double largest_kpa = 0;
+  for (std::size_t i = 1; i < p.size(); ++i) {
+    const double mean_kpa = 0.5 * (records[0].drive_kpa[i] + records[0].drive_kpa[i - 1]);
+    largest_kpa = std::max(largest_kpa, std::abs(p[i] - mean_kpa));
+  }
+  EXPECT_LT(largest_kpa, 0.05);
+}
+
+/// A base whose echo is no small part of what it says.
+Base with_a_loud_echo() {
+  Base base = base_of(test::logs_of({}, 1));
+  base.echo_weights.setConstant(2e-4);
+  return base;
+}
+
+TEST(Base, ASensorShowsTheEchoAsWell) {
+  const Base base = with_a_loud_echo();
+  const Record record = make_records(test::logs_of({}, 5), {}).front();
+  const std::vector<double> plain = predict_base(base, record, {});
+  double echo_mm = 0;
+  const Driven driven = driven_by(base, record);
+  for (const double v : driven.echo) echo_mm = std::max(echo_mm, std::abs(v));
+  ASSERT_GT(echo_mm, 0.5);
+  Extension limited;
+  limited.chain.push_back({model::block_type<model::SensorSaturation>(), {-10.0, 6.0}});
+  const std::vector<double> at_most = predict_base(base, record, limited);
+  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(at_most[i], std::min(plain[i], 6.0), 1e-9);
+  Extension lags;
+  lags.chain.push_back({model::block_type<model::SensorLag>(), {0.3}});
+  const std::vector<double> late = predict_base(base, record, lags), straight = lagged(record, plain, 0.3);
+  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_NEAR(late[i], straight[i], 0.005);
 }
 
 }  // namespace

@@ -39,8 +39,9 @@ TEST_F(ChangeSearch, ALineThatFillsAndEmptiesAlikeIsALagOfTheValve) {
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
   std::erase_if(effects, [](const Effect& e) { return e.id != "valve_lag" && e.id != "blocked_line"; });
   std::reverse(effects.begin(), effects.end());
-  const std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {}, 1);
+  std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {}, 1);
   ASSERT_EQ(ranked.size(), 2U);
+  put_fewest_numbers_first(ranked);
   EXPECT_NEAR(ranked[1].gain, ranked[0].gain, 0.01 * ranked[0].gain);
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "valve_lag");
 }
@@ -60,10 +61,40 @@ TEST_F(ChangeSearch, OfThoseThatTakeAsMuchTheOneWithFewestNumbersIsFirst) {
     e.gain *= 1.0002;
   };
   effects.insert(effects.begin(), dearer);
-  const std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {{"transport_delay", 0.02}}, 1);
+  std::vector<ScoredEffect> ranked = ranked_effects(later, effects, {}, {{"transport_delay", 0.02}}, 1);
   ASSERT_EQ(ranked.size(), 2U);
+  put_fewest_numbers_first(ranked);
   EXPECT_LT(ranked[0].gain - ranked[0].chance, ranked[1].gain - ranked[1].chance);
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "transport_delay");
+}
+
+/// One that gains so much with so many numbers.
+ScoredEffect scored(const char* id, double gain, std::size_t numbers, std::size_t slack = 0) {
+  ScoredEffect scored;
+  scored.gain = gain;
+  scored.fit.fitted.effect.id = id;
+  scored.fit.fitted.effect.numbers.resize(numbers);
+  scored.fit.fitted.effect.slack_numbers = slack;
+  return scored;
+}
+
+TEST(FewestNumbersFirst, WhatOnlySaysWhereItIsCountedFromCountsLast) {
+  std::vector<ScoredEffect> ranked{scored("two", 10.01, 2), scored("one_and_slack", 10, 2, 1)};
+  put_fewest_numbers_first(ranked);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "one_and_slack");
+  ranked.push_back(scored("one", 9.99, 1));
+  put_fewest_numbers_first(ranked);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "one");
+}
+
+TEST(FewestNumbersFirst, WhatIsContainedMayTakeALittleLess) {
+  std::vector<ScoredEffect> ranked{scored("line", 100, 2), scored("lag", 98, 1), scored("other", 98, 1)};
+  ranked[0].fit.fitted.effect.contains = "lag";
+  put_fewest_numbers_first(ranked);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "lag");
+  std::vector<ScoredEffect> apart{scored("line", 100, 2), scored("other", 98, 1)};
+  put_fewest_numbers_first(apart);
+  EXPECT_EQ(apart[0].fit.fitted.effect.id, "line");
 }
 
 TEST_F(ChangeSearch, WhatIsLeftAsItIsKnowsWhetherAnEffectHelps) {

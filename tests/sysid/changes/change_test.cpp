@@ -96,6 +96,14 @@ TEST(Change, AFingerThatBendsAboutAPointIsStiffeningOrItsTwin) {
   EXPECT_EQ(d.verdict, ChangeVerdict::ambiguous);
 }
 
+TEST(Change, AFingerThatGivesWayMoreTheFartherItIsBentHasNotStiffened) {
+  const ChangeDiagnosis d = changed({.bend_per_mm = -0.02});
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "sensor_nonlinearity");
+  EXPECT_EQ(d.causes[0].fitted.effect.numbers[0].name, "bow_mm");
+  EXPECT_LT(d.causes[0].fitted.numbers[0], 0);
+}
+
 TEST(Change, ALoopThatIsWiderOnOneSideIsAsymmetric) {
   const ChangeDiagnosis d = changed({.crescent_mm = 0.4});
   ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
