@@ -12,6 +12,7 @@
 #include "sysid/changes/echo_fit.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/centred_record.h"
+#include "sysid/logs/finer_record.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_fit.h"
 #include "sysid/structure/structure_model.h"
@@ -204,15 +205,15 @@ std::vector<double> extended_prediction(const Driven& driven, const std::vector<
   std::stable_sort(behind.begin(), behind.end(),
                    [](const model::BlockSpec& a, const model::BlockSpec& b) { return a.type < b.type; });
   const std::vector<double> plain = within.empty() ? driven.plain : walked_with(driven, within);
-  std::vector<double> heard(plain.size());
-  std::transform(plain.begin(), plain.end(), driven.echo.begin(), heard.begin(), std::plus());
-  if (behind.empty()) return heard;
-  heard = downstream(behind, driven.walked, std::move(heard));
-  if (is_downstream(behind, driven.model, driven.walked)) return heard;
+  std::vector<double> with_echo(plain.size());
+  std::transform(plain.begin(), plain.end(), driven.echo.begin(), with_echo.begin(), std::plus());
+  if (behind.empty()) return with_echo;
+  with_echo = downstream(behind, driven.walked, std::move(with_echo));
+  if (is_downstream(behind, driven.model, driven.walked)) return with_echo;
   // Between samples only the model's own way is known: the echo's goes straight.
-  const std::vector<double> unheard = downstream(behind, driven.walked, plain);
+  const std::vector<double> without_echo = downstream(behind, driven.walked, plain);
   std::vector<double> exact = walked_with(driven, blocks);
-  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += heard[i] - unheard[i];
+  for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += with_echo[i] - without_echo[i];
   return exact;
 }
 
@@ -236,15 +237,30 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
   return y;
 }
 
+/// What the base's regulator, if it has one, makes of a command behind these blocks. A command that bends
+/// between the samples is followed there.
+std::vector<double> drive_of(const Base& base, const Record& record,
+                             const std::vector<model::BlockSpec>& valve) {
+  if (!base.regulator) return drive_behind(valve, record);
+  if (valve.empty()) return regulated(*base.regulator, record, record.drive_kpa);
+  constexpr std::size_t parts = 5;
+  Record fine = finer_record(record, parts);
+  fine.drive_kpa = drive_behind(valve, fine);
+  fine.held = false;
+  fine.drive_kpa = regulated(*base.regulator, fine, fine.drive_kpa);
+  std::vector<double> drive_kpa(record.size());
+  for (std::size_t i = 0; i < drive_kpa.size(); ++i) drive_kpa[i] = fine.drive_kpa[i * parts];
+  return drive_kpa;
+}
+
 }  // namespace
 
 Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve) {
   Driven driven{record, record, base.model, {}, {}};
-  if (!valve.empty()) {
-    driven.record.drive_kpa = drive_behind(valve, record);
+  if (base.regulator || !valve.empty()) {
+    driven.record.drive_kpa = drive_of(base, record, valve);
     driven.record.held = false;
   }
-  if (base.regulator) driven.record = behind(*base.regulator, driven.record);
   const bool is_walked_whole = base.drive == Drive::command && !base.regulator && !base.model.blocks.empty();
   const auto whole = is_walked_whole ? with_valve(base.model, valve) : std::nullopt;
   if (whole)
@@ -264,7 +280,10 @@ std::vector<double> predict_base(const Base& base, const Record& record, const E
 }
 
 Record thinned_for(const Base& base, const Record& record) {
-  constexpr double finger_parts = 2, valve_parts = 4;
+  // A hundredth of a second in a finger's bins, whatever drives it: what rings or lags by less is told by
+  // how.
+  constexpr double commanded_parts = 2, measured_parts = 5, valve_parts = 4;
+  const double finger_parts = base.drive == Drive::measured ? measured_parts : commanded_parts;
   return thinned_to_centres(record,
                             base.bin_s / (base.judged == Judged::pressure ? valve_parts : finger_parts));
 }

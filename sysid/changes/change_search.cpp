@@ -44,11 +44,12 @@ void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked) {
   const FittedEffect& first = ranked.front().fit.fitted;
   std::size_t fewest = 0;
   for (std::size_t i = 1; i < ranked.size(); ++i) {
-    const bool contained = ranked[i].fit.fitted.effect.id == first.effect.contains &&
+    const std::string& id = ranked[i].fit.fitted.effect.id;
+    const bool contained = id == first.effect.contains &&
                            beyond_chance(ranked[i]) >= (1 - contained_share) * beyond_chance(ranked.front());
-    if ((contained || takes_as_much(ranked[i], ranked.front())) &&
-        numbers_of(ranked[i]) < numbers_of(ranked[fewest]))
-      fewest = i;
+    // Where a base is wrong, a cause is as wrong as its limit: the price of its number decides.
+    const bool as_much = id != first.effect.limit && takes_as_much(ranked[i], ranked.front());
+    if ((contained || as_much) && numbers_of(ranked[i]) < numbers_of(ranked[fewest])) fewest = i;
   }
   const auto chosen = ranked.begin() + static_cast<std::ptrdiff_t>(fewest);
   std::rotate(ranked.begin(), chosen, chosen + 1);

@@ -77,6 +77,7 @@ class Collector {
                   {},
                   {}};
     effect.contains = cause.contains;
+    effect.limit = cause.limit;
     effect.twin = cause.twin;
     effect.where_bases_miss = cause.where_bases_miss;
     std::vector<std::size_t> fitted;

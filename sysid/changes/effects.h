@@ -32,6 +32,8 @@ struct Effect {
   std::function<void(Extension&, const std::vector<double>&)> apply;
   /// The id of a cause that it is, with fewer numbers, where they agree; or none.
   std::string contains = {};
+  /// The id of a cause that it becomes at the end of its range; or none.
+  std::string limit = {};
   /// The id of a cause that gives the same readings; or none.
   std::string twin = {};
   /// Of its numbers, how many only say where it is counted from.

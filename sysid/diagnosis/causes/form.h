@@ -29,6 +29,9 @@
 //   static constexpr std::string_view contains = "...";    looks like this one, which has fewer numbers,
 //   where it
 //                                                          is small
+//   static constexpr std::string_view limit = "...";       becomes this one, which has a number less, at the
+//   end
+//                                                          of that number's range
 //   static constexpr std::array<std::string_view, N> counterparts{...};
 //       what the sensor may be instead of the actuator or the load, or the reverse, as asked
 //   static constexpr std::array<std::string_view, N> confounded_with{...};

@@ -97,6 +97,16 @@ TEST(FewestNumbersFirst, WhatIsContainedMayTakeALittleLess) {
   EXPECT_EQ(apart[0].fit.fitted.effect.id, "line");
 }
 
+TEST(FewestNumbersFirst, OfACauseAndItsLimitThePriceOfItsNumberDecides) {
+  std::vector<ScoredEffect> ranked{scored("contact", 10.01, 2), scored("stop", 10, 1)};
+  ranked[0].fit.fitted.effect.limit = "stop";
+  put_fewest_numbers_first(ranked);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "contact");
+  ranked[0].fit.fitted.effect.limit.clear();
+  put_fewest_numbers_first(ranked);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "stop");
+}
+
 TEST_F(ChangeSearch, WhatIsLeftAsItIsKnowsWhetherAnEffectHelps) {
   const LaterReadings later = readings({.delay_s = 0.06});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);
