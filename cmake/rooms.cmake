@@ -144,8 +144,8 @@ softgrip_room(tools/commissioning
   LIBRARIES nlohmann_json::nlohmann_json APART motion.cpp rig_examination.cpp)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig
-       daemon/service daemon/socket sysid/logs sysid/pages sysid/identification sysid/diagnosis/verdict
-       sysid/diagnosis/experiments sysid/diagnosis/report tools/recordings
+       daemon/service daemon/socket sysid/logs sysid/pages sysid/identification sysid/diagnosis/causes
+       sysid/diagnosis/verdict sysid/diagnosis/experiments sysid/diagnosis/report tools/recordings
   LIBRARIES nlohmann_json::nlohmann_json)
 # A report computed again.
 softgrip_room(tools/verification USES base document model model/file sysid/logs LIBRARIES nlohmann_json::nlohmann_json)

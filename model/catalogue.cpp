@@ -9,8 +9,8 @@ namespace softgrip::model {
 namespace {
 
 template <class Block>
-Descriptor describe() {
-  Descriptor result{Block::info, Block::parameters, {}, 0, 0, nullptr};
+BlockDescriptor describe() {
+  BlockDescriptor result{Block::info, Block::parameters, {}, 0, 0, nullptr};
   if constexpr (requires { Block::repeated; }) {
     result.repeated = Block::repeated;
     result.min_parts = 1;
@@ -28,13 +28,13 @@ Descriptor describe() {
 }
 
 template <template <class> class... Block>
-std::array<Descriptor, sizeof...(Block)> describe_all(BlockList<Block...>) {
+std::array<BlockDescriptor, sizeof...(Block)> describe_all(BlockList<Block...>) {
   return {describe<Block<double>>()...};
 }
 
 }  // namespace
 
-bool Descriptor::accepts(std::size_t value_count) const {
+bool BlockDescriptor::accepts(std::size_t value_count) const {
   if (repeated.empty()) return value_count == parameters.size();
   if (value_count < parameters.size()) return false;
   const std::size_t rest = value_count - parameters.size();
@@ -42,7 +42,7 @@ bool Descriptor::accepts(std::size_t value_count) const {
   return rest % repeated.size() == 0 && parts >= min_parts && parts <= max_parts;
 }
 
-const ParameterSpec& Descriptor::spec(std::size_t index) const {
+const ParameterSpec& BlockDescriptor::spec(std::size_t index) const {
   if (index < parameters.size()) return parameters[index];
   const std::size_t behind = index - parameters.size();
   if (behind >= max_parts * repeated.size()) {
@@ -51,7 +51,7 @@ const ParameterSpec& Descriptor::spec(std::size_t index) const {
   return repeated[behind % repeated.size()];
 }
 
-std::string Descriptor::name(std::size_t index) const {
+std::string BlockDescriptor::name(std::size_t index) const {
   std::string name(spec(index).name);
   if (index >= parameters.size()) {
     const std::size_t part = (index - parameters.size()) / repeated.size();
@@ -60,13 +60,13 @@ std::string Descriptor::name(std::size_t index) const {
   return name;
 }
 
-std::span<const Descriptor> catalogue() {
+std::span<const BlockDescriptor> catalogue() {
   static const auto all = describe_all(Blocks{});
   return all;
 }
 
 std::optional<std::size_t> find_block(std::string_view id) {
-  const std::span<const Descriptor> all = catalogue();
+  const std::span<const BlockDescriptor> all = catalogue();
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].info.id == id) return i;
   }

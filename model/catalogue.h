@@ -13,7 +13,7 @@
 namespace softgrip::model {
 
 /// One block type.
-struct Descriptor {
+struct BlockDescriptor {
   BlockInfo info;
   std::span<const ParameterSpec> parameters;  ///< the single ones
   std::span<const ParameterSpec> repeated;    ///< of one part; empty for most blocks
@@ -33,7 +33,7 @@ struct Descriptor {
 };
 
 /// All block types, by BlockSpec::type.
-[[nodiscard]] std::span<const Descriptor> catalogue();
+[[nodiscard]] std::span<const BlockDescriptor> catalogue();
 
 /// The type with this id, or nothing.
 [[nodiscard]] std::optional<std::size_t> find_block(std::string_view id);

@@ -19,7 +19,7 @@ const BlockInfo& info_of(const BlockSpec& block) {
 }
 
 void check_values(const BlockSpec& block, std::vector<std::string>& wrong) {
-  const Descriptor& descriptor = catalogue()[block.type];
+  const BlockDescriptor& descriptor = catalogue()[block.type];
   const std::string id(descriptor.info.id);
   if (!descriptor.accepts(block.values.size())) {
     wrong.push_back(id + " has " + std::to_string(block.values.size()) + " values");
@@ -74,7 +74,7 @@ std::vector<std::string> validate(const Model& model) {
 }
 
 BlockSpec default_block(std::size_t type, std::size_t parts) {
-  const Descriptor& descriptor = catalogue()[type];
+  const BlockDescriptor& descriptor = catalogue()[type];
   BlockSpec block{type, {}};
   for (const ParameterSpec& spec : descriptor.parameters) block.values.push_back(spec.default_value);
   for (std::size_t part = 0; part < parts; ++part) {

@@ -23,7 +23,7 @@ constexpr std::array stations{Station::valve, Station::actuator, Station::load, 
 
 std::vector<std::string> ids_of(Station station) {
   std::vector<std::string> ids;
-  for (const Descriptor& descriptor : catalogue()) {
+  for (const BlockDescriptor& descriptor : catalogue()) {
     if (descriptor.info.station == station) ids.emplace_back(descriptor.info.id);
   }
   return ids;
@@ -40,7 +40,7 @@ double read_value(MapReader& map, const ParameterSpec& spec, const std::string& 
 }
 
 // Parts are counted by the first missing number: k1, c1, k2, c2, ...
-std::size_t count_parts(const MapReader& map, const Descriptor& descriptor) {
+std::size_t count_parts(const MapReader& map, const BlockDescriptor& descriptor) {
   std::size_t parts = 0;
   for (std::size_t part = 1; part <= descriptor.max_parts; ++part) {
     for (const ParameterSpec& spec : descriptor.repeated) {
@@ -63,7 +63,7 @@ bool does_something(const BlockSpec& block) {
 /// Whether a key of the map is none of the block that has the id today, but of what the earlier one held.
 bool has_key_of_another(const Node& map, const EarlierBlock& earlier, std::size_t today) {
   const auto has = [](std::size_t type, const std::string& key) {
-    const Descriptor& descriptor = catalogue()[type];
+    const BlockDescriptor& descriptor = catalogue()[type];
     const BlockSpec largest = default_block(type, descriptor.max_parts);
     return find_parameter(largest, key).has_value();
   };
@@ -200,7 +200,7 @@ class ModelReader {
 
   /// @param absent_is_neutral  a number that is not given is where the block does nothing.
   BlockSpec read_values(MapReader& map, std::size_t type, bool absent_is_neutral = false) {
-    const Descriptor& descriptor = catalogue()[type];
+    const BlockDescriptor& descriptor = catalogue()[type];
     const std::size_t parts = descriptor.repeated.empty() ? 0 : count_parts(map, descriptor);
     BlockSpec block = neutral_block(type, parts);
     for (std::size_t i = 0; i < block.values.size(); ++i) {
@@ -212,7 +212,7 @@ class ModelReader {
   }
 
   void check_objection(const Node::Entry& entry, const BlockSpec& block, std::size_t problems_before) {
-    const Descriptor& descriptor = catalogue()[block.type];
+    const BlockDescriptor& descriptor = catalogue()[block.type];
     if (problems_.size() != problems_before || descriptor.objection == nullptr) return;
     const std::string_view objection = descriptor.objection(block.values);
     if (!objection.empty()) problems_.add(document_.problem(entry.key_at, std::string(objection)));

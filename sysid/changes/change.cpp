@@ -10,6 +10,8 @@
 #include "sysid/changes/chance.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
+#include "sysid/diagnosis/causes/outliers.h"
+#include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/outliers.h"
 #include "sysid/fitting/trajectory.h"
@@ -135,7 +137,7 @@ class Judge {
   /// A gain that follows the temperature on the healthy logs already is the finger's own, on any day.
   void learn_temperature() {
     std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
-    std::erase_if(effects, [](const Effect& e) { return e.id != "thermal_gain"; });
+    std::erase_if(effects, [](const Effect& e) { return e.id != causes::ThermalGain::id; });
     if (effects.empty()) return;
     const LaterReadings healthy(base_, base_.records, base_.left);
     const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
@@ -285,9 +287,10 @@ void judge_outliers(const OutlierEvidence& healthy, const OutlierEvidence& later
                     ChangeDiagnosis& diagnosis) {
   if (!later.present || later.share_low <= healthy.share_high) return;
   ChangeCause cause;
-  cause.id = "outliers";
-  cause.title = "Outliers";
-  cause.station = model::Station::sensor;
+  const Cause known = *find_cause(causes::Outliers::id);
+  cause.id = known.id;
+  cause.title = known.title;
+  cause.station = known.station;
   cause.size = {"wrong samples", 100 * later.share, "%"};
   cause.intervals.size = Interval{100 * later.share_low, 100 * later.share_high};
   cause.effect_mm = later.excess_mm;

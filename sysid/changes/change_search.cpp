@@ -31,12 +31,26 @@ std::pair<std::size_t, std::size_t> numbers_of(const ScoredEffect& scored) {
   return {effect.numbers.size() - effect.slack_numbers, effect.numbers.size()};
 }
 
+/// What chance alone sets apart: the gain of a few numbers.
+double within_chance(const ScoredEffect& scored) {
+  return alike_numbers * scored.worth_of_a_number;
+}
+
+/// Of those with as many numbers that chance alone sets apart from an ideal, the first that is none; else it.
+std::size_t real_beside(const std::vector<ScoredEffect>& ranked, std::size_t ideal) {
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    const bool near = beyond_chance(ranked[i]) >= beyond_chance(ranked[ideal]) - within_chance(ranked[ideal]);
+    if (near && !ranked[i].fit.fitted.effect.is_ideal && numbers_of(ranked[i]) == numbers_of(ranked[ideal]))
+      return i;
+  }
+  return ideal;
+}
+
 }  // namespace
 
 bool takes_as_much(const ScoredEffect& other, const ScoredEffect& best) {
   const double most = beyond_chance(best), less = most - beyond_chance(other);
-  return less <= alike_numbers * best.worth_of_a_number ||
-         less <= std::min(alike_share * most, alike_per_bin);
+  return less <= within_chance(best) || less <= std::min(alike_share * most, alike_per_bin);
 }
 
 void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked) {
@@ -51,6 +65,7 @@ void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked) {
     const bool as_much = id != first.effect.limit && takes_as_much(ranked[i], ranked.front());
     if ((contained || as_much) && numbers_of(ranked[i]) < numbers_of(ranked[fewest])) fewest = i;
   }
+  if (ranked[fewest].fit.fitted.effect.is_ideal) fewest = real_beside(ranked, fewest);
   const auto chosen = ranked.begin() + static_cast<std::ptrdiff_t>(fewest);
   std::rotate(ranked.begin(), chosen, chosen + 1);
 }

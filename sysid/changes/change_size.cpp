@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sysid/changes/next_steps.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -13,25 +15,6 @@ const double* number(const FittedEffect& effect, std::string_view name) {
   }
   return nullptr;
 }
-
-struct Direct {
-  std::string_view id, number, what, unit;
-  double factor;
-};
-
-/// Numbers that a technician checks as they are.
-constexpr Direct direct[] = {
-    {"transport_delay", "delay_s", "more dead time", "s", 1},
-    {"valve_lag", "time_constant_s", "more lag of the valve", "s", 1},
-    {"blocked_line", "filling_s", "more time to fill", "s", 1},
-    {"sensor_lag", "time_constant_s", "lag of the sensor", "s", 1},
-    {"valve_deadband", "band_kpa", "band that the valve ignores", "kPa", 1},
-    {"pressure_saturation", "limit_kpa", "the pressure stops at", "kPa", 1},
-    {"actuator_threshold", "threshold_kpa", "pressure before anything moves", "kPa", 1},
-    {"supply_sag", "coupling", "of a loss of supply that reaches the finger", "%", 100},
-    {"thermal_gain", "gain_per_c", "gain per degree", "%", 100},
-    {"backlash", "gap_mm", "play", "mm", 1},
-};
 
 double largest_of(const Binned& series) {
   double largest = 0;
@@ -61,23 +44,27 @@ double at_full_pressure(const LaterReadings& readings, const Binned& added) {
 }
 
 ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, double full_pressure_mm) {
-  if (effect.effect.id == "leak")
-    return {"pressure lost while it holds", largest_of(readings.added({effect})), "kPa"};
-  if (effect.effect.id == "sensor_drift")
-    return {"the zero wanders by up to", largest_of(readings.added({effect})), "mm"};
-  if (effect.effect.id == "periodic_disturbance")
-    return {"oscillation of", std::abs(largest_of(readings.added({effect}))), "mm"};
   // Of another gain, what counts as no change is a part.
-  if (effect.effect.id == "ageing" && effect.numbers.size() == 1 && number(effect, "gain_change") != nullptr)
-    return {"gain", 100 * (effect.numbers[0] + readings.slack({effect}).gain), "%"};
-  if (effect.effect.id == "ageing")
-    return {"gain at full pressure, on average", 100 * full_pressure_mm / readings.base().span_mm, "%"};
-  for (const Direct& known : direct) {
-    if (known.id != effect.effect.id) continue;
-    if (const double* value = number(effect, known.number))
-      return {std::string(known.what), *value * known.factor, std::string(known.unit)};
+  if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
+    return {"gain", 100 * (*gain + readings.slack({effect}).gain), "%"};
+  const SizedBy size = sized_by(effect.effect.id);
+  const auto sized = [&](double value) {
+    return ChangeSize{std::string(size.what), size.factor * value, std::string(size.unit)};
+  };
+  switch (size.of) {
+    case SizedBy::Of::span:
+      return sized(full_pressure_mm / readings.base().span_mm);
+    case SizedBy::Of::largest:
+      return sized(largest_of(readings.added({effect})));
+    case SizedBy::Of::amplitude:
+      return sized(std::abs(largest_of(readings.added({effect}))));
+    case SizedBy::Of::number:
+      if (const double* value = number(effect, size.number)) return sized(*value);
+      break;
+    case SizedBy::Of::full_pressure:
+      break;
   }
-  return {"at full pressure", full_pressure_mm, unit_of(readings.base().judged)};
+  return {std::string(SizedBy{}.what), full_pressure_mm, unit_of(readings.base().judged)};
 }
 
 }  // namespace softgrip::sysid

@@ -5,13 +5,29 @@
 #include <limits>
 
 #include "model/blocks/ageing.h"
+#include "model/blocks/duhem_hysteresis.h"
+#include "model/blocks/sensor_nonlinearity.h"
+#include "model/blocks/sensor_wander.h"
+#include "model/blocks/stiffening.h"
+#include "model/blocks/stress_softening.h"
+#include "model/blocks/thermal_gain.h"
 #include "model/catalogue.h"
+#include "model/named.h"
+#include "sysid/changes/causes_of_the_air.h"
+#include "sysid/diagnosis/causes/thermal_gain.h"
 
 namespace softgrip::sysid {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_starts = 8;
+const EffectNumber gain_change{"gain_change", "", 0.01, -0.9, 9};
+
+/// The cause of which such a block is a form.
+template <template <class> class Block>
+const Cause& cause_with() {
+  return *cause_of(model::block_type<Block>());
+}
 
 /// Thinned evenly, but for one number: where many values are worth a look, each is a valley of its own.
 std::vector<std::vector<double>> some(std::vector<std::vector<double>> all) {
@@ -40,14 +56,14 @@ class Collector {
     const bool pressure = base_.judged == Judged::pressure;
     for (const Cause& cause : all_causes()) {
       const bool of_valve = cause.station == model::Station::valve;
-      if (!cause.found_by_fitting || cause.id == "thermal_gain") continue;
+      if (!cause.found_by_fitting || cause == cause_with<model::ThermalGain>()) continue;
       if (pressure != (of_valve && pressure_is_judged_)) continue;
       if (of_valve && base_.drive == Drive::measured) continue;
       if (!unanswerable(cause, scales_).empty()) continue;
       for (const CauseForm& form : cause.forms) add(cause, form);
     }
     if (pressure) {
-      add_leak();
+      add_causes_of_the_air();
     } else {
       add_gain();
       add_softening();
@@ -64,22 +80,11 @@ class Collector {
     if (form.starts == nullptr) return;
     std::vector<model::BlockSpec> starts = form.starts(scales_);
     if (starts.empty()) return;
-    const model::Descriptor& descriptor = model::catalogue()[form.type];
-    if (descriptor.info.id == std::string_view("sensor_wander")) return;  // knots follow it too
+    const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
+    if (form.type == model::block_type<model::SensorWander>()) return;  // knots follow it too
     if (cause.station != model::Station::valve && !is_carried(base_, starts.front())) return;
-    Effect effect{std::string(cause.id),
-                  std::string(cause.title),
-                  cause.station,
-                  std::string(descriptor.info.id),
-                  form.free_form,
-                  {},
-                  {},
-                  {},
-                  {}};
-    effect.contains = cause.contains;
-    effect.limit = cause.limit;
-    effect.twin = cause.twin;
-    effect.where_bases_miss = cause.where_bases_miss;
+    Effect effect = form_of(cause, descriptor.info.id);
+    effect.free_form = form.free_form;
     std::vector<std::size_t> fitted;
     for (std::size_t i = 0; i < starts.front().values.size(); ++i) {
       if (!form.is_fitted(i)) continue;
@@ -105,69 +110,80 @@ class Collector {
     effects_.push_back(std::move(effect));
   }
 
+  /// A form of a cause without its numbers.
+  static Effect form_of(const Cause& cause, std::string_view form) {
+    Effect effect;
+    effect.id = cause.id;
+    effect.title = cause.title;
+    effect.station = cause.station;
+    effect.form = form;
+    effect.twin = cause.twin;
+    effect.contains = cause.contains;
+    effect.limit = cause.limit;
+    effect.is_ideal = cause.is_ideal;
+    effect.where_bases_miss = cause.where_bases_miss;
+    return effect;
+  }
+  static Effect form_of(const CauseOfTheAir& cause) {
+    Effect effect;
+    effect.id = effect.form = cause.id;
+    effect.title = cause.title;
+    effect.station = model::Station::valve;
+    effect.contains = cause.contains;
+    return effect;
+  }
+  /// The first form of a cause, so far; nullptr: the base cannot carry it.
+  Effect* first_of(const Cause& cause) {
+    const auto found =
+        std::find_if(effects_.begin(), effects_.end(), [&](const Effect& e) { return e.id == cause.id; });
+    return found == effects_.end() ? nullptr : &*found;
+  }
+
   /// The gain is another than it was, once and for all.
   void add_gain() {
-    effects_.push_back({"ageing",
-                        "Ageing",
-                        model::Station::actuator,
-                        "another_gain",
-                        false,
-                        {{"gain_change", "", 0.01, -0.9, 9}},
-                        {{0.02}, {-0.02}},
-                        {0},
-                        [](Extension& e, const std::vector<double>& n) { e.gain *= 1 + n[0]; }});
+    Effect effect = form_of(cause_with<model::Ageing>(), "another_gain");
+    effect.numbers = {gain_change};
+    effect.starts = {{0.02}, {-0.02}};
+    effect.nothing = {0};
+    effect.apply = [](Extension& e, const std::vector<double>& n) { e.gain *= 1 + n[0]; };
+    effects_.push_back(std::move(effect));
   }
   void add_softening() {
     const double p = base_.largest_kpa;
-    effects_.push_back({"stress_softening",
-                        "Stress softening",
-                        model::Station::actuator,
-                        "softer_below_the_largest",
-                        false,
-                        {{"share", "", 0.02, 0, 3}, {"range_kpa", "kPa", 5, 0.02 * p, 2 * p}},
-                        {{0.03, 0.2 * p}, {0.03, 0.6 * p}},
-                        {0, nan},
-                        [](Extension& e, const std::vector<double>& n) {
-                          e.softening = {n[0], n[1]};
-                        }});
-    effects_.push_back({"stress_softening",
-                        "Stress softening",
-                        model::Station::actuator,
-                        "softer_since_the_largest",
-                        false,
-                        {{"share", "", 0.02, 0, 3}},
-                        {{0.03}},
-                        {0},
-                        [](Extension& e, const std::vector<double>& n) {
-                          e.softening = {n[0], 0};
-                        }});
+    const EffectNumber share{"share", "", 0.02, 0, 3};
+    Effect below = form_of(cause_with<model::StressSoftening>(), "softer_below_the_largest");
+    below.numbers = {share, {"range_kpa", "kPa", 5, 0.02 * p, 2 * p}};
+    below.starts = {{0.03, 0.2 * p}, {0.03, 0.6 * p}};
+    below.nothing = {0, nan};
+    below.apply = [](Extension& e, const std::vector<double>& n) { e.softening = {n[0], n[1]}; };
+    effects_.push_back(std::move(below));
+    Effect since = form_of(cause_with<model::StressSoftening>(), "softer_since_the_largest");
+    since.numbers = {share};
+    since.starts = {{0.03}};
+    since.nothing = {0};
+    since.apply = [](Extension& e, const std::vector<double>& n) { e.softening = {n[0], 0}; };
+    effects_.push_back(std::move(since));
   }
   /// Of a base without Bouc-Wen's loop, a loop that is wider on one side.
   void add_crescent() {
-    effects_.push_back({"asymmetric_hysteresis",
-                        "Asymmetric hysteresis",
-                        model::Station::actuator,
-                        "crescent",
-                        false,
-                        {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}},
-                        {{0.05, 1.8}, {0.05, 3.5}},
-                        {0, nan},
-                        [](Extension& e, const std::vector<double>& n) {
-                          e.crescent = {n[0], n[1]};
-                        }});
+    Effect effect = form_of(cause_with<model::DuhemHysteresis>(), "crescent");
+    effect.numbers = {{"share", "", 0.05, 0, 3}, {"exponent", "", 1, 1.2, 6}};
+    effect.starts = {{0.05, 1.8}, {0.05, 3.5}};
+    effect.nothing = {0, nan};
+    effect.apply = [](Extension& e, const std::vector<double>& n) { e.crescent = {n[0], n[1]}; };
+    effects_.push_back(std::move(effect));
   }
   /// At which displacement the gain is still what it was, nobody knows: beside the bend goes a gain.
   void add_stiffening() {
-    const auto plain =
-        std::find_if(effects_.begin(), effects_.end(), [](const Effect& e) { return e.id == "stiffening"; });
-    if (plain == effects_.end()) return;
+    Effect* const plain = first_of(cause_with<model::Stiffening>());
+    if (plain == nullptr) return;
     // What gives way more the farther it is bent has not stiffened.
     plain->numbers[0].lower = 0;
     std::erase_if(plain->starts, [](const std::vector<double>& start) { return start[0] < 0; });
     Effect effect = *plain;
     effect.slack_numbers = 1;
     effect.form = "stiffening_about_a_point";
-    effect.numbers.push_back({"gain_change", "", 0.01, -0.9, 9});
+    effect.numbers.push_back(gain_change);
     effect.nothing.push_back(0);
     for (std::vector<double>& start : effect.starts) start.push_back(start[0] * 0.5 * base_.span_mm);
     effect.apply = [bend = plain->apply](Extension& e, const std::vector<double>& n) {
@@ -178,9 +194,8 @@ class Collector {
   }
   /// A scale that is bent to one side only.
   void add_bow() {
-    const auto bent = std::find_if(effects_.begin(), effects_.end(),
-                                   [](const Effect& e) { return e.id == "sensor_nonlinearity"; });
-    if (bent == effects_.end()) return;
+    const Effect* const bent = first_of(cause_with<model::SensorNonlinearity>());
+    if (bent == nullptr) return;
     Effect effect = *bent;
     effect.form = "bow";
     effect.numbers.resize(1);
@@ -191,46 +206,32 @@ class Collector {
   }
   /// At which temperature the gain is still what it was, nobody knows: beside the slope goes a gain.
   void add_thermal() {
-    effects_.push_back({"thermal_gain",
-                        "Thermal gain",
-                        model::Station::actuator,
-                        "thermal_gain",
-                        false,
-                        {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}, {"gain_change", "", 0.01, -0.9, 9}},
-                        {{0.01, 0}, {-0.01, 0}},
-                        {0, 0},
-                        [](Extension& e, const std::vector<double>& n) {
-                          e.gain_per_c += n[0];
-                          e.gain *= 1 + n[1];
-                        }});
+    Effect effect = form_of(cause_with<model::ThermalGain>(), causes::ThermalGain::id);
+    effect.numbers = {{"gain_per_c", "1/degC", 0.002, -0.2, 0.2}, gain_change};
+    effect.starts = {{0.01, 0}, {-0.01, 0}};
+    effect.nothing = {0, 0};
+    effect.apply = [](Extension& e, const std::vector<double>& n) {
+      e.gain_per_c += n[0];
+      e.gain *= 1 + n[1];
+    };
+    effects_.push_back(std::move(effect));
   }
-  void add_leak() {
+  void add_causes_of_the_air() {
     const double p = base_.largest_kpa;
-    effects_.push_back({"leak",
-                        "Leak",
-                        model::Station::valve,
-                        "leak",
-                        false,
-                        {{"loss_kpa_per_s", "kPa/s", 0.1, 0, p},
-                         {"recovery_s", "s", 2, 0.05, 200},
-                         {"way_kpa", "kPa", 1, 0.05, 10 * p}},
-                        {{0.1, 1, 2}, {0.1, 10, 2}, {0.5, 0.3, 10}, {0.1, 5, 100}, {0.1, 5, 10}},
-                        {0, nan, nan},
-                        [](Extension& e, const std::vector<double>& n) {
-                          e.loss = {n[0], n[1], n[2]};
-                        }});
-    effects_.push_back({"blocked_line",
-                        "Blocked line",
-                        model::Station::valve,
-                        "blocked_line",
-                        false,
-                        {{"filling_s", "s", 0.02, 0, 10}, {"venting_s", "s", 0.02, 0, 10}},
-                        {{0.02, 0.04}, {0.1, 0.2}},
-                        {0, 0},
-                        [](Extension& e, const std::vector<double>& n) {
-                          e.line = {n[0], n[1]};
-                        },
-                        "valve_lag"});
+    Effect lost = form_of(leak);
+    lost.numbers = {{"loss_kpa_per_s", "kPa/s", 0.1, 0, p},
+                    {"recovery_s", "s", 2, 0.05, 200},
+                    {"way_kpa", "kPa", 1, 0.05, 10 * p}};
+    lost.starts = {{0.1, 1, 2}, {0.1, 10, 2}, {0.5, 0.3, 10}, {0.1, 5, 100}, {0.1, 5, 10}};
+    lost.nothing = {0, nan, nan};
+    lost.apply = [](Extension& e, const std::vector<double>& n) { e.loss = {n[0], n[1], n[2]}; };
+    effects_.push_back(std::move(lost));
+    Effect slow = form_of(blocked_line);
+    slow.numbers = {{"filling_s", "s", 0.02, 0, 10}, {"venting_s", "s", 0.02, 0, 10}};
+    slow.starts = {{0.02, 0.04}, {0.1, 0.2}};
+    slow.nothing = {0, 0};
+    slow.apply = [](Extension& e, const std::vector<double>& n) { e.line = {n[0], n[1]}; };
+    effects_.push_back(std::move(slow));
   }
 
   const Base& base_;

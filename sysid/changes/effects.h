@@ -38,6 +38,8 @@ struct Effect {
   std::string twin = {};
   /// Of its numbers, how many only say where it is counted from.
   std::size_t slack_numbers = 0;
+  /// No mechanism is quite like it.
+  bool is_ideal = false;
   /// It shows where the drive turns or hastens, as the misses of any base do.
   bool where_bases_miss = false;
 };

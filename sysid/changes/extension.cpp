@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 namespace {
 
 bool does_nothing(const model::BlockSpec& block) {
-  const model::Descriptor& descriptor = model::catalogue()[block.type];
+  const model::BlockDescriptor& descriptor = model::catalogue()[block.type];
   for (std::size_t i = 0; i < block.values.size(); ++i) {
     if (block.values[i] != descriptor.spec(i).neutral) return false;
   }

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sysid/diagnosis/causes/health_sign.h"
+#include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid {
 
@@ -20,5 +20,7 @@ namespace softgrip::sysid {
 [[nodiscard]] std::vector<std::string_view> changes();
 /// How recorded grips show it.
 [[nodiscard]] HealthSigns signs_of(std::string_view cause_id);
+/// What somebody checks of it.
+[[nodiscard]] SizedBy sized_by(std::string_view cause_id);
 
 }  // namespace softgrip::sysid

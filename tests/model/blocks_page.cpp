@@ -60,7 +60,7 @@ void write_parameter(std::ostream& out, const ParameterSpec& spec) {
   out << " |\n";
 }
 
-void write_block(std::ostream& out, const Descriptor& descriptor) {
+void write_block(std::ostream& out, const BlockDescriptor& descriptor) {
   const BlockInfo& info = descriptor.info;
   out << "\n### `" << info.id << "`: " << info.title << "\n\n" << info.meaning << "\n\n";
   out << "    " << info.equation << "\n\n";
@@ -88,7 +88,7 @@ std::string page() {
          "This page is written by `model_blocks_page --write` from the declarations in `model/blocks/`.\n";
   Station station = Station::valve;
   bool first = true;
-  for (const Descriptor& descriptor : catalogue()) {
+  for (const BlockDescriptor& descriptor : catalogue()) {
     if (first || descriptor.info.station != station) {
       station = descriptor.info.station;
       out << "\n## Station `" << name_of(station) << "`\n";

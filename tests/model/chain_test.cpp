@@ -188,7 +188,7 @@ TEST(Chain, AnyAllowedNumbersGiveFiniteReadings) {
   for (int round = 0; round < 300; ++round) {
     Model model = everything(typical);
     for (BlockSpec& block : model.blocks) {
-      const Descriptor& descriptor = catalogue()[block.type];
+      const BlockDescriptor& descriptor = catalogue()[block.type];
       const std::vector<double> typical_values = block.values;
       for (std::size_t i = 0; i < block.values.size(); ++i) {
         const ParameterSpec& spec = descriptor.spec(i);

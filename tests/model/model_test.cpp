@@ -12,7 +12,7 @@ namespace {
 
 TEST(Catalogue, EveryDeclarationIsSound) {
   std::set<std::string_view> ids;
-  for (const Descriptor& descriptor : catalogue()) {
+  for (const BlockDescriptor& descriptor : catalogue()) {
     EXPECT_TRUE(ids.insert(descriptor.info.id).second) << descriptor.info.id;
     EXPECT_FALSE(descriptor.info.title.empty());
     EXPECT_EQ(descriptor.info.meaning.back(), '.') << descriptor.info.id;
@@ -55,7 +55,7 @@ std::string ending_of(const std::string& unit) {
 TEST(Catalogue, NamesEndWithTheirUnits) {
   EXPECT_EQ(ending_of("kPa s/mm"), "_kpa_s_per_mm");
   EXPECT_EQ(ending_of("1/degC"), "_per_c");
-  for (const Descriptor& descriptor : catalogue()) {
+  for (const BlockDescriptor& descriptor : catalogue()) {
     for (std::size_t i = 0; i < descriptor.parameters.size() + descriptor.repeated.size(); ++i) {
       const ParameterSpec& spec = descriptor.spec(i);
       EXPECT_TRUE(spec.name.ends_with(ending_of(std::string(spec.unit))))

@@ -50,10 +50,10 @@ TEST(Named, ModelsAreAskedByType) {
   EXPECT_FALSE(position_of<ValveLag>(without_block<ValveLag>(model)));
 }
 
-TEST(Descriptor, AValueThatNoBlockHasIsAnError) {
-  const Descriptor& lag = catalogue()[block_type<ValveLag>()];
+TEST(BlockDescriptor, AValueThatNoBlockHasIsAnError) {
+  const BlockDescriptor& lag = catalogue()[block_type<ValveLag>()];
   EXPECT_THROW((void)lag.spec(1), std::out_of_range);
-  const Descriptor& spring = catalogue()[block_type<KelvinVoigt>()];
+  const BlockDescriptor& spring = catalogue()[block_type<KelvinVoigt>()];
   EXPECT_EQ(spring.name(24), "c12_kpa_s_per_mm");
   EXPECT_THROW((void)spring.spec(25), std::out_of_range);
 }

@@ -10,8 +10,18 @@
 #include "control/elements/feedforward.h"
 #include "control/elements/limits.h"
 #include "control/feedforward/invertibility.h"
+#include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/chamber_lag.h"
+#include "model/blocks/characteristic.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/pressure_dependent_creep.h"
+#include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_lag.h"
 #include "model/catalogue.h"
 #include "model/file/model_file.h"
+#include "model/named.h"
 #include "tools/exporting/c_fragments.h"
 
 namespace softgrip::tools {
@@ -63,36 +73,39 @@ struct CBlock {
   std::string_view lead;  ///< of the pressure's way: the time constant for a rate; empty: it leads nothing
 };
 
+template <template <class> class Block>
+constexpr std::string_view block_id = Block<double>::info.id;
+
 const std::map<std::string_view, CBlock>& c_blocks() {
   static const CBlock two_way{c_text::two_way_lag, "double block_#;", "block_# = input",
                               "two_way_lag_step(&s->block_#, values_#[0], values_#[1], in, s, next)",
                               "(rate >= 0.0 ? values_#[0] : values_#[1])"};
   static const std::map<std::string_view, CBlock> blocks{
-      {"transport_delay",
+      {block_id<model::TransportDelay>,
        {c_text::transport_delay, "transport_delay block_#;",
         "transport_delay_reset(&s->block_#, values_#[0], input)",
         "transport_delay_step(&s->block_#, values_#[0], in, s, next)", ""}},
-      {"valve_lag",
+      {block_id<model::ValveLag>,
        {c_text::valve_lag, "double block_#;", "block_# = input",
         "valve_lag_step(&s->block_#, values_#[0], in, s, next)", "values_#[0]"}},
-      {"asymmetric_valve_lag", two_way},
-      {"chamber_lag", two_way},
-      {"bouc_wen",
+      {block_id<model::AsymmetricValveLag>, two_way},
+      {block_id<model::ChamberLag>, two_way},
+      {block_id<model::BoucWen>,
        {c_text::bouc_wen, "bouc_wen block_#;", "bouc_wen_reset(&b->block_#, values_#, input)",
         "bouc_wen_step(&b->block_#, values_#, in)", ""}},
-      {"prandtl_ishlinskii",
+      {block_id<model::PrandtlIshlinskii>,
        {c_text::prandtl_ishlinskii, "play block_#[PARTS_#];",
         "prandtl_ishlinskii_reset(b->block_#, values_#, PARTS_#, input)",
         "prandtl_ishlinskii_step(b->block_#, values_#, PARTS_#, in)", ""}},
-      {"kelvin_voigt",
+      {block_id<model::KelvinVoigt>,
        {c_text::kelvin_voigt, "double block_#[PARTS_# + 1];",
         "kelvin_voigt_reset(b->block_#, values_#, PARTS_#, input)",
         "kelvin_voigt_step(b->block_#, values_#, PARTS_#, in)", ""}},
-      {"pressure_dependent_creep",
+      {block_id<model::PressureDependentCreep>,
        {c_text::pressure_dependent_creep, "double block_#[PARTS_#];",
         "pressure_dependent_creep_reset(b->block_#, values_#, PARTS_#, input)",
         "pressure_dependent_creep_step(b->block_#, values_#, PARTS_#, in)", ""}},
-      {"characteristic",
+      {block_id<model::Characteristic>,
        {c_text::characteristic, "double block_#;", "b->block_# = characteristic_of(values_#, output)",
         "characteristic_step(&b->block_#, values_#, sum)", ""}},
   };
@@ -141,13 +154,6 @@ class Generator {
     return model::catalogue()[model_.blocks[i].type].info.id;
   }
   [[nodiscard]] const CBlock& block(std::size_t i) const { return c_blocks().at(id(i)); }
-  [[nodiscard]] bool has(std::initializer_list<std::string_view> ids) const {
-    for (std::size_t i = 0; i < model_.blocks.size(); ++i) {
-      if (std::find(ids.begin(), ids.end(), id(i)) != ids.end()) return true;
-    }
-    return false;
-  }
-
   void add_values() {
     for (std::size_t i = 0; i < model_.blocks.size(); ++i) {
       const std::vector<double>& values = model_.blocks[i].values;
@@ -156,26 +162,29 @@ class Generator {
       for (const double value : values) list += (list.empty() ? "" : ", ") + shortest(value);
       text_ +=
           "/* " + std::string(id(i)) + " */\nstatic const double values_" + number + "[] = {" + list + "};\n";
-      const std::size_t parts = id(i) == "kelvin_voigt" || id(i) == "prandtl_ishlinskii"
+      const model::BlockSpec& spec = model_.blocks[i];
+      const std::size_t parts = model::is<model::KelvinVoigt, model::PrandtlIshlinskii>(spec)
                                     ? (values.size() - 1) / 2
-                                : id(i) == "pressure_dependent_creep" ? values.size() / 3
-                                                                      : 0;
+                                : model::is<model::PressureDependentCreep>(spec) ? values.size() / 3
+                                                                                 : 0;
       if (parts > 0) text_ += "#define PARTS_" + number + " " + std::to_string(parts) + "\n";
     }
   }
 
   void add_fragments() {
     text_ += c_text::common;
-    if (has({"transport_delay", "asymmetric_valve_lag", "chamber_lag", "prandtl_ishlinskii"}))
-      text_ += cutting;
-    if (has({"transport_delay", "asymmetric_valve_lag", "chamber_lag"})) text_ += cutting_before;
-    if (has({"prandtl_ishlinskii"})) text_ += passing;
-    if (has({"bouc_wen", "characteristic"})) text_ += phi_one;
+    const bool is_cut_before =
+        model::has_any<model::TransportDelay, model::AsymmetricValveLag, model::ChamberLag>(model_);
+    const bool passes = model::has_any<model::PrandtlIshlinskii>(model_);
+    if (is_cut_before || passes) text_ += cutting;
+    if (is_cut_before) text_ += cutting_before;
+    if (passes) text_ += passing;
+    if (model::has_any<model::BoucWen, model::Characteristic>(model_)) text_ += phi_one;
     std::vector<const char*> added;
     for (std::size_t i = 0; i < model_.blocks.size(); ++i) {
       const std::string_view fragment = block(i).text;
       if (std::find(added.begin(), added.end(), fragment.data()) != added.end()) continue;
-      if (id(i) == "transport_delay")
+      if (model::is<model::TransportDelay>(model_.blocks[i]))
         text_ += "\n#define DELAY_PIECES " + std::to_string(delay_pieces()) + "\n";
       text_ += fragment;
       added.push_back(fragment.data());
@@ -186,7 +195,7 @@ class Generator {
   [[nodiscard]] std::size_t delay_pieces() const {
     std::size_t needed = 16;
     for (const std::size_t i : valve_) {
-      if (id(i) == "transport_delay")
+      if (model::is<model::TransportDelay>(model_.blocks[i]))
         needed = std::max(needed, 16 + static_cast<std::size_t>(4 * model_.blocks[i].values[0] / tick_s_));
     }
     std::size_t pieces = 64;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "sysid/diagnosis/causes/contact.h"
 #include "sysid/identification/start_points.h"
 #include "tools/investigation/experiment_check.h"
 
@@ -133,7 +134,9 @@ class Investigator {
   /// A contact that the campaign does not know yet. What the diagnosis holds possible is no surprise.
   [[nodiscard]] std::optional<std::string> contact_in(const sysid::Log& log) const {
     for (const sysid::NamedCause& named : result_.last.causes) {
-      const auto is_contact = [](const sysid::Cause& cause) { return cause.id == "contact"; };
+      const auto is_contact = [](const sysid::Cause& cause) {
+        return cause.id == sysid::causes::Contact::id;
+      };
       if (is_contact(named.cause) || std::any_of(named.rivals.begin(), named.rivals.end(), is_contact))
         return std::nullopt;
     }

@@ -17,7 +17,8 @@ struct Ageing {
       "the gain of the finger is another",
       {"Look at the finger for cracks and bulges, and count its cycles since the last one was fitted.",
        "Fit a new finger and record the same log: if the gain is back, it was the finger."},
-      {{{HealthNumber::gain, Moves::either_way}}}};
+      {{{HealthNumber::gain, Moves::either_way}}},
+      {SizedBy::Of::span, "gain at full pressure, on average", "%", {}, 100}};
 
   struct WithTime : FormOf<model::Ageing> {
     static Starts starts(const Scales& s) {

@@ -13,7 +13,8 @@ struct Backlash : FormOf<model::Backlash> {
       "there is play between finger and sensor",
       {"Move the sensor's target by hand and feel for play.",
        "Tighten the clamp of the sensor's target and record the same log again."},
-      {{{HealthNumber::loop_width, Moves::up}}}};
+      {{{HealthNumber::loop_width, Moves::up}}},
+      {SizedBy::Of::number, "play", "mm", "gap_mm"}};
 
   static Starts starts(const Scales& s) {
     return every({{"gap_mm", {0.01 * s.span_mm, 0.05 * s.span_mm, 0.15 * s.span_mm}}});

@@ -34,7 +34,7 @@ concept HasStarts = requires(const Scales& scales) {
 template <class F>
 std::vector<model::BlockSpec> starts_as_blocks(const Scales& scales) {
   const std::size_t type = model::block_type<typename F::BlockType>();
-  const model::Descriptor& descriptor = model::catalogue()[type];
+  const model::BlockDescriptor& descriptor = model::catalogue()[type];
   std::vector<model::BlockSpec> blocks;
   for (typename F::Values& values : F::starts(scales)) {
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -124,6 +124,7 @@ constexpr Cause cause() {
   if constexpr (requires { C::is_stop; }) cause.is_stop = C::is_stop;
   if constexpr (requires { C::is_own_law; }) cause.is_own_law = C::is_own_law;
   if constexpr (requires { C::parts_twins; }) cause.parts_twins = C::parts_twins;
+  if constexpr (requires { C::is_ideal; }) cause.is_ideal = C::is_ideal;
   if constexpr (requires { C::where_bases_miss; }) cause.where_bases_miss = C::where_bases_miss;
   if constexpr (requires { C::sensor_shape; }) cause.sensor_shape = C::sensor_shape;
   return cause;

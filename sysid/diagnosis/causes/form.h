@@ -17,10 +17,11 @@
 //                                                          law explains nearly as much
 //
 // A cause must say:
-//   static constexpr WhenChanged when_changed{words, {step, step}, {{{number, way}, ...}}};
+//   static constexpr WhenChanged when_changed{words, {step, step}, {{{number, way}, ...}}, size};
 //                                                          for who stands beside the rig that it has come
 //                                                          upon; the numbers of a recorded grip that it
-//                                                          moves (health_sign.h), which may be left out
+//                                                          moves (health_sign.h), and by what its size is
+//                                                          told (SizedBy), which may be left out
 //
 // A cause may say, besides:
 //   static constexpr Column needs = ...;                   a column without which nothing can be told
@@ -41,6 +42,8 @@
 //                                                          stands for it but for a rest
 //   static constexpr bool parts_twins = true;
 //       remembers, between actuator and sensor: twins before it and behind it differ
+//   static constexpr bool is_ideal = true;
+//       no mechanism is quite like it: of causes that chance alone sets apart as changes, the other is named
 //   static constexpr bool where_bases_miss = true;
 //       shows where the drive turns or hastens, as what any base misses does: as a change it must show more
 //   static constexpr std::string_view sensor_shape = "...";
@@ -70,12 +73,29 @@ enum class Advice : std::uint8_t {
   vary_temperature,    ///< the same, and that whatever the other cause is
 };
 
+/// What somebody checks of a change, and how it follows from what was fitted.
+struct SizedBy {
+  enum class Of : std::uint8_t {
+    full_pressure,  ///< what it does at the highest pressures
+    span,           ///< the same, as a share of all that the finger does
+    largest,        ///< the most it does, with its sign
+    amplitude,      ///< without
+    number,         ///< a number of the block as it is
+  };
+  Of of = Of::full_pressure;
+  std::string_view what = "at full pressure";
+  std::string_view unit{};    ///< empty: the reading's
+  std::string_view number{};  ///< by name; a form that has none of that name: full_pressure
+  double factor = 1;
+};
+
 /// For who stands beside a rig whose finger has got the cause since it was healthy. Empty: it is none that
 /// comes.
 struct WhenChanged {
   std::string_view words;                      ///< "the finger rings"
   std::array<std::string_view, 2> next_steps;  ///< what a person can do about it, the quicker first
   HealthSigns signs{};                         ///< how recorded grips show it; none: they do not
+  SizedBy size{};                              ///< what it is measured by
 };
 
 /// Between what a value may be.

@@ -10,7 +10,9 @@ struct PeriodicDisturbance : FormOf<model::PeriodicDisturbance> {
   static constexpr WhenChanged when_changed{
       "an oscillation that the command does not explain",
       {"Switch neighbouring machines and pumps off one by one and watch the reading.",
-       "Check the sensor's shielding and ground; record with the finger vented."}};
+       "Check the sensor's shielding and ground; record with the finger vented."},
+      {},
+      {SizedBy::Of::amplitude, "oscillation of", "mm"}};
   /// At what stands out of the residual's spectrum.
   static Starts starts(const Scales& s) {
     Starts starts;

@@ -19,7 +19,8 @@ struct SensorDrift {
       "the zero of the sensor wanders",
       {"Leave the finger vented for an hour and read the zero every ten minutes.",
        "Check the sensor's clamp and cable, and let it warm up before recording."},
-      {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}}};
+      {{{HealthNumber::zero, Moves::either_way}, {HealthNumber::contact, Moves::either_way}}},
+      {SizedBy::Of::largest, "the zero wanders by up to", "mm"}};
 
   /// One way.
   struct Steady : FormOf<model::SensorDrift> {

@@ -13,7 +13,8 @@ struct SensorLag : FormOf<model::SensorLag> {
       "the reading follows more slowly",
       {"Look at the filter setting of the sensor or its amplifier.",
        "Move the target by hand quickly and compare with a second sensor."},
-      {{{HealthNumber::lag, Moves::up}}}};
+      {{{HealthNumber::lag, Moves::up}}},
+      {SizedBy::Of::number, "lag of the sensor", "s", "time_constant_s"}};
 
   static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }
 };

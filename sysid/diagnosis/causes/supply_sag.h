@@ -12,7 +12,8 @@ struct SupplySag : FormOf<model::SupplySag> {
       "the pressure follows a falling supply",
       {"Read the supply gauge while the compressor refills.",
        "Move other users to another line, or set the supply regulator higher, and record again."},
-      {{{HealthNumber::pressure_loss, Moves::up}}}};
+      {{{HealthNumber::pressure_loss, Moves::up}}},
+      {SizedBy::Of::number, "of a loss of supply that reaches the finger", "%", "coupling", 100}};
   /// The nominal supply is only where the coupling is counted from.
   static constexpr std::array<Parameter, 1> fitted{"coupling"};
 

@@ -12,7 +12,8 @@ struct ThermalGain : FormOf<model::ThermalGain> {
   static constexpr WhenChanged when_changed{"the gain follows the temperature",
                                             {"Record again at another temperature of the room.",
                                              "Look for a heat source beside the finger or the sensor."},
-                                            {{{HealthNumber::gain, Moves::either_way}}}};
+                                            {{{HealthNumber::gain, Moves::either_way}}},
+                                            {SizedBy::Of::number, "gain per degree", "%", "gain_per_c", 100}};
 
   static Starts starts(const Scales&) { return every({{"gain_per_c", {-0.01, 0.01}}}); }
 };

@@ -8,11 +8,14 @@ namespace softgrip::sysid::causes {
 
 struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr std::array<std::string_view, 1> confounded_with{"valve_lag"};
+  /// Whatever comes later by so little comes more slowly, too.
+  static constexpr bool is_ideal = true;
   static constexpr WhenChanged when_changed{
       "the pressure begins later",
       {"Look whether the tube, a filter or the board's exchange rate was changed.",
        "Step the command with the finger's tube closed at the valve and time the pressure there."},
-      {{{HealthNumber::lag, Moves::up}}}};
+      {{{HealthNumber::lag, Moves::up}}},
+      {SizedBy::Of::number, "more dead time", "s", "delay_s"}};
   static Starts starts(const Scales&) { return every({{"delay_s", {0.02, 0.1, 0.25, 0.5}}}); }
 };
 

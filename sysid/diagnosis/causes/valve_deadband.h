@@ -15,7 +15,9 @@ struct ValveDeadband {
   static constexpr WhenChanged when_changed{
       "the valve ignores small changes",
       {"Command steps of 1 kPa up and down and see which of them the pressure answers.",
-       "Cycle the valve fifty times over its range, or clean it, and record the same log again."}};
+       "Cycle the valve fifty times over its range, or clean it, and record the same log again."},
+      {},
+      {SizedBy::Of::number, "band that the valve ignores", "kPa", "band_kpa"}};
 
   /// It is dragged along.
   struct Play : FormOf<model::ValveDeadband> {

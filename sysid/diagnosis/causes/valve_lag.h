@@ -12,7 +12,8 @@ struct ValveLag : FormOf<model::ValveLag> {
       "the pressure follows more slowly",
       {"Look for a kinked tube and a clogged filter or silencer; check the supply pressure while it moves.",
        "Step the command with the finger's tube closed at the valve: still slow there, it is the valve."},
-      {{{HealthNumber::lag, Moves::up}}}};
+      {{{HealthNumber::lag, Moves::up}}},
+      {SizedBy::Of::number, "more lag of the valve", "s", "time_constant_s"}};
   static Starts starts(const Scales&) { return every({{"time_constant_s", {0.02, 0.1, 0.3, 0.6}}}); }
 };
 

@@ -42,7 +42,7 @@ std::string without_unit(std::string name, std::string_view unit) {
 }
 
 std::vector<std::string> lines_of(const model::BlockSpec& block) {
-  const model::Descriptor& descriptor = model::catalogue()[block.type];
+  const model::BlockDescriptor& descriptor = model::catalogue()[block.type];
   std::vector<std::string> lines;
   const std::size_t shown = block.values.size() > values_shown ? values_shown - 1 : block.values.size();
   for (std::size_t i = 0; i < shown; ++i) {
@@ -91,7 +91,7 @@ Figure chain_figure(const model::Model& model, const model::Model& given) {
     const double height = 30 + line_px * static_cast<double>(lines);
     for (std::size_t i = first; i < last; ++i) {
       const model::BlockSpec& block = model.blocks[i];
-      const model::Descriptor& descriptor = model::catalogue()[block.type];
+      const model::BlockDescriptor& descriptor = model::catalogue()[block.type];
       const auto present = static_cast<std::size_t>(
           std::count_if(given.blocks.begin(), given.blocks.end(),
                         [&](const model::BlockSpec& other) { return other.type == block.type; }));

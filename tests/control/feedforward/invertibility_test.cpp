@@ -181,7 +181,7 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
                          block("fine", model::Station::load, implicit),
                          block("second", model::Station::actuator, bound)};
   EXPECT_EQ(not_undone(three), "`first`, `second`");
-  for (const model::Descriptor& known : model::catalogue()) EXPECT_EQ(not_undone({&known.info, 1}), "");
+  for (const model::BlockDescriptor& known : model::catalogue()) EXPECT_EQ(not_undone({&known.info, 1}), "");
 }
 
 TEST(Invertibility, WithoutCreepTheHysteresisAloneDecides) {

@@ -39,7 +39,7 @@ Model random_model(std::mt19937& generator) {
   Model model{"a \"quoted\" \\ name with # : everything, {and} [µm]", "source: - ?", {}};
   std::uniform_real_distribution<double> chance(0, 1);
   for (std::size_t type = 0; type < catalogue().size(); ++type) {
-    const Descriptor& descriptor = catalogue()[type];
+    const BlockDescriptor& descriptor = catalogue()[type];
     const bool needed = descriptor.info.id == "kelvin_voigt";
     if (!needed && chance(generator) < 0.5) continue;
     const int copies = descriptor.info.repeatable && chance(generator) < 0.5 ? 2 : 1;

@@ -107,6 +107,19 @@ TEST(FewestNumbersFirst, OfACauseAndItsLimitThePriceOfItsNumberDecides) {
   EXPECT_EQ(ranked[0].fit.fitted.effect.id, "stop");
 }
 
+TEST(FewestNumbersFirst, AnIdealGoesBehindWhatChanceAloneSetsApart) {
+  std::vector<ScoredEffect> ranked{scored("dead time", 10, 1), scored("lag", 9.8, 1)};
+  ranked[0].fit.fitted.effect.is_ideal = true;
+  ranked[0].worth_of_a_number = 0.1;
+  put_fewest_numbers_first(ranked);
+  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "lag");
+  std::vector<ScoredEffect> apart{scored("dead time", 10, 1), scored("lag", 9.6, 1)};
+  apart[0].fit.fitted.effect.is_ideal = true;
+  apart[0].worth_of_a_number = 0.1;
+  put_fewest_numbers_first(apart);
+  EXPECT_EQ(apart[0].fit.fitted.effect.id, "dead time");
+}
+
 TEST_F(ChangeSearch, WhatIsLeftAsItIsKnowsWhetherAnEffectHelps) {
   const LaterReadings later = readings({.delay_s = 0.06});
   std::vector<Effect> effects = effects_for(base_, later.records(), {}, true);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "model/catalogue.h"
 #include "sysid/diagnosis/causes/cause.h"
 
 namespace softgrip::sysid::next_steps_test {
@@ -20,6 +23,26 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
     EXPECT_FALSE(plain_words(id).empty()) << id;
   }
   EXPECT_TRUE(plain_words("no_cause").empty());
+}
+
+TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
+  std::size_t numbers = 0;
+  for (const Cause& cause : all_causes()) {
+    const SizedBy size = sized_by(cause.id);
+    if (size.of != SizedBy::Of::number) continue;
+    ++numbers;
+    EXPECT_FALSE(size.unit.empty()) << cause.id;
+    const bool known = std::any_of(cause.forms.begin(), cause.forms.end(), [&](const CauseForm& form) {
+      const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
+      for (std::size_t i = 0; i < descriptor.parameters.size(); ++i) {
+        if (descriptor.name(i) == size.number) return true;
+      }
+      return false;
+    });
+    EXPECT_TRUE(known) << cause.id << " has no " << size.number;
+  }
+  EXPECT_GE(numbers, 9U);
+  EXPECT_EQ(sized_by("blocked_line").number, "filling_s");
 }
 
 }  // namespace
