@@ -307,7 +307,7 @@ std::string without_c(const model::Model& model) {
   std::string names;
   for (const model::BlockSpec& spec : model.blocks) {
     const std::string_view id = model::catalogue()[spec.type].info.id;
-    const bool sharp = id == "bouc_wen" && spec.values.back() != 1;
+    const bool sharp = model::is<model::BoucWen>(spec) && spec.values.back() != 1;
     if (c_blocks().contains(id) && !sharp) continue;
     names += (names.empty() ? "" : ", ") + std::string(id) + (sharp ? " of an exponent above 1" : "");
   }

@@ -13,6 +13,8 @@ struct RateDependentHysteresis {
   static constexpr std::string_view title = "Rate-dependent hysteresis";
   static constexpr bool is_own_law = true;
   static constexpr bool where_bases_miss = true;
+  /// A loop that relaxes before the next sample is a lag.
+  static constexpr std::string_view contains = "sensor_lag";
   static constexpr WhenChanged when_changed{
       "fast motion costs more pressure than slow motion",
       {"Run the same stroke at three speeds and compare the loops.",
