@@ -5,13 +5,15 @@
 #include <algorithm>
 
 #include "model/catalogue.h"
+#include "sysid/changes/causes_of_the_air.h"
 #include "sysid/diagnosis/causes/cause.h"
 
 namespace softgrip::sysid::next_steps_test {
 namespace {
 
 TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
-  std::vector<std::string_view> ids{"leak", "blocked_line"};
+  std::vector<std::string_view> ids;
+  for (const CauseOfTheAir& cause : causes_of_the_air) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
     if (cause.id != "hysteresis_shape") ids.push_back(cause.id);  // of a base, not of a change
   }
@@ -42,7 +44,8 @@ TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
     EXPECT_TRUE(known) << cause.id << " has no " << size.number;
   }
   EXPECT_GE(numbers, 9U);
-  EXPECT_EQ(sized_by("blocked_line").number, "filling_s");
+  EXPECT_EQ(sized_by(blocked_line.id).number, "filling_s");
+  EXPECT_EQ(blocked_line.contains, "valve_lag");
 }
 
 }  // namespace
