@@ -194,7 +194,7 @@ std::vector<double> walked_with(const Driven& driven, const std::vector<model::B
   return plain_prediction(model, driven.walked);
 }
 
-/// Model and echo with the blocks of an extension. What stands behind the model hears the echo, too; the
+/// Model and echo with the blocks of an extension. What stands behind the model acts on the echo, too; the
 /// model is walked anew only where they reach into it or look at the way to a sample.
 std::vector<double> extended_prediction(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   std::vector<model::BlockSpec> within, behind;
@@ -256,17 +256,15 @@ std::vector<double> drive_of(const Base& base, const Record& record,
 }  // namespace
 
 Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve) {
-  Driven driven{record, record, base.model, {}, {}};
+  Driven driven{record, {}, base.model, {}, {}};
   if (base.regulator || !valve.empty()) {
     driven.record.drive_kpa = drive_of(base, record, valve);
     driven.record.held = false;
   }
   const bool is_walked_whole = base.drive == Drive::command && !base.regulator && !base.model.blocks.empty();
   const auto whole = is_walked_whole ? with_valve(base.model, valve) : std::nullopt;
-  if (whole)
-    driven.model = *whole;
-  else
-    driven.walked = driven.record;
+  if (whole) driven.model = *whole;
+  driven.walked = whole ? record : driven.record;
   driven.echo =
       weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa, base.echo_weights);
   driven.plain = plain_prediction(driven.model, driven.walked);

@@ -4,23 +4,11 @@
 #include <cmath>
 
 #include "model/blocks/transport_delay.h"
-#include "model/catalogue.h"
 #include "model/chain.h"
 #include "model/named.h"
 #include "sysid/fitting/trajectory_walk.h"
 
 namespace softgrip::sysid {
-namespace {
-
-bool does_nothing(const model::BlockSpec& block) {
-  const model::BlockDescriptor& descriptor = model::catalogue()[block.type];
-  for (std::size_t i = 0; i < block.values.size(); ++i) {
-    if (block.values[i] != descriptor.spec(i).neutral) return false;
-  }
-  return true;
-}
-
-}  // namespace
 
 std::vector<double> drive_behind(const std::vector<model::BlockSpec>& valve, const Record& record) {
   if (valve.empty()) return record.drive_kpa;
@@ -45,7 +33,7 @@ std::optional<model::Model> with_valve(model::Model model, const std::vector<mod
                                   [&](const model::BlockSpec& b) { return b.type == block.type; });
     if (own == model.blocks.end())
       model = model::with_block(std::move(model), block);
-    else if (does_nothing(*own))
+    else if (*own == model::neutral_block(own->type))
       own->values = block.values;
     else if (model::is<model::TransportDelay>(block))
       own->values[0] += block.values[0];
