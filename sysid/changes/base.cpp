@@ -56,14 +56,20 @@ double mean_temperature(const std::vector<Record>& records) {
   return count > 0 ? sum / count : 20;
 }
 
-std::vector<double> plain_prediction(const model::Model& model, const Record& record) {
-  if (model.blocks.empty()) return std::vector<double>(record.size(), 0.0);
+/// Of a pressure: what a regulator makes of the command, which drives the record; without one nothing.
+std::vector<double> without_model(const std::optional<Regulator>& regulator, const Record& driven) {
+  return regulator ? driven.drive_kpa : std::vector<double>(driven.size(), 0.0);
+}
+
+std::vector<double> plain_prediction(const model::Model& model, const std::optional<Regulator>& regulator,
+                                     const Record& record) {
+  if (model.blocks.empty()) return without_model(regulator, record);
   return predict(model, record, rest_starts(model, {record}).front());
 }
 
 std::vector<double> started_prediction(const Choice& choice, const std::vector<Record>& records,
                                        std::size_t r) {
-  if (choice.point.model.blocks.empty()) return std::vector<double>(records[r].size(), 0.0);
+  if (choice.point.model.blocks.empty()) return without_model(choice.regulator, records[r]);
   return predict(choice.point.model, records[r], choice.point.starts[r]);
 }
 
@@ -77,7 +83,9 @@ Binned left_by(const Choice& choice, const std::vector<Record>& records, double 
 
 std::vector<Choice> choices(const std::vector<Record>& records, const Base& base,
                             const BaseOptions& options) {
-  if (base.judged == Judged::pressure) return {{"filter bank", {}}};
+  if (base.judged == Judged::pressure)
+    return {{"filter bank", {}},
+            {"a regulator", {}, fit_regulator(records, base.largest_kpa, ReadBy::gauge)}};
   const bool command = base.drive == Drive::command;
   const BaseStructure play{.hysteresis = HysteresisForm::play, .delay = command, .hinged_creep = true};
   std::vector<std::function<Choice()>> makes{
@@ -191,7 +199,7 @@ void spread(Base& base) {
 std::vector<double> walked_with(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   model::Model model = driven.model;
   for (const model::BlockSpec& block : blocks) model = model::with_block(std::move(model), block);
-  return plain_prediction(model, driven.walked);
+  return plain_prediction(model, {}, driven.walked);
 }
 
 /// Model and echo with the blocks of an extension. What stands behind the model acts on the echo, too; the
@@ -240,14 +248,17 @@ std::vector<double> driven_prediction(const Base& base, const Driven& driven, co
 /// What the base's regulator, if it has one, makes of a command behind these blocks. A command that bends
 /// between the samples is followed there.
 std::vector<double> drive_of(const Base& base, const Record& record,
-                             const std::vector<model::BlockSpec>& valve) {
+                             const std::vector<model::BlockSpec>& valve, const RegulatorFault& fault) {
   if (!base.regulator) return drive_behind(valve, record);
-  if (valve.empty()) return regulated(*base.regulator, record, record.drive_kpa);
+  Regulator regulator = *base.regulator;
+  regulator.leak_per_s += fault.leak_per_s;
+  regulator.tube_per_s *= 1 - fault.blocked;
+  if (valve.empty()) return regulated(regulator, record, record.drive_kpa);
   constexpr std::size_t parts = 5;
   Record fine = finer_record(record, parts);
   fine.drive_kpa = drive_behind(valve, fine);
   fine.held = false;
-  fine.drive_kpa = regulated(*base.regulator, fine, fine.drive_kpa);
+  fine.drive_kpa = regulated(regulator, fine, fine.drive_kpa);
   std::vector<double> drive_kpa(record.size());
   for (std::size_t i = 0; i < drive_kpa.size(); ++i) drive_kpa[i] = fine.drive_kpa[i * parts];
   return drive_kpa;
@@ -255,10 +266,11 @@ std::vector<double> drive_of(const Base& base, const Record& record,
 
 }  // namespace
 
-Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve) {
+Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve,
+                 const RegulatorFault& fault) {
   Driven driven{record, {}, base.model, {}, {}};
   if (base.regulator || !valve.empty()) {
-    driven.record.drive_kpa = drive_of(base, record, valve);
+    driven.record.drive_kpa = drive_of(base, record, valve, fault);
     driven.record.held = false;
   }
   const bool is_walked_whole = base.drive == Drive::command && !base.regulator && !base.model.blocks.empty();
@@ -267,14 +279,15 @@ Driven driven_by(const Base& base, const Record& record, const std::vector<model
   driven.walked = whole ? record : driven.record;
   driven.echo =
       weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa, base.echo_weights);
-  driven.plain = plain_prediction(driven.model, driven.walked);
+  driven.plain = plain_prediction(driven.model, base.regulator, driven.walked);
   return driven;
 }
 
 std::vector<double> predict_base(const Base& base, const Record& record, const Extension& extension,
                                  const Driven* driven) {
-  if (driven != nullptr && extension.valve.empty()) return driven_prediction(base, *driven, extension);
-  return driven_prediction(base, driven_by(base, record, extension.valve), extension);
+  if (driven != nullptr && extension.valve.empty() && extension.fault == RegulatorFault{})
+    return driven_prediction(base, *driven, extension);
+  return driven_prediction(base, driven_by(base, record, extension.valve, extension.fault), extension);
 }
 
 Record thinned_for(const Base& base, const Record& record) {

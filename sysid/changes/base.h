@@ -34,7 +34,7 @@ struct Base {
   Judged judged = Judged::displacement;
   Drive drive = Drive::command;
   std::string description;  ///< of the model that was chosen
-  model::Model model;       ///< without blocks: the echo alone
+  model::Model model;       ///< without blocks: the regulator's pressure, or the echo alone
   EchoKind kind = EchoKind::finger;
   std::optional<Regulator> regulator;  ///< between the command and the model
   double largest_kpa = 0;
@@ -72,9 +72,10 @@ struct Driven {
   Eigen::VectorXd echo;
   std::vector<double> plain;
 };
-/// @param valve  what happens to the command before the base sees it.
+/// @param valve  what happens to the command before the base sees it. @param fault  of the base's regulator.
 [[nodiscard]] Driven driven_by(const Base& base, const Record& record,
-                               const std::vector<model::BlockSpec>& valve = {});
+                               const std::vector<model::BlockSpec>& valve = {},
+                               const RegulatorFault& fault = {});
 
 /// What the base, changed by `extension`, would read; without offset.
 /// @param driven  driven_by() of the record, where it is known already.

@@ -34,7 +34,7 @@ inline constexpr CauseOfTheAir leak{
      {{{HealthNumber::pressure_loss, Moves::up},
        {HealthNumber::leak, Moves::up},
        {HealthNumber::gain, Moves::down}}},
-     {SizedBy::Of::largest, "pressure lost while it holds", "kPa"}}};
+     {SizedBy::Of::number, "pressure lost in a second with the line shut", "kPa", "loss_kpa_per_s"}}};
 
 inline constexpr std::array causes_of_the_air{leak, blocked_line};
 

@@ -35,8 +35,9 @@ constexpr double beside_another = 0.02;
 /// Where a bend is the finger's or the sensor's, only its law would tell, which nobody knows so well: of
 /// twins of changed worlds (--first-seed 20261204) the lesser took 94 % at least.
 constexpr double twins_share = 0.9;
-/// How often a cause must win against another one, blocks drawn anew, to stand alone.
-constexpr double wins_alone = 0.95;
+/// How often, blocks drawn anew, a cause must take something to be a change, and win against another one to
+/// stand alone.
+constexpr double often = 0.95;
 
 using Failure = tl::unexpected<std::string>;
 
@@ -176,7 +177,7 @@ class Judge {
     found.push_back(scored.fit.fitted);
     // What takes the prediction farther from what was measured, and is there only once the readings are
     // whitened, is the shape of the base's own misses.
-    weighed.is_a_change = is_large(readings, weighed.added) && weighed.spread.lower > 0 &&
+    weighed.is_a_change = is_large(readings, weighed.added) && weighed.spread.share > often &&
                           readings.plain_rms(found) < without_it;
     return weighed;
   }
@@ -203,7 +204,7 @@ class Judge {
     if (other.fit.fitted.effect.id == effect.twin && other.gain > twins_share * best.gain) return true;
     const double dearer = price_of(other.fit.fitted.effect) - price_of(effect);
     const std::vector<double> sums = block_sums(readings, other.fit.white);
-    return resampled(sums, weighed.block_sums, options_.seed, dearer).share < wins_alone;
+    return resampled(sums, weighed.block_sums, options_.seed, dearer).share < often;
   }
 
   [[nodiscard]] ChangeCause cause_of(const LaterReadings& readings, const std::vector<ScoredEffect>& ranked,

@@ -47,7 +47,7 @@ ChangeSize size_of(const LaterReadings& readings, const FittedEffect& effect, do
   // Of another gain, what counts as no change is a part.
   if (const double* gain = number(effect, "gain_change"); gain != nullptr && effect.numbers.size() == 1)
     return {"gain", 100 * (*gain + readings.slack({effect}).gain), "%"};
-  const SizedBy size = sized_by(effect.effect.id);
+  const SizedBy size = effect.effect.size.value_or(sized_by(effect.effect.id));
   const auto sized = [&](double value) {
     return ChangeSize{std::string(size.what), size.factor * value, std::string(size.unit)};
   };

@@ -217,6 +217,7 @@ class Collector {
     effects_.push_back(std::move(effect));
   }
   void add_causes_of_the_air() {
+    if (base_.regulator) add_faults();
     const double p = base_.largest_kpa;
     Effect lost = form_of(leak);
     lost.numbers = {{"loss_kpa_per_s", "kPa/s", 0.1, 0, p},
@@ -232,6 +233,28 @@ class Collector {
     slow.nothing = {0, 0};
     slow.apply = [](Extension& e, const std::vector<double>& n) { e.line = {n[0], n[1]}; };
     effects_.push_back(std::move(slow));
+  }
+
+  /// What a regulator of known ways makes of them.
+  void add_faults() {
+    const double p = base_.largest_kpa, per_s = leaking_kpa_per_s(p);
+    Effect leaking = form_of(leak);
+    leaking.form = "leak_past_a_regulator";
+    leaking.numbers = {{"loss_kpa_per_s", "kPa/s", 0.1, 0, 20 * p}};
+    for (const double share : {0.003, 0.01, 0.03, 0.1, 0.3, 1.0}) leaking.starts.push_back({share * p});
+    leaking.nothing = {0};
+    leaking.apply = [per_s](Extension& e, const std::vector<double>& n) {
+      e.fault.leak_per_s += n[0] / per_s;
+    };
+    effects_.push_back(std::move(leaking));
+    Effect narrow = form_of(blocked_line);
+    narrow.form = "narrower_tube";
+    narrow.size = SizedBy{SizedBy::Of::number, "less air through the line", "%", "blocked", 100};
+    narrow.numbers = {{"blocked", "", 0.1, 0, 0.99}};
+    narrow.starts = {{0.05}, {0.3}};
+    narrow.nothing = {0};
+    narrow.apply = [](Extension& e, const std::vector<double>& n) { e.fault.blocked += n[0]; };
+    effects_.push_back(std::move(narrow));
   }
 
   const Base& base_;

@@ -2,12 +2,14 @@
 // What may have changed: every cause as a change of a frozen base, with few numbers.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "sysid/changes/base.h"
 #include "sysid/diagnosis/causes/cause.h"
+#include "sysid/diagnosis/causes/form.h"
 
 namespace softgrip::sysid {
 
@@ -42,6 +44,8 @@ struct Effect {
   bool is_ideal = false;
   /// It shows where the drive turns or hastens, as the misses of any base do.
   bool where_bases_miss = false;
+  /// What this form is measured by, where it is not what its cause is.
+  std::optional<SizedBy> size = {};
 };
 
 /// All effects that the reading of these later records can show.

@@ -39,8 +39,16 @@ struct Crescent {
   double exponent = 3;
 };
 
+/// Behind a regulator that answers for it: the ports open where they stood shut, the tube throttles more.
+struct RegulatorFault {
+  double leak_per_s = 0;  ///< as Regulator::leak_per_s
+  double blocked = 0;     ///< share of the tube's conductance that is gone, below 1
+  [[nodiscard]] bool operator==(const RegulatorFault&) const = default;
+};
+
 struct Extension {
   std::vector<model::BlockSpec> valve;  ///< what happens to the command, before the base sees it
+  RegulatorFault fault;                 ///< of a base with a regulator
   std::vector<model::BlockSpec> chain;  ///< blocks of the base's model, or behind what it says
   double gain = 1;                      ///< of the displacement
   double gain_per_c = 0;                ///< beside the temperature of the healthy logs

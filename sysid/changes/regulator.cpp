@@ -15,7 +15,7 @@ namespace {
 constexpr double atmosphere_kpa = 101.325;
 constexpr double longest_step_s = 0.002;
 constexpr double supply_unknown = 4;  ///< times the largest command
-constexpr Eigen::Index numbers = 6;
+constexpr Eigen::Index numbers = 8;
 constexpr int most_steps = 15;
 /// Of the logarithms: a difference for a derivative, the longest move of a step.
 constexpr double beside_by = 0.03, longest_move = 1.5;
@@ -50,43 +50,64 @@ class Walk {
   void step(double command_kpa, double supply_kpa, double step_s) {
     const Regulator& r = regulator_;
     seen_kpa_ = std::clamp(seen_kpa_, command_kpa - r.play_kpa, command_kpa + r.play_kpa);
-    const double valve_kpa = valve_kpa_ = before_the_tube(supply_kpa, step_s);
+    const double valve_kpa = before_the_tube(supply_kpa, step_s);
+    const double through = through_the_tube(valve_kpa, step_s);
+    spool_kpa_ = spool_with(valve_kpa, step_s);
+    valve_kpa_ = valve_kpa;
     const double error = seen_kpa_ + atmosphere_kpa - valve_kpa;
-    const bool stopped = std::abs(error + integral_kpa_) > r.full_kpa && (error + integral_kpa_) * error > 0;
+    const bool stopped =
+        std::abs(error + integral_kpa_) > r.dead_kpa + r.full_kpa && (error + integral_kpa_) * error > 0;
     if (!stopped) integral_kpa_ += r.integral_per_s * error * step_s;
-    finger_kpa_ += step_s * inflow(valve_kpa, supply_kpa);
+    const double lost = r.leak_per_s > 0 ? r.leak_per_s * flow(finger_kpa_, atmosphere_kpa) : 0;
+    finger_kpa_ += step_s * (through - lost);
   }
   [[nodiscard]] double gauge_kpa() const { return finger_kpa_ - atmosphere_kpa; }
 
  private:
-  /// What flows in through the ports [kPa/s of the finger].
-  [[nodiscard]] double inflow(double valve_kpa, double supply_kpa) const {
+  /// Where the spool stands at the end of a step, in the error that it answers [kPa].
+  [[nodiscard]] double spool_with(double valve_kpa, double step_s) const {
     const Regulator& r = regulator_;
-    const double wanted = seen_kpa_ + atmosphere_kpa - valve_kpa + integral_kpa_;
-    const double open = std::clamp((std::abs(wanted) - r.dead_kpa) / r.full_kpa, 0.0, 1.0);
-    if (open == 0) return 0;
-    return r.port_per_s * open *
-           (wanted > 0 ? flow(supply_kpa, valve_kpa) : -flow(valve_kpa, atmosphere_kpa));
+    const double most = r.dead_kpa + r.full_kpa;
+    const double wanted = std::clamp(seen_kpa_ + atmosphere_kpa - valve_kpa + integral_kpa_, -most, most);
+    return spool_kpa_ + (wanted - spool_kpa_) * step_s / (step_s + r.spool_lag_s);
   }
-  /// By how much that is more than the tube takes, which fills the finger meanwhile.
+  /// What flows in through the ports [kPa/s of the finger].
+  [[nodiscard]] double inflow(double spool_kpa, double valve_kpa, double supply_kpa) const {
+    const Regulator& r = regulator_;
+    const double open = std::min((std::abs(spool_kpa) - r.dead_kpa) / r.full_kpa, 1.0);
+    if (!(open > 0)) return 0;
+    return r.port_per_s * open *
+           (spool_kpa > 0 ? flow(supply_kpa, valve_kpa) : -flow(valve_kpa, atmosphere_kpa));
+  }
+  /// What flows on into the finger [kPa/s of it]: at most until both are the same, however wide the tube.
+  [[nodiscard]] double through_the_tube(double valve_kpa, double step_s) const {
+    const double above = valve_kpa - finger_kpa_;
+    if (above == 0) return 0;
+    const double flows = regulator_.tube_per_s * flow(valve_kpa, finger_kpa_);
+    return flows / (1 + step_s * flows / above);
+  }
+  /// By how much the ports let in more than the tube and the chamber take.
   [[nodiscard]] double surplus(double valve_kpa, double supply_kpa, double step_s) const {
-    const double in = inflow(valve_kpa, supply_kpa);
-    return in - regulator_.tube_per_s * flow(valve_kpa, finger_kpa_ + step_s * in);
+    const Regulator& r = regulator_;
+    return inflow(spool_with(valve_kpa, step_s), valve_kpa, supply_kpa) -
+           through_the_tube(valve_kpa, step_s) - r.chamber_share * (valve_kpa - valve_kpa_) / step_s;
   }
   /// Where the surplus, which falls with this pressure, is none: by false position (Illinois), from where it
   /// was last.
   [[nodiscard]] double before_the_tube(double supply_kpa, double step_s) const {
-    const double here = surplus(finger_kpa_, supply_kpa, step_s);
-    if (here == 0) return finger_kpa_;
-    double low = here > 0 ? finger_kpa_ : atmosphere_kpa, high = here > 0 ? supply_kpa : finger_kpa_;
-    if (!(low < high)) return finger_kpa_;
+    const double here = surplus(valve_kpa_, supply_kpa, step_s);
+    if (here == 0) return valve_kpa_;
+    double low = here > 0 ? valve_kpa_ : atmosphere_kpa, high = here > 0 ? supply_kpa : valve_kpa_;
+    if (!(low < high)) return valve_kpa_;
     double at_low = here > 0 ? here : surplus(low, supply_kpa, step_s);
     double at_high = here > 0 ? surplus(high, supply_kpa, step_s) : here;
     if (!(at_low > 0)) return low;
     if (!(at_high < 0)) return high;
     constexpr int most = 40;
     constexpr double next_to_none_kpa = 1e-4;
-    double between = std::clamp(valve_kpa_, low, high);
+    constexpr double beside_kpa = 0.01;
+    const double slope = (surplus(valve_kpa_ + beside_kpa, supply_kpa, step_s) - here) / beside_kpa;
+    double between = slope < 0 ? std::clamp(valve_kpa_ - here / slope, low, high) : 0.5 * (low + high);
     bool was_low = false, was_high = false;
     for (int i = 0; i < most; ++i) {
       const double value = surplus(between, supply_kpa, step_s);
@@ -109,7 +130,7 @@ class Walk {
 
   Regulator regulator_;
   double seen_kpa_, finger_kpa_, valve_kpa_;
-  double integral_kpa_ = 0;
+  double integral_kpa_ = 0, spool_kpa_ = 0;
 };
 
 /// The search's numbers are logarithms, 0 where it starts.
@@ -120,16 +141,20 @@ Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
           0.2 * largest_kpa * times(2),
           2 * times(3),
           5 * times(4),
-          10 * times(5)};
+          10 * times(5),
+          0.01 * times(6),
+          0.2 * times(7),
+          0};
 }
 
 /// The readings in bins, and what a finger behind a regulator could read.
 class Bank {
  public:
-  Bank(const std::vector<Record>& records, double largest_kpa) : largest_kpa_(largest_kpa) {
+  Bank(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)
+      : largest_kpa_(largest_kpa), read_by_(read_by) {
     for (const Record& record : records) {
-      constexpr double interval_s = 0.02;
-      bin_s_ = std::max(0.04, 2 * record.mean_interval_s());
+      const double interval_s = read_by == ReadBy::gauge ? 0.01 : 0.02;
+      bin_s_ = std::max(2 * interval_s, 2 * record.mean_interval_s());
       records_.push_back(thinned_to_centres(record, interval_s));
       readings_.push_back(binned(record, record.reading_mm, bin_s_));
       bins_ += readings_.back().size();
@@ -143,7 +168,7 @@ class Bank {
     Eigen::Index first = 0;
     for (std::size_t r = 0; r < records_.size(); ++r) {
       const Record driven = behind(regulator, records_[r]);
-      const Eigen::MatrixXd echo = echo_columns(driven, driven.drive_kpa, EchoKind::finger, largest_kpa_);
+      const Eigen::MatrixXd echo = seen(driven);
       if (r == 0)
         columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(bins_),
                                         echo.cols() + static_cast<Eigen::Index>(records_.size()));
@@ -173,7 +198,15 @@ class Bank {
   }
 
  private:
+  [[nodiscard]] Eigen::MatrixXd seen(const Record& driven) const {
+    if (read_by_ == ReadBy::finger)
+      return echo_columns(driven, driven.drive_kpa, EchoKind::finger, largest_kpa_);
+    return Eigen::Map<const Eigen::VectorXd>(driven.drive_kpa.data(),
+                                             static_cast<Eigen::Index>(driven.drive_kpa.size()));
+  }
+
   double largest_kpa_;
+  ReadBy read_by_;
   double bin_s_ = 0.04;
   std::vector<Record> records_;
   Binned readings_;
@@ -181,6 +214,10 @@ class Bank {
 };
 
 }  // namespace
+
+double leaking_kpa_per_s(double gauge_kpa) {
+  return flow(gauge_kpa + atmosphere_kpa, atmosphere_kpa);
+}
 
 std::vector<double> regulated(const Regulator& regulator, const Record& record,
                               const std::vector<double>& command_kpa) {
@@ -207,8 +244,8 @@ Record behind(const Regulator& regulator, const Record& record) {
   return driven;
 }
 
-Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa) {
-  const Bank bank(records, largest_kpa);
+Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa, ReadBy read_by) {
+  const Bank bank(records, largest_kpa, read_by);
   Eigen::VectorXd at = Eigen::VectorXd::Zero(numbers);
   const double price = std::sqrt(prior_share) * bank.left_by(regulator_at(at, largest_kpa)).norm();
   const auto left_at = [&](const Eigen::VectorXd& t) {

@@ -8,9 +8,9 @@
 
 namespace softgrip::sysid {
 
-/// A controller with a play and an integral moves a spool that overlaps its ports; air flows through port and
-/// tube into the finger's volume by ISO 6358-1 (choked, subsonic, linear next to no difference), at one
-/// temperature. The air before the tube is so little that its pressure is where both flows are the same.
+/// A controller with a play and an integral moves a spool, which lags and overlaps its ports; air flows
+/// through the port into a chamber and through the tube into the finger's volume by ISO 6358-1 (choked,
+/// subsonic, linear next to no difference), at one temperature.
 struct Regulator {
   double play_kpa = 0.15;     ///< half the width of what the controller does not see
   double dead_kpa = 0.5;      ///< error from which on a port opens
@@ -18,7 +18,13 @@ struct Regulator {
   double integral_per_s = 2;  ///< of the error
   double port_per_s = 5;      ///< choked, fully open: by what share of the pressure before it a second fills
   double tube_per_s = 10;     ///< likewise
+  double spool_lag_s = 0.01;
+  double chamber_share = 0.2;  ///< of the finger's volume: the valve's before the tube
+  double leak_per_s = 0;       ///< likewise, from the finger into the open
 };
+
+/// What a leak of 1 per second lets out of a finger [kPa/s of its own pressure], while nothing flows in.
+[[nodiscard]] double leaking_kpa_per_s(double gauge_kpa);
 
 /// The pressure at the finger [kPa], sample by sample; it begins settled.
 /// @param command_kpa  as long as the record. A supply that is not recorded counts as four times the largest
@@ -29,9 +35,15 @@ struct Regulator {
 /// The record as the finger sees it.
 [[nodiscard]] Record behind(const Regulator& regulator, const Record& record);
 
-/// The regulator behind which a bank of plays and lags leaves least of the readings, all its weights fitted
-/// anew for every one.
+/// What reads a regulator's pressure.
+enum class ReadBy {
+  gauge,   ///< the pressure itself, but for its gain and zero
+  finger,  ///< what a bank of plays and lags makes of it, all its weights fitted anew for every regulator
+};
+
+/// The regulator behind which least is left of the readings.
 /// @param records  driven by the command.
-[[nodiscard]] Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa);
+[[nodiscard]] Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa,
+                                      ReadBy read_by = ReadBy::finger);
 
 }  // namespace softgrip::sysid

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "sysid/changes/change_json.h"
 #include "sysid/changes/change_page.h"
@@ -133,6 +135,44 @@ TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
   EXPECT_EQ(d.causes[0].id, "leak");
   EXPECT_EQ(d.causes[0].judged, Judged::pressure);
   EXPECT_EQ(d.causes.size(), 1U);
+}
+
+/// Logs whose pressure a regulator makes by rules of its own: what its error and that error's integral ask
+/// for, beyond a dead zone, fills a volume, and a leak empties it.
+std::vector<Log> behind_a_regulator(std::vector<Log> logs, double leak_per_s) {
+  std::mt19937 random(static_cast<unsigned>(1000 * leak_per_s) + 3);
+  std::normal_distribution<double> noise(0, 0.03);
+  for (Log& log : logs) {
+    double p = 0, integral = 0, play = 0;
+    for (std::size_t i = 0; i < log.size(); ++i) {
+      constexpr int parts = 50;
+      for (int k = 0; k < parts; ++k) {
+        constexpr double dt = 0.02 / parts;
+        const double way = (k + 0.5) / parts, before = log.pressure_command_kpa[i > 0 ? i - 1 : 0];
+        const double error = before + way * (log.pressure_command_kpa[i] - before) - p;
+        const double asked = error + integral;
+        integral += 3 * error * dt;
+        const double beyond = std::abs(asked) > 0.8 ? asked - std::copysign(0.8, asked) : 0;
+        p += dt * (25 * beyond - leak_per_s * p);
+      }
+      play = std::clamp(play, p - 3, p + 3);
+      log.pressure_kpa[i] = p + noise(random);
+      log.displacement_mm[i] = 0.2 * (0.7 * p + 0.3 * play) + noise(random);
+    }
+  }
+  return logs;
+}
+
+TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
+  const std::vector<Log> healthy = behind_a_regulator(logs_of({}, 1, true), 0);
+  const auto d = diagnose_change(healthy, behind_a_regulator(logs_of({}, 5, true), 0.2));
+  ASSERT_TRUE(d) << d.error();
+  ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
+  EXPECT_EQ(d->causes[0].id, "leak");
+  EXPECT_EQ(d->causes[0].fitted.effect.form, "leak_past_a_regulator");
+  EXPECT_EQ(d->causes.size(), 1U) << change_sentence(*d);
+  // 0.2 a second of the 58 kPa that it goes to.
+  EXPECT_NEAR(d->causes[0].size.value, 0.2 * 58, 3);
 }
 
 TEST(Change, ALaterStartOfThePressureIsADelayInSeconds) {
