@@ -92,26 +92,38 @@ class Walk {
     return inflow(spool_with(valve_kpa, step_s), valve_kpa, supply_kpa) -
            through_the_tube(valve_kpa, step_s) - r.chamber_share * (valve_kpa - valve_kpa_) / step_s;
   }
-  /// Where the surplus, which falls with this pressure, is none: by false position (Illinois), from where it
-  /// was last.
+  /// Where the surplus, which falls with this pressure, is none: by secants from where it was last, which
+  /// nearly always meet it at once, or by false position.
   [[nodiscard]] double before_the_tube(double supply_kpa, double step_s) const {
-    const double here = surplus(valve_kpa_, supply_kpa, step_s);
-    if (here == 0) return valve_kpa_;
-    double low = here > 0 ? valve_kpa_ : atmosphere_kpa, high = here > 0 ? supply_kpa : valve_kpa_;
-    if (!(low < high)) return valve_kpa_;
-    double at_low = here > 0 ? here : surplus(low, supply_kpa, step_s);
-    double at_high = here > 0 ? surplus(high, supply_kpa, step_s) : here;
+    constexpr int most_secants = 6;
+    constexpr double beside_kpa = 0.01, near_kpa = 1e-4;
+    double last_kpa = valve_kpa_, last = surplus(last_kpa, supply_kpa, step_s);
+    if (last == 0) return last_kpa;
+    double next_kpa = last_kpa + std::copysign(beside_kpa, last);
+    for (int i = 0; i < most_secants; ++i) {
+      const double next = surplus(next_kpa, supply_kpa, step_s);
+      const double slope = (next - last) / (next_kpa - last_kpa);
+      if (!(slope < 0)) break;
+      last_kpa = next_kpa;
+      last = next;
+      next_kpa = std::clamp(next_kpa - next / slope, atmosphere_kpa, supply_kpa);
+      if (std::abs(next_kpa - last_kpa) < near_kpa) return next_kpa;
+    }
+    return by_false_position(supply_kpa, step_s);
+  }
+  /// (Illinois.)
+  [[nodiscard]] double by_false_position(double supply_kpa, double step_s) const {
+    constexpr int most = 40;
+    constexpr double near_kpa = 1e-4;
+    double low = atmosphere_kpa, high = supply_kpa;
+    double at_low = surplus(low, supply_kpa, step_s), at_high = surplus(high, supply_kpa, step_s);
     if (!(at_low > 0)) return low;
     if (!(at_high < 0)) return high;
-    constexpr int most = 40;
-    constexpr double next_to_none_kpa = 1e-4;
-    constexpr double beside_kpa = 0.01;
-    const double slope = (surplus(valve_kpa_ + beside_kpa, supply_kpa, step_s) - here) / beside_kpa;
-    double between = slope < 0 ? std::clamp(valve_kpa_ - here / slope, low, high) : 0.5 * (low + high);
     bool was_low = false, was_high = false;
-    for (int i = 0; i < most; ++i) {
+    double between = valve_kpa_;
+    for (int i = 0; i < most && high - low > near_kpa; ++i) {
       const double value = surplus(between, supply_kpa, step_s);
-      if (std::abs(value) < next_to_none_kpa * regulator_.tube_per_s) break;
+      if (value == 0) break;
       if (value > 0) {
         low = between;
         at_low = value;

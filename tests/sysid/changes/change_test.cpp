@@ -10,6 +10,7 @@
 #include "sysid/changes/change_json.h"
 #include "sysid/changes/change_page.h"
 #include "sysid/changes/next_steps.h"
+#include "sysid/changes/regulator.h"
 #include "tests/sysid/changes/finger.h"
 
 namespace softgrip::sysid::change_test {
@@ -138,22 +139,25 @@ TEST(Change, ALeakIsSeenInThePressureAndNotInTheFinger) {
 }
 
 /// Logs whose pressure a regulator makes by rules of its own: what its error and that error's integral ask
-/// for, beyond a dead zone, fills a volume, and a leak empties it.
-std::vector<Log> behind_a_regulator(std::vector<Log> logs, double leak_per_s) {
-  std::mt19937 random(static_cast<unsigned>(1000 * leak_per_s) + 3);
+/// for, beyond a dead zone, fills a chamber, which empties through a narrow tube into the finger; and a leak
+/// empties that.
+std::vector<Log> behind_a_regulator(std::vector<Log> logs, double tube_per_s, double leak_per_s) {
+  std::mt19937 random(static_cast<unsigned>(1000 * leak_per_s + tube_per_s));
   std::normal_distribution<double> noise(0, 0.03);
   for (Log& log : logs) {
-    double p = 0, integral = 0, play = 0;
+    double chamber = 0, p = 0, integral = 0, play = 0;
     for (std::size_t i = 0; i < log.size(); ++i) {
       constexpr int parts = 50;
       for (int k = 0; k < parts; ++k) {
         constexpr double dt = 0.02 / parts;
         const double way = (k + 0.5) / parts, before = log.pressure_command_kpa[i > 0 ? i - 1 : 0];
-        const double error = before + way * (log.pressure_command_kpa[i] - before) - p;
-        const double asked = error + integral;
+        const double error = before + way * (log.pressure_command_kpa[i] - before) - chamber;
+        const double asked = error + integral, above = chamber - p;
+        const double through = tube_per_s * above / std::sqrt(std::abs(above) + 0.05);
         integral += 3 * error * dt;
         const double beyond = std::abs(asked) > 0.8 ? asked - std::copysign(0.8, asked) : 0;
-        p += dt * (25 * beyond - leak_per_s * p);
+        chamber += dt * (25 * beyond - through) / 0.2;
+        p += dt * (through - leak_per_s * p);
       }
       play = std::clamp(play, p - 3, p + 3);
       log.pressure_kpa[i] = p + noise(random);
@@ -163,16 +167,59 @@ std::vector<Log> behind_a_regulator(std::vector<Log> logs, double leak_per_s) {
   return logs;
 }
 
+ChangeDiagnosis changed_behind_a_regulator(double tube_per_s, double leak_per_s) {
+  const auto d = diagnose_change(behind_a_regulator(logs_of({}, 1, true), 40, 0),
+                                 behind_a_regulator(logs_of({}, 5, true), tube_per_s, leak_per_s));
+  EXPECT_TRUE(d) << d.error();
+  return *d;
+}
+
 TEST(Change, ALeakThatARegulatorMakesUpForIsSeenWhereItsPortsOpen) {
-  const std::vector<Log> healthy = behind_a_regulator(logs_of({}, 1, true), 0);
-  const auto d = diagnose_change(healthy, behind_a_regulator(logs_of({}, 5, true), 0.2));
+  const ChangeDiagnosis d = changed_behind_a_regulator(40, 0.2);
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "leak");
+  EXPECT_EQ(d.causes[0].fitted.effect.form, "leak_past_a_regulator");
+  EXPECT_EQ(d.causes.size(), 1U) << change_sentence(d);
+  // 0.2 a second of the 58 kPa that it goes to.
+  EXPECT_NEAR(d.causes[0].size.value, 0.2 * 58, 3);
+}
+
+TEST(Change, ATubeThatThrottlesMoreBehindARegulatorIsABlockedLine) {
+  const ChangeDiagnosis d = changed_behind_a_regulator(24, 0);
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "blocked_line");
+}
+
+/// Logs whose pressure a regulator of the program's own law makes.
+std::vector<Log> regulated_logs(unsigned first_seed, double tube_per_s) {
+  std::mt19937 random(first_seed);
+  std::normal_distribution<double> noise(0, 0.03);
+  std::vector<Log> logs = logs_of({}, first_seed, true);
+  for (Log& log : logs) {
+    const Record record = make_records({log}, {}).front();
+    const Regulator regulator{.full_kpa = 15, .port_per_s = 3, .tube_per_s = tube_per_s};
+    log.pressure_kpa = regulated(regulator, record, record.drive_kpa);
+    for (std::size_t i = 0; i < log.size(); ++i) {
+      log.displacement_mm[i] = 0.2 * log.pressure_kpa[i] + noise(random);
+      log.pressure_kpa[i] += noise(random);
+    }
+  }
+  return logs;
+}
+
+TEST(Change, ABlockedLineBehindARegulatorThatIsKnownIsSizedInPercent) {
+  const auto d = diagnose_change(regulated_logs(1, 5), regulated_logs(5, 3));
   ASSERT_TRUE(d) << d.error();
   ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
-  EXPECT_EQ(d->causes[0].id, "leak");
-  EXPECT_EQ(d->causes[0].fitted.effect.form, "leak_past_a_regulator");
-  EXPECT_EQ(d->causes.size(), 1U) << change_sentence(*d);
-  // 0.2 a second of the 58 kPa that it goes to.
-  EXPECT_NEAR(d->causes[0].size.value, 0.2 * 58, 3);
+  EXPECT_EQ(d->causes[0].fitted.effect.form, "narrower_tube");
+  EXPECT_EQ(d->causes[0].size.unit, "%");
+  EXPECT_NEAR(d->causes[0].size.value, 40, 8);
+}
+
+TEST(Change, ARegulatorThatIsAsItWasIsUnchanged) {
+  const ChangeDiagnosis d = changed_behind_a_regulator(40, 0);
+  EXPECT_EQ(d.verdict, ChangeVerdict::unchanged) << change_sentence(d);
+  EXPECT_EQ(d.readings.front().base, "a regulator");
 }
 
 TEST(Change, ALaterStartOfThePressureIsADelayInSeconds) {
