@@ -62,8 +62,9 @@ void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked) {
     const std::string& id = ranked[i].fit.fitted.effect.id;
     const bool contained = id == first.effect.contains &&
                            beyond_chance(ranked[i]) >= (1 - contained_share) * beyond_chance(ranked.front());
-    // Where a base is wrong, a cause is as wrong as its limit: the price of its number decides.
-    const bool as_much = id != first.effect.limit && takes_as_much(ranked[i], ranked.front());
+    // Where a base is wrong, a cause is as wrong as its limit or its twin: the price of its number decides.
+    const bool by_price = id == first.effect.limit || id == first.effect.twin;
+    const bool as_much = !by_price && takes_as_much(ranked[i], ranked.front());
     if ((contained || as_much) && numbers_of(ranked[i]) < numbers_of(ranked[fewest])) fewest = i;
   }
   if (ranked[fewest].fit.fitted.effect.is_ideal) fewest = real_beside(ranked, fewest);

@@ -37,7 +37,7 @@ using Chance = std::map<std::string, double>;
 
 /// Of those that take as much as the first, the one with the fewest numbers goes before it: those that shape
 /// it are counted before those that only say where it is counted from. A line that fills and empties alike is
-/// a lag of the valve, however much they take.
+/// a lag of the valve, however much they take. A cause's limit and its twin take more, or go behind it.
 void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked);
 
 /// Of every row of the readings, which block of some seconds it is in, from 0.

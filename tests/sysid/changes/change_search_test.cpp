@@ -97,14 +97,16 @@ TEST(FewestNumbersFirst, WhatIsContainedMayTakeALittleLess) {
   EXPECT_EQ(apart[0].fit.fitted.effect.id, "line");
 }
 
-TEST(FewestNumbersFirst, OfACauseAndItsLimitThePriceOfItsNumberDecides) {
-  std::vector<ScoredEffect> ranked{scored("contact", 10.01, 2), scored("stop", 10, 1)};
-  ranked[0].fit.fitted.effect.limit = "stop";
-  put_fewest_numbers_first(ranked);
-  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "contact");
-  ranked[0].fit.fitted.effect.limit.clear();
-  put_fewest_numbers_first(ranked);
-  EXPECT_EQ(ranked[0].fit.fitted.effect.id, "stop");
+TEST(FewestNumbersFirst, OfACauseAndItsLimitOrItsTwinThePriceOfItsNumberDecides) {
+  for (std::string Effect::*const to : {&Effect::limit, &Effect::twin}) {
+    std::vector<ScoredEffect> ranked{scored("contact", 10.01, 2), scored("stop", 10, 1)};
+    ranked[0].fit.fitted.effect.*to = "stop";
+    put_fewest_numbers_first(ranked);
+    EXPECT_EQ(ranked[0].fit.fitted.effect.id, "contact");
+    (ranked[0].fit.fitted.effect.*to).clear();
+    put_fewest_numbers_first(ranked);
+    EXPECT_EQ(ranked[0].fit.fitted.effect.id, "stop");
+  }
 }
 
 TEST(FewestNumbersFirst, AnIdealGoesBehindWhatChanceAloneSetsApart) {
