@@ -142,6 +142,14 @@ std::vector<AlikeDriven> alike_driven(const std::vector<Choice>& all, const std:
   return groups;
 }
 
+/// What a choice may leave of what the best so far does. Filters say exactly what a dead time below a sample
+/// does, a regulator does not: of a pressure that follows its command at once it is none.
+double most_left_by(const Choice& choice, const Base& best) {
+  constexpr double of_filters = 0.8;
+  const bool beside_filters = best.judged == Judged::pressure && choice.regulator;
+  return (beside_filters ? of_filters : 1) * best.left_mm;
+}
+
 /// The choice that leaves least with an echo beside it, the first of those that leave as little.
 void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
@@ -159,7 +167,7 @@ void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record
   for (std::size_t c = 0; c < all.size(); ++c) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       FittedEcho& echo = fits[c][k];
-      if (!(echo.left_mm < base.left_mm)) continue;
+      if (!(echo.left_mm < most_left_by(all[c], base))) continue;
       base.model = all[c].point.model;
       base.regulator = all[c].regulator;
       base.description = all[c].description;
