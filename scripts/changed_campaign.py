@@ -102,7 +102,9 @@ def changing_text():
         "has another zero and another temperature. `first`: the true cause is named first; `twin`: stiffening and a bent",
         "scale for each other; `listed`: named after another or among the rivals; `unnamed`: something changed, nothing is",
         "named; `missed`: called unchanged; `wrong`: only something else is named. Intervals are those of numbers that mean",
-        "the same in the world and in the answer, of true changes that are named first."]
+        "the same in the world and in the answer, of true changes that are named first. The textbook family's valve is by",
+        "the standard that the base's regulator is by (ISO 6358, a controller with an integral): what that is worth for",
+        "a valve by another law, these worlds do not show."]
 
 
 def main():
