@@ -92,7 +92,7 @@ softgrip_room(sysid/diagnosis/verdict
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
 softgrip_room(sysid/changes
   USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
-  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json APART change_search.cpp echo.cpp regulator.cpp)
+  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json APART change_search.cpp echo.cpp regulator_fit.cpp)
 softgrip_room(sysid/diagnosis/experiments
   USES base sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes sysid/diagnosis/search
        sysid/diagnosis/gauge sysid/diagnosis/verdict)

@@ -10,6 +10,7 @@
 #include "model/catalogue.h"
 #include "sysid/changes/downstream.h"
 #include "sysid/changes/echo_fit.h"
+#include "sysid/changes/regulator_fit.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/centred_record.h"
 #include "sysid/logs/finer_record.h"

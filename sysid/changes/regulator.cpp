@@ -3,27 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
-#include "sysid/changes/bins.h"
-#include "sysid/changes/echo.h"
-#include "sysid/logs/centred_record.h"
-
 namespace softgrip::sysid {
 namespace {
 
 constexpr double atmosphere_kpa = 101.325;
 constexpr double longest_step_s = 0.002;
 constexpr double supply_unknown = 4;  ///< times the largest command
-constexpr Eigen::Index numbers = 8;
-constexpr int most_steps = 15;
-/// Of the logarithms: a difference for a derivative, the longest move of a step.
-constexpr double beside_by = 0.03, longest_move = 1.5;
-constexpr double least_progress = 0.003;
-/// What a number costs that is e times what is usual, of the squares that are left there: the bank's own lags
-/// can stand for a wide tube, and what the readings do not tell stays where it is.
-constexpr double prior_share = 0.003;
-
 /// ISO 6358-1 with a critical ratio of 0.3, of absolute pressures; per conductance [kPa].
 double flow(double from_kpa, double to_kpa) {
   if (from_kpa < to_kpa) return -flow(to_kpa, from_kpa);
@@ -145,86 +130,6 @@ class Walk {
   double integral_kpa_ = 0, spool_kpa_ = 0;
 };
 
-/// The search's numbers are logarithms, 0 where it starts.
-Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
-  const auto times = [&](Eigen::Index i) { return std::exp(std::clamp(t(i), -6.0, 6.0)); };
-  return {0.002 * largest_kpa * times(0),
-          0.01 * largest_kpa * times(1),
-          0.2 * largest_kpa * times(2),
-          2 * times(3),
-          5 * times(4),
-          10 * times(5),
-          0.01 * times(6),
-          0.2 * times(7),
-          0};
-}
-
-/// The readings in bins, and what a finger behind a regulator could read.
-class Bank {
- public:
-  Bank(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)
-      : largest_kpa_(largest_kpa), read_by_(read_by) {
-    for (const Record& record : records) {
-      const double interval_s = read_by == ReadBy::gauge ? 0.01 : 0.02;
-      bin_s_ = std::max(2 * interval_s, 2 * record.mean_interval_s());
-      records_.push_back(thinned_to_centres(record, interval_s));
-      readings_.push_back(binned(record, record.reading_mm, bin_s_));
-      bins_ += readings_.back().size();
-    }
-  }
-  [[nodiscard]] std::size_t size() const { return bins_; }
-
-  [[nodiscard]] Eigen::VectorXd left_by(const Regulator& regulator) const {
-    Eigen::MatrixXd columns;
-    Eigen::VectorXd target = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(bins_));
-    Eigen::Index first = 0;
-    for (std::size_t r = 0; r < records_.size(); ++r) {
-      const Record driven = behind(regulator, records_[r]);
-      const Eigen::MatrixXd echo = seen(driven);
-      if (r == 0)
-        columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(bins_),
-                                        echo.cols() + static_cast<Eigen::Index>(records_.size()));
-      const auto own = static_cast<Eigen::Index>(readings_[r].size());
-      for (Eigen::Index c = 0; c < echo.cols(); ++c) {
-        const std::vector<double> series =
-            with_bins(binned(driven, {echo.col(c).begin(), echo.col(c).end()}, bin_s_), readings_[r].size());
-        for (Eigen::Index b = 0; b < own; ++b) columns(first + b, c) = series[static_cast<std::size_t>(b)];
-      }
-      for (Eigen::Index b = 0; b < own; ++b) {
-        const double reading = readings_[r][static_cast<std::size_t>(b)];
-        columns(first + b, echo.cols() + static_cast<Eigen::Index>(r)) = largest_kpa_;
-        if (std::isfinite(reading) && columns.row(first + b).allFinite())
-          target(first + b) = reading;
-        else
-          columns.row(first + b).setZero();
-      }
-      first += own;
-    }
-    constexpr double ridge = 1e-6;
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-    gram.diagonal().array() += ridge * static_cast<double>(bins_) * largest_kpa_ * largest_kpa_;
-    const Eigen::VectorXd weights =
-        gram.selfadjointView<Eigen::Lower>().ldlt().solve(columns.transpose() * target);
-    return target - columns * weights;
-  }
-
- private:
-  [[nodiscard]] Eigen::MatrixXd seen(const Record& driven) const {
-    if (read_by_ == ReadBy::finger)
-      return echo_columns(driven, driven.drive_kpa, EchoKind::finger, largest_kpa_);
-    return Eigen::Map<const Eigen::VectorXd>(driven.drive_kpa.data(),
-                                             static_cast<Eigen::Index>(driven.drive_kpa.size()));
-  }
-
-  double largest_kpa_;
-  ReadBy read_by_;
-  double bin_s_ = 0.04;
-  std::vector<Record> records_;
-  Binned readings_;
-  std::size_t bins_ = 0;
-};
-
 }  // namespace
 
 double leaking_kpa_per_s(double gauge_kpa) {
@@ -254,46 +159,6 @@ Record behind(const Regulator& regulator, const Record& record) {
   driven.drive_kpa = regulated(regulator, record, record.drive_kpa);
   driven.held = false;
   return driven;
-}
-
-Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa, ReadBy read_by) {
-  const Bank bank(records, largest_kpa, read_by);
-  Eigen::VectorXd at = Eigen::VectorXd::Zero(numbers);
-  const double price = std::sqrt(prior_share) * bank.left_by(regulator_at(at, largest_kpa)).norm();
-  const auto left_at = [&](const Eigen::VectorXd& t) {
-    const Eigen::VectorXd readings = bank.left_by(regulator_at(t, largest_kpa));
-    Eigen::VectorXd all(readings.size() + numbers);
-    all << readings, price * t;
-    return all;
-  };
-  Eigen::VectorXd left = left_at(at);
-  double damping = 1e-2;
-  for (int step = 0; step < most_steps; ++step) {
-    Eigen::MatrixXd jacobian(left.size(), numbers);
-    for (Eigen::Index k = 0; k < numbers; ++k) {
-      Eigen::VectorXd beside = at;
-      beside(k) += beside_by;
-      jacobian.col(k) = (left_at(beside) - left) / beside_by;
-    }
-    const Eigen::MatrixXd curvature = jacobian.transpose() * jacobian;
-    const Eigen::VectorXd gradient = jacobian.transpose() * left;
-    const double before = left.squaredNorm();
-    for (int attempt = 0; attempt < 4; ++attempt) {
-      Eigen::MatrixXd damped = curvature;
-      damped.diagonal().array() += damping * curvature.trace() / numbers;
-      const Eigen::VectorXd by = damped.ldlt().solve(gradient);
-      const Eigen::VectorXd moved = at - by.cwiseMax(-longest_move).cwiseMin(longest_move);
-      const Eigen::VectorXd trial = left_at(moved);
-      const bool better = trial.squaredNorm() < left.squaredNorm();
-      damping = better ? std::max(damping / 10, 1e-6) : damping * 8;
-      if (!better) continue;
-      at = moved;
-      left = trial;
-      break;
-    }
-    if (!(left.squaredNorm() < (1 - least_progress) * before)) break;
-  }
-  return regulator_at(at, largest_kpa);
 }
 
 }  // namespace softgrip::sysid

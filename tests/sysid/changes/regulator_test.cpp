@@ -5,32 +5,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/sysid/changes/finger.h"
+#include "sysid/logs/finer_record.h"
+#include "tests/blind/textbook/valve.h"
+#include "tests/sysid/changes/regulator_records.h"
 
 namespace softgrip::sysid::regulator_test {
 namespace {
 
-Record record_of(const std::vector<double>& command_kpa, double interval_s) {
-  Log log;
-  for (std::size_t i = 0; i < command_kpa.size(); ++i) {
-    log.time_s.push_back(static_cast<double>(i) * interval_s);
-    log.displacement_mm.push_back(0);
-  }
-  log.pressure_command_kpa = command_kpa;
-  return make_records({log}, {}).front();
-}
+using test::record_of;
+using test::rms;
 
 /// A step up after half a second.
 Record step_record() {
   std::vector<double> command(600, 50.0);
   std::fill(command.begin(), command.begin() + 50, 0.0);
   return record_of(command, 0.01);
-}
-
-double rms(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-  return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
 TEST(Regulator, ItsIntegralTakesAwayWhatItsOverlapLeaves) {
@@ -106,42 +95,52 @@ TEST(Regulator, AChamberBeforeTheTubeIsFilledFirst) {
   EXPECT_NEAR(soon(0) / soon(1), 2, 0.1);
 }
 
-TEST(Regulator, IsFoundFromItsPressure) {
-  const Regulator truth{.play_kpa = 0.2,
-                        .dead_kpa = 0.9,
-                        .full_kpa = 15,
-                        .integral_per_s = 3,
-                        .port_per_s = 3,
-                        .tube_per_s = 6,
-                        .spool_lag_s = 0.02,
-                        .chamber_share = 0.3};
-  Record record = record_of(test::command_kpa(3, 6000, 100), 0.01);
-  const std::vector<double> p = regulated(truth, record, record.drive_kpa);
-  for (std::size_t i = 0; i < p.size(); ++i) record.reading_mm[i] = 1.01 * p[i] + 0.5;
-  const Regulator found = fit_regulator({record}, 60, ReadBy::gauge);
-  EXPECT_LT(rms(behind(found, record).drive_kpa, p), 0.02);
-  EXPECT_NEAR(found.integral_per_s, truth.integral_per_s, 0.3);
+/// Another program's valve by the same standard, in small explicit steps, is the referee.
+std::vector<double> textbook_pressure(const textbook::ValveNumbers& numbers, const Record& record) {
+  constexpr double step_s = 0.00025;
+  textbook::Valve valve(numbers);
+  std::vector<double> p(record.size(), 0.0);
+  for (std::size_t i = 1; i < p.size(); ++i) {
+    const int steps = static_cast<int>(std::lround(record.duration_s[i] / step_s));
+    for (int k = 0; k < steps; ++k) {
+      const double part = (k + 0.5) / steps;
+      valve.step((1 - part) * record.drive_kpa[i - 1] + part * record.drive_kpa[i], record.supply_kpa[i],
+                 step_s);
+    }
+    p[i] = valve.gauge_kpa();
+  }
+  return p;
 }
 
-TEST(Regulator, IsFoundFromWhatAFingerBehindItDoes) {
-  const Regulator truth{.play_kpa = 0.3,
-                        .dead_kpa = 0.9,
-                        .full_kpa = 20,
-                        .integral_per_s = 1,
-                        .port_per_s = 2,
-                        .tube_per_s = 5};
-  Record record = record_of(test::command_kpa(3, 6000, 100), 0.01);
-  const std::vector<double> p = regulated(truth, record, record.drive_kpa);
-  double play = 0, creep = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    play = std::clamp(play, p[i] - 3, p[i] + 3);
-    creep += (p[i] - creep) / 400;
-    record.reading_mm[i] = 0.2 * (0.6 * p[i] + 0.3 * play + 0.1 * creep);
+TEST(Regulator, AnswersAsAnotherProgramsValveByTheSameStandard) {
+  textbook::ValveNumbers numbers;
+  const double per_finger = textbook::reference_kpa / numbers.finger_volume_dm3;
+  for (const double leak : {0.0, 1e-4}) {
+    numbers.leak_conductance = leak;
+    const Regulator regulator{.play_kpa = numbers.pilot_hysteresis_kpa,
+                              .dead_kpa = numbers.overlap / numbers.proportional_per_kpa,
+                              .full_kpa = (1 - numbers.overlap) / numbers.proportional_per_kpa,
+                              .integral_per_s = numbers.integral_per_kpa_s / numbers.proportional_per_kpa,
+                              .port_per_s = per_finger * numbers.port_conductance,
+                              .tube_per_s = per_finger * numbers.tube_conductance,
+                              .spool_lag_s = numbers.spool_lag_s,
+                              .chamber_share = numbers.valve_volume_dm3 / numbers.finger_volume_dm3,
+                              .leak_per_s = per_finger * leak};
+    for (Record record : {step_record(), record_of(test::command_kpa(3, 6000, 100), 0.01)}) {
+      record.supply_kpa.assign(record.size(), 400.0);
+      const std::vector<double> p = textbook_pressure(numbers, record);
+      const double far_kpa = rms(record.drive_kpa, p);
+      EXPECT_GT(far_kpa, 0.3);
+      EXPECT_LT(rms(regulated(regulator, record, record.drive_kpa), p), 0.08 * far_kpa) << leak;
+      // Steps as small as the referee's leave no more than what both make of a step.
+      constexpr std::size_t parts = 40;
+      const Record fine = finer_record(record, parts);
+      const std::vector<double> at_all = regulated(regulator, fine, fine.drive_kpa);
+      std::vector<double> at_samples(record.size());
+      for (std::size_t i = 0; i < record.size(); ++i) at_samples[i] = at_all[i * parts];
+      EXPECT_LT(rms(at_samples, p), 0.015 * far_kpa) << leak;
+    }
   }
-  const Regulator found = fit_regulator({record}, 60);
-  const double far_kpa = rms(record.drive_kpa, p);
-  EXPECT_GT(far_kpa, 0.5);
-  EXPECT_LT(rms(behind(found, record).drive_kpa, p), 0.2 * far_kpa);
 }
 
 }  // namespace
