@@ -42,6 +42,7 @@ struct Choice {
 std::vector<Record> behind(const std::optional<Regulator>& regulator, const std::vector<Record>& records) {
   if (!regulator) return records;
   std::vector<Record> driven;
+  driven.reserve(records.size());
   for (const Record& record : records) driven.push_back(behind(*regulator, record));
   return driven;
 }
@@ -313,6 +314,7 @@ Record thinned_for(const Base& base, const Record& record) {
 
 std::vector<std::vector<double>> residuals_of(const Base& base, const std::vector<Record>& records) {
   std::vector<std::vector<double>> left;
+  left.reserve(records.size());
   for (const Record& record : records) left.push_back(residual(record, predict_base(base, record, {})));
   return left;
 }
