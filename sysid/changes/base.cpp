@@ -85,9 +85,7 @@ Binned left_by(const Choice& choice, const std::vector<Record>& records, double 
 
 std::vector<Choice> choices(const std::vector<Record>& records, const Base& base,
                             const BaseOptions& options) {
-  if (base.judged == Judged::pressure)
-    return {{"filter bank", {}},
-            {"a regulator", {}, fit_regulator(records, base.largest_kpa, ReadBy::gauge)}};
+  if (base.judged == Judged::pressure) return {{"filter bank", {}}};
   const bool command = base.drive == Drive::command;
   const BaseStructure play{.hysteresis = HysteresisForm::play, .delay = command, .hinged_creep = true};
   std::vector<std::function<Choice()>> makes{
@@ -144,20 +142,11 @@ std::vector<AlikeDriven> alike_driven(const std::vector<Choice>& all, const std:
   return groups;
 }
 
-/// Filters say exactly what a dead time below a sample does, a regulator does not. It is a pressure's base
-/// where they miss what a regulator does: of a valve that is a delay and a lag they left up to 2.9 times the
-/// noise, of one by ISO 6358 3.2 times and more (changed worlds of --first-seed 20261211 and 20261218).
-constexpr double filters_miss = 3, regulator_share = 0.9;
-
-/// What a choice may leave to be better than the best so far.
-double most_left_by(const Choice& choice, const Base& best) {
-  if (best.judged == Judged::displacement || !choice.regulator) return best.left_mm;
-  return best.left_mm > filters_miss * best.noise_mm ? regulator_share * best.left_mm : 0;
-}
-
-/// The choice that leaves least with an echo beside it, the first of those that leave as little.
+/// Of these the choice that leaves least with an echo beside it, the first of those that leave as little;
+/// none where the base that there is leaves no more.
+/// @param share  what a choice may leave of what the base does.
 void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record>& records,
-            const BaseOptions& options) {
+            const BaseOptions& options, double share = 1) {
   const std::vector<EchoKind> kinds = kinds_for(base.judged, base.drive);
   const std::vector<AlikeDriven> groups = alike_driven(all, records, base.bin_s);
   std::vector<std::vector<FittedEcho>> fits(all.size(), std::vector<FittedEcho>(kinds.size()));
@@ -168,11 +157,10 @@ void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record
     std::vector<FittedEcho> fitted = fit_echo(driven, kinds[k], base.bin_s, base.largest_kpa, left);
     for (std::size_t i = 0; i < members.size(); ++i) fits[members[i]][k] = std::move(fitted[i]);
   });
-  base.left_mm = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < all.size(); ++c) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
       FittedEcho& echo = fits[c][k];
-      if (!(echo.left_mm < most_left_by(all[c], base))) continue;
+      if (!(echo.left_mm < share * base.left_mm)) continue;
       base.model = all[c].point.model;
       base.regulator = all[c].regulator;
       base.description = all[c].description;
@@ -183,6 +171,16 @@ void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record
     }
     if (options.progress) options.progress(all[c].description);
   }
+}
+
+/// Filters say exactly what a dead time below a sample does, a regulator does not. It is a pressure's base
+/// where they miss what a regulator does: of a valve that is a delay and a lag they left up to 2.9 times the
+/// noise, of one by ISO 6358 3.2 times and more (changed worlds of --first-seed 20261211 and 20261218).
+void choose_regulator(Base& base, const std::vector<Record>& records, const BaseOptions& options) {
+  constexpr double filters_miss = 3, regulator_share = 0.9;
+  if (!(base.left_mm > filters_miss * base.noise_mm)) return;
+  const Choice choice{"a regulator", {}, fit_regulator(records, base.largest_kpa, ReadBy::gauge)};
+  choose(base, {choice}, records, options, regulator_share);
 }
 
 std::size_t order_for(const Base& base) {
@@ -330,7 +328,9 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
     base.span_mm = std::max(base.span_mm, record.span_mm);
     base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
   }
+  base.left_mm = std::numeric_limits<double>::infinity();
   choose(base, choices(records, base, options), records, options);
+  if (base.judged == Judged::pressure) choose_regulator(base, records, options);
   Binned haste;
   for (const Record& record : records) haste.push_back(haste_of(record, base.bin_s));
   base.whitener = whitener_of(base.left, haste, order_for(base));

@@ -12,15 +12,15 @@ namespace softgrip::sysid {
 /// through the port into a chamber and through the tube into the finger's volume by ISO 6358-1 (choked,
 /// subsonic, linear next to no difference), at one temperature.
 struct Regulator {
-  double play_kpa = 0.15;     ///< half the width of what the controller does not see
-  double dead_kpa = 0.5;      ///< error from which on a port opens
-  double full_kpa = 10;       ///< and by how much more it is fully open
-  double integral_per_s = 2;  ///< of the error
-  double port_per_s = 5;      ///< choked, fully open: by what share of the pressure before it a second fills
-  double tube_per_s = 10;     ///< likewise
-  double spool_lag_s = 0.01;
+  double play_kpa = 0.15;      ///< half the width of what the controller does not see
+  double dead_kpa = 0.5;       ///< error from which on a port opens
+  double full_kpa = 10;        ///< and by how much more it is fully open
+  double integral_per_s = 2;   ///< of the error
+  double port_per_s = 5;       ///< choked, fully open: by what share of the pressure before it a second fills
+  double tube_per_s = 10;      ///< likewise
+  double spool_lag_s = 0.01;   ///< behind what the controller asks for
   double chamber_share = 0.2;  ///< of the finger's volume: the valve's before the tube
-  double leak_per_s = 0;       ///< likewise, from the finger into the open
+  double leak_per_s = 0;       ///< as tube_per_s, from the finger into the open
 };
 
 /// What a leak of 1 per second lets out of a finger [kPa/s of its own pressure], while nothing flows in.

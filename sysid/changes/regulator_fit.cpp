@@ -48,7 +48,6 @@ class Bank {
       bins_ += readings_.back().size();
     }
   }
-  [[nodiscard]] std::size_t size() const { return bins_; }
 
   [[nodiscard]] Eigen::VectorXd left_by(const Regulator& regulator) const {
     Eigen::MatrixXd columns;

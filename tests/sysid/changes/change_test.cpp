@@ -207,28 +207,32 @@ std::vector<Log> regulated_logs(unsigned first_seed, const Regulator& regulator)
   return logs;
 }
 
+constexpr Regulator healthy_regulator{.full_kpa = 15, .port_per_s = 3, .tube_per_s = 5};
+
+ChangeDiagnosis changed_from_healthy(const Regulator& later) {
+  const auto d = diagnose_change(regulated_logs(1, healthy_regulator), regulated_logs(5, later));
+  EXPECT_TRUE(d) << d.error();
+  return *d;
+}
+
 TEST(Change, ABlockedLineBehindARegulatorThatIsKnownIsSizedInPercent) {
-  Regulator regulator{.full_kpa = 15, .port_per_s = 3, .tube_per_s = 5};
-  const std::vector<Log> healthy = regulated_logs(1, regulator);
+  Regulator regulator = healthy_regulator;
   regulator.tube_per_s = 3;
-  const auto d = diagnose_change(healthy, regulated_logs(5, regulator));
-  ASSERT_TRUE(d) << d.error();
-  ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
-  EXPECT_EQ(d->causes[0].fitted.effect.form, "narrower_tube");
-  EXPECT_EQ(d->causes[0].size.unit, "%");
-  EXPECT_NEAR(d->causes[0].size.value, 40, 8);
+  const ChangeDiagnosis d = changed_from_healthy(regulator);
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].fitted.effect.form, "narrower_tube");
+  EXPECT_EQ(d.causes[0].size.unit, "%");
+  EXPECT_NEAR(d.causes[0].size.value, 40, 8);
 }
 
 TEST(Change, ALeakBehindARegulatorThatIsKnownIsSizedByWhatItLosesWithTheLineShut) {
-  Regulator regulator{.full_kpa = 15, .port_per_s = 3, .tube_per_s = 5};
-  const std::vector<Log> healthy = regulated_logs(1, regulator);
+  Regulator regulator = healthy_regulator;
   regulator.leak_per_s = 0.05;
-  const auto d = diagnose_change(healthy, regulated_logs(5, regulator));
-  ASSERT_TRUE(d) << d.error();
-  ASSERT_FALSE(d->causes.empty()) << change_sentence(*d);
-  EXPECT_EQ(d->causes[0].id, "leak");
-  EXPECT_EQ(d->causes[0].size.unit, "kPa");
-  EXPECT_NEAR(d->causes[0].size.value, 0.05 * leaking_kpa_per_s(58), 0.5);
+  const ChangeDiagnosis d = changed_from_healthy(regulator);
+  ASSERT_FALSE(d.causes.empty()) << change_sentence(d);
+  EXPECT_EQ(d.causes[0].id, "leak");
+  EXPECT_EQ(d.causes[0].size.unit, "kPa");
+  EXPECT_NEAR(d.causes[0].size.value, 0.05 * leaking_kpa_per_s(58), 0.5);
 }
 
 TEST(Change, ARegulatorThatIsAsItWasIsUnchanged) {
