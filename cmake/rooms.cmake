@@ -16,18 +16,16 @@ softgrip_room(model/file USES base document model)
 
 # What a tick runs.
 softgrip_room(control/elements USES base model)
-softgrip_room(control/feedforward USES base model control/elements APART free_motion.cpp invertibility.cpp)
-softgrip_room(control/tick USES document model control/elements control/feedforward
-  APART channel_player.cpp rig_controller.cpp sequence_player.cpp)
+softgrip_room(control/feedforward USES base model control/elements)
+softgrip_room(control/tick USES document model control/elements control/feedforward)
 # What is done before it.
 softgrip_room(control/sequences USES base document model control/elements control/feedforward control/tick
-  LIBRARIES Eigen3::Eigen APART sequence_plans.cpp)
+  LIBRARIES Eigen3::Eigen)
 softgrip_room(control/tuning USES base model control/elements control/feedforward control/tick control/sequences)
 
 # Boards.
 softgrip_room(drivers/board USES base model)
-softgrip_room(drivers/modbus USES base drivers/board LIBRARIES PkgConfig::modbus
-  APART modbus_link.cpp modbus_module.cpp modbus_rtu_link.cpp)
+softgrip_room(drivers/modbus USES base drivers/board LIBRARIES PkgConfig::modbus)
 softgrip_room(drivers/modbus_server USES base drivers/modbus)
 softgrip_room(drivers/iio USES base drivers/board)
 softgrip_room(drivers/gpio USES base model LIBRARIES PkgConfig::gpiod)
@@ -38,18 +36,17 @@ endif()
 # What stands in for the rig.
 softgrip_room(simulation/plant USES base document model drivers/board)
 softgrip_room(simulation/emulator
-  USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant
-  APART serial_end.cpp wire_fault.cpp)
+  USES base document model drivers/board drivers/modbus drivers/modbus_server simulation/plant)
 
 # The file of softgrip-plc, which `softgrip check` reads too.
-softgrip_room(rig/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt APART settings.cpp)
+softgrip_room(rig/plc_file USES document drivers/modbus_server LIBRARIES fmt::fmt)
 # The file of softgrip-web, the same.
 softgrip_room(rig/web_file USES document drivers/modbus_server)
 
 # The rig file.
 softgrip_room(rig
   USES base document model/file control/feedforward control/tick control/sequences drivers/board drivers/modbus
-       drivers/iio drivers/gpio simulation/plant rig/plc_file rig/web_file APART rig_file_wiring.cpp)
+       drivers/iio drivers/gpio simulation/plant rig/plc_file rig/web_file)
 
 # The daemon.
 softgrip_room(daemon/loop USES base model control/elements control/tick drivers/board rig LIBRARIES spdlog::spdlog)
@@ -59,31 +56,30 @@ softgrip_room(daemon/recording
 softgrip_room(daemon/panel USES base drivers/gpio rig daemon/loop)
 softgrip_room(daemon/socket
   USES base document model control/elements control/tick control/sequences rig daemon/loop daemon/recording
-  LIBRARIES nlohmann_json::nlohmann_json APART socket_api.cpp status_json.cpp)
+  LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(daemon/service
   USES base control/tick drivers/board drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
-  LIBRARIES spdlog::spdlog PkgConfig::systemd APART virtual_run.cpp)
+  LIBRARIES spdlog::spdlog PkgConfig::systemd)
 
 # From a log to the reason.
-softgrip_room(sysid/logs USES base document model APART log_checks.cpp)
-softgrip_room(sysid/import USES base document sysid/logs APART mapping_file.cpp)
+softgrip_room(sysid/logs USES base document model)
+softgrip_room(sysid/import USES base document sysid/logs)
 # Nobody else is to be compiled against them.
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio PkgConfig::hdf5)
 softgrip_room(sysid/pages USES base model model/file sysid/logs)
 softgrip_room(sysid/fitting USES base model sysid/logs LIBRARIES Eigen3::Eigen Ceres::ceres)
 softgrip_room(sysid/identification
   USES base model model/file sysid/logs sysid/pages sysid/fitting
-  LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json APART validate.cpp)
+  LIBRARIES Eigen3::Eigen Ceres::ceres nlohmann_json::nlohmann_json)
 softgrip_room(sysid/structure
   USES base model sysid/logs sysid/fitting sysid/identification
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/residual USES base sysid/logs LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/causes USES model sysid/logs sysid/fitting sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
-  APART linear_selection.cpp scan.cpp selection.cpp)
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes)
 softgrip_room(sysid/diagnosis/evidence
-  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/search APART evidence.cpp spectrum.cpp)
+  USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/gauge
   USES base document model sysid/logs sysid/fitting sysid/diagnosis/residual sysid/diagnosis/causes
        sysid/diagnosis/search)
@@ -92,23 +88,22 @@ softgrip_room(sysid/diagnosis/verdict
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
 softgrip_room(sysid/changes
   USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
-  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json APART change_search.cpp echo.cpp regulator_fit.cpp)
+  LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments
   USES base sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes sysid/diagnosis/search
        sysid/diagnosis/gauge sysid/diagnosis/verdict)
 softgrip_room(sysid/diagnosis/report
   USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
        sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict
-  LIBRARIES nlohmann_json::nlohmann_json APART report_chain.cpp)
+  LIBRARIES nlohmann_json::nlohmann_json)
 # The innermost loops of a fit.
 softgrip_flags_of(sysid/fitting -O3 chain_residuals.cpp separable.cpp separable_pressure.cpp separable_search.cpp)
 
 # Programs.
 softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/import sysid/diagnosis/gauge
-  LIBRARIES CLI11::CLI11 APART usage.cpp)
+  LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
-softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json
-  APART styled_line.cpp)
+softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 # What stands in front of the daemon's socket, in processes of their own.
 softgrip_room(tools/plc USES base drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
@@ -116,7 +111,7 @@ softgrip_room(tools/web/metrics USES base LIBRARIES nlohmann_json::nlohmann_json
 softgrip_room(tools/web/access USES base drivers/modbus_server rig/web_file LIBRARIES fmt::fmt)
 softgrip_room(tools/web FOLDERS tools/web/page
   USES base drivers/modbus_server rig/web_file tools/client tools/web/metrics tools/web/access
-  LIBRARIES nlohmann_json::nlohmann_json fmt::fmt PkgConfig::httplib APART recordings.cpp)
+  LIBRARIES nlohmann_json::nlohmann_json fmt::fmt PkgConfig::httplib)
 softgrip_page_files(tools/web/page)
 if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
   target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_HTTPLIB_ADDRESSES=1)
@@ -141,7 +136,7 @@ target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::mati
 softgrip_room(tools/commissioning
   USES base document model model/file control/elements control/feedforward drivers/board rig/plc_file rig/web_file rig
        daemon/loop daemon/recording daemon/service tools/command_line
-  LIBRARIES nlohmann_json::nlohmann_json APART motion.cpp rig_examination.cpp)
+  LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig
        daemon/service daemon/socket sysid/logs sysid/pages sysid/identification sysid/diagnosis/causes
@@ -161,7 +156,7 @@ softgrip_room(tools/commands
        tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies tools/baseline
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
-  PRECOMPILE <CLI/CLI.hpp> APART check.cpp watch.cpp)
+  PRECOMPILE <CLI/CLI.hpp>)
 
 softgrip_program(softgripd daemon/service/softgripd.cpp daemon ROOM daemon/service LIBRARIES CLI11::CLI11)
 softgrip_program(softgrip tools/programs/softgrip.cpp tools ROOM tools/commands)

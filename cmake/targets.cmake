@@ -1,12 +1,12 @@
-# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...] [APART file ...])
+# softgrip_room(FOLDER [FOLDERS more ...] [USES room ...] [LIBRARIES target ...] [PRECOMPILE header ...])
 # A room is a folder, a static library of all its .cpp files (one that has none is an interface), and the rooms that
 # its files may include. PRECOMPILE: a library's header that most of its files include and that is most of their compile
-# time. Most of the rest are the same headers in every file, so eight files are compiled as one; APART are those whose
-# unnamed namespace has a name that another one's has (those of tests have a named one around them). Both only with
-# SOFTGRIP_PRECOMPILE. The target of daemon/loop is softgrip_daemon_loop; ${softgrip_room_target} names the last one.
+# time. Most of the rest are the same headers and templates in every file, so the files of a room are compiled as one: the
+# names in their unnamed namespaces differ. Both only with SOFTGRIP_PRECOMPILE. The target of daemon/loop is
+# softgrip_daemon_loop; ${softgrip_room_target} names the last one.
 set_property(GLOBAL PROPERTY softgrip_rooms "")
 function(softgrip_room folder)
-  cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE;APART" ${ARGN})
+  cmake_parse_arguments(arg "" "" "FOLDERS;USES;LIBRARIES;PRECOMPILE" ${ARGN})
   softgrip_target_of(${folder} target)
   set(folders ${folder} ${arg_FOLDERS})
   set(sources "")
@@ -40,8 +40,6 @@ function(softgrip_room folder)
         target_precompile_headers(${target} PRIVATE ${arg_PRECOMPILE})
       endif()
       softgrip_compile_together(${target})
-      list(TRANSFORM arg_APART PREPEND ${PROJECT_SOURCE_DIR}/${folder}/)
-      set_source_files_properties(${arg_APART} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   else()
     add_library(${target} INTERFACE)
@@ -121,12 +119,16 @@ endfunction()
 # where the header is precompiled or many files are one.
 set(softgrip_misread_strings -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 
-# Eight files of a target are compiled as one, where headers may be precompiled, too.
+# The files of a target are compiled as one (at most 32, which take 1.4 GB), where headers may be precompiled, too: a build
+# that is made once, in which nobody debugs.
 function(softgrip_compile_together target)
   softgrip_may_precompile(may)
   if(may)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 32)
     target_compile_options(${target} PRIVATE ${softgrip_misread_strings})
+    if(NOT SOFTGRIP_SANITIZE)  # whose reports name lines
+      target_compile_options(${target} PRIVATE -g0)
+    endif()
   endif()
 endfunction()
 
@@ -143,10 +145,8 @@ endfunction()
 # What all tests are compiled with: they check answers, not speed, and are most of what a build compiles. What every one
 # of them includes is compiled once.
 add_library(softgrip_test_flags INTERFACE)
-if(SOFTGRIP_PRECOMPILE AND NOT SOFTGRIP_SANITIZE)
-  target_compile_options(softgrip_test_flags INTERFACE -O1 -g0)  # nobody debugs a build that is made once
-elseif(NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
-  target_compile_options(softgrip_test_flags INTERFACE -O1 -g1)
+if(NOT SOFTGRIP_SANITIZE AND NOT CMAKE_BUILD_TYPE STREQUAL "Debug")
+  target_compile_options(softgrip_test_flags INTERFACE -Og -g1)
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(softgrip_test_flags INTERFACE ${softgrip_misread_strings})
@@ -160,6 +160,7 @@ function(softgrip_precompile_for_tests target)
     file(WRITE ${CMAKE_BINARY_DIR}/test_headers.cpp "")
     add_library(softgrip_test_headers OBJECT ${CMAKE_BINARY_DIR}/test_headers.cpp)
     target_link_libraries(softgrip_test_headers PRIVATE softgrip_flags softgrip_test_flags GTest::gtest)
+    softgrip_compile_together(softgrip_test_headers)
     target_precompile_headers(softgrip_test_headers PRIVATE <algorithm> <array> <chrono> <cmath> <filesystem> <fstream>
       <functional> <limits> <map> <memory> <numeric> <optional> <random> <span> <sstream> <string> <thread> <vector>
       <gtest/gtest.h>)

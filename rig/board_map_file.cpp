@@ -6,6 +6,7 @@
 
 #include "document/reader.h"
 #include "drivers/modbus/modbus_request.h"
+#include "rig/electrical_suffix.h"
 
 namespace softgrip::rig {
 namespace {
@@ -19,19 +20,6 @@ constexpr int fc_write_register = 6;
 constexpr int fc_write_registers = 16;
 constexpr int fc_read_holding = 3;
 constexpr std::int64_t last_address = 0xffff;
-
-/// How keys end that are in this unit.
-std::string_view suffix_of(drivers::ElectricalUnit unit) {
-  switch (unit) {
-    case drivers::ElectricalUnit::volt:
-      return "_v";
-    case drivers::ElectricalUnit::milliampere:
-      return "_ma";
-    case drivers::ElectricalUnit::kilopascal:
-      return "_kpa";
-  }
-  return {};
-}
 
 Range raw_range(drivers::RegisterKind kind) {
   switch (kind) {

@@ -5,6 +5,7 @@
 
 #include "base/numbers.h"
 #include "document/number.h"
+#include "rig/electrical_suffix.h"
 #include "rig/rig_file_reader.h"
 
 namespace softgrip::rig {
@@ -22,18 +23,6 @@ struct ElectricalKey {
   std::string name;
   ElectricalUnit unit = ElectricalUnit::volt;
 };
-
-constexpr std::array<std::pair<std::string_view, ElectricalUnit>, 3> electrical_suffixes{
-    {{"_v", ElectricalUnit::volt},
-     {"_ma", ElectricalUnit::milliampere},
-     {"_kpa", ElectricalUnit::kilopascal}}};
-
-std::string_view suffix_of(ElectricalUnit unit) {
-  for (const auto& [suffix, of] : electrical_suffixes) {
-    if (of == unit) return suffix;
-  }
-  return {};
-}
 
 ElectricalKey electrical_key(MapReader& reader, const std::string& stem) {
   std::optional<ElectricalKey> found;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int levels = 32;
 constexpr std::size_t points = 65;
-constexpr double step_s = 0.02;
-constexpr int rest_steps = static_cast<int>(rests_after_s / step_s + 0.5);
+constexpr double curve_step_s = 0.02;
+constexpr int rest_steps = static_cast<int>(rests_after_s / curve_step_s + 0.5);
 
 /// Where the finger rests under a command.
 struct Level {
@@ -24,8 +24,8 @@ struct Level {
 
 /// From the lowest command up, each displacement above the one before.
 std::vector<Level> levels_of(const model::Model& model, const LimitSettings& limits) {
-  model::Chain<double> valve(valve_of(model), {}, step_s);
-  model::Chain<double> body(body_of(model), {}, step_s);
+  model::Chain<double> valve(valve_of(model), {}, curve_step_s);
+  model::Chain<double> body(body_of(model), {}, curve_step_s);
   const bool has_valve = valve.size() > 0;
   std::vector<Level> found;
   for (int i = 0; i <= levels; ++i) {
@@ -37,8 +37,8 @@ std::vector<Level> levels_of(const model::Model& model, const LimitSettings& lim
     valve.step(0, level.command_kpa);
     body.step(0, pressure());
     for (int k = 0; k < rest_steps; ++k) {
-      valve.step(step_s, level.command_kpa);
-      body.step(step_s, pressure());
+      valve.step(curve_step_s, level.command_kpa);
+      body.step(curve_step_s, pressure());
     }
     level.pressure_kpa = pressure();
     level.displacement_mm = body.reading_mm();

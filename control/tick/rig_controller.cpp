@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 6> state_names{"starting", "idle",     "r
                                                       "running",  "stopping", "faulted"};
 constexpr std::array<std::string_view, 4> end_names{"done", "failed", "stopped", "faulted"};
 /// Above the lowest command by less is no pressure to speak of.
-constexpr double unnoticed_kpa = 0.1;
+constexpr double unpressed_kpa = 0.1;
 ChannelPlayer player_of(const RigSettings& rig, const ChannelSettings& channel, double preview_s) {
   return ChannelPlayer(
       {rig.detection.margin_mm, channel.limits.pressure_min_kpa, preview_s, channel.displacement_used});
@@ -254,7 +254,7 @@ void RigController::look_for_pressure() noexcept {
   output_.under_pressure = 0;
   if (moves(output_.state)) return;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
-    const bool pressed = output_.channels[i].command_kpa > channels_[i].lowest_kpa + unnoticed_kpa;
+    const bool pressed = output_.channels[i].command_kpa > channels_[i].lowest_kpa + unpressed_kpa;
     output_.under_pressure |= pressed ? channel_bit(i) : 0;
   }
 }

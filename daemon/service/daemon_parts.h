@@ -16,6 +16,9 @@
 
 namespace softgrip::daemon {
 
+/// How long the board may take to confirm the last outputs.
+inline constexpr Nanoseconds leave_deadline = ns_per_s;
+
 struct DaemonParts {
   DaemonParts(rig::RigFile rig_file, DaemonOptions run_options);
 

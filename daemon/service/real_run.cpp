@@ -31,8 +31,6 @@ namespace softgrip::daemon {
 
 namespace {
 
-/// How long the board may take to confirm the last outputs.
-constexpr std::chrono::nanoseconds leave_deadline = std::chrono::seconds(1);
 /// Beyond all deadlines: a thread that is still not done hangs.
 constexpr Nanoseconds longest_join = ns_per_s;
 /// Between two looks of this thread at everything else.
@@ -158,7 +156,8 @@ void RealRun::bus_body() {
   // One below the loop: an exchange that is late must not delay a tick.
   const int priority = parts_.rig.real_time.priority;
   prepare(priority > 1 ? priority - 1 : priority, "the bus", bus_report_);
-  parts_.bus.run(Grid(start_ + parts_.bus_offset(), parts_.period()), leave_deadline);
+  parts_.bus.run(Grid(start_ + parts_.bus_offset(), parts_.period()),
+                 std::chrono::nanoseconds{leave_deadline});
   bus_done_.store(true);
 }
 
@@ -314,7 +313,7 @@ bool RealRun::wait_for(const std::function<bool()>& condition, Nanoseconds longe
 bool RealRun::stop_loop_and_bus() {
   parts_.wires.leave.store(true);
   return wait_for([this] { return loop_done_.load() && bus_done_.load(); },
-                  leave_deadline.count() + longest_join + longest_bus_call());
+                  leave_deadline + longest_join + longest_bus_call());
 }
 
 void RealRun::stop() {

@@ -10,8 +10,6 @@ namespace {
 
 /// Ticks between two looks at what is beside the loop.
 constexpr std::uint64_t ticks_per_look = 64;
-/// How long the board may take to confirm the last outputs.
-constexpr Nanoseconds leave_deadline = ns_per_s;
 
 void exchange(DaemonParts& parts, Nanoseconds due) {
   parts.virtual_clock.set(due);

@@ -12,7 +12,7 @@ namespace softgrip::daemon {
 
 namespace {
 
-using nlohmann::json;
+using SortedJson = nlohmann::json;
 using Command = ClientRequest::Command;
 
 constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // what every JSON reader keeps exactly
@@ -40,14 +40,14 @@ constexpr std::size_t most_parameters = 64;
 constexpr std::size_t longest_name = 64;
 
 /// Parses a flat JSON object; what is wrong with it as a JSON object is left in `problem`.
-json parse_object(std::string_view line, std::string& problem) {
+SortedJson parse_object(std::string_view line, std::string& problem) {
   std::array<std::vector<std::string>, 2> keys;  // of the object, and of the one within it
-  const auto look = [&](int depth, json::parse_event_t event, json& parsed) {
-    const bool object = event == json::parse_event_t::object_start;
-    const bool nested = object || event == json::parse_event_t::array_start;
+  const auto look = [&](int depth, SortedJson::parse_event_t event, SortedJson& parsed) {
+    const bool object = event == SortedJson::parse_event_t::object_start;
+    const bool nested = object || event == SortedJson::parse_event_t::array_start;
     const bool expected = object && depth == 1 && !keys[0].empty() && keys[0].back() == nested_key;
     if (nested && depth > 0 && !expected) problem = "a request is one flat JSON object";
-    if (event == json::parse_event_t::key && (depth == 1 || depth == 2)) {
+    if (event == SortedJson::parse_event_t::key && (depth == 1 || depth == 2)) {
       std::vector<std::string>& seen = keys[depth == 1 ? 0 : 1];
       const auto key = parsed.get<std::string>();
       if (std::find(seen.begin(), seen.end(), key) != seen.end())
@@ -56,7 +56,7 @@ json parse_object(std::string_view line, std::string& problem) {
     }
     return problem.empty();
   };
-  json object = json::parse(line.begin(), line.end(), look, false);
+  SortedJson object = SortedJson::parse(line.begin(), line.end(), look, false);
   if (problem.empty() && !object.is_object()) problem = "not a JSON object";
   return object;
 }
@@ -64,11 +64,11 @@ json parse_object(std::string_view line, std::string& problem) {
 /// Takes keys out of the object, so that what is left is unknown.
 class Reader {
  public:
-  explicit Reader(json& object) : object_(object) {}
+  explicit Reader(SortedJson& object) : object_(object) {}
 
   template <class Whole>
   void whole(const char* key, std::uint64_t lower, std::uint64_t upper, Whole& value) {
-    const json given = take(key);
+    const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_number_unsigned() || given.get<std::uint64_t>() < lower ||
         given.get<std::uint64_t>() > upper) {
@@ -78,7 +78,7 @@ class Reader {
     value = given.get<std::uint64_t>();
   }
   void number(const char* key, double lower, double upper, double& value) {
-    const json given = take(key);
+    const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_number() || !(given.get<double>() >= lower) || !(given.get<double>() <= upper)) {
       fail(fmt::format("'{}' is a number from {} to {}", key, lower, upper));
@@ -87,7 +87,7 @@ class Reader {
     value = given.get<double>();
   }
   void text(const char* key, std::string& value) {
-    const json given = take(key);
+    const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_string() || given.get_ref<const std::string&>().empty()) {
       fail(fmt::format("'{}' is a text that is not empty", key));
@@ -106,7 +106,7 @@ class Reader {
     }
   }
   void boolean(const char* key, bool& value) {
-    const json given = take(key);
+    const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_boolean()) {
       fail(fmt::format("'{}' is true or false", key));
@@ -115,7 +115,7 @@ class Reader {
     value = given.get<bool>();
   }
   void parameters(const char* key, std::vector<control::Argument>& values) {
-    const json given = take(key);
+    const SortedJson given = take(key);
     if (given.is_null()) return;
     if (!given.is_object() || given.size() > most_parameters) {
       fail(fmt::format("'{}' is an object of at most {} numbers", key, most_parameters));
@@ -142,16 +142,16 @@ class Reader {
 
  private:
   /// Null when absent. A key that is null itself is an error.
-  json take(const char* key) {
+  SortedJson take(const char* key) {
     const auto found = object_.find(key);
     if (found == object_.end()) return nullptr;
-    json value = std::move(*found);
+    SortedJson value = std::move(*found);
     object_.erase(found);
     if (value.is_null()) fail(fmt::format("'{}' is null", key));
     return value;
   }
 
-  json& object_;
+  SortedJson& object_;
   std::string problem_;
 };
 
@@ -198,7 +198,7 @@ void read_arguments(Reader& reader, ClientRequest& request) {
 
 tl::expected<ClientRequest, ClientError> parse_client_request(std::string_view line) {
   std::string problem;
-  json object = parse_object(line, problem);
+  SortedJson object = parse_object(line, problem);
   if (!problem.empty()) return tl::unexpected(ClientError{std::nullopt, problem});
 
   ClientRequest request;

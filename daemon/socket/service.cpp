@@ -10,7 +10,7 @@
 
 namespace softgrip::daemon {
 
-using Kind = control::Event::Kind;
+using EventKind = control::Event::Kind;
 
 namespace {
 
@@ -19,9 +19,9 @@ constexpr std::size_t most_clients = 256;
 
 /// The fault that an answer is about.
 control::Fault fault_in(const control::Event& event) {
-  const double number = event.kind == Kind::fault_acknowledged ? event.detail
-                        : event.kind == Kind::request_refused  ? event.value
-                                                               : 0;
+  const double number = event.kind == EventKind::fault_acknowledged ? event.detail
+                        : event.kind == EventKind::request_refused  ? event.value
+                                                                    : 0;
   return {static_cast<control::FaultCode>(static_cast<std::uint16_t>(number)), event.channel, 0};
 }
 
@@ -115,7 +115,7 @@ void Service::pump() {
 
 void Service::take(const StampedEvent& stamped) {
   const control::Event& event = stamped.event;
-  if (event.kind == Kind::sequence_started) {
+  if (event.kind == EventKind::sequence_started) {
     sequence_ = shelf_.find(event.request);
     sequence_request_ = event.request;
     shelf_.drop_before(event.request);
@@ -123,13 +123,14 @@ void Service::take(const StampedEvent& stamped) {
     overall_ = control::GripResult::none;
   }
   // The loop has let go of it.
-  if (event.kind == Kind::request_refused || event.kind == Kind::start_checked) shelf_.drop(event.request);
-  if (event.kind == Kind::sequence_finished) {
+  if (event.kind == EventKind::request_refused || event.kind == EventKind::start_checked)
+    shelf_.drop(event.request);
+  if (event.kind == EventKind::sequence_finished) {
     ending_ = {event.request, static_cast<control::SequenceEnd>(event.detail)};
   }
   const auto answer = answers_.find(event.request);
   if (answer != answers_.end() && answer->second.kind == Answer::Kind::pending) {
-    const bool refused = event.kind == Kind::request_refused;
+    const bool refused = event.kind == EventKind::request_refused;
     answer->second.kind = refused ? Answer::Kind::refused : Answer::Kind::accepted;
     if (refused) answer->second.refusal = static_cast<control::RefusalCode>(event.detail);
     answer->second.fault = fault_in(event);
@@ -138,7 +139,7 @@ void Service::take(const StampedEvent& stamped) {
   entry.time_s = seconds(stamped.at - origin_);
   entry.client = client_of(event.request);
   log_.add(std::move(entry));
-  if (event.kind == Kind::grip_result) note_result(stamped);
+  if (event.kind == EventKind::grip_result) note_result(stamped);
 }
 
 /// What came of the grip as a whole, whenever that changes.

@@ -16,9 +16,9 @@ using document::Node;
 
 constexpr std::string_view numeric_hint = "an IPv4 or IPv6 address in numbers: 192.168.1.20";
 
-class Reader {
+class SettingsReader {
  public:
-  Reader(const document::Document& document, document::Problems& problems)
+  SettingsReader(const document::Document& document, document::Problems& problems)
       : document_(document), problems_(problems) {}
 
   Settings read() {
@@ -92,7 +92,7 @@ class Reader {
 }  // namespace
 
 Settings read_settings(const document::Document& document, document::Problems& problems) {
-  return Reader(document, problems).read();
+  return SettingsReader(document, problems).read();
 }
 
 std::optional<Settings> load_settings(const std::string& path, document::Problems& problems) {

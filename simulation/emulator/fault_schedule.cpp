@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace softgrip::simulation {
-namespace {
-
-Nanoseconds nanoseconds(double seconds) {
-  return static_cast<Nanoseconds>(std::llround(seconds * 1e9));
-}
-
-}  // namespace
 
 FaultSchedule::FaultSchedule(std::vector<FaultSpec> faults)
     : faults_(std::move(faults)), states_(faults_.size()) {}

@@ -22,10 +22,6 @@ tl::unexpected<std::string> failure(const std::string& what, int error) {
   return tl::unexpected{what + ": " + std::strerror(error)};
 }
 
-std::chrono::nanoseconds nanoseconds(double seconds) {
-  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
-}
-
 bool is_pseudo_terminal(const std::string& device) {
   std::array<char, 4096> real{};
   return ::realpath(device.c_str(), real.data()) != nullptr && std::strncmp(real.data(), "/dev/pts/", 9) == 0;
@@ -96,10 +92,10 @@ tl::expected<SerialEnd, std::string> SerialEnd::open(const drivers::SerialLine& 
 
 WireTime SerialEnd::wire_time() const noexcept {
   WireTime time;
-  time.turnaround = nanoseconds(line_.turnaround_s);
+  time.turnaround = std::chrono::nanoseconds{nanoseconds(line_.turnaround_s)};
   if (!pseudo_) return time;
-  time.character = nanoseconds(drivers::character_s(line_));
-  time.silence = nanoseconds(drivers::silence_s(line_));
+  time.character = std::chrono::nanoseconds{nanoseconds(drivers::character_s(line_))};
+  time.silence = std::chrono::nanoseconds{nanoseconds(drivers::silence_s(line_))};
   return time;
 }
 

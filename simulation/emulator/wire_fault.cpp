@@ -8,10 +8,6 @@
 namespace softgrip::simulation {
 namespace {
 
-std::chrono::nanoseconds nanoseconds(double seconds) {
-  return std::chrono::nanoseconds{std::llround(seconds * 1e9)};
-}
-
 Reply at_once(Bytes bytes) {
   return {{{std::chrono::nanoseconds{0}, std::move(bytes)}}, false};
 }
@@ -19,7 +15,7 @@ Reply at_once(Bytes bytes) {
 Reply dripped(const Bytes& whole, double interval_s) {
   Reply reply;
   for (std::size_t i = 0; i < whole.size(); ++i) {
-    reply.pieces.push_back({nanoseconds(interval_s) * static_cast<std::int64_t>(i), Bytes{whole[i]}});
+    reply.pieces.push_back({std::chrono::nanoseconds{nanoseconds(interval_s)} * i, Bytes{whole[i]}});
   }
   return reply;
 }
@@ -62,7 +58,7 @@ Reply spoiled_reply(Wire wire, const FaultSpec& fault, const Request& request, c
     case FaultKind::no_reply:
       return {};
     case FaultKind::late_reply:
-      return {{{nanoseconds(fault.delay_s), whole}}, false};
+      return {{{std::chrono::nanoseconds{nanoseconds(fault.delay_s)}, whole}}, false};
     case FaultKind::dripped_reply:
       return dripped(whole, fault.interval_s);
     case FaultKind::cut_reply:

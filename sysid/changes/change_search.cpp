@@ -19,7 +19,7 @@ constexpr double alike_share = 0.01, alike_per_bin = 0.05, alike_numbers = 3;
 /// and a lag at most 1.6 % less than a line; a loop that relaxes takes 13 % more than a lag, and that at
 /// most 3.3 % less than the loop (20261218).
 constexpr double contained_share = 0.025;
-constexpr double block_s = 5;
+constexpr double drawn_block_s = 5;
 constexpr int draws = 500;
 
 double beyond_chance(const ScoredEffect& scored) {
@@ -107,7 +107,7 @@ std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings, const st
 }
 
 std::vector<std::size_t> blocks_of(const LaterReadings& readings) {
-  const auto per_block = static_cast<std::size_t>(std::max(1.0, block_s / readings.base().bin_s));
+  const auto per_block = static_cast<std::size_t>(std::max(1.0, drawn_block_s / readings.base().bin_s));
   std::vector<std::size_t> blocks;
   const std::vector<WhiteRows::Row>& rows = readings.rows().rows();
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -8,38 +8,38 @@
 namespace softgrip::sysid {
 namespace {
 
-using Series = std::vector<double>;
+using Values = std::vector<double>;
 
 /// A valve may follow at once; where its pressure is not recorded, the finger's own lag goes on top.
 constexpr std::array valve_lags_s{0.0, 0.015, 0.03, 0.06, 0.12, 0.25, 0.5, 1.0, 2.0};
 constexpr std::array finger_lags_s{0.02, 0.06, 0.2, 0.6, 2.0, 6.0, 20.0, 60.0};
 
 template <class F>
-Series each(const Series& x, F&& f) {
-  Series y(x.size());
+Values each(const Values& x, F&& f) {
+  Values y(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) y[i] = f(i, x[i]);
   return y;
 }
 
-Series play(const Series& x, double threshold) {
+Values play(const Values& x, double threshold) {
   double z = 0;
   return each(x, [&](std::size_t, double v) { return z = std::clamp(z, v - threshold, v + threshold); });
 }
 
 /// kPa per tenth of a second.
-Series rate(const Record& record, const Series& x) {
+Values rate(const Record& record, const Values& x) {
   return each(x, [&](std::size_t i, double v) {
     return i > 0 && record.duration_s[i] > 0 ? 0.1 * (v - x[i - 1]) / record.duration_s[i] : 0;
   });
 }
 
-std::vector<Series> valve_signals(const Record& record, const Series& u, double largest_kpa) {
-  const Series rising = rate(record, u);
-  const Series behind = lagged(record, u, 0.05);
+std::vector<Values> valve_signals(const Record& record, const Values& u, double largest_kpa) {
+  const Values rising = rate(record, u);
+  const Values behind = lagged(record, u, 0.05);
   const auto share = [&](double v) { return v / largest_kpa; };
-  const Series miss = each(u, [&](std::size_t i, double v) { return v - behind[i]; });
+  const Values miss = each(u, [&](std::size_t i, double v) { return v - behind[i]; });
   const auto within = [](double v, double bound) { return std::clamp(v, -bound, bound); };
-  std::vector<Series> all{u, play(u, 0.0025 * largest_kpa)};
+  std::vector<Values> all{u, play(u, 0.0025 * largest_kpa)};
   all.push_back(each(u, [&](std::size_t, double v) { return v * share(v); }));
   all.push_back(each(u, [&](std::size_t, double v) { return v * share(v) * share(v); }));
   all.push_back(each(rising, [](std::size_t, double v) { return std::max(v, 0.0); }));
@@ -61,11 +61,11 @@ std::vector<Series> valve_signals(const Record& record, const Series& u, double 
   return all;
 }
 
-std::vector<Series> finger_signals(const Series& u, double largest_kpa) {
-  const auto squared = [&](const Series& x) {
+std::vector<Values> finger_signals(const Values& u, double largest_kpa) {
+  const auto squared = [&](const Values& x) {
     return each(x, [&](std::size_t, double v) { return v * v / largest_kpa; });
   };
-  std::vector<Series> all{u, squared(u)};
+  std::vector<Values> all{u, squared(u)};
   all.push_back(each(u, [&](std::size_t, double v) { return v * v * v / (largest_kpa * largest_kpa); }));
   for (const double part : {0.02, 0.06, 0.12, 0.22, 0.35, 0.5}) {
     all.push_back(play(u, part * largest_kpa));
@@ -75,13 +75,14 @@ std::vector<Series> finger_signals(const Series& u, double largest_kpa) {
 }
 
 /// Signals, and the time constants by which each of them is filtered.
-struct Bank {
-  std::vector<Series> signals;
+struct SignalBank {
+  std::vector<Values> signals;
   std::span<const double> lags_s;
 };
 
-std::vector<Bank> banks(const Record& record, const Series& drive_kpa, EchoKind kind, double largest_kpa) {
-  std::vector<Bank> all;
+std::vector<SignalBank> banks(const Record& record, const Values& drive_kpa, EchoKind kind,
+                              double largest_kpa) {
+  std::vector<SignalBank> all;
   if (kind != EchoKind::valve) all.push_back({finger_signals(drive_kpa, largest_kpa), finger_lags_s});
   if (kind != EchoKind::finger)
     all.push_back({valve_signals(record, drive_kpa, largest_kpa),
@@ -109,15 +110,15 @@ std::vector<double> lagged(const Record& record, const std::vector<double>& sign
 
 Eigen::MatrixXd echo_columns(const Record& record, const std::vector<double>& drive_kpa, EchoKind kind,
                              double largest_kpa) {
-  const std::vector<Bank> all = banks(record, drive_kpa, kind, largest_kpa);
+  const std::vector<SignalBank> all = banks(record, drive_kpa, kind, largest_kpa);
   std::size_t count = 0;
-  for (const Bank& bank : all) count += bank.signals.size() * bank.lags_s.size();
+  for (const SignalBank& bank : all) count += bank.signals.size() * bank.lags_s.size();
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(record.size()), static_cast<Eigen::Index>(count));
   Eigen::Index column = 0;
-  for (const Bank& bank : all) {
-    for (const Series& signal : bank.signals) {
+  for (const SignalBank& bank : all) {
+    for (const Values& signal : bank.signals) {
       for (const double lag_s : bank.lags_s) {
-        const Series filtered = lagged(record, signal, lag_s);
+        const Values filtered = lagged(record, signal, lag_s);
         columns.col(column++) = Eigen::Map<const Eigen::VectorXd>(filtered.data(), columns.rows());
       }
     }
@@ -129,15 +130,15 @@ Eigen::VectorXd weighted_echo(const Record& record, const std::vector<double>& d
                               double largest_kpa, const Eigen::VectorXd& weights) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size()));
   Eigen::Index first = 0;
-  for (const Bank& bank : banks(record, drive_kpa, kind, largest_kpa)) {
+  for (const SignalBank& bank : banks(record, drive_kpa, kind, largest_kpa)) {
     const auto lags = static_cast<Eigen::Index>(bank.lags_s.size());
     for (Eigen::Index l = 0; l < lags; ++l) {
-      Series mixed(record.size(), 0.0);
+      Values mixed(record.size(), 0.0);
       for (std::size_t s = 0; s < bank.signals.size(); ++s) {
         const double weight = weights(first + static_cast<Eigen::Index>(s) * lags + l);
         for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] += weight * bank.signals[s][i];
       }
-      const Series filtered = lagged(record, mixed, bank.lags_s[static_cast<std::size_t>(l)]);
+      const Values filtered = lagged(record, mixed, bank.lags_s[static_cast<std::size_t>(l)]);
       sum += Eigen::Map<const Eigen::VectorXd>(filtered.data(), sum.size());
     }
     first += static_cast<Eigen::Index>(bank.signals.size()) * lags;

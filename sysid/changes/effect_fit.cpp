@@ -11,7 +11,7 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr int most_steps = 9;
+constexpr int most_effect_steps = 9;
 constexpr std::size_t followed = 2;
 /// Of the sum of all curvatures, in what numbers are counted in.
 constexpr double least_curvature = 0.01;
@@ -65,7 +65,7 @@ class Fit {
   [[nodiscard]] EffectFit descend(EffectFit best) const {
     const auto n = static_cast<Eigen::Index>(effect_.numbers.size());
     double damping = 1e-2;
-    for (int step = 0; step < most_steps && n > 0; ++step) {
+    for (int step = 0; step < most_effect_steps && n > 0; ++step) {
       Eigen::MatrixXd jacobian(best.white.size(), n);
       for (Eigen::Index k = 0; k < n; ++k) jacobian.col(k) = derivative(best, static_cast<std::size_t>(k));
       const Eigen::VectorXd gradient = jacobian.transpose() * best.white;

@@ -13,7 +13,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr Eigen::Index numbers = 8;
-constexpr int most_steps = 15;
+constexpr int most_regulator_steps = 15;
 /// Of the logarithms: a difference for a derivative, the longest move of a step.
 constexpr double beside_by = 0.03, longest_move = 1.5;
 constexpr double least_progress = 0.003;
@@ -36,9 +36,9 @@ Regulator regulator_at(const Eigen::VectorXd& t, double largest_kpa) {
 }
 
 /// The readings in bins, and what a finger behind a regulator could read.
-class Bank {
+class BinnedReadings {
  public:
-  Bank(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)
+  BinnedReadings(const std::vector<Record>& records, double largest_kpa, ReadBy read_by)
       : largest_kpa_(largest_kpa), read_by_(read_by) {
     for (const Record& record : records) {
       const double interval_s = read_by == ReadBy::gauge ? 0.01 : 0.02;
@@ -103,7 +103,7 @@ class Bank {
 }  // namespace
 
 Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa, ReadBy read_by) {
-  const Bank bank(records, largest_kpa, read_by);
+  const BinnedReadings bank(records, largest_kpa, read_by);
   Eigen::VectorXd at = Eigen::VectorXd::Zero(numbers);
   const double price = std::sqrt(prior_share) * bank.left_by(regulator_at(at, largest_kpa)).norm();
   const auto left_at = [&](const Eigen::VectorXd& t) {
@@ -114,7 +114,7 @@ Regulator fit_regulator(const std::vector<Record>& records, double largest_kpa, 
   };
   Eigen::VectorXd left = left_at(at);
   double damping = 1e-2;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < most_regulator_steps; ++step) {
     Eigen::MatrixXd jacobian(left.size(), numbers);
     for (Eigen::Index k = 0; k < numbers; ++k) {
       Eigen::VectorXd beside = at;

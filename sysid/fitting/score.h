@@ -9,6 +9,9 @@
 
 namespace softgrip::sysid {
 
+/// Above this share of the span a prediction is bad, whatever the noise.
+inline constexpr double bad_percent = 10;
+
 /// A prediction and its errors. Errors are reading minus prediction.
 struct Score {
   std::string name;

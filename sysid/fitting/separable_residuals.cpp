@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/separable.h"
 
@@ -57,13 +58,12 @@ class Writer final : public SeparableRecord::Sink {
   Writer(const Eigen::MatrixXd& map, double* r, double* jacobian) : map_(map), r_(r), jacobian_(jacobian) {}
 
   void block(const Eigen::Ref<const Eigen::MatrixXd>& rows) override {
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     if (r_ != nullptr) {
       Eigen::Map<Eigen::VectorXd>(r_, rows.rows()) = rows.col(rows.cols() - 1);
       r_ += rows.rows();
     }
     if (jacobian_ != nullptr) {
-      Eigen::Map<RowMajor>(jacobian_, rows.rows(), map_.cols()).noalias() =
+      Eigen::Map<Jacobian>(jacobian_, rows.rows(), map_.cols()).noalias() =
           rows.leftCols(rows.cols() - 1) * map_;
       jacobian_ += rows.rows() * map_.cols();
     }

@@ -15,8 +15,6 @@ namespace {
 /// Residuals no larger than this many times the sample-to-sample noise, or hardly correlated, are noise.
 constexpr double noise_factor = 1.3;
 constexpr double hardly_correlated = 0.3;
-/// Above this share of the span a fit is bad whatever the noise.
-constexpr double bad_percent = 10;
 
 double largest_percent(const Identification& r) {
   double largest = 0;

@@ -10,27 +10,27 @@
 
 #include "base/statistics.h"
 #include "sysid/fitting/bounded_solve.h"
+#include "sysid/fitting/jacobian.h"
 
 namespace softgrip::sysid {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Products of the correlated noise's covariance C with the Jacobian, record by record. With A the whitening
 /// filter of the autoregressive model, C = s^2 (A'A)^-1: C J is s^2 times J run backwards and then forwards
 /// through 1/A.
 class CorrelatedNoise {
  public:
-  CorrelatedNoise(const RowMajor& jacobian, const std::vector<std::size_t>& rows)
+  CorrelatedNoise(const Jacobian& jacobian, const std::vector<std::size_t>& rows)
       : jacobian_(jacobian), rows_(rows) {}
 
   /// J' C J
   [[nodiscard]] MatrixXd product(const NoiseModel& noise) const {
     MatrixXd sum = MatrixXd::Zero(jacobian_.cols(), jacobian_.cols());
     for_each_record([&](Index first, Index count) {
-      const RowMajor x = backwards(jacobian_.middleRows(first, count), noise);
+      const Jacobian x = backwards(jacobian_.middleRows(first, count), noise);
       sum.noalias() += x.transpose() * x;
     });
     return noise.innovation_mm * noise.innovation_mm * sum;
@@ -44,9 +44,9 @@ class CorrelatedNoise {
     const MatrixXd both = inverse * meat * inverse;
     for_each_record([&](Index first, Index count) {
       const auto j = jacobian_.middleRows(first, count);
-      const RowMajor cj = s2 * forwards(backwards(j, noise), noise);
-      const RowMajor jm = j * inverse;
-      const RowMajor jk = j * both;
+      const Jacobian cj = s2 * forwards(backwards(j, noise), noise);
+      const Jacobian jm = j * inverse;
+      const Jacobian jk = j * both;
       for (std::size_t lag = 0; lag < covariance.lags.size(); ++lag) {
         const Index n = count - static_cast<Index>(lag);
         if (n <= 0) break;
@@ -67,7 +67,7 @@ class CorrelatedNoise {
       first += static_cast<Index>(count);
     }
   }
-  static RowMajor backwards(RowMajor x, const NoiseModel& noise) {
+  static Jacobian backwards(Jacobian x, const NoiseModel& noise) {
     const auto order = static_cast<Index>(noise.coefficients.size());
     for (Index t = x.rows(); t-- > 0;) {
       const Index reach = std::min(order, x.rows() - 1 - t);
@@ -77,7 +77,7 @@ class CorrelatedNoise {
     }
     return x;
   }
-  static RowMajor forwards(RowMajor x, const NoiseModel& noise) {
+  static Jacobian forwards(Jacobian x, const NoiseModel& noise) {
     const auto order = static_cast<Index>(noise.coefficients.size());
     for (Index t = 0; t < x.rows(); ++t) {
       const Index reach = std::min(order, t);
@@ -88,7 +88,7 @@ class CorrelatedNoise {
     return x;
   }
 
-  const RowMajor& jacobian_;
+  const Jacobian& jacobian_;
   const std::vector<std::size_t>& rows_;
 };
 
@@ -139,13 +139,13 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
                 {},
                 1.96,
                 {}};
-  RowMajor jacobian(static_cast<Index>(rows), n);
+  Jacobian jacobian(static_cast<Index>(rows), n);
   std::vector<double> r(rows);
   if (!residuals.evaluate(z, r, {jacobian.data(), rows * z.size()})) return u;
 
   // Where Huber's loss is linear a sample pulls with constant force and has no curvature.
   double curved = 0;
-  RowMajor bread = jacobian;
+  Jacobian bread = jacobian;
   for (std::size_t i = 0; i < rows; ++i) {
     if (std::abs(r[i]) <= huber_mm) {
       ++curved;
@@ -183,7 +183,7 @@ Uncertainty uncertainty_at(const Residuals& residuals, const std::vector<double>
   const MatrixXd inverse = scale.asDiagonal() *
                            scaled.ldlt().solve(MatrixXd::Identity(gram.rows(), gram.cols())).eval() *
                            scale.asDiagonal();
-  RowMajor columns(jacobian.rows(), static_cast<Index>(keep.size()));
+  Jacobian columns(jacobian.rows(), static_cast<Index>(keep.size()));
   for (std::size_t i = 0; i < keep.size(); ++i) columns.col(static_cast<Index>(i)) = jacobian.col(keep[i]);
   const CorrelatedNoise correlated(columns, counts);
   MatrixXd meat = correlated.product(u.noise);

@@ -15,9 +15,8 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Below this share of the span a prediction is good, above the other it is bad.
+/// Below this share of the span a prediction is good.
 constexpr double good_percent = 2;
-constexpr double bad_percent = 10;
 
 double largest_percent(const Validation& v) {
   double largest = 0;

@@ -12,9 +12,9 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double longest_s = 1e9;
-constexpr std::size_t most_bytes = std::size_t{64} * 1024;
+constexpr std::size_t most_mapping_bytes = std::size_t{64} * 1024;
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -29,13 +29,13 @@ std::string quoted(std::string_view text) {
 
 std::string list_of(const std::vector<std::string>& words) {
   std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + quoted(word);
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + in_quotes(word);
   return "[" + list + "]";
 }
 
 std::string column_yaml(const ColumnMapping& column) {
   std::string text = "{columns: " + list_of(column.columns);
-  if (!column.unit.empty()) text += ", unit: " + quoted(column.unit);
+  if (!column.unit.empty()) text += ", unit: " + in_quotes(column.unit);
   if (column.scale) text += ", scale: " + shortest(*column.scale);
   if (column.zero) text += ", zero: " + shortest(*column.zero);
   if (column.zero_first) text += ", zero: first";
@@ -123,7 +123,7 @@ std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, con
   if (mapping.separator != 0)
     text += "separator: " + std::string(word_of_separator(mapping.separator)) + "\n";
   if (!mapping.missing.empty()) text += "missing: " + list_of(mapping.missing) + "\n";
-  if (!mapping.channel.empty()) text += "channel: " + quoted(mapping.channel) + "\n";
+  if (!mapping.channel.empty()) text += "channel: " + in_quotes(mapping.channel) + "\n";
   if (mapping.from_s > 0) text += "from_s: " + shortest(mapping.from_s) + "\n";
   if (std::isfinite(mapping.to_s)) text += "to_s: " + shortest(mapping.to_s) + "\n";
   return text;
@@ -140,7 +140,7 @@ std::optional<Mapping> parse_mapping(const std::string& file, const std::string&
 }
 
 std::optional<Mapping> read_mapping(const std::string& path, document::Problems& problems) {
-  const auto text = read_file(path, most_bytes);
+  const auto text = read_file(path, most_mapping_bytes);
   if (text) return parse_mapping(path, *text, problems);
   problems.add({path, {1, 1}, {}, text.error(), {}});
   return std::nullopt;

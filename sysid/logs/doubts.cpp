@@ -8,15 +8,14 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "sysid/logs/extent.h"
 #include "sysid/logs/unit_factors.h"
 
 namespace softgrip::sysid {
 namespace {
 
 // A soft finger moves at 20 to 60 kPa by some 10 mm; beyond these a unit was probably mistaken.
-constexpr double small_pressure_kpa = 2;
 constexpr double large_pressure_kpa = 1000;
-constexpr double small_displacement_mm = 0.1;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
@@ -29,21 +28,6 @@ PairSums sums_of(const std::vector<double>& x, const std::vector<double>& y) {
   PairSums sums;
   for (std::size_t i = 0; i < x.size() && i < y.size(); ++i) sums.add(x[i], y[i]);
   return sums;
-}
-
-struct Extent {
-  double lowest = 0, highest = 0;
-  [[nodiscard]] double width() const { return highest - lowest; }
-};
-std::optional<Extent> extent_of(const std::vector<double>& values) {
-  std::optional<Extent> extent;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    if (!extent) extent = Extent{value, value};
-    extent->lowest = std::min(extent->lowest, value);
-    extent->highest = std::max(extent->highest, value);
-  }
-  return extent;
 }
 
 /// Samples by which the increments of `later` follow those of `earlier` best; negative: it comes first.

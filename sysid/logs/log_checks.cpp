@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/numbers.h"
+#include "sysid/logs/extent.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -19,31 +20,12 @@ constexpr std::size_t fewest_command_samples = 2;
 constexpr double largest_pressure_kpa = 5000;
 constexpr double largest_displacement_mm = 5000;
 constexpr double longest_median_interval_s = 5;
-/// Below these it probably was.
-constexpr double small_pressure_kpa = 2;
-constexpr double small_displacement_mm = 0.1;
 /// A hole: longer than this, and than this many usual intervals, while the command changed unseen.
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;
 /// Shares of all samples.
 constexpr double missing_share_refused = 0.2;
-
-struct Extent {
-  double lowest = 0;
-  double highest = 0;
-  [[nodiscard]] double width() const { return highest - lowest; }
-};
-
-Extent extent_of(const std::vector<double>& values) {
-  Extent extent{1e300, -1e300};
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    extent.lowest = std::min(extent.lowest, value);
-    extent.highest = std::max(extent.highest, value);
-  }
-  return extent.highest < extent.lowest ? Extent{} : extent;
-}
 
 std::string percent(double share) {
   return fixed(100 * share, 1) + " %";
@@ -53,7 +35,10 @@ std::string percent(double share) {
 class Check {
  public:
   Check(Log& log, const LogSource& source, Problems& problems)
-      : log_(log), source_(source), problems_(problems), command_(extent_of(log.pressure_command_kpa)) {}
+      : log_(log),
+        source_(source),
+        problems_(problems),
+        command_(extent_of(log.pressure_command_kpa).value_or(Extent{})) {}
 
   void run(const LogOptions& options) {
     const std::size_t fewest = options.need_readings ? fewest_samples : fewest_command_samples;
@@ -207,7 +192,7 @@ class Check {
 
   /// Readings that stay on the extreme value while the command moves on: the sensor or the board clips.
   void clipping(double share_refused) {
-    const Extent reading = extent_of(log_.displacement_mm);
+    const Extent reading = extent_of(log_.displacement_mm).value_or(Extent{});
     if (reading.width() <= 0) return;
     std::size_t clipped = 0;
     std::size_t first = log_.size();

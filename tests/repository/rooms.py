@@ -20,8 +20,7 @@ def rooms():
     text = re.sub(r"#.*", "", (source / "cmake/rooms.cmake").read_text())
     found = []
     for call in re.findall(r"softgrip_room\(([^)]*)\)", text):
-        words, key, lists = call.split(), "FOLDER", {"FOLDER": [], "FOLDERS": [], "USES": [], "LIBRARIES": [], "PRECOMPILE": [],
-                                                    "APART": []}
+        words, key, lists = call.split(), "FOLDER", {"FOLDER": [], "FOLDERS": [], "USES": [], "LIBRARIES": [], "PRECOMPILE": []}
         for word in words:
             if word in lists:
                 key = word

@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr char escape = '\x1b';
+constexpr char escape_key = '\x1b';
 constexpr char end_of_transmission = '\x04';
 constexpr char erase_line = '\x15';
 constexpr char backspace = '\b';
@@ -49,7 +49,7 @@ void KeyDialogue::ask(Json request, std::string question, double time_s) {
 KeyDialogue::Outcome KeyDialogue::take(std::string_view typed, double time_s, const std::string& ran) {
   lapse(time_s);
   // Escape alone is a key of its own; with something behind it, it is an arrow or a function key.
-  if (typed.size() > 1 && typed.front() == escape) return {};
+  if (typed.size() > 1 && typed.front() == escape_key) return {};
   for (const char one : typed) {
     const Waiting before = waiting_;
     Outcome outcome = key(one, time_s, ran);
@@ -99,7 +99,7 @@ KeyDialogue::Outcome KeyDialogue::name_key(char key, double time_s) {
     if (!name.empty()) {
       ask({{"command", "start"}, {"sequence", name}}, "Start " + name + "? The fingers will move.", time_s);
     }
-  } else if (key == escape || key == end_of_transmission) {
+  } else if (key == escape_key || key == end_of_transmission) {
     waiting_ = Waiting::for_a_key;
   } else if (key == backspace || key == delete_key) {
     if (!name_.empty()) name_.pop_back();

@@ -17,7 +17,7 @@ const CLI::App& innermost(const CLI::App& program) {
   return chosen.empty() ? program : innermost(*chosen.front());
 }
 
-std::vector<std::string> commands_of(const CLI::App& app) {
+std::vector<std::string> command_names_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     names.push_back(command->get_name());
@@ -40,7 +40,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 
 /// The first word that should have been a command, or empty.
 std::string unknown_command(const CLI::App& program, int argc, char** argv) {
-  if (commands_of(program).empty() || !program.get_subcommands().empty()) return {};
+  if (command_names_of(program).empty() || !program.get_subcommands().empty()) return {};
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (!word.starts_with('-')) return word;
@@ -56,7 +56,7 @@ int end_of(const CLI::App& program, const CLI::ParseError& error, int argc, char
   if (error.get_name() == "RuntimeError") return error.get_exit_code();
   if (const std::string word = unknown_command(program, argc, argv);
       !word.empty() && error.get_exit_code() != 0) {
-    const std::string hint = did_you_mean(word, commands_of(program));
+    const std::string hint = did_you_mean(word, command_names_of(program));
     std::fprintf(stderr, "%s: there is no command `%s`%s%s\nRun with --help for more information.\n",
                  program.get_name().c_str(), document::shown(word).c_str(), hint.empty() ? "" : "; ",
                  hint.c_str());

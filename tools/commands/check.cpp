@@ -34,7 +34,7 @@ nlohmann::ordered_json to_json(const document::Problem& problem, const char* sev
   return json;
 }
 
-void print_json(const rig::CheckReport& report) {
+void print_report_json(const rig::CheckReport& report) {
   nlohmann::ordered_json json;
   json["accepted"] = report.accepted();
   json["files"] = nlohmann::ordered_json::array();
@@ -55,7 +55,7 @@ void print_json(const rig::CheckReport& report) {
   std::printf("%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
-void print_text(const rig::CheckReport& report) {
+void print_report_text(const rig::CheckReport& report) {
   std::fputs(report.problems.format().c_str(), stderr);
   for (const rig::CheckedFile& file : report.files) {
     std::printf("%s: %s", document::shown(file.path, 400).c_str(),
@@ -77,7 +77,7 @@ ExitCode run(const CheckOptions& options) {
   const auto arguments = arguments_of(options.settings);
   if (!arguments) return arguments.error();
   const rig::CheckReport report = rig::check_files(options.files, *arguments);
-  options.json ? print_json(report) : print_text(report);
+  options.json ? print_report_json(report) : print_report_text(report);
   const bool all_there = std::all_of(options.files.begin(), options.files.end(), [](const std::string& path) {
     return ::access(path.c_str(), R_OK) == 0;
   });

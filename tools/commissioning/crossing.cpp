@@ -12,7 +12,7 @@
 namespace softgrip::tools::doctor {
 namespace {
 
-using Kind = Crossing::Kind;
+using CrossingKind = Crossing::Kind;
 
 /// A monitor has followed a valve when it rose by at least this share of the step.
 constexpr double share_of_step = 0.5;
@@ -71,14 +71,14 @@ std::vector<std::vector<std::size_t>> circles_of(const Shown& shown) {
   return circles;
 }
 
-std::string terminal(const rig::RigFile& rig, Kind kind, std::size_t channel) {
+std::string terminal(const rig::RigFile& rig, CrossingKind kind, std::size_t channel) {
   const drivers::ChannelWiring& wiring = rig.wiring[channel];
   const bool many = std::any_of(rig.wiring.begin(), rig.wiring.end(), [](const auto& other) {
     return other.valve.module > 0 || other.displacement.module > 0;
   });
-  const bool valve = kind == Kind::valves;
+  const bool valve = kind == CrossingKind::valves;
   const drivers::InputWiring& input =
-      kind == Kind::monitors && wiring.pressure ? *wiring.pressure : wiring.displacement;
+      kind == CrossingKind::monitors && wiring.pressure ? *wiring.pressure : wiring.displacement;
   const std::size_t number = valve ? wiring.valve.output : input.input;
   const std::size_t module = valve ? wiring.valve.module : input.module;
   return fmt::format("{} {}{}", valve ? "output" : "input", number,
@@ -100,18 +100,20 @@ std::vector<Crossing> find_crossings(const rig::RigFile& rig, std::span<const Ch
   };
   std::vector<Crossing> crossings;
   for (const auto& circle : sensors) {
-    crossings.push_back({holds(monitors, circle) ? Kind::valves : Kind::sensors, circle});
+    crossings.push_back({holds(monitors, circle) ? CrossingKind::valves : CrossingKind::sensors, circle});
   }
   for (const auto& circle : monitors) {
-    if (!holds(sensors, circle)) crossings.push_back({Kind::monitors, circle});
+    if (!holds(sensors, circle)) crossings.push_back({CrossingKind::monitors, circle});
   }
   return crossings;
 }
 
 void tell_crossings(const rig::RigFile& rig, std::span<const Crossing> crossings, Findings& findings) {
   for (const Crossing& crossing : crossings) {
-    const bool valves = crossing.kind == Kind::valves;
-    const char* const key = valves ? "valve" : crossing.kind == Kind::sensors ? "sensor" : "pressure_monitor";
+    const bool valves = crossing.kind == CrossingKind::valves;
+    const char* const key = valves                                   ? "valve"
+                            : crossing.kind == CrossingKind::sensors ? "sensor"
+                                                                     : "pressure_monitor";
     std::string names;
     std::string shown;
     std::string terminals;
@@ -130,7 +132,9 @@ void tell_crossings(const rig::RigFile& rig, std::span<const Crossing> crossings
                                       : ", ",
                                terminal(rig, crossing.kind, channel), name);
     }
-    const char* const what = valves ? "valves " : crossing.kind == Kind::sensors ? "sensors " : "monitors ";
+    const char* const what = valves                                   ? "valves "
+                             : crossing.kind == CrossingKind::sensors ? "sensors "
+                                                                      : "monitors ";
     findings.fail(
         what + names, "crossed: " + shown,
         fmt::format("swap {}: their wires at the board, or their numbers under `{}` in the rig file{}",
@@ -138,7 +142,7 @@ void tell_crossings(const rig::RigFile& rig, std::span<const Crossing> crossings
   }
 }
 
-bool is_crossed(std::span<const Crossing> crossings, Kind kind, std::size_t channel) {
+bool is_crossed(std::span<const Crossing> crossings, CrossingKind kind, std::size_t channel) {
   return std::any_of(crossings.begin(), crossings.end(), [&](const Crossing& crossing) {
     return crossing.kind == kind &&
            std::find(crossing.channels.begin(), crossing.channels.end(), channel) != crossing.channels.end();

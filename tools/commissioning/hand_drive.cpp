@@ -13,7 +13,7 @@ namespace softgrip::tools {
 namespace {
 
 using drivers::BusStatus;
-using Kind = DriveFailure::Kind;
+using FailureKind = DriveFailure::Kind;
 
 /// How long the board may take to confirm that everything is down, beyond the way there.
 constexpr double confirmation_s = 1;
@@ -92,7 +92,7 @@ HandDrive::Expected<void> HandDrive::connect() {
   if (connected_) return {};
   const std::string detail = board_.detail();
   return tl::unexpected(DriveFailure{
-      Kind::bus, board_.describe() + ": " + (detail.empty() ? drivers::name_of(status) : detail)});
+      FailureKind::bus, board_.describe() + ": " + (detail.empty() ? drivers::name_of(status) : detail)});
 }
 
 BusStatus HandDrive::exchange() noexcept {
@@ -112,7 +112,7 @@ BusStatus HandDrive::exchange() noexcept {
 
 /// Waits for the next point of the grid, exchanges, and judges what it means to go on.
 HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
-  if (pace_.stopped()) return tl::unexpected(DriveFailure{Kind::stopped, "stopped by the user"});
+  if (pace_.stopped()) return tl::unexpected(DriveFailure{FailureKind::stopped, "stopped by the user"});
   const Nanoseconds now = pace_.now();
   due_ = due_ == 0 || now > due_ + period_ ? now : due_ + period_;
   pace_.sleep_until(due_);
@@ -129,7 +129,7 @@ HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
   failures_ += 1 + static_cast<std::uint32_t>((pace_.now() - began) / period_);
   if (!said_by_board && failures_ < patience) return {};
   const std::string detail = board_.detail();
-  return tl::unexpected(DriveFailure{Kind::bus, detail.empty() ? drivers::name_of(status) : detail});
+  return tl::unexpected(DriveFailure{FailureKind::bus, detail.empty() ? drivers::name_of(status) : detail});
 }
 
 HandDrive::Expected<std::vector<ChannelSample>> HandDrive::sample(double duration_s, const Watch& watch) {
@@ -165,7 +165,8 @@ std::optional<DriveFailure> HandDrive::beyond() const {
     const control::ChannelSettings& channel = rig_.settings.channels[i];
     const bool seen = channel.displacement_used && readings_[i].validity == model::Validity::valid;
     if (!seen || !control::displacement_beyond(channel.limits, readings_[i].displacement_mm)) continue;
-    return DriveFailure{Kind::beyond, "the finger `" + channel.name + "` left its displacement limits"};
+    return DriveFailure{FailureKind::beyond,
+                        "the finger `" + channel.name + "` left its displacement limits"};
   }
   return std::nullopt;
 }

@@ -18,7 +18,7 @@ constexpr double noises = 6;
 /// ... and at least this share of what its model moved.
 constexpr double share_of_model = 0.2;
 /// A monitor may differ from the command by this share of the step: linearity of ordinary valves and boards.
-constexpr double share_of_step = 0.1;
+constexpr double allowed_share_of_step = 0.1;
 /// The step must be so large that the valve's uncontrollable bottom is left behind.
 constexpr double pressure_floor_kpa = 1;
 
@@ -140,7 +140,7 @@ bool judge_valve(const control::ChannelSettings& of, const Sample& monitor, doub
   const double step_kpa = command_kpa - of.limits.pressure_min_kpa;
   const std::string text =
       fmt::format("{:.2f} kPa were asked for, the monitor shows {:.2f}", command_kpa, monitor.mean);
-  const double allowed_kpa = std::max(share_of_step * step_kpa, pressure_floor_kpa);
+  const double allowed_kpa = std::max(allowed_share_of_step * step_kpa, pressure_floor_kpa);
   const bool follows = std::abs(monitor.mean - command_kpa) <= allowed_kpa;
   if (follows) {
     findings.ok("valve " + of.name, text);

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 /// A start may take a second to be planned, and as long as the disk takes.
 constexpr Nanoseconds longest_wait = 8 * ns_per_s;
-constexpr std::size_t longest_name = 128;
+constexpr std::size_t longest_sequence_name = 128;
 constexpr std::size_t most_parameters = 32;
 
 Json failure(std::string_view code, std::string_view message) {
@@ -29,7 +29,7 @@ bool are_parameters(const Json& value) {
 std::string check_start(const Json& body) {
   const auto sequence = body.find("sequence");
   if (sequence == body.end() || !sequence->is_string() || sequence->get<std::string>().empty() ||
-      sequence->get<std::string>().size() > longest_name) {
+      sequence->get<std::string>().size() > longest_sequence_name) {
     return "`sequence` is the name of a sequence";
   }
   const auto parameters = body.find("parameters");

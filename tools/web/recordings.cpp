@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_name = 128;
+constexpr std::size_t longest_file_name = 128;
 constexpr std::size_t most_files = 50;
 
 struct Kind {
@@ -62,7 +62,7 @@ bool is_plain_name(std::string_view name) {
     return within('a', 'z') || within('A', 'Z') || within('0', '9') || character == '-' || character == '_' ||
            character == '.';
   };
-  return !name.empty() && name.size() <= longest_name && name.front() != '.' &&
+  return !name.empty() && name.size() <= longest_file_name && name.front() != '.' &&
          std::all_of(name.begin(), name.end(), allowed);
 }
 

@@ -15,7 +15,7 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_samples = 12000;
 constexpr std::size_t most_bins = 10;
 constexpr std::size_t fewest_in_bin = 20;
@@ -250,7 +250,7 @@ void describe_bins(const Sums& s, const Binning& binning, const std::vector<doub
       spread += square(s.sum[b * s.bins + k] - bin.mean_mm * count);
     }
     const double deviation = std::sqrt(spread * clusters / std::max(1.0, clusters - 1)) / n;
-    const double half = clusters > 2 ? t_quantile(clusters - 1) * deviation : none;
+    const double half = clusters > 2 ? t_quantile(clusters - 1) * deviation : unknown;
     bin.lower_mm = bin.mean_mm - half;
     bin.upper_mm = bin.mean_mm + half;
   }

@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
 
@@ -19,10 +20,8 @@ constexpr double ridge = 1e-9;
 constexpr double thinned_interval_s = 0.05;
 constexpr FitEffort few_iterations{.most_iterations = 10, .tolerance = 1e-6};
 
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
 /// Every column whitened from row `first` to `last`.
-void whiten(RowMajor& matrix, std::size_t first, std::size_t last, const NoiseModel& noise) {
+void whiten(Jacobian& matrix, std::size_t first, std::size_t last, const NoiseModel& noise) {
   const std::vector<double>& a = noise.coefficients;
   const auto row = [](std::size_t i) { return static_cast<Eigen::Index>(i); };
   for (std::size_t i = last; i-- > first;) {
@@ -38,10 +37,10 @@ std::size_t readings_of(const Record& record) {
 }
 
 /// Jacobian over all readings, whitened record by record; empty where the model is not defined.
-RowMajor whitened_jacobian(const std::vector<Record>& records, const FitSpace& space, const FitPoint& point,
+Jacobian whitened_jacobian(const std::vector<Record>& records, const FitSpace& space, const FitPoint& point,
                            const NoiseModel& noise) {
   const auto residuals = residuals_for(records, space);
-  RowMajor jacobian(static_cast<Eigen::Index>(residuals->count()), static_cast<Eigen::Index>(space.size()));
+  Jacobian jacobian(static_cast<Eigen::Index>(residuals->count()), static_cast<Eigen::Index>(space.size()));
   std::vector<double> r(residuals->count());
   const std::vector<double> z = space.z(point);
   const std::span<double> flat(jacobian.data(), static_cast<std::size_t>(jacobian.size()));
@@ -88,7 +87,7 @@ Hypothesis::Hypothesis(const std::vector<Record>& records, StructureFit fit, con
     : records_(records), fit_(std::move(fit)), noise_(noise) {
   free_ = fitted_indices(fit_.point.model, fit_.causes);
   const FitSpace space(fit_.point.model, records_, free_);
-  const RowMajor jacobian = whitened_jacobian(records_, space, fit_.point, noise_);
+  const Jacobian jacobian = whitened_jacobian(records_, space, fit_.point, noise_);
   const auto keep = static_cast<Eigen::Index>(free_.size());
   information_ = jacobian.size() == 0 ? Eigen::MatrixXd::Zero(keep, keep)
                                       : eliminated(jacobian.transpose() * jacobian, keep);
@@ -110,7 +109,7 @@ double Hypothesis::linear_distance(const Record& record, const std::vector<doubl
 
   const FitSpace space(fit_.point.model, records, free_);
   const FitPoint point{fit_.point.model, rest_starts(fit_.point.model, records)};
-  const RowMajor jacobian = whitened_jacobian(records, space, point, noise_);
+  const Jacobian jacobian = whitened_jacobian(records, space, point, noise_);
   if (jacobian.size() == 0) return norm(white);
   Eigen::MatrixXd information = jacobian.transpose() * jacobian;
   const auto known = static_cast<Eigen::Index>(free_.size());

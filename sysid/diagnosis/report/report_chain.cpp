@@ -15,7 +15,7 @@ namespace {
 
 constexpr int width_px = 760;
 constexpr double gap_px = 24;
-constexpr double line_px = 15;
+constexpr double number_line_px = 15;
 constexpr double ends_px = 24;
 constexpr std::size_t values_shown = 6;
 
@@ -88,7 +88,7 @@ Figure chain_figure(const model::Model& model, const model::Model& given) {
     const std::size_t last = std::min(model.blocks.size(), first + boxes);
     std::size_t lines = 1;
     for (std::size_t i = first; i < last; ++i) lines = std::max(lines, lines_of(model.blocks[i]).size());
-    const double height = 30 + line_px * static_cast<double>(lines);
+    const double height = 30 + number_line_px * static_cast<double>(lines);
     for (std::size_t i = first; i < last; ++i) {
       const model::BlockSpec& block = model.blocks[i];
       const model::BlockDescriptor& descriptor = model::catalogue()[block.type];
@@ -108,7 +108,7 @@ Figure chain_figure(const model::Model& model, const model::Model& given) {
       double y = top + 34;
       for (const std::string& line : lines_of(block)) {
         canvas.words({x + 8, y}, Anchor::start, line);
-        y += line_px;
+        y += number_line_px;
       }
       arrow(canvas, i == first ? 2 : x - gap_px, x, top + height / 2);
       if (i + 1 == last && last == model.blocks.size())

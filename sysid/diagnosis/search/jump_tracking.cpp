@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_landings = 24;
 /// A course that is behind by so much of squared error [in squares of what the resolution makes] is given up.
-constexpr double hopeless = 4000;
+constexpr double hopeless_resolutions = 4000;
 /// Samples without a jump after which courses are compared again.
 constexpr std::size_t look_again = 32;
 /// A jump is resolved well where the command moves by less than this share of the band during its sample.
@@ -81,7 +81,7 @@ class JumpTracker {
     start_mm_.resize(record.size());
     add_start(point.model, record, start, start_mm_);
     const double gain = record.largest_kpa > 0 ? record.span_mm / record.largest_kpa : 1;
-    give_up_mm2_ = hopeless * resolution_kpa * resolution_kpa * gain * gain;
+    give_up_mm2_ = hopeless_resolutions * resolution_kpa * resolution_kpa * gain * gain;
     tracks_.take(first);
   }
 

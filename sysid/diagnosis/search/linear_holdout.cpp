@@ -6,15 +6,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 
 namespace softgrip::sysid {
 namespace {
 
 /// Of the diagonal of the normal matrix.
-constexpr double damping = 1e-3;
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+constexpr double block_damping = 1e-3;
 
 /// Row ranges of a block's readings, and of those too near to it to be fitted.
 struct BlockRows {
@@ -54,7 +53,7 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
   const auto count = static_cast<Eigen::Index>(residuals->count());
   const auto numbers = static_cast<Eigen::Index>(space.size());
   Eigen::VectorXd r(count);
-  RowMajor jacobian(count, numbers);
+  Jacobian jacobian(count, numbers);
   BlockLosses losses(division.blocks.size(), std::numeric_limits<double>::infinity());
   if (!residuals->evaluate(space.z(fit.point), {r.data(), residuals->count()},
                            {jacobian.data(), residuals->count() * space.size()})) {
@@ -77,7 +76,7 @@ BlockLosses linear_held_out_losses(const std::vector<Record>& records, const Div
       normal.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose(), -1);
       right -= part.transpose() * r.segment(from, length);
     }
-    normal.diagonal() += damping * whole.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
+    normal.diagonal() += block_damping * whole.diagonal() + Eigen::VectorXd::Constant(numbers, 1e-12);
     const Eigen::VectorXd step = -normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
     for (std::size_t b = 0; b < rows.size(); ++b) {
       if (division.blocks[b].fold != fold) continue;

@@ -13,17 +13,17 @@
 #include "sysid/diagnosis/search/linear_holdout.h"
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
+#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 
 namespace softgrip::sysid {
 namespace {
 
-constexpr std::size_t fewest_looks = 2;
 /// Candidates that are judged held out: the best looks, and of them those that leave at most so many times
 /// the best one's mean square. A base that has bent itself hides half of a cause, never nearly all.
-constexpr std::size_t finalists = 5;
-constexpr double hopeless = 4;
+constexpr std::size_t most_finalists = 5;
+constexpr double hopeless_ratio = 4;
 /// Of base and cause, each fitted beside the other.
 constexpr int turns = 2;
 constexpr int look_iterations = 15;
@@ -34,10 +34,8 @@ constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
 constexpr double least_inclusion = 0.95;
 /// Causes that a named one does not clearly beat.
 constexpr std::size_t most_undecided = 2;
-/// What a further cause must take, as mean squares beyond the noise: of what the base left, and of what was
-/// left before it. A cause whose law is not quite the finger's leaves a part of itself, and any second block
-/// takes some of that; a second effect is met by its own cause nearly whole.
-constexpr double one_more_share = 0.05;
+/// What a further cause must take of what was left before it, as mean squares beyond the noise: a second
+/// effect is met by its own cause nearly whole.
 constexpr double most_of_the_rest = 0.6;
 constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
 
@@ -55,8 +53,7 @@ class ResidualsBesideBase final : public Residuals {
       values = base_.left_of(values);
     }
     if (!jacobian.empty()) {
-      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      Eigen::Map<RowMajor> slopes(jacobian.data(), rows, static_cast<Eigen::Index>(space().size()));
+      Eigen::Map<Jacobian> slopes(jacobian.data(), rows, static_cast<Eigen::Index>(space().size()));
       slopes = base_.left_of(slopes);
     }
     return true;
@@ -198,9 +195,10 @@ class SelectorUpon {
     const Scan scan(data_.thinned, result_.extended.causes, result_.extended.point);
     const std::vector<std::pair<Cause, Look>> found = looks(scan);
     const auto worse = std::find_if(found.begin(), found.end(), [&](const auto& one) {
-      return one.second.mean_square_mm2 > hopeless * found.front().second.mean_square_mm2;
+      return one.second.mean_square_mm2 > hopeless_ratio * found.front().second.mean_square_mm2;
     });
-    std::vector<ScoredCandidate> scored(std::min(finalists, static_cast<std::size_t>(worse - found.begin())));
+    std::vector<ScoredCandidate> scored(
+        std::min(most_finalists, static_cast<std::size_t>(worse - found.begin())));
     parallel_for(scored.size(), data_.threads, [&](std::size_t i) {
       const auto& [cause, look] = found[i];
       std::vector<Cause> causes = result_.extended.causes;

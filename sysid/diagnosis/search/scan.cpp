@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/catalogue.h"
+#include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
 
@@ -33,7 +34,7 @@ Scan::Scan(const std::vector<Record>& records, const std::vector<Cause>& causes,
   const auto residuals = residuals_for(records_, space_);
   const auto rows = static_cast<Eigen::Index>(residuals->count());
   const auto columns = static_cast<Eigen::Index>(space_.size());
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, columns);
+  Jacobian jacobian(rows, columns);
   residual_.resize(rows);
   usable_ = residuals->evaluate(space_.z(place_), {residual_.data(), residuals->count()},
                                 {jacobian.data(), residuals->count() * space_.size()});

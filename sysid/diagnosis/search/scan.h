@@ -48,6 +48,9 @@ class Scan {
   Eigen::VectorXd left_;      ///< of it
 };
 
+/// Starts of a cause that are looked at.
+inline constexpr std::size_t fewest_looks = 2;
+
 /// The most promising starts of a cause, best first and its free form last: one of every form that the cause
 /// has, since the form with more numbers always promises more, and one from every place, since a base that
 /// was recalibrated to swallow the effect and one that was not lead to different valleys. The next best ones

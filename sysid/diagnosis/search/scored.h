@@ -10,6 +10,11 @@
 
 namespace softgrip::sysid {
 
+/// What one more cause must take of the excess of what stands without any, as a mean square. Less makes up
+/// for the form of an equation that the first cause does not quite have: a finger that softens, ages or bends
+/// by another law than the catalogue's leaves up to some percent, and any second block takes part of that.
+inline constexpr double one_more_share = 0.05;
+
 struct ScoredCandidate {
   Candidate candidate;
   BlockLosses losses;  ///< empty: too far behind to be judged

@@ -18,8 +18,7 @@ namespace {
 constexpr double look_interval_s = 0.0125;
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
-/// Starts that are looked at, and looks that are followed to the end.
-constexpr std::size_t fewest_looks = 2;
+/// Looks that are followed to the end.
 constexpr std::size_t followed = 2;
 /// By what share of the mean square a form with more numbers must be better.
 constexpr double more_numbers_gain = 0.02;

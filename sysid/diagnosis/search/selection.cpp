@@ -15,10 +15,6 @@ namespace {
 
 /// Candidates that are refitted without held-out blocks.
 constexpr std::size_t finalists = 4;
-/// What one more cause must take of the recalibrated model's excess, as a mean square. Less makes up for the
-/// form of an equation that the first cause does not quite have: a finger that softens, ages or bends by
-/// another law than the catalogue's leaves up to some percent, and any second block takes part of that.
-constexpr double one_more_share = 0.05;
 /// A smaller effect must take at least so much, and leave no more than so much of what was left before it:
 /// what makes up for a form does not meet it whole.
 constexpr double small_share = 0.01;

@@ -1,0 +1,23 @@
+#pragma once
+// How far the values of a column reach.
+
+#include <optional>
+#include <vector>
+
+namespace softgrip::sysid {
+
+/// Below these a column is probably in another unit than kPa or mm: a soft finger moves at 20 to 60 kPa by
+/// some 10 mm.
+inline constexpr double small_pressure_kpa = 2;
+inline constexpr double small_displacement_mm = 0.1;
+
+struct Extent {
+  double lowest = 0;
+  double highest = 0;
+  [[nodiscard]] double width() const { return highest - lowest; }
+};
+
+/// Of the values that are finite; none, if none is.
+[[nodiscard]] std::optional<Extent> extent_of(const std::vector<double>& values);
+
+}  // namespace softgrip::sysid
