@@ -5,11 +5,11 @@
 
 namespace softgrip::sysid {
 
-std::optional<Extent> extent_of(const std::vector<double>& values) {
-  std::optional<Extent> extent;
+std::optional<ColumnExtent> extent_of(const std::vector<double>& values) {
+  std::optional<ColumnExtent> extent;
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
-    if (!extent) extent = Extent{value, value};
+    if (!extent) extent = ColumnExtent{value, value};
     extent->lowest = std::min(extent->lowest, value);
     extent->highest = std::max(extent->highest, value);
   }

@@ -11,13 +11,13 @@ namespace softgrip::sysid {
 inline constexpr double small_pressure_kpa = 2;
 inline constexpr double small_displacement_mm = 0.1;
 
-struct Extent {
+struct ColumnExtent {
   double lowest = 0;
   double highest = 0;
   [[nodiscard]] double width() const { return highest - lowest; }
 };
 
 /// Of the values that are finite; none, if none is.
-[[nodiscard]] std::optional<Extent> extent_of(const std::vector<double>& values);
+[[nodiscard]] std::optional<ColumnExtent> extent_of(const std::vector<double>& values);
 
 }  // namespace softgrip::sysid

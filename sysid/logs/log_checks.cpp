@@ -38,7 +38,7 @@ class Check {
       : log_(log),
         source_(source),
         problems_(problems),
-        command_(extent_of(log.pressure_command_kpa).value_or(Extent{})) {}
+        command_(extent_of(log.pressure_command_kpa).value_or(ColumnExtent{})) {}
 
   void run(const LogOptions& options) {
     const std::size_t fewest = options.need_readings ? fewest_samples : fewest_command_samples;
@@ -192,7 +192,7 @@ class Check {
 
   /// Readings that stay on the extreme value while the command moves on: the sensor or the board clips.
   void clipping(double share_refused) {
-    const Extent reading = extent_of(log_.displacement_mm).value_or(Extent{});
+    const ColumnExtent reading = extent_of(log_.displacement_mm).value_or(ColumnExtent{});
     if (reading.width() <= 0) return;
     std::size_t clipped = 0;
     std::size_t first = log_.size();
@@ -232,7 +232,7 @@ class Check {
   Log& log_;
   const LogSource& source_;
   Problems& problems_;
-  Extent command_;
+  ColumnExtent command_;
   Sampling sampling_;
 };
 

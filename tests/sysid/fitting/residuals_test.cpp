@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "model/catalogue.h"
+#include "sysid/fitting/jacobian.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::residuals_test {
@@ -163,8 +164,9 @@ TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
   for (double& u : point.starts[0].unsettled_mm) u = 0.4;
   const std::vector<double> z = space.z(point);
   const std::size_t rows = residuals->count();
-  std::vector<double> jacobian(rows * z.size()), up(rows), down(rows);
-  ASSERT_TRUE(residuals->evaluate(z, {}, jacobian));
+  Jacobian jacobian(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(z.size()));
+  std::vector<double> up(rows), down(rows);
+  ASSERT_TRUE(residuals->evaluate(z, {}, {jacobian.data(), rows * z.size()}));
   for (std::size_t c = 0; c < z.size(); ++c) {
     std::vector<double> moved = z;
     const double step = 1e-6 * std::max(1.0, std::abs(z[c]));
@@ -176,7 +178,8 @@ TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
     double largest = 0;
     for (std::size_t i = 0; i < rows; ++i) {
       const double by_difference = (up[i] - down[i]) / (2 * step);
-      difference = std::max(difference, std::abs(by_difference - jacobian[i * z.size() + c]));
+      difference = std::max(difference, std::abs(by_difference - jacobian(static_cast<Eigen::Index>(i),
+                                                                          static_cast<Eigen::Index>(c))));
       largest = std::max(largest, std::abs(by_difference));
     }
     EXPECT_LT(difference, 2e-3 * largest) << space.free()[c].name;
