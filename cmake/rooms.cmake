@@ -123,7 +123,8 @@ softgrip_room(tools/health
   USES base document model control/elements sysid/logs sysid/pages sysid/fitting sysid/diagnosis/causes sysid/changes
        sysid/diagnosis/experiments tools/recordings
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
-softgrip_room(tools/figures USES base sysid/pages)
+# By itself: librsvg wants -pthread, with which the headers of all rooms were not compiled.
+softgrip_room(tools/figures USES base sysid/pages PRECOMPILE <string> <vector>)
 target_link_libraries(${softgrip_room_target} PRIVATE PkgConfig::librsvg)
 softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
