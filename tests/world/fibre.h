@@ -3,6 +3,7 @@
 
 #include <ucontext.h>
 
+#include <csetjmp>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -30,8 +31,10 @@ class Fibre {
 
   std::function<void()> body_;
   std::unique_ptr<std::byte[]> stack_;
-  ucontext_t own_{};
-  ucontext_t outside_{};
+  ucontext_t start_{};
+  std::jmp_buf inside_{};
+  std::jmp_buf outside_{};
+  bool started_ = false;
   bool done_ = false;
 };
 
