@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/time.h"
+
 namespace softgrip::simulation {
 
 FaultSchedule::FaultSchedule(std::vector<FaultSpec> faults)

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/time.h"
 #include "drivers/modbus/serial_port.h"
 
 namespace softgrip::simulation {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/time.h"
 #include "simulation/emulator/wire.h"
 
 namespace softgrip::simulation {

@@ -3,13 +3,14 @@
 // QEMU's coroutines.
 #include "tests/world/fibre.h"
 
-#include <cstdint>
 #include <utility>
 
 namespace softgrip::world {
 namespace {
 
 constexpr std::size_t stack_bytes = 512 * 1024;
+/// What makecontext() would pass in two numbers of the size of int.
+thread_local Fibre* entered = nullptr;
 
 }  // namespace
 
@@ -19,24 +20,21 @@ Fibre::Fibre(std::function<void()> body)
   start_.uc_stack.ss_sp = stack_.get();
   start_.uc_stack.ss_size = stack_bytes;
   start_.uc_link = nullptr;
-  const auto self = reinterpret_cast<std::uintptr_t>(this);
-  // makecontext() passes numbers of the size of int only.
-  makecontext(&start_, reinterpret_cast<void (*)()>(&Fibre::enter), 2, static_cast<unsigned>(self >> 32U),
-              static_cast<unsigned>(self & 0xffffffffU));
+  makecontext(&start_, &Fibre::enter, 0);
 }
 
-void Fibre::enter(unsigned high, unsigned low) {
-  const auto self = (static_cast<std::uintptr_t>(high) << 32U) | low;
-  auto* fibre = reinterpret_cast<Fibre*>(self);
-  fibre->body_();
-  fibre->done_ = true;
-  for (;;) fibre->give_back();
+void Fibre::enter() {
+  Fibre& fibre = *entered;
+  fibre.body_();
+  fibre.done_ = true;
+  for (;;) fibre.give_back();
 }
 
 void Fibre::resume() {
   if (_setjmp(outside_) != 0) return;
   if (started_) _longjmp(inside_, 1);
   started_ = true;
+  entered = this;
   setcontext(&start_);
 }
 

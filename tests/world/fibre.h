@@ -27,7 +27,7 @@ class Fibre {
   [[nodiscard]] bool done() const noexcept { return done_; }
 
  private:
-  static void enter(unsigned high, unsigned low);
+  static void enter();
 
   std::function<void()> body_;
   std::unique_ptr<std::byte[]> stack_;
