@@ -5,8 +5,10 @@
   scripts/tidy.py daemon tools/rig   these folders or files
 
 What was clean stays clean until the source, a header of the project that it reaches, its compiler command, .clang-tidy
-or clang-tidy's version changes: build/tidy remembers. JOBS and BUILD_DIR (default: all cores, build/release) may be
-set in the environment. Exits 1 on a finding.
+or clang-tidy's version changes: build/tidy remembers. Where the build compiles the files of a room as one and more than
+a few of them are due, clang-tidy looks at them as one, too, a tenth of the time; that each of them includes what it uses
+is then shown by the compiler, one by one. JOBS and BUILD_DIR (default: all cores, build/release) may be set in the
+environment. Exits 1 on a finding.
 """
 
 import concurrent.futures
@@ -23,6 +25,9 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BUILD = ROOT / os.environ.get("BUILD_DIR", "build/release")
 CACHE = ROOT / "build/tidy"
+FEW = 3
+# A test may copy, and sample a curve from 0 to 1 by 0.1.
+OFF_IN_TESTS = "-performance-*", "-clang-analyzer-security.FloatLoopCounter"
 
 
 def sources(places):
@@ -43,13 +48,26 @@ def commands():
                 if word != "-Winvalid-pch" and not word.endswith("cmake_pch.hxx")
                 and not (word == "-include" and words[i + 1].endswith("cmake_pch.hxx"))]
         found[os.path.relpath(entry["file"], ROOT)] = {**entry, "command": shlex.join([*kept, "-Wno-unknown-warning-option"])}
+    rooms = {name: files_of(name) for name in found if "/Unity/" in name}
+    for room, files in rooms.items():
+        for name in files:
+            found[name] = alike(found[room], name)
     # What only another build has, such as a fuzz target, is compiled like its neighbour.
     for name in sources(["."]):
         if name not in found:
             near = max(found, key=lambda other: len(os.path.commonprefix([name, other])))
-            command = found[near]["command"].replace(found[near]["file"], str(ROOT / name))
-            found[name] = {**found[near], "file": str(ROOT / name), "command": command}
-    return found
+            found[name] = alike(found[near], name)
+    return found, rooms
+
+
+def files_of(room):
+    """What a file that CMake made of a room's files includes."""
+    included = re.findall(r'^#include "([^"]+)"', (ROOT / room).read_text(), re.MULTILINE)
+    return [os.path.relpath(name, ROOT) for name in included]
+
+
+def alike(entry, name):
+    return {**entry, "file": str(ROOT / name), "command": entry["command"].replace(entry["file"], str(ROOT / name))}
 
 
 class Keys:
@@ -59,7 +77,7 @@ class Keys:
         self.commands = found
         self.files = {}
         version = subprocess.run(["clang-tidy", "--version"], capture_output=True, text=True, check=True).stdout
-        self.common = version + (ROOT / ".clang-tidy").read_text()
+        self.common = version + (ROOT / ".clang-tidy").read_text() + " ".join(OFF_IN_TESTS)
 
     def file(self, name):
         """(checksum, headers of the project that it includes)"""
@@ -84,9 +102,40 @@ class Keys:
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
-def check(source):
-    run = subprocess.run(["clang-tidy", "-p", CACHE, "--quiet", source], cwd=ROOT, capture_output=True, text=True)
+def run_clang_tidy(source, in_tests, *off):
+    off += OFF_IN_TESTS if in_tests else ()
+    # Named, since above a folder outside the sources there is none.
+    options = [f"--config-file={ROOT / '.clang-tidy'}", *([f"--checks={','.join(off)}"] if off else [])]
+    run = subprocess.run(["clang-tidy", "-p", CACHE, "--quiet", *options, source], cwd=ROOT, capture_output=True, text=True)
     return run.returncode == 0, run.stdout + ("" if run.returncode == 0 else run.stderr)
+
+
+def compile_alone(entry):
+    run = subprocess.run([*shlex.split(entry["command"]), "-fsyntax-only"], cwd=entry["directory"], capture_output=True, text=True)
+    return run.returncode == 0, run.stderr
+
+
+def is_of_tests(name):
+    return name.startswith("tests/")
+
+
+def looks(due, found, rooms):
+    """(sources, what shows that they are clean), the longest first."""
+    together, alone = [], set(due)
+    for room, files in rooms.items():
+        of_room = [name for name in files if name in alone]
+        if len(of_room) > FEW:
+            alone -= set(of_room)
+            in_tests = is_of_tests(of_room[0])
+            together.append((of_room, [lambda room=room, in_tests=in_tests: run_clang_tidy(room, in_tests, "-bugprone-suspicious-include"),
+                                       *(lambda entry=found[name]: compile_alone(entry) for name in of_room)]))
+    together.sort(key=lambda one: -len(one[0]))
+    return together + [([name], [lambda name=name: run_clang_tidy(name, is_of_tests(name))]) for name in sorted(alone)]
+
+
+def look(shown_by):
+    answers = [show() for show in shown_by]
+    return all(clean for clean, _ in answers), "\n".join(text for clean, text in answers if not clean)
 
 
 def main():
@@ -94,7 +143,7 @@ def main():
     if not wanted:
         print("tidy.py: no sources there", file=sys.stderr)
         return 2
-    found = commands()
+    found, rooms = commands()
     CACHE.mkdir(parents=True, exist_ok=True)
     (CACHE / "compile_commands.json").write_text(json.dumps(list(found.values())))
     keys = Keys(found)
@@ -104,18 +153,20 @@ def main():
 
     started, failed, told = time.monotonic(), 0, set()
     with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("JOBS", os.cpu_count()))) as pool:
-        waiting = {pool.submit(check, source): source for source in due}
+        waiting = {pool.submit(look, shown_by): names for names, shown_by in looks(due, found, rooms)}
         for future in concurrent.futures.as_completed(waiting):
             clean, text = future.result()
+            names = waiting[future]
             if clean:
-                due[waiting[future]].touch()
+                for name in names:
+                    due[name].touch()
                 continue
             failed += 1
             # A finding in a header comes once per source that includes it.
             findings = re.split(r"\n(?=\S+:\d+:\d+: (?:error|warning): )", "\n" + text)
-            print("\n".join(one for one in findings if one not in told).strip() or waiting[future], flush=True)
+            print("\n".join(one for one in findings if one not in told).strip() or names[0], flush=True)
             told |= set(findings)
-    print(f"{failed} of {len(due)} with findings, {time.monotonic() - started:.0f} s")
+    print(f"{failed} of {len(waiting)} looks with findings, {time.monotonic() - started:.0f} s")
     return 1 if failed else 0
 
 
