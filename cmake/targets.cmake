@@ -98,6 +98,7 @@ function(softgrip_program name files output)
     target_link_libraries(${name} PRIVATE ${target})
   endforeach()
   target_link_libraries(${name} PRIVATE softgrip_flags ${arg_LIBRARIES})
+  softgrip_compile_together(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${output})
   # All symbols are bound at the start: a first call in the loop must not look one up.
   # And only libraries of which it calls something are loaded.
