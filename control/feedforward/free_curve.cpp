@@ -13,7 +13,6 @@ namespace {
 constexpr int levels = 32;
 constexpr std::size_t points = 65;
 constexpr double curve_step_s = 0.02;
-constexpr int rest_steps = static_cast<int>(rests_after_s / curve_step_s + 0.5);
 
 /// Where the finger rests under a command.
 struct Level {
@@ -28,6 +27,7 @@ std::vector<Level> levels_of(const model::Model& model, const LimitSettings& lim
   model::Chain<double> body(body_of(model), {}, curve_step_s);
   const bool has_valve = valve.size() > 0;
   std::vector<Level> found;
+  const long rest_steps = std::lround(rests_after_s / curve_step_s);
   for (int i = 0; i <= levels; ++i) {
     const double range_kpa = limits.pressure_max_kpa - limits.pressure_min_kpa;
     Level level{limits.pressure_min_kpa + range_kpa * i / levels, 0, 0};
@@ -36,7 +36,7 @@ std::vector<Level> levels_of(const model::Model& model, const LimitSettings& lim
     body.reset(has_valve ? valve.pressure_kpa() : limits.pressure_min_kpa);
     valve.step(0, level.command_kpa);
     body.step(0, pressure());
-    for (int k = 0; k < rest_steps; ++k) {
+    for (long k = 0; k < rest_steps; ++k) {
       valve.step(curve_step_s, level.command_kpa);
       body.step(curve_step_s, pressure());
     }

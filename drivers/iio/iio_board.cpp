@@ -78,6 +78,7 @@ ModuleTerminals terminals_of(const IioSettings& settings) {
   const auto terminals = [](const std::vector<IioTerminal>& from) {
     constexpr double anything = std::numeric_limits<double>::infinity();
     std::vector<Terminal> result;
+    result.reserve(from.size());
     for (const IioTerminal& terminal : from) {
       result.push_back(
           {unit_of_channel(terminal.channel).value_or(ElectricalUnit::volt), -anything, anything});

@@ -183,6 +183,7 @@ std::vector<FittedEcho> fit_echo(const std::vector<Record>& records, EchoKind ki
   }
   bank.fit(targets);
   std::vector<FittedEcho> fits;
+  fits.reserve(left.size());
   auto target = targets.begin();
   for (const Binned& model : left) {
     // A model whose answer is not finite everywhere has rows of its own.

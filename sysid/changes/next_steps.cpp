@@ -18,6 +18,7 @@ WhenChanged when_changed(std::string_view cause_id) {
 
 std::vector<std::string_view> changes() {
   std::vector<std::string_view> ids;
+  ids.reserve(causes_of_the_air.size() + all_causes().size());
   for (const CauseOfTheAir& cause : causes_of_the_air) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
     if (!cause.when_changed.words.empty()) ids.push_back(cause.id);

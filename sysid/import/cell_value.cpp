@@ -52,9 +52,8 @@ CellValue cell_value(std::string_view cell, const std::vector<std::string>& miss
     return value;
   }
   const auto number = number_of(text, value);
-  if (number && !std::isfinite(*number)) {
-    value.kind = CellKind::missing;
-  } else if (!missing.empty() && is_among(missing, text, number)) {
+  const bool is_no_number = number && !std::isfinite(*number);
+  if (is_no_number || (!missing.empty() && is_among(missing, text, number))) {
     value.kind = CellKind::missing;
   } else if (number) {
     value.kind = CellKind::number;

@@ -156,7 +156,7 @@ std::string unit_text(const ForeignTable& table, const ColumnMapping& column, Qu
     const std::size_t index = column_index(table, word);
     if (index == table.columns.size()) continue;
     if (!table.columns[index].unit.empty()) return table.columns[index].unit;
-    const std::string unit = split_unit(table.columns[index].name, quantity).unit;
+    std::string unit = split_unit(table.columns[index].name, quantity).unit;
     if (!unit.empty()) return unit;
   }
   return {};

@@ -14,7 +14,7 @@
 namespace softgrip::sysid {
 namespace {
 
-// A soft finger moves at 20 to 60 kPa by some 10 mm; beyond these a unit was probably mistaken.
+// Above these, as below those of extent.h, a unit was probably mistaken.
 constexpr double large_pressure_kpa = 1000;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;

@@ -24,7 +24,8 @@ void make_rising(std::span<double> values, double sign) {
   }
   std::size_t i = 0;
   for (const Pool& pool : pools) {
-    for (double k = 0; k < pool.count; ++k) values[i++] = sign * pool.sum / pool.count;
+    for (auto left = static_cast<std::size_t>(pool.count); left > 0; --left)
+      values[i++] = sign * pool.sum / pool.count;
   }
 }
 

@@ -88,7 +88,7 @@ class Search {
     return state;
   }
 
-  State run(NonlinearNumbers start, bool& converged) {
+  State run(const NonlinearNumbers& start, bool& converged) {
     State best = at(start);
     double damping = 1e-2;
     converged = coordinates_.empty();
@@ -241,6 +241,7 @@ std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t
 
 std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, const StructureGrid& grid) {
   std::vector<double> peaks;
+  peaks.reserve(records.size());
   for (const Record& record : records) peaks.push_back(record.start_unknown ? record.drive_kpa.front() : 0);
   NonlinearNumbers quick{0.02, 0.15, 0.15, 0, 2 / grid.largest_kpa, 0.5, 0, peaks};
   NonlinearNumbers late{0.15, 0.05, 0.05, 0, 6 / grid.largest_kpa, 0.5, 1.2 * grid.largest_kpa, peaks};

@@ -1,12 +1,11 @@
 #pragma once
 // A folder of one test's own, gone afterwards.
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
-
-#include <stdlib.h>
 
 namespace softgrip::daemon::testing {
 

@@ -9,7 +9,7 @@ namespace softgrip::world {
 namespace {
 
 constexpr std::size_t stack_bytes = 512 * 1024;
-/// What makecontext() would pass in two numbers of the size of int.
+/// Whose first entry this is: makecontext() passes no pointer.
 thread_local Fibre* entered = nullptr;
 
 }  // namespace

@@ -159,7 +159,7 @@ class Commissioning {
     const double expected = expected_mm(rig_, waveform);
     if (!(reach.motion_mm > least_motion * expected))
       return fails(ExitCode::not_acceptable, no_motion(reach.motion_mm, expected));
-    if (const auto free = check_free(*log); !free) return free;
+    if (auto free = check_free(*log); !free) return free;
     runs_.limits = limits_for(rig_, options_.experiments, std::max(1.0, reach.motion_mm / expected),
                               std::max(0.0, reach.rest_mm));
     const auto loaded = play(first_load(runs_.limits), folder);
@@ -179,7 +179,7 @@ class Commissioning {
       auto log = play(waveform, folder + "/" + number,
                       run + ", " + number + " of " + std::to_string(options_.experiments.size()));
       if (!log) return Failure(log.error());
-      if (const auto free = check_free(*log); !free) return free;
+      if (auto free = check_free(*log); !free) return free;
       log->name = waveform.name;
       logs.push_back(std::move(*log));
     }

@@ -153,6 +153,7 @@ void bash_words(std::string& out, const std::string& program, const Command& com
 std::string bash_script(const std::string& program, const Command& top,
                         const std::vector<Command>& commands) {
   std::vector<std::string> names;
+  names.reserve(commands.size());
   for (const Command& command : commands) names.push_back(command.name);
   std::string out = "# bash completion of " + program + ", made by `" + program + " completion bash`\n_" +
                     program +

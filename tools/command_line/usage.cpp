@@ -42,7 +42,7 @@ std::string did_you_mean(const std::string& word, const std::vector<std::string>
 std::string unknown_command(const CLI::App& program, int argc, char** argv) {
   if (command_names_of(program).empty() || !program.get_subcommands().empty()) return {};
   for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
+    std::string word = argv[i];
     if (!word.starts_with('-')) return word;
   }
   return {};

@@ -138,6 +138,7 @@ tl::expected<Runs, ExitCode> recorded(const BaselineOptions& options) {
 /// One channel's log of each experiment, as it goes into the folder.
 std::vector<BaselineFile> files_of_played(const std::vector<sysid::Log>& logs, const std::string& rig) {
   std::vector<BaselineFile> files;
+  files.reserve(logs.size());
   for (const sysid::Log& log : logs) files.push_back({log.name + " on " + rig, sysid::format_log(log)});
   return files;
 }

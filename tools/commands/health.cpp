@@ -121,6 +121,7 @@ JudgedRig judged(const std::vector<health::ScoredRun>& runs, const std::vector<h
   std::map<std::string, std::vector<health::ScoredRun>> by_finger;
   for (const health::ScoredRun& run : runs) by_finger[run.finger].push_back(run);
   std::vector<health::FingerRuns> fingers;
+  fingers.reserve(by_finger.size());
   for (auto& [finger, own] : by_finger)
     fingers.push_back({finger, std::move(own), baselines.of(finger)->base});
   health::RigHealth rig = health::judge_rig(std::move(fingers), notes, options);

@@ -99,6 +99,7 @@ std::vector<Crossing> find_crossings(const rig::RigFile& rig, std::span<const Ch
     return std::find(circles.begin(), circles.end(), circle) != circles.end();
   };
   std::vector<Crossing> crossings;
+  crossings.reserve(sensors.size() + monitors.size());
   for (const auto& circle : sensors) {
     crossings.push_back({holds(monitors, circle) ? CrossingKind::valves : CrossingKind::sensors, circle});
   }

@@ -41,7 +41,7 @@ double model_mm(const control::ChannelSettings& channel, double kpa, const Motio
     command_kpa = std::min(kpa, command_kpa + motion.speed_kpa_per_s * step_s);
     model.advance(command_kpa);
   }
-  for (double t = 0; t < motion.wait_s; t += step_s) model.advance(kpa);
+  for (long left = std::lround(motion.wait_s / step_s); left > 0; --left) model.advance(kpa);
   return model.reading_mm(0);
 }
 
@@ -53,8 +53,7 @@ void compare_with_model(const control::ChannelSettings& channel, const Motion& m
   if (!(std::abs(moved_mm - expected_mm) > most_share_off * expected_mm)) return;
   doubts.push_back(
       fmt::format("sensor: between {:.4g} and {:.4g} kPa the gauge went {:.4g} mm, the model goes {:.4g} mm: "
-                  "the gauge, the "
-                  "valve's line or the model is wrong",
+                  "the gauge, the valve's line or the model is wrong",
                   motion.low_kpa, motion.high_kpa, moved_mm, expected_mm));
 }
 

@@ -144,6 +144,7 @@ HandDrive::Expected<std::vector<ChannelSample>> HandDrive::sample(double duratio
     if (!done) return tl::unexpected(done.error());
   }
   std::vector<ChannelSample> samples;
+  samples.reserve(gathering.size());
   for (const ChannelGathering& channel : gathering) {
     samples.push_back({channel.displacement.result(), channel.pressure.result(), channel.readback.result()});
   }
@@ -179,7 +180,7 @@ HandDrive::Expected<void> HandDrive::ramp(std::size_t channel, double to_kpa, do
   while (commands_[channel] != targets_[channel]) {
     const std::vector<double> before = commands_;
     follow_targets(speed_kpa_per_s);
-    if (const auto done = step(watch); !done) return done;
+    if (auto done = step(watch); !done) return done;
     // What was not written has not moved anything: no jump when the board is back.
     if (failures_ > 0) commands_ = before;
     if (const auto failure = beyond()) return tl::unexpected(*failure);
@@ -189,7 +190,7 @@ HandDrive::Expected<void> HandDrive::ramp(std::size_t channel, double to_kpa, do
 
 HandDrive::Expected<void> HandDrive::wait(const std::function<bool()>& done) {
   while (!done()) {
-    if (const auto stepped = step({}); !stepped) return stepped;
+    if (auto stepped = step({}); !stepped) return stepped;
   }
   return {};
 }

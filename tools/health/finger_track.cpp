@@ -97,6 +97,7 @@ std::size_t place_in_time(std::vector<FingerTrack>& tracks) {
     }
   }
   std::vector<std::pair<std::pair<std::string, std::size_t>, std::string>> sorted;
+  sorted.reserve(begins.size());
   for (const auto& [label, begin] : begins) sorted.emplace_back(begin, label);
   std::sort(sorted.begin(), sorted.end());
   std::map<std::string, std::size_t> moments;

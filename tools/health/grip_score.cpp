@@ -210,9 +210,11 @@ double contact_of(const Compared& c) {
 
 ScoreBase score_base(const model::Model& model, double full_kpa) {
   ScoreBase base{sysid::deterministic_part(model, sysid::Drive::command), full_kpa, 0};
-  constexpr double interval_s = 0.02, rise_s = 2, length_s = 10;
+  constexpr double interval_s = 0.02, rise_s = 2;
+  constexpr int intervals = 500;
   sysid::Log log;
-  for (double t = 0; t < length_s; t += interval_s) {
+  for (int i = 0; i <= intervals; ++i) {
+    const double t = i * interval_s;
     log.time_s.push_back(t);
     log.pressure_command_kpa.push_back(full_kpa * std::min(1.0, t / rise_s));
     log.displacement_mm.push_back(0);

@@ -230,7 +230,9 @@ void first_loading(PublishedStudy& study) {
 
 void study_inverses(PublishedStudy& study) {
   const double tick_s = 1 / study.options.rate_hz;
-  for (double t = tick_s; t < inverse_s; t += tick_s) {
+  const long ticks = std::lround(inverse_s * study.options.rate_hz);
+  for (long i = 1; i < ticks; ++i) {
+    const double t = static_cast<double>(i) * tick_s;
     study.inverse_time_s.push_back(t);
     study.inverse_true_kpa.push_back(0.5 * most_kpa * (1 - std::cos(2 * std::numbers::pi * inverse_hz * t)));
   }
@@ -259,23 +261,23 @@ sysid::Log triangles(Triangles choice, double rate_hz) {
   log.name = "triangles";
   double begin_s = 0;
   std::size_t i = 0;
-  const auto add = [&](double time_s, double pressure_kpa) {
-    log.time_s.push_back(time_s);
+  const auto time_s = [&] { return static_cast<double>(i) / rate_hz; };
+  const auto add = [&](double pressure_kpa) {
+    log.time_s.push_back(time_s());
     log.pressure_command_kpa.push_back(pressure_kpa);
     ++i;
   };
   for (int c = 0; c < cycles; ++c) {
     for (const Triangle& triangle : cycle) {
       const double end_s = begin_s + 1 / triangle.frequency_hz;
-      for (double t = static_cast<double>(i) / rate_hz; t < end_s - 1e-9;
-           t = static_cast<double>(i) / rate_hz) {
-        const double share = (t - begin_s) * triangle.frequency_hz;
-        add(t, triangle.peak_kpa * std::max(0.0, 1 - std::abs(2 * share - 1)));
+      while (time_s() < end_s - 1e-9) {
+        const double share = (time_s() - begin_s) * triangle.frequency_hz;
+        add(triangle.peak_kpa * std::max(0.0, 1 - std::abs(2 * share - 1)));
       }
       begin_s = end_s;
     }
   }
-  add(static_cast<double>(i) / rate_hz, 0);
+  add(0);
   return log;
 }
 

@@ -40,6 +40,7 @@ constexpr std::array kinds{Kind{"identify", "identify.json"}, Kind{"validate", "
 int called(const std::string& program, std::vector<std::string> words) {
   words.insert(words.begin(), program);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

@@ -82,9 +82,13 @@ void DaemonWatch::take(Json line, Nanoseconds now) {
 }
 
 void DaemonWatch::take_result(std::uint64_t id, Json result) {
-  if (id == Asked::subscribe) started_at_ = text(result, "started_at");
-  if (id == Asked::statistics) state_.take_statistics(std::move(result));
-  if (id == Asked::sequences) state_.take_sequences(std::move(result["sequences"]));
+  if (id == Asked::subscribe) {
+    started_at_ = text(result, "started_at");
+  } else if (id == Asked::statistics) {
+    state_.take_statistics(std::move(result));
+  } else if (id == Asked::sequences) {
+    state_.take_sequences(std::move(result["sequences"]));
+  }
 }
 
 }  // namespace softgrip::web

@@ -91,7 +91,7 @@ Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const O
   engine_.set_error_handler([](const Request&, Response& response) {
     if (response.body.empty()) put_error(response, response.status, "there is no such thing here");
   });
-  engine_.set_exception_handler([](const Request&, Response& response, std::exception_ptr) {
+  engine_.set_exception_handler([](const Request&, Response& response, const std::exception_ptr&) {
     put_error(response, 500, "the request could not be served");
   });
   add_page();
@@ -235,7 +235,7 @@ void Site::add_recordings() {
                 auto bytes = recordings_.read(request.matches[1].str(), file);
                 if (!bytes) return put_error(response, 404, "there is no such file");
                 replace_header(response, "Content-Security-Policy", recording_policy);
-                response.set_content(std::move(*bytes), std::string(content_type_of(file)));
+                response.set_content(*bytes, std::string(content_type_of(file)));
               });
 }
 

@@ -188,12 +188,13 @@ std::optional<PreparedSequence> prepared(const std::string& steps, const RigSett
 TEST(Prepare, WhatIsExactlyAllowedIsTaken) {
   RigSettings settings = two_finger_settings();
   settings.rate_hz = 10;
+  const char* const grip =
+      "  - grip: {pressure_kpa: 40, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, timeout_s: 3, "
+      "on_fail: vent}\n  - hold: {hold_s: 1, reverify_every_s: 0.2, on_fail: vent}\n";
   for (const char* steps :
        {"  - move: {displacement_mm: -1, duration_s: 1}\n",
         "  - move: {displacement_mm: 35, duration_s: 1}\n", "  - move: {pressure_kpa: 0, duration_s: 1}\n",
-        "  - move: {pressure_kpa: 60, duration_s: 1}\n",
-        "  - grip: {pressure_kpa: 40, settle_s: 0.1, verify: {by: detection, window_s: 0.2}, timeout_s: 3, "
-        "on_fail: vent}\n  - hold: {hold_s: 1, reverify_every_s: 0.2, on_fail: vent}\n"}) {
+        "  - move: {pressure_kpa: 60, duration_s: 1}\n", grip}) {
     document::Problems problems;
     EXPECT_TRUE(prepared(steps, settings, problems)) << steps << problems.format();
   }

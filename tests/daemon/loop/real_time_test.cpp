@@ -94,7 +94,7 @@ TEST(RealTime, WithoutRightsEveryStepSaysWhichLimitStandsInTheWay) {
     setrlimit(RLIMIT_MEMLOCK, &none);
     if (getuid() == 0 && setuid(65534) != 0) _exit(2);
     RealTimeReport report;
-    const ProcessorLatencyRequest latency = prepare_process({}, report);
+    [[maybe_unused]] const ProcessorLatencyRequest latency = prepare_process({}, report);
     prepare_thread({}, 70, "the loop", report);
     const RealTimeStep* scheduling = find(report, "scheduling of the loop");
     const RealTimeStep* memory = find(report, "memory lock");

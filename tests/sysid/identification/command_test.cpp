@@ -88,11 +88,12 @@ TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {
   EXPECT_NE(warned([](Log& l) { std::swap(l.displacement_mm, l.pressure_command_kpa); }).find("swapped"),
             std::string::npos);
   for (const auto& [factor, unit] : {std::pair{6.894757, "psi"}, {100.0, "bar"}})
-    EXPECT_NE(warned([&](Log& l) { scaled(l.pressure_command_kpa, 1 / factor); }).find(unit),
+    EXPECT_NE(warned([&, by = 1 / factor](Log& l) { scaled(l.pressure_command_kpa, by); }).find(unit),
               std::string::npos);
   for (const auto& [factor, unit] :
        {std::pair{0.1, "cm"}, {1 / 25.4, "inch"}, {1e-3, "metres"}, {100.0, "bar"}})
-    EXPECT_NE(warned([&](Log& l) { scaled(l.displacement_mm, factor); }).find(unit), std::string::npos);
+    EXPECT_NE(warned([&, by = factor](Log& l) { scaled(l.displacement_mm, by); }).find(unit),
+              std::string::npos);
 }
 
 TEST_F(Command, TheSameInputsGiveTheSameReport) {

@@ -29,7 +29,8 @@ Campaign campaign(double frequency_hz, double amplitude_mm, double jitter_s) {
       record.time_s.push_back(0.01 * i + (jitter_s > 0 && i > 0 ? off(random) : 0));
       const double t = record.campaign_time_s + record.time_s.back();
       residual.push_back(amplitude_mm * std::sin(2 * std::numbers::pi * frequency_hz * t + 0.7) +
-                         0.04 * normal_at(9, static_cast<std::uint64_t>(6000 * k + i)));
+                         0.04 * normal_at(9, std::uint64_t{6000} * static_cast<std::uint64_t>(k) +
+                                                 static_cast<std::uint64_t>(i)));
     }
     c.records.push_back(std::move(record));
     c.residual_mm.push_back(std::move(residual));
