@@ -42,24 +42,24 @@ bool is_among(const std::vector<std::string>& missing, std::string_view text, st
   });
 }
 
+bool says_missing(std::string_view text, const std::optional<double>& number,
+                  const std::vector<std::string>& missing) {
+  if (text.empty() || (!missing.empty() && is_among(missing, text, number))) return true;
+  if (number) return !std::isfinite(*number);
+  return std::find(missing_words.begin(), missing_words.end(), lower_case(text)) != missing_words.end();
+}
+
 }  // namespace
 
 CellValue cell_value(std::string_view cell, const std::vector<std::string>& missing) {
   CellValue value;
   const std::string_view text = trimmed(unquoted(cell));
-  if (text.empty()) {
-    value.kind = CellKind::missing;
-    return value;
-  }
   const auto number = number_of(text, value);
-  const bool is_no_number = number && !std::isfinite(*number);
-  if (is_no_number || (!missing.empty() && is_among(missing, text, number))) {
+  if (says_missing(text, number, missing)) {
     value.kind = CellKind::missing;
   } else if (number) {
     value.kind = CellKind::number;
     value.number = *number;
-  } else if (std::find(missing_words.begin(), missing_words.end(), lower_case(text)) != missing_words.end()) {
-    value.kind = CellKind::missing;
   } else if (const auto moment = moment_of(text)) {
     value.kind = CellKind::moment;
     value.moment = moment->time;

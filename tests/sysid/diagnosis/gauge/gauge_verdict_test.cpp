@@ -204,7 +204,7 @@ TEST(GaugeVerdict, StandsInTheJson) {
   const auto json = json_of(diagnosed(bent_scale, gauge))["gauge"];
   EXPECT_EQ(json["file"], "gauge.csv");
   EXPECT_EQ(json["readings"].size(), gauge.readings.size());
-  EXPECT_EQ(json["ruled_out"], nlohmann::json({"stiffening"}));
+  EXPECT_EQ(json["ruled_out"], nlohmann::ordered_json({"stiffening"}));
   EXPECT_GT(json["log_likelihood_ratio"], gauge_log_likelihood_needed);
   EXPECT_EQ(json["hypotheses"].size(), 2U);
 }
