@@ -7,6 +7,8 @@
 // FAIL_TOLD is created; as long as that file appears, there is an Nth call, and a test goes on with N+1 until
 // it does not, as SQLite's do.
 
+#undef _FORTIFY_SOURCE  // its wrappers of recv and others would be second definitions
+
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -15,7 +17,6 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -24,6 +25,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <new>
 
 namespace {
@@ -105,7 +107,7 @@ void operator delete[](void* memory, std::size_t) noexcept {
 
 extern "C" {
 
-// NOLINTBEGIN(readability-identifier-naming): the C library's names
+// NOLINTBEGIN(readability-identifier-naming,bugprone-reserved-identifier): the C library's names
 int __libc_start_main(Main program, int count, char** arguments, void (*begin)(), void (*end)(),
                       void (*unload)(), void* stack) {
   program_main = program;
@@ -285,6 +287,6 @@ int pthread_setschedparam(pthread_t thread, int policy, const sched_param* param
   static const auto next = real<int (*)(pthread_t, int, const sched_param*)>("pthread_setschedparam");
   return next(thread, policy, parameters);
 }
-// NOLINTEND(readability-identifier-naming)
+// NOLINTEND(readability-identifier-naming,bugprone-reserved-identifier)
 
 }  // extern "C"

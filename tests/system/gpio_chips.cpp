@@ -84,7 +84,7 @@ void serve(int listening) {
     chip.lines.push_back(line);
   }
   fake_chips().push_back(chip);
-  std::ofstream(folder() + "/gpiochip0");
+  const std::ofstream empty(folder() + "/gpiochip0");
   const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_un address{};
   address.sun_family = AF_UNIX;

@@ -42,8 +42,8 @@ std::string listed(const Json& problems) {
   std::string text;
   for (const Json& problem : problems) {
     text += "\n" + problem.value("file", "");
-    const bool of_whole_file = problem.contains("line_text") && problem.value("line_text", "").empty();
-    if (!of_whole_file) {
+    // Without a line it is about the file as a whole.
+    if (problem.value("line_text", Json()) != Json("")) {
       text +=
           ":" + std::to_string(problem.value("line", 0)) + ":" + std::to_string(problem.value("column", 0));
     }

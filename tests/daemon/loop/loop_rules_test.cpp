@@ -50,7 +50,7 @@ void count_allocation() noexcept {
 
 // The C library's own functions behind counters: operator new ends here too.
 extern "C" {
-// NOLINTBEGIN(bugprone-reserved-identifier)
+// NOLINTBEGIN(bugprone-reserved-identifier): the C library's names
 void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);
 void* __libc_realloc(void*, size_t);
