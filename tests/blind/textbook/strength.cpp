@@ -111,7 +111,8 @@ Excess::Excess(const World& world, const std::vector<Log>& logs, std::uint64_t s
     : setting_{world, 0, duration_s(logs)},
       logs_(logs),
       seed_(seed),
-      plain_mm_(displacements(world, {}, logs, seed)),
+      plain_kpa_(simulate_pressures(world, {}, logs)),
+      plain_mm_(displacements(world, {}, logs, seed, plain_kpa_)),
       twin_(plain_mm_) {
   setting_.largest_mm = *std::max_element(plain_mm_.begin(), plain_mm_.end());
   for (const OwnNumber& own : own_numbers(world.finger.make)) {
@@ -119,14 +120,17 @@ Excess::Excess(const World& world, const std::vector<Log>& logs, std::uint64_t s
     const bool up = value + unit <= own.high;
     World moved = world;
     moved.finger.*own.member += up ? unit : -unit;
-    auto change = difference(displacements(moved, {}, logs, seed), plain_mm_);
+    auto change = difference(displacements(moved, {}, logs, seed, plain_kpa_), plain_mm_);
     for (double& c : change) c /= up ? unit : -unit;
     twin_.add(std::move(change), own.low - value, own.high - value);
   }
 }
 
 double Excess::of_mm(const Effects& effects) const {
-  const auto added = difference(displacements(setting_.world, effects, logs_, seed_), plain_mm_);
+  const auto moved_mm = acts_on_pressure(effects)
+                            ? displacements(setting_.world, effects, logs_, seed_)
+                            : displacements(setting_.world, effects, logs_, seed_, plain_kpa_);
+  const auto added = difference(moved_mm, plain_mm_);
   if (effects.count("leak") > 0) return std::sqrt(dot(added, added) / static_cast<double>(added.size()));
   return twin_.left_mm(added);
 }

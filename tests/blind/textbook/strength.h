@@ -49,6 +49,7 @@ class Excess {
   Setting setting_;
   std::vector<Log> logs_;
   std::uint64_t seed_;
+  Pressures plain_kpa_;
   std::vector<double> plain_mm_;
   Recalibration twin_;
 };

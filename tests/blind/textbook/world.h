@@ -37,7 +37,15 @@ double duration_s(const std::vector<Log>& logs);
 std::vector<Answer> simulate(const World& world, const Effects& effects, const std::vector<Log>& logs,
                              std::uint64_t seed);
 
-/// The displacements of all logs, one after the other.
+/// The pressures at the finger alone, log by log: what takes most of a simulation's time, and is the same
+/// under every effect that does not act on pressure.
+using Pressures = std::vector<std::vector<double>>;  // gauge, kPa
+Pressures simulate_pressures(const World& world, const Effects& effects, const std::vector<Log>& logs);
+bool acts_on_pressure(const Effects& effects);
+
+/// The displacements of all logs under such pressures, one after the other.
+std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
+                                  std::uint64_t seed, const Pressures& pressures);
 std::vector<double> displacements(const World& world, const Effects& effects, const std::vector<Log>& logs,
                                   std::uint64_t seed);
 
