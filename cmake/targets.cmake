@@ -188,7 +188,8 @@ endfunction()
 # softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...])
 # a GoogleTest program; its tests are discovered one by one. REALTIME: patterns of the tests that measure real time, which
 # a shared machine may disturb: they get a second attempt (scripts/ctest.sh). LONG: of those that compute for seconds,
-# which scripts/test.sh --quick leaves out. A pattern stands in one of the two.
+# which scripts/test.sh --quick leaves out and CTest begins with (COST), since one that began last would run alone. A
+# pattern stands in one of the two.
 function(softgrip_test name)
   cmake_parse_arguments(arg "" "" "ROOMS;LINK;REALTIME;LONG;PROPERTIES" ${ARGN})
   softgrip_rooms(rooms ${arg_ROOMS})
@@ -202,7 +203,7 @@ function(softgrip_test name)
   string(JOIN ":" realtime ${arg_REALTIME})
   softgrip_discover(${name} "${realtime}" realtime ${arg_PROPERTIES})
   string(JOIN ":" long ${arg_LONG})
-  softgrip_discover(${name} "${long}" long ${arg_PROPERTIES})
+  softgrip_discover(${name} "${long}" long COST 10 ${arg_PROPERTIES})
 endfunction()
 # Each parameter has a name of its own, so CTest's names do without its value, which may be bytes with addresses in them
 # that differ from build to build.

@@ -51,24 +51,32 @@ fi
 
 # Beside the tests, most of which wait, with what they leave of the processors.
 mkdir -p build
-set -m  # a group of its own, so that it can be ended whole
+without='recipe|campaign'
+if $all; then without=''; fi
+set -m  # groups of their own, so that they can be ended whole
 chrt --idle 0 bash scripts/sanitize.sh build </dev/null >build/sanitize.log 2>&1 &
 sanitized=$!
+start_computing_tests release "$without"
 set +m
-trap 'kill -- -$sanitized 2>/dev/null || true' EXIT
-say "test"
-if $all; then run_ctest release ''; else run_ctest release 'recipe|campaign'; fi
+trap 'kill -- -$sanitized -$computing 2>/dev/null || true' EXIT
+say "test: in real time"
+failed=false
+run_real_time_tests release "$without" || failed=true
+# Beside the rest of those that compute.
 say "package"
 bash scripts/package.sh | tail -n 1
 say "sanitizers"
 wait $sanitized || { tail -n 40 build/sanitize.log >&2; exit 1; }
+$all || bash scripts/sanitize.sh
+say "test: the others"
+end_computing_tests release || failed=true
+! $failed || exit 1
 if $all; then
   bash scripts/sanitize.sh all
   say "clang-tidy: every source"
   python3 scripts/tidy.py
   end
 fi
-bash scripts/sanitize.sh
 mapfile -t changed < <(git diff --name-only --diff-filter=d origin/main...HEAD -- '*.cpp' 2>/dev/null || true)
 if [ ${#changed[@]} -gt 0 ] && [ ${#changed[@]} -le 40 ]; then
   say "clang-tidy: ${#changed[@]} changed sources"
