@@ -110,15 +110,16 @@ struct PanelEvent {
 };
 
 struct Wires {
-  /// `record_capacity`: rows the recorder may lag behind.
-  explicit Wires(std::size_t record_capacity) : records(record_capacity) {}
+  /// `record_capacity`: rows the recorder may lag behind; `event_capacity`: events that a client may.
+  explicit Wires(std::size_t record_capacity, std::size_t event_capacity = 4096)
+      : records(record_capacity), events(event_capacity) {}
 
   Latest<Commands> commands;
   Latest<BusReport> bus;
   Latest<Snapshot> snapshot;
   Ring<BusEvent> bus_events{256};
   Ring<Record> records;
-  Broadcast<StampedEvent> events{4096};
+  Broadcast<StampedEvent> events;
   Ring<PanelEvent> panel_events{64};
   Ring<control::Request> vents{16};  ///< taken before ...
   Ring<control::Request> stops{16};  ///< ... these, and these before ...

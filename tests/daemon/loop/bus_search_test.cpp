@@ -126,7 +126,7 @@ std::string follow(std::span<const Step> path) {
   loop.exchange_deadline_s = 0.01;
   rig::ReconnectSettings reconnect;
   reconnect.first_pause = std::chrono::nanoseconds(0);
-  Wires wires(16);
+  Wires wires(16, 16);
   BusStatistics statistics;
   Bus bus(board, rig, loop, reconnect, clock, wires, statistics);
   LeastLoop controller(wires);
