@@ -33,7 +33,7 @@ std::vector<Record> fitted_part(std::vector<Record> records, double share) {
   return records;
 }
 
-StructureEvidence evidence_of(const StructureChoice& choice) {
+StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
   StructureEvidence evidence;
   evidence.ridge = choice.ridge;
   evidence.blocks = choice.blocks;
@@ -42,7 +42,7 @@ StructureEvidence evidence_of(const StructureChoice& choice) {
     evidence.candidates.push_back({std::string(name_of(t.structure.hysteresis)), description_of(t.structure),
                                    t.rmse_mm, t.heldout_rmse_mm, i == choice.chosen});
   }
-  for (const StructureChoice::Without& w : choice.ablation)
+  for (const WithoutIngredient& w : ablation)
     evidence.ablation.push_back(
         {std::string(name_of(w.ingredient)), w.trial.rmse_mm, w.trial.heldout_rmse_mm});
   return evidence;
@@ -165,7 +165,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   result.multistart = multistart_of(chosen);
   add_scores(chosen, whole, result);
   add_estimates(chosen, result);
-  result.structure = evidence_of(choice);
+  result.structure = evidence_of(choice, ablation_of(result.records, choice, choice_options));
   add_warnings(result);
   if (two_stages) join_valve(logs, options, result);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -29,18 +29,50 @@ class Judge {
 
   [[nodiscard]] std::size_t blocks() const { return blocks_.count(); }
 
+  [[nodiscard]] FittedStructure fit(const BaseStructure& structure, double ridge) const {
+    return fit_form(records_, structure, grid_, with(ridge));
+  }
+
+  [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge) const {
+    return structure.published ? judge_published(structure)
+                               : judge(fit(structure, ridge), ridge, fold_iterations);
+  }
+
   /// @param iterations  in every fold, from the numbers of the whole; 0: they stay
-  [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge, int iterations) const {
-    StructureTrial trial;
-    trial.structure = structure;
-    trial.block_losses_mm2.assign(blocks_.count(), 0);
-    structure.published ? judge_published(trial) : judge_ladder(trial, ridge, iterations);
+  [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const {
+    StructureTrial trial = trial_of(whole.structure);
+    trial.ridge = ridge;
+    trial.point = point_of(whole, records_, options_.drive);
+    trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
+    trial.converged = whole.converged;
+    trial.start_rmse_mm = whole.start_rmse_mm;
+    StructureFitOptions options = with(ridge);
+    options.most_iterations = iterations;
+    for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold) {
+      const std::vector<Record>& fitted = blocks_.without(fold);
+      const FittedStructure fit = fit_form(fitted, trial.structure, grid_, options, &whole.numbers);
+      blocks_.judge(point_of(fit, fitted, options_.drive), fold, trial.block_losses_mm2);
+    }
     trial.heldout_rmse_mm = held_out_rmse_mm(trial.block_losses_mm2);
     return trial;
   }
 
  private:
-  void judge_published(StructureTrial& trial) const {
+  static StructureFitOptions with(double ridge) {
+    StructureFitOptions options;
+    options.ridge = ridge;
+    return options;
+  }
+
+  [[nodiscard]] StructureTrial trial_of(const BaseStructure& structure) const {
+    StructureTrial trial;
+    trial.structure = structure;
+    trial.block_losses_mm2.assign(blocks_.count(), 0);
+    return trial;
+  }
+
+  [[nodiscard]] StructureTrial judge_published(const BaseStructure& structure) const {
+    StructureTrial trial = trial_of(structure);
     PublishedElement found = fit_published(records_, options_.drive, options_.starts, options_.seed);
     trial.point = std::move(found.point);
     trial.rmse_mm = found.rmse_mm;
@@ -49,22 +81,8 @@ class Judge {
     trial.start_rmse_mm = std::move(found.start_rmse_mm);
     for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold)
       blocks_.judge(refit_published(blocks_.without(fold), trial.point), fold, trial.block_losses_mm2);
-  }
-
-  void judge_ladder(StructureTrial& trial, double ridge, int iterations) const {
-    StructureFitOptions options;
-    options.ridge = trial.ridge = ridge;
-    const FittedStructure whole = fit_form(records_, trial.structure, grid_, options);
-    trial.point = point_of(whole, records_, options_.drive);
-    trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
-    trial.converged = whole.converged;
-    trial.start_rmse_mm = whole.start_rmse_mm;
-    options.most_iterations = iterations;
-    for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold) {
-      const std::vector<Record>& fitted = blocks_.without(fold);
-      const FittedStructure fit = fit_form(fitted, trial.structure, grid_, options, &whole.numbers);
-      blocks_.judge(point_of(fit, fitted, options_.drive), fold, trial.block_losses_mm2);
-    }
+    trial.heldout_rmse_mm = held_out_rmse_mm(trial.block_losses_mm2);
+    return trial;
   }
 
   const std::vector<Record>& records_;
@@ -161,22 +179,6 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
   return best;
 }
 
-void ablate(const Judge& judge, const StructureChoiceOptions& options, StructureChoice& choice) {
-  const StructureTrial& chosen = choice.trials[choice.chosen];
-  if (chosen.structure.published) return;
-  std::vector<StructureChoice::Without> list;
-  for (const Ingredient ingredient : ingredients) {
-    const BaseStructure rest = without(chosen.structure, ingredient);
-    if (rest == chosen.structure) continue;
-    list.push_back({ingredient, {}});
-    list.back().trial.structure = rest;
-  }
-  parallel_for(list.size(), options.threads, [&](std::size_t i) {
-    list[i].trial = judge.judge(list[i].trial.structure, choice.ridge, fold_iterations);
-  });
-  choice.ablation = std::move(list);
-}
-
 }  // namespace
 
 std::string_view name_of(Ingredient ingredient) {
@@ -195,15 +197,22 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   };
   StructureChoice choice;
   choice.blocks = judge.blocks();
+  const BaseStructure& richest = structures.back();
+  std::vector<FittedStructure> fitted_with(ridges.size());
   std::vector<StructureTrial> by_ridge(ridges.size());
   say("choosing the ridge");
-  parallel_for(ridges.size(), options.threads,
-               [&](std::size_t i) { by_ridge[i] = judge.judge(structures.back(), ridges[i], 0); });
-  choice.ridge = ridges[best_of(by_ridge)];
+  parallel_for(ridges.size(), options.threads, [&](std::size_t i) {
+    fitted_with[i] = judge.fit(richest, ridges[i]);
+    by_ridge[i] = judge.judge(fitted_with[i], ridges[i], 0);
+  });
+  const std::size_t best_ridge = best_of(by_ridge);
+  choice.ridge = ridges[best_ridge];
   std::atomic<std::size_t> done{0};
   choice.trials.resize(structures.size());
   parallel_for(structures.size(), options.threads, [&](std::size_t i) {
-    choice.trials[i] = judge.judge(structures[i], choice.ridge, fold_iterations);
+    choice.trials[i] = i + 1 == structures.size()
+                           ? judge.judge(fitted_with[best_ridge], choice.ridge, fold_iterations)
+                           : judge.judge(structures[i], choice.ridge);
     say("structures: " + std::to_string(++done) + " of " + std::to_string(structures.size()) + " judged");
   });
   choice.chosen = simplest_of_the_best(choice.trials);
@@ -211,9 +220,26 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   if (simplest.structure.published && choice.trials[best_of(choice.trials)].heldout_rmse_mm <
                                           options.published_yields_below * simplest.heldout_rmse_mm)
     choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
-  say("taking one ingredient away after the other");
-  ablate(judge, options, choice);
   return choice;
+}
+
+std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, const StructureChoice& choice,
+                                           const StructureChoiceOptions& options) {
+  std::vector<WithoutIngredient> ablation;
+  const StructureTrial& chosen = choice.trials[choice.chosen];
+  if (chosen.structure.published) return ablation;
+  if (options.progress) options.progress("taking one ingredient away after the other");
+  for (const Ingredient ingredient : ingredients) {
+    const BaseStructure rest = without(chosen.structure, ingredient);
+    if (rest == chosen.structure) continue;
+    ablation.push_back({ingredient, {}});
+    ablation.back().trial.structure = rest;
+  }
+  const Judge judge(records, options);
+  parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
+    ablation[i].trial = judge.judge(ablation[i].trial.structure, choice.ridge);
+  });
+  return ablation;
 }
 
 FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {

@@ -61,12 +61,12 @@ struct StructureChoice {
   std::size_t chosen = 0;
   double ridge = 0;
   std::size_t blocks = 0;
-  /// The chosen structure without one of its ingredients each, fitted and judged the same way.
-  struct Without {
-    Ingredient ingredient;
-    StructureTrial trial;
-  };
-  std::vector<Without> ablation;
+};
+
+/// The chosen structure without one of its ingredients, fitted and judged the same way.
+struct WithoutIngredient {
+  Ingredient ingredient;
+  StructureTrial trial;
 };
 
 /// The ridge is chosen first, with the richest structure; then the simplest structure whose held-out loss is
@@ -74,6 +74,12 @@ struct StructureChoice {
 /// section 3.4.3).
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
+
+/// The choice without each of its ingredients: what each brings. None of the published element.
+/// @param records, options  those of the choice.
+[[nodiscard]] std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records,
+                                                         const StructureChoice& choice,
+                                                         const StructureChoiceOptions& options);
 
 /// The same structure with the same ridge fitted to other readings of the same records.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,

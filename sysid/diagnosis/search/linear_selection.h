@@ -7,7 +7,7 @@
 namespace softgrip::sysid {
 
 /// @param base  the base fitted to data.records.
-/// @param options  to_beat_mm2 is not asked.
+/// @param options  one_cause_stands and to_beat_mm2 are not asked.
 [[nodiscard]] Selection select_causes_upon(const SearchData& data, StructureFit base, double noise_mm,
                                            const Division& division, const SelectionOptions& options);
 

@@ -28,8 +28,6 @@ constexpr std::size_t always_followed = 5;
 constexpr double near_enough = 1.4;
 constexpr std::size_t always_finished = 4;
 constexpr double next_to_best = 1.05;
-/// How much more than another explanation a first look may leave to be followed.
-constexpr double near_the_other = 2;
 
 void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
   std::erase_if(fits, [](const StructureFit& fit) { return !std::isfinite(fit.mean_square_mm2); });
@@ -128,7 +126,7 @@ std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit
   std::vector<std::size_t> order = ranking(thin);
   if (order.empty()) return candidates;
   const double best_look = thin[order.front()]->mean_square_mm2;
-  if (best_look > near_the_other * search.to_beat_mm2) {
+  if (search.is_hopeless && search.is_hopeless(best_look)) {
     for (Candidate& candidate : candidates) {
       if (candidate.why_not.empty()) candidate.why_not = "far behind another explanation";
     }

@@ -32,8 +32,8 @@ struct Candidate {
 
 struct CandidateSearch {
   std::vector<Cause> only = {};  ///< empty: all
-  /// Where no look comes near this mean square none is followed to the end.
-  double to_beat_mm2 = std::numeric_limits<double>::infinity();
+  /// Asked with the mean square of the best look: whether none is worth following to the end.
+  std::function<bool(double best_look_mm2)> is_hopeless = {};
   std::function<void(std::size_t tried, std::size_t of)> progress = {};  ///< from any thread
 };
 

@@ -19,6 +19,9 @@ constexpr std::size_t finalists = 4;
 /// what makes up for a form does not meet it whole.
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
+/// How much more than another explanation a first look may leave to be followed.
+constexpr double near_the_other = 2;
+
 class Selector {
  public:
   Selector(const SearchData& data, StructureFit base, double noise_mm, const Division& division,
@@ -30,8 +33,8 @@ class Selector {
 
   Selection run() {
     while (result_.left.present && result_.extended.causes.size() < options_.most_causes) {
-      if (result_.extended.causes.size() == 1 && options_.to_beat_mm2)
-        to_beat_mm2_ = options_.to_beat_mm2(result_);
+      if (result_.extended.causes.size() == 1 && options_.one_cause_stands)
+        options_.one_cause_stands(result_);
       if (!add_one()) break;
       if (result_.extended.causes.size() > 1) swap_others();
     }
@@ -50,7 +53,8 @@ class Selector {
   /// first.
   std::vector<Scored> score(const StructureFit& current) {
     CandidateSearch search;
-    search.to_beat_mm2 = to_beat_mm2_;
+    if (!result_.extended.causes.empty() && options_.to_beat_mm2)
+      search.is_hopeless = [this](double best_look_mm2) { return is_far_behind(best_look_mm2); };
     if (options_.progress) {
       search.progress = [&](std::size_t tried, std::size_t of) {
         const std::string number = "cause number " + std::to_string(current.causes.size() + 1);
@@ -81,6 +85,14 @@ class Selector {
     std::stable_sort(scored.begin(), scored.begin() + static_cast<long>(count),
                      [&](const Scored& a, const Scored& b) { return held_out(a) < held_out(b); });
     return scored;
+  }
+
+  /// Whether another explanation leaves far less than the best look at one more cause; none leaves less than
+  /// the noise.
+  bool is_far_behind(double best_look_mm2) {
+    if (best_look_mm2 <= near_the_other * square(noise_)) return false;
+    if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
+    return best_look_mm2 > near_the_other * *to_beat_mm2_;
   }
 
   /// A gain whose interval excludes nothing and whose size is worth having. `without` and `with` are the
@@ -152,7 +164,9 @@ class Selector {
                           scored.front().candidate.cause != old;
       if (better) {
         take(scored.front());
-        return;  // the new one stands last now; the others were searched with the old
+        // It stands last now; the others were searched with the old one.
+        fresh_[result_.extended.causes.size() - 1] = std::move(scored);
+        return;
       }
       fresh_[i] = std::move(scored);
     }
@@ -202,7 +216,7 @@ class Selector {
   const Division& division_;
   const SelectionOptions& options_;
   Selection result_;
-  double to_beat_mm2_ = std::numeric_limits<double>::infinity();
+  std::optional<double> to_beat_mm2_;  ///< of another explanation, once it was asked for
   /// The structure without one cause: its fit, and what it loses held out, as far as they were asked for.
   struct Without {
     std::optional<StructureFit> fit;

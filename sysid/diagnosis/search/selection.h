@@ -56,9 +56,12 @@ struct SelectionOptions {
   std::size_t most_causes = 2;
   std::uint64_t seed = 1;
   std::function<void(const std::string&)> progress;
-  /// Asked where one cause stands and leaves structure: what another explanation leaves as a mean square. A
-  /// second cause is followed to the end only where it comes near. Infinity: there is no other.
-  std::function<double(const Selection&)> to_beat_mm2;
+  /// Told the selection where one cause stands and leaves structure.
+  std::function<void(const Selection&)> one_cause_stands;
+  /// What another explanation leaves as a mean square: a second cause is followed to the end only where it
+  /// comes near. Asked once at most, after one_cause_stands, and not where the looks come as near to the
+  /// noise as that. Infinity: there is no other.
+  std::function<double()> to_beat_mm2;
   /// The base fitted to other readings of the same records. Empty: it stays as it is but for what it answers
   /// linearly.
   std::function<FitPoint(const std::vector<Record>&)> base_again;

@@ -127,14 +127,19 @@ double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
 }
 
 /// A structure that foretells better, and what it is without its ingredients.
-std::optional<StructureChoice> better_structure(const std::vector<Record>& records, const FitPoint& given,
+struct BetterStructure {
+  StructureTrial chosen;
+  std::vector<WithoutIngredient> ablation;
+};
+
+std::optional<BetterStructure> better_structure(const std::vector<Record>& records, const FitPoint& given,
                                                 const StructureChoiceOptions& options) {
-  StructureChoice choice = choose_structure(records, options);
+  const StructureChoice choice = choose_structure(records, options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
   // The published element with delay and lag is the given one with two causes: they are searched as causes.
   if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
     return std::nullopt;
-  return choice;
+  return BetterStructure{chosen, ablation_of(records, choice, options)};
 }
 
 /// What a cause is confounded with may have been the base's answer to it.
@@ -180,18 +185,18 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   options.threads = question.threads;
   options.progress = question.progress;
   options.published_yields_below = worth_having;
-  auto choice = better_structure(data.records, plain.base.point, options);
-  if (!choice && !plain.extended.causes.empty()) {
+  auto better = better_structure(data.records, plain.base.point, options);
+  if (!better && !plain.extended.causes.empty()) {
     // An effect that no structure has may spoil all of them; a drift that an unfit base hides is among none.
-    choice = better_structure(without_effects(data.records, plain.extended.point, plain.extended.causes),
+    better = better_structure(without_effects(data.records, plain.extended.point, plain.extended.causes),
                               plain.base.point, options);
-    if (!choice)
-      choice =
+    if (!better)
+      better =
           better_structure(without_wandering(data.records, {.delay = question.drive == Drive::command}, {}),
                            plain.base.point, options);
   }
-  if (!choice) return std::nullopt;
-  const StructureTrial& chosen = choice->trials[choice->chosen];
+  if (!better) return std::nullopt;
+  const StructureTrial& chosen = better->chosen;
   BaseFindings found;
   found.chosen = chosen;
   found.fit = evaluate_structure(data.records, {}, chosen.point);
@@ -201,9 +206,9 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
       std::max(std::pow(rmse_mm(plain.base_losses), 2) - question.noise_mm * question.noise_mm, 1e-300);
   const Namer namer(data, chosen, question);
   for (const FindingName& finding : names) {
-    const auto without = std::find_if(choice->ablation.begin(), choice->ablation.end(),
+    const auto without = std::find_if(better->ablation.begin(), better->ablation.end(),
                                       [&](const auto& w) { return w.ingredient == finding.ingredient; });
-    if (without == choice->ablation.end()) continue;
+    if (without == better->ablation.end()) continue;
     NamedCause named = namer.name(finding, without->trial);
     if (named.gain_mm2.value < least_share * excess_mm2) continue;
     if (is_among(found.named, named) || is_among(found.possible, named)) continue;

@@ -74,6 +74,7 @@ class Diagnostician {
     const Division division = divide(data_.records, block_s);
     Selection selection = search(std::move(*base), division);
     clock.ended("search");
+    if (one_is_not_enough_ && selection.left.present) ask_for_base(*one_is_not_enough_, division);
     if (leaves_too_much(selection) || (base_ && selection.left.present)) {
       if (may_ask_at_once()) look_for_base(selection, division);
       clock.ended("base");
@@ -207,9 +208,12 @@ class Diagnostician {
     options.progress = options_.progress;
     if (left_by_outliers(structure_of(recalibrated.residual_mm, d_.noise_mm))) options.most_causes = 0;
     if (may_ask_at_once()) {
-      options.to_beat_mm2 = [&](const Selection& one_cause) {
+      options.one_cause_stands = [&](const Selection& one_cause) {
         if (leaves_too_much(one_cause) || one_cause.left.excess_mm > d_.noise_mm)
-          ask_for_base(one_cause, division);
+          one_is_not_enough_ = one_cause;
+      };
+      options.to_beat_mm2 = [&] {
+        if (one_is_not_enough_) ask_for_base(*one_is_not_enough_, division);
         return base_ ? base_->fit.mean_square_mm2 : std::numeric_limits<double>::infinity();
       };
     }
@@ -382,6 +386,7 @@ class Diagnostician {
   std::vector<NamedCause> causes_;
   std::optional<BaseFindings> base_;  ///< another base, where one explains more
   bool asked_for_base_ = false;
+  std::optional<Selection> one_is_not_enough_;  ///< with one cause, where it left too much
   Diagnosis d_;
 };
 
