@@ -153,6 +153,10 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
   return best;
 }
 
+std::string in_backticks(std::string_view word) {
+  return "`" + shown(word) + "`";
+}
+
 std::string shown(std::string_view text, std::size_t most) {
   std::string out;
   const std::size_t whole = text.size();

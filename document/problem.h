@@ -67,5 +67,7 @@ class Problems {
 /// `text` for a terminal: control characters and bytes that are not UTF-8 as \n, \t, \xNN; after `most` bytes
 /// of it comes "...".
 [[nodiscard]] std::string shown(std::string_view text, std::size_t most = 60);
+/// A name or a value as messages set it off: `so`.
+[[nodiscard]] std::string in_backticks(std::string_view word);
 
 }  // namespace softgrip::document

@@ -12,10 +12,6 @@ namespace softgrip::document {
 
 namespace {
 
-std::string quoted(std::string_view word) {
-  return "`" + shown(word) + "`";
-}
-
 /// "at least 0", "at most 10", "0 to 10"
 std::string allowed(double lower, double upper, bool no_lower, bool no_upper) {
   if (no_lower) return "at most " + written(upper);
@@ -53,7 +49,7 @@ std::string listed(const std::vector<std::string>& choices) {
   std::string out;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     if (i > 0) out += i + 1 == choices.size() ? " or " : ", ";
-    out += quoted(choices[i]);
+    out += in_backticks(choices[i]);
   }
   return out;
 }
@@ -89,7 +85,7 @@ const Node* MapReader::need(std::string_view key) {
 void MapReader::refuse(const Node& value, std::string_view key, const std::string& message,
                        std::string hint) {
   bad_.emplace_back(key);
-  problems_.add(document_.problem(value.at, quoted(key) + " " + message, std::move(hint)));
+  problems_.add(document_.problem(value.at, in_backticks(key) + " " + message, std::move(hint)));
 }
 
 double MapReader::checked(std::string_view key, const Node* value, Range range) {
@@ -100,7 +96,7 @@ double MapReader::checked(std::string_view key, const Node* value, Range range) 
     return harmless(range);
   }
   if (*number.value < range.lower || *number.value > range.upper) {
-    const std::string whose = value->stands_for.empty() ? "" : " (" + quoted(value->stands_for) + ")";
+    const std::string whose = value->stands_for.empty() ? "" : " (" + in_backticks(value->stands_for) + ")";
     refuse(*value, key, "is " + written(*number.value) + whose + ", allowed is " + allowed(range),
            hint_for_range(key, *number.value, range.lower, range.upper));
   }
@@ -198,7 +194,7 @@ std::size_t MapReader::checked_choice(std::string_view key, const Node* value,
   }
   const std::string near = value->kind == Node::Kind::scalar ? nearest(value->scalar, choices) : "";
   refuse(*value, key, "must be " + listed(choices) + ", found " + found(*value),
-         near.empty() ? "" : "did you mean " + quoted(near) + "?");
+         near.empty() ? "" : "did you mean " + in_backticks(near) + "?");
   return 0;
 }
 
@@ -321,7 +317,7 @@ void MapReader::report_unknown(const Node::Entry& entry) {
   std::erase(missing_, hint.key);
   if (hint.hint.empty() && !known_.empty() && known_.size() <= 12)
     hint.hint = "known here: " + listed(known_);
-  problems_.add(document_.problem(entry.key_at, "unknown key " + quoted(entry.key) + " in " + what_,
+  problems_.add(document_.problem(entry.key_at, "unknown key " + in_backticks(entry.key) + " in " + what_,
                                   std::move(hint.hint)));
 }
 
@@ -334,7 +330,7 @@ void MapReader::finish() {
   }
   if (!document_.complete || node_.refused) return;
   for (const std::string& key : missing_) {
-    problems_.add(document_.problem(node_.at, what_ + " lacks the key " + quoted(key)));
+    problems_.add(document_.problem(node_.at, what_ + " lacks the key " + in_backticks(key)));
   }
 }
 

@@ -25,10 +25,6 @@ constexpr std::array<std::string_view, 6> units{"kpa", "mm", "s", "hz", "kpa_per
 constexpr const char* unit_hint =
     "end the name in _kpa, _mm, _s, _hz, _kpa_per_s or _mm_per_s, or give `unit: none` for a plain number";
 
-std::string quoted(std::string_view word) {
-  return "`" + document::shown(word) + "`";
-}
-
 const Node::Entry* entry_of(const Node& map, std::string_view key) {
   const auto found = std::find_if(map.entries.begin(), map.entries.end(),
                                   [key](const Node::Entry& entry) { return entry.key == key; });
@@ -42,12 +38,13 @@ std::string hint_of(const std::string& name, const std::vector<Parameter>& param
   std::string all;
   for (const Parameter& parameter : parameters) {
     names.push_back(parameter.name);
-    all += (all.empty() ? "" : ", ") + quoted(parameter.name);
+    all += (all.empty() ? "" : ", ") + document::in_backticks(parameter.name);
   }
   const std::string near = document::nearest(name, names);
-  if (!near.empty()) return "did you mean " + quoted(near) + "?";
+  if (!near.empty()) return "did you mean " + document::in_backticks(near) + "?";
   for (const Parameter& parameter : parameters) {
-    if (parameter.name.starts_with(name + "_")) return "did you mean " + quoted(parameter.name) + "?";
+    if (parameter.name.starts_with(name + "_"))
+      return "did you mean " + document::in_backticks(parameter.name) + "?";
   }
   return "there are " + all;
 }
@@ -66,10 +63,11 @@ std::string unit_of(MapReader& map, const std::string& name) {
   choices.emplace_back("none");
   const auto choice = map.optional_choice("unit", choices);
   if (choice && known && choices[*choice] != own) {
-    map.report("unit", "the name " + quoted(name) + " says another unit, " + quoted(own));
+    map.report("unit", "the name " + document::in_backticks(name) + " says another unit, " +
+                           document::in_backticks(own));
   }
   if (!choice && !known && !map.has("unit")) {
-    map.report("unit", "nothing says the unit of " + quoted(name), unit_hint);
+    map.report("unit", "nothing says the unit of " + document::in_backticks(name), unit_hint);
   }
   if (choice && choices[*choice] == "none") return {};
   return choice ? choices[*choice] : std::string(known ? own : "");
@@ -80,10 +78,11 @@ Parameter read_parameter(const Document& document, const Node::Entry& entry, Pro
   parameter.name = entry.key;
   parameter.at = entry.key_at;
   if (!is_name(entry.key)) {
-    problems.add(document.problem(entry.key_at, quoted(entry.key) + " is no name for a parameter",
+    problems.add(document.problem(entry.key_at,
+                                  document::in_backticks(entry.key) + " is no name for a parameter",
                                   "lower-case letters, digits and underscores, as in `squeeze_kpa`"));
   }
-  MapReader map(document, entry.value, problems, "parameter " + quoted(entry.key));
+  MapReader map(document, entry.value, problems, "parameter " + document::in_backticks(entry.key));
   parameter.unit = unit_of(map, parameter.name);
   parameter.about = map.text("about");
   const std::vector<double> range = map.numbers("range", 2, {-largest, largest});
@@ -117,9 +116,9 @@ class Binder {
   void report_unused() {
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
       if (used_[i]) continue;
-      problems_.add(document_.problem(parameters_[i].at,
-                                      "no step uses the parameter " + quoted(parameters_[i].name),
-                                      "write $" + parameters_[i].name + " where its number belongs"));
+      problems_.add(document_.problem(
+          parameters_[i].at, "no step uses the parameter " + document::in_backticks(parameters_[i].name),
+          "write $" + parameters_[i].name + " where its number belongs"));
     }
   }
 
@@ -129,7 +128,7 @@ class Binder {
     const auto found = std::find_if(parameters_.begin(), parameters_.end(),
                                     [&](const Parameter& parameter) { return parameter.name == name; });
     if (found == parameters_.end()) {
-      refuse(node, "there is no parameter " + quoted(name),
+      refuse(node, "there is no parameter " + document::in_backticks(name),
              name.find_first_of(" +-*/()") == std::string::npos
                  ? hint_of(name, parameters_)
                  : "a parameter stands alone: nothing is computed");
@@ -140,11 +139,11 @@ class Binder {
       refuse(node, "a parameter is the number of a key, not an item of a list", "");
     } else if (const std::string_view unit = document::unit_at_end(key); unit != found->unit) {
       const auto in_words = [](std::string_view text) {
-        return text.empty() ? "a plain number" : quoted(text);
+        return text.empty() ? "a plain number" : document::in_backticks(text);
       };
       refuse(node,
-             quoted(key) + " is " + in_words(unit) + ", the parameter " + quoted(name) + " is " +
-                 in_words(found->unit),
+             document::in_backticks(key) + " is " + in_words(unit) + ", the parameter " +
+                 document::in_backticks(name) + " is " + in_words(found->unit),
              "");
     } else {
       node.stands_for = std::exchange(node.scalar, written(found->value));
@@ -196,15 +195,16 @@ void set_values(std::span<const Argument> arguments, const Document& document,
     if (found == parameters.end()) {
       const Node::Entry* const declared = entry_of(document.root, "parameters");
       problems.add(document.problem(declared == nullptr ? document.root.at : declared->key_at,
-                                    "the sequence has no parameter " + quoted(argument.name),
+                                    "the sequence has no parameter " + document::in_backticks(argument.name),
                                     hint_of(argument.name, parameters)));
     } else if (std::find(set.begin(), set.end(), argument.name) != set.end()) {
-      problems.add(document.problem(found->at, "the parameter " + quoted(argument.name) + " is set twice"));
+      problems.add(document.problem(
+          found->at, "the parameter " + document::in_backticks(argument.name) + " is set twice"));
     } else if (!(argument.value >= found->lower && argument.value <= found->upper)) {
       problems.add(document.problem(
           found->at,
-          quoted(argument.name) + " is set to " + written(argument.value) + ", its range is " +
-              written(found->lower) + " to " + written(found->upper),
+          document::in_backticks(argument.name) + " is set to " + written(argument.value) +
+              ", its range is " + written(found->lower) + " to " + written(found->upper),
           document::hint_for_range(argument.name, argument.value, found->lower, found->upper)));
     } else {
       found->value = argument.value;

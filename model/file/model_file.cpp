@@ -224,7 +224,7 @@ class ModelReader {
 };
 
 // A double-quoted YAML scalar.
-std::string quoted(const std::string& text) {
+std::string double_quoted(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -259,7 +259,7 @@ std::optional<Model> load_model(const std::string& path, Problems& problems) {
 }
 
 std::string to_yaml(const Model& model) {
-  std::string text = "name: " + quoted(model.name) + "\nsource: " + quoted(model.source) + "\n";
+  std::string text = "name: " + double_quoted(model.name) + "\nsource: " + double_quoted(model.source) + "\n";
   for (const Station station : stations) {
     bool any = false;
     for (const BlockSpec& block : model.blocks) {

@@ -56,7 +56,7 @@ std::uint32_t checksum(std::string_view bytes) {
       ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
 }
 
-std::string quoted(const std::string& text) {
+std::string json_text(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -85,7 +85,7 @@ std::string json_of(const SignalGroup& group, std::size_t row, const std::vector
   for (std::size_t k = 0; k < group.signals.size(); ++k) {
     const Signal& signal = group.signals[k];
     if (!signal.texts.empty()) {
-      json += "," + keys[k] + ":" + quoted(signal.texts[row]);
+      json += "," + keys[k] + ":" + json_text(signal.texts[row]);
     } else if (std::isfinite(signal.values[row])) {
       json += "," + keys[k] + ":" + shortest(signal.values[row]);
     }
@@ -106,7 +106,7 @@ class Writer {
   explicit Writer(const std::vector<SignalGroup>& groups) : groups_(groups) {
     for (const SignalGroup& group : groups) {
       std::vector<std::string>& keys = keys_.emplace_back();
-      for (const Signal& signal : group.signals) keys.push_back(quoted(signal.name));
+      for (const Signal& signal : group.signals) keys.push_back(json_text(signal.name));
     }
   }
 

@@ -52,7 +52,7 @@ tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::s
 }
 
 /// A word of a shell's command line.
-std::string quoted(const std::string& text) {
+std::string single_quoted(const std::string& text) {
   std::string word = "'";
   for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return word + "'";
@@ -62,7 +62,7 @@ std::string quoted(const std::string& text) {
 tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
                                    const std::string& out) {
   std::fflush(nullptr);
-  const int status = std::system((command + " " + quoted(in) + " " + quoted(out)).c_str());
+  const int status = std::system((command + " " + single_quoted(in) + " " + single_quoted(out)).c_str());
   const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
   if (by_signal) return stopped("the rig's command was stopped by a signal");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
