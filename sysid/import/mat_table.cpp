@@ -16,9 +16,6 @@ constexpr int deepest_structure = 4;
 using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
 using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 
-/// What libmatio says of broken files goes into our own message.
-void say_nothing(int /*level*/, char* /*message*/) {}
-
 template <class T>
 std::vector<double> as_doubles(const matvar_t& variable, std::size_t count) {
   const auto* data = static_cast<const T*>(variable.data);
@@ -105,7 +102,8 @@ void collect(const matvar_t& variable, const std::string& name, int depth, Array
 }  // namespace
 
 std::optional<ForeignTable> read_mat_table(const std::string& path, document::Problems& problems) {
-  Mat_LogInitFunc("softgrip", say_nothing);
+  // What it says of broken files goes into our own message, whose text Debian 13 has const.
+  Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
   const MatFile file{Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {
     problems.add({path, {1, 1}, {}, "a MATLAB file that cannot be read: broken, or cut off", {}});
