@@ -102,7 +102,7 @@ void collect(const matvar_t& variable, const std::string& name, int depth, Array
 }  // namespace
 
 std::optional<ForeignTable> read_mat_table(const std::string& path, document::Problems& problems) {
-  // What it says of broken files goes into our own message, whose text Debian 13 has const.
+  // What it says of broken files goes into our own message. Its text is const on Debian 13 only.
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
   const MatFile file{Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {
