@@ -74,5 +74,6 @@ class Recording:
         if "channel" not in columns:
             return cls(about, {str(about["channels"][0]): columns})
         of = columns.pop("channel")
+        names: list[str] = of.tolist()
         return cls(about, {name: {key: column[of == name] for key, column in columns.items()}
-                           for name in dict.fromkeys(of.tolist())})
+                           for name in dict.fromkeys(names)})

@@ -78,6 +78,8 @@ Bytes pdf_of(std::string_view svg) {
   const double height = points_per_pixel * picture->height;
   {
     const Held<cairo_surface_t> surface(cairo_pdf_surface_create_for_stream(append, &bytes, width, height));
+    // Without compressed objects, the same of every cairo: later ones write 1.7 unless told.
+    cairo_pdf_surface_restrict_to_version(surface.get(), CAIRO_PDF_VERSION_1_4);
     if (const auto drawn = draw(*picture, surface.get(), width, height); !drawn)
       return tl::unexpected(drawn.error());
     cairo_surface_show_page(surface.get());
