@@ -74,6 +74,5 @@ class Recording:
         if "channel" not in columns:
             return cls(about, {str(about["channels"][0]): columns})
         of = columns.pop("channel")
-        names: list[str] = of.tolist()
         return cls(about, {name: {key: column[of == name] for key, column in columns.items()}
-                           for name in dict.fromkeys(names)})
+                           for name in dict.fromkeys(map(str, of))})
