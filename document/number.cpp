@@ -146,8 +146,8 @@ std::string found(const Node& node) {
       break;
   }
   if (node.scalar.empty()) return "an empty text";
-  return "`" + shown(node.scalar) + "`" +
-         (node.stands_for.empty() ? "" : " (`" + shown(node.stands_for) + "`)");
+  return in_backticks(node.scalar) +
+         (node.stands_for.empty() ? "" : " (" + in_backticks(node.stands_for) + ")");
 }
 
 std::string hint_for_comma(const Node& before, Location after, std::string_view text_after) {

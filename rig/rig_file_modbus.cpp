@@ -128,7 +128,7 @@ void read_format(MapReader& reader, drivers::SerialLine& line) {
 /// Names that the kernel gives in the order of plugging in.
 void advise_on_name(MapReader& reader, const std::string& device) {
   if (device.rfind("/dev/ttyUSB", 0) != 0 && device.rfind("/dev/ttyACM", 0) != 0) return;
-  reader.warn("device", "`" + document::shown(device) + "` may be another adapter after the next start",
+  reader.warn("device", document::in_backticks(device) + " may be another adapter after the next start",
               "use the adapter's own name, see: ls -l /dev/serial/by-id");
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what the tests need, builds, and runs them: the release build with every test; the Debian package; then, under
-# AddressSanitizer and UndefinedBehaviorSanitizer, what meets bytes from outside; then, under ThreadSanitizer, what has
-# threads; then clang-tidy over the sources that differ from origin's main.
+# Installs what the tests need, builds, and runs them: the release build with every test; beside those that compute the
+# Debian package, under AddressSanitizer and UndefinedBehaviorSanitizer what meets bytes from outside, and under
+# ThreadSanitizer what has threads; then clang-tidy over the sources that differ from origin's main.
 #   scripts/test.sh            all of it
 #   scripts/test.sh --quick    the release build and the tests that take no more than a moment each
 #   scripts/test.sh --all      hours: with the tests labelled campaign (more blind worlds) and recipe (the pages that say how

@@ -66,7 +66,7 @@ class MappingReader {
     if (const auto word = map.optional_text("separator")) {
       mapping.separator = separator_named(*word);
       if (mapping.separator == 0)
-        map.report("separator", "`" + document::shown(*word) + "` separates no columns",
+        map.report("separator", document::in_backticks(*word) + " separates no columns",
                    "comma, semicolon, tab, space or bar");
     }
     for (const document::Node* item : map.sequence("missing", false)) mapping.missing.push_back(item->scalar);

@@ -70,7 +70,7 @@ std::string unknown_name(const std::string& word, const std::string& folder) {
   const std::string near = document::nearest(word, names);
   const std::string all = names.empty() ? "nothing is there" : "there are " + listed(names);
   const std::string hint = near.empty() ? all : "did you mean " + near + "?";
-  return "`" + document::shown(word) + "` is no file, nor a name in " + configuration_path(folder) + ": " +
+  return document::in_backticks(word) + " is no file, nor a name in " + configuration_path(folder) + ": " +
          hint;
 }
 
@@ -137,7 +137,7 @@ std::string take_address(const std::string& text, RigDraft& draft) {
   const std::string host = word.substr(0, colon);
   if (::inet_pton(AF_INET, host.c_str(), address.data()) != 1 &&
       ::inet_pton(AF_INET6, host.c_str(), address.data()) != 1) {
-    return "`" + document::shown(word) + "` is neither a numeric address nor the path of a device" +
+    return document::in_backticks(word) + " is neither a numeric address nor the path of a device" +
            (host == "localhost" ? ": write 127.0.0.1" : "");
   }
   const auto port = colon == std::string::npos ? std::optional(502) : whole(word.substr(colon + 1), 1, 65535);
@@ -188,7 +188,7 @@ std::string take_fingers(const std::string& text, RigDraft& draft) {
   if (names.empty()) return "a rig has at least one finger";
   for (const std::string& name : names) {
     if (name.size() > 32 || !std::all_of(name.begin(), name.end(), good)) {
-      return "`" + document::shown(name) + "`: a name is at most 32 letters, digits, `-` or `_`";
+      return document::in_backticks(name) + ": a name is at most 32 letters, digits, `-` or `_`";
     }
     if (std::count(names.begin(), names.end(), name) > 1) return "two fingers are called `" + name + "`";
   }
@@ -225,7 +225,7 @@ std::optional<Question> ask_valve(const RigDraft& draft) {
 
 std::string take_valve(const std::string& text, RigDraft& draft) {
   const auto numbers = two_numbers(text);
-  if (!numbers) return "`" + document::shown(text) + "`: two pressures that differ, like 0 100";
+  if (!numbers) return document::in_backticks(text) + ": two pressures that differ, like 0 100";
   if (std::max(numbers->first, numbers->second) <= 0) return "a pressure above 0 is needed";
   const ElectricalRange range = output_range(draft);
   draft.valve = {range.lowest, numbers->first, range.highest, numbers->second};
@@ -258,7 +258,7 @@ std::optional<Question> ask_sensor(const RigDraft& draft) {
 
 std::string take_sensor(const std::string& text, RigDraft& draft) {
   const auto numbers = two_numbers(text);
-  if (!numbers) return "`" + document::shown(text) + "`: two displacements that differ, like -5 45";
+  if (!numbers) return document::in_backticks(text) + ": two displacements that differ, like -5 45";
   const ElectricalRange range = input_range(draft);
   draft.sensor = {range.lowest, numbers->first, range.highest, numbers->second};
   return "";

@@ -74,7 +74,6 @@ class Diagnostician {
     const Division division = divide(data_.records, block_s);
     Selection selection = search(std::move(*base), division);
     clock.ended("search");
-    if (one_is_not_enough_ && selection.left.present) ask_for_base(*one_is_not_enough_, division);
     if (leaves_too_much(selection) || (base_ && selection.left.present)) {
       if (may_ask_at_once()) look_for_base(selection, division);
       clock.ended("base");
@@ -206,18 +205,21 @@ class Diagnostician {
     SelectionOptions options;
     options.seed = options_.seed;
     options.progress = options_.progress;
+    std::optional<Selection> one_is_not_enough;
     if (left_by_outliers(structure_of(recalibrated.residual_mm, d_.noise_mm))) options.most_causes = 0;
     if (may_ask_at_once()) {
       options.one_cause_stands = [&](const Selection& one_cause) {
         if (leaves_too_much(one_cause) || one_cause.left.excess_mm > d_.noise_mm)
-          one_is_not_enough_ = one_cause;
+          one_is_not_enough = one_cause;
       };
       options.to_beat_mm2 = [&] {
-        if (one_is_not_enough_) ask_for_base(*one_is_not_enough_, division);
+        if (one_is_not_enough) ask_for_base(*one_is_not_enough, division);
         return base_ ? base_->fit.mean_square_mm2 : std::numeric_limits<double>::infinity();
       };
     }
-    return select_causes(data_, std::move(recalibrated), d_.noise_mm, division, options);
+    Selection selection = select_causes(data_, std::move(recalibrated), d_.noise_mm, division, options);
+    if (one_is_not_enough && selection.left.present) ask_for_base(*one_is_not_enough, division);
+    return selection;
   }
 
   [[nodiscard]] bool base_leaves_too_much(const Selection& selection) const {
@@ -386,7 +388,6 @@ class Diagnostician {
   std::vector<NamedCause> causes_;
   std::optional<BaseFindings> base_;  ///< another base, where one explains more
   bool asked_for_base_ = false;
-  std::optional<Selection> one_is_not_enough_;  ///< with one cause, where it left too much
   Diagnosis d_;
 };
 
