@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/quantisation.h"
@@ -150,12 +151,59 @@ Record thinned_record(const Record& record, std::span<const std::size_t> kept) {
   return thin;
 }
 
+namespace {
+
+/// From so much of the largest command on a command that leaves the straight line between two samples jumps.
+constexpr double least_jump = 0.01;
+
+/// The command at sample `at`, weighted by a hat over the samples that are dropped on either side.
+double hat_mean_kpa(const std::vector<double>& drive_kpa, std::size_t at, std::size_t stride) {
+  const double width = static_cast<double>(stride);
+  double sum_kpa = drive_kpa[at];
+  for (std::size_t j = 1; j < stride; ++j)
+    sum_kpa += (1 - static_cast<double>(j) / width) * (drive_kpa[at - j] + drive_kpa[at + j]);
+  return sum_kpa / width;
+}
+
+/// Whether the command jumps between sample `at` and the next one that is kept.
+bool jumps_after(const Record& record, std::size_t at, std::size_t stride) {
+  const double from_kpa = record.drive_kpa[at], to_kpa = record.drive_kpa[at + stride];
+  for (std::size_t j = 1; j < stride; ++j) {
+    const double share = static_cast<double>(j) / static_cast<double>(stride);
+    const double straight_kpa = from_kpa + share * (to_kpa - from_kpa);
+    if (std::abs(record.drive_kpa[at + j] - straight_kpa) > least_jump * record.largest_kpa) return true;
+  }
+  return false;
+}
+
+/// A jump between two samples that are kept would come up to a whole interval early or late: there the
+/// command keeps its mean instead of its value. Corners without a jump stay as sharp as they are.
+void keep_mean_of_jumps(const Record& record, std::size_t stride, Record& thin) {
+  if (record.held) {
+    for (std::size_t to = 0; to + 1 < thin.size(); ++to) {
+      const auto first = record.drive_kpa.begin() + static_cast<long>(to * stride);
+      thin.drive_kpa[to] =
+          std::accumulate(first, first + static_cast<long>(stride), 0.0) / static_cast<double>(stride);
+    }
+    return;
+  }
+  bool jumped = false;
+  for (std::size_t to = 1; (to + 1) * stride < record.size(); ++to) {
+    const bool jumps = jumps_after(record, to * stride, stride);
+    if (jumps || jumped) thin.drive_kpa[to] = hat_mean_kpa(record.drive_kpa, to * stride, stride);
+    jumped = jumps;
+  }
+}
+
+}  // namespace
+
 Record thinned_record(const Record& record, std::size_t stride) {
   std::vector<std::size_t> kept;
   kept.reserve(record.size() / stride + 1);
   for (std::size_t i = 0; i < record.size(); i += stride) kept.push_back(i);
   Record thin = thinned_record(record, kept);
   thin.sample_time_s = record.sample_time_s * static_cast<double>(stride);
+  if (stride > 1) keep_mean_of_jumps(record, stride, thin);
   return thin;
 }
 

@@ -98,6 +98,21 @@ Division divide(const std::vector<Record>& records, double block_s) {
   return division;
 }
 
+Division thinned_like(Division division, const std::vector<Record>& records,
+                      const std::vector<Record>& thinned) {
+  for (Block& block : division.blocks) {
+    const std::vector<double>& all = records[block.record].time_s;
+    const std::vector<double>& left = thinned[block.record].time_s;
+    const auto index_of = [&](std::size_t sample) {
+      if (sample >= all.size()) return left.size();
+      return static_cast<std::size_t>(std::lower_bound(left.begin(), left.end(), all[sample]) - left.begin());
+    };
+    block.first = index_of(block.first);
+    block.last = index_of(block.last);
+  }
+  return division;
+}
+
 Division divide_by_record(const std::vector<Record>& records) {
   Division division;
   division.folds = records.size();

@@ -28,6 +28,9 @@ struct Division {
 
 /// Blocks of about `block_s`, at least eight of them; the gap is a tenth of a block.
 [[nodiscard]] Division divide(const std::vector<Record>& records, double block_s);
+/// The same stretches of time among the samples that are left of `records`.
+[[nodiscard]] Division thinned_like(Division division, const std::vector<Record>& records,
+                                    const std::vector<Record>& thinned);
 /// One fold per record: whole logs are held out.
 [[nodiscard]] Division divide_by_record(const std::vector<Record>& records);
 

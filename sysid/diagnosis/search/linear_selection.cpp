@@ -164,7 +164,7 @@ class SelectorUpon {
     const std::vector<Cause> others(causes.begin(), causes.end() - 1);
     for (int turn = 0; turn < turns; ++turn) {
       const model::Model& model = best.point.model;
-      FitPoint again = options_.base_again(without_effects(data_.records, best.point, causes));
+      FitPoint again = options_.base_again(without_effects(data_.thinned, best.point, causes));
       for (const Cause& one : others)
         again.model = model::with_block(again.model, model.blocks[*position_of(model, one)]);
       const Scan scan(data_.thinned, others, again);

@@ -13,10 +13,17 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Interval to which the first look is thinned: a ringing of 30 Hz must still be seen, and the command's
-/// corners.
-constexpr double look_interval_s = 0.0125;
+/// Interval to which records are thinned until a candidate is finished on all samples: a valve's lag must
+/// still be seen. A ringing above half this rate is seen as well: the prediction is thinned as the readings
+/// are.
+constexpr double look_interval_s = 0.02;
+/// A first look at every start, then a longer one at those that may become the best or a rival.
+constexpr FitEffort glance{.most_iterations = 4, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
+/// So many causes are looked at for longer, and all whose glance leaves less than so many times the best
+/// one's.
+constexpr std::size_t always_looked_at = 7;
+constexpr double worth_a_look = 1.5;
 constexpr FitEffort full{.most_iterations = 40, .tolerance = 1e-8};
 /// Looks that are followed to the end.
 constexpr std::size_t followed = 2;
@@ -46,15 +53,24 @@ std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   return scans;
 }
 
-/// The best looks at one candidate, on thinned records, best first.
-std::vector<StructureFit> look_at(const SearchData& data, const StructureFit& current,
+/// The best glances at one candidate, on thinned records, best first.
+std::vector<StructureFit> glances(const SearchData& data, const StructureFit& current,
                                   std::span<const Scan> scans, const Cause& cause) {
   std::vector<Cause> causes = current.causes;
   causes.push_back(cause);
   std::vector<StructureFit> fits;
   for (const FitPoint& start : best_starts(scans, cause, data.scales, fewest_looks)) {
-    fits.push_back(fit_structure(data.thinned, causes, start, look));
+    fits.push_back(fit_structure(data.thinned, causes, start, glance));
   }
+  sort_and_keep(fits, fits.size());
+  return fits;
+}
+
+/// The best looks, from where the glances ended.
+std::vector<StructureFit> looks(const SearchData& data, const std::vector<StructureFit>& from) {
+  std::vector<StructureFit> fits;
+  for (const StructureFit& fit : from)
+    fits.push_back(fit_structure(data.thinned, fit.causes, fit.point, look));
   sort_and_keep(fits, followed);
   return fits;
 }
@@ -67,27 +83,120 @@ bool is_better(const StructureFit& fit, const StructureFit& best) {
   return fit.mean_square_mm2 < needed * best.mean_square_mm2;
 }
 
-StructureFit follow(const SearchData& data, const std::vector<StructureFit>& looks) {
-  StructureFit best = fit_structure(data.thinned, looks[0].causes, looks[0].point, full);
-  for (std::size_t i = 1; i < looks.size(); ++i) {
-    if (looks[i].mean_square_mm2 > 1.3 * looks[0].mean_square_mm2) break;
-    StructureFit fit = fit_structure(data.thinned, looks[i].causes, looks[i].point, full);
+StructureFit follow(const SearchData& data, const std::vector<StructureFit>& from) {
+  StructureFit best = fit_structure(data.thinned, from[0].causes, from[0].point, full);
+  for (std::size_t i = 1; i < from.size(); ++i) {
+    if (from[i].mean_square_mm2 > 1.3 * from[0].mean_square_mm2) break;
+    StructureFit fit = fit_structure(data.thinned, from[i].causes, from[i].point, full);
     if (is_better(fit, best)) best = std::move(fit);
   }
   return best;
 }
 
-/// Indices of what there is, smallest mean square first.
-std::vector<std::size_t> ranking(const std::vector<std::optional<StructureFit>>& fits) {
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (fits[i]) order.push_back(i);
+/// The candidates upon one structure, narrowed down: what little effort shows to be far behind gets no more.
+class CandidateFitter {
+ public:
+  CandidateFitter(const SearchData& data, const StructureFit& current, const CandidateSearch& search)
+      : data_(data), current_(current), search_(search), candidates_(wanted()), fits_(candidates_.size()) {}
+
+  std::vector<Candidate> run() {
+    glance_at_all();
+    if (ranking().empty()) return std::move(candidates_);
+    look_at_the_best();
+    if (is_hopeless()) {
+      for (Candidate& candidate : candidates_) {
+        if (candidate.why_not.empty()) candidate.why_not = "far behind another explanation";
+      }
+      return std::move(candidates_);
+    }
+    follow_the_best();
+    finish();
+    return std::move(candidates_);
   }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return fits[a]->mean_square_mm2 < fits[b]->mean_square_mm2;
-  });
-  return order;
-}
+
+ private:
+  /// Every cause that may be asked for and that the structure lacks.
+  [[nodiscard]] std::vector<Candidate> wanted() const {
+    std::vector<Candidate> list;
+    for (const Cause& cause : search_.only.empty() ? all_causes() : std::span(search_.only)) {
+      if (cause.found_by_fitting && !position_of(current_.point.model, cause))
+        list.push_back({cause, std::nullopt, unanswerable(cause, data_.scales)});
+    }
+    return list;
+  }
+
+  void glance_at_all() {
+    const std::vector<Scan> scans = places(data_, current_);
+    std::atomic<std::size_t> tried{0};
+    parallel_for(candidates_.size(), data_.threads, [&](std::size_t i) {
+      Candidate& candidate = candidates_[i];
+      if (candidate.why_not.empty()) {
+        fits_[i] = glances(data_, current_, scans, candidate.cause);
+        if (fits_[i].empty()) candidate.why_not = "no start led to a fit";
+      }
+      if (search_.progress) search_.progress(++tried, candidates_.size());
+    });
+  }
+
+  void look_at_the_best() {
+    const std::vector<std::size_t> order = ranking();
+    const double best = best_of(order.front());
+    parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
+      const std::size_t i = order[rank];
+      if (rank < always_looked_at || best_of(i) < worth_a_look * best) fits_[i] = looks(data_, fits_[i]);
+    });
+  }
+
+  /// The leader is followed first: how far behind another explanation a cause is cannot be told before.
+  bool is_hopeless() {
+    if (!search_.is_hopeless) return false;
+    leader_ = ranking().front();
+    fits_[*leader_] = {follow(data_, fits_[*leader_])};
+    return search_.is_hopeless(best_of(*leader_));
+  }
+
+  void follow_the_best() {
+    const std::vector<std::size_t> order = ranking();
+    const double best = best_of(order.front());
+    parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
+      const std::size_t i = order[rank];
+      if (i != leader_ && (rank < always_followed || best_of(i) < near_enough * best))
+        fits_[i] = {follow(data_, fits_[i])};
+    });
+  }
+
+  /// On all samples.
+  void finish() {
+    const std::vector<std::size_t> order = ranking();
+    const double best = best_of(order.front());
+    parallel_for(order.size(), data_.threads, [&](std::size_t rank) {
+      const StructureFit& fit = fits_[order[rank]].front();
+      const bool whole = rank < always_finished || fit.mean_square_mm2 < next_to_best * best;
+      candidates_[order[rank]].fit = whole ? fit_structure(data_.records, fit.causes, fit.point, full)
+                                           : evaluate_structure(data_.records, fit.causes, fit.point);
+    });
+  }
+
+  [[nodiscard]] double best_of(std::size_t i) const { return fits_[i].front().mean_square_mm2; }
+
+  /// Indices of what there is, smallest mean square first.
+  [[nodiscard]] std::vector<std::size_t> ranking() const {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < fits_.size(); ++i) {
+      if (!fits_[i].empty()) order.push_back(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return best_of(a) < best_of(b); });
+    return order;
+  }
+
+  const SearchData& data_;
+  const StructureFit& current_;
+  const CandidateSearch& search_;
+  std::vector<Candidate> candidates_;
+  std::vector<std::vector<StructureFit>> fits_;  ///< to thinned records, of every candidate, best first
+  std::optional<std::size_t> leader_;            ///< followed before the others
+};
 
 }  // namespace
 
@@ -102,51 +211,7 @@ SearchData make_search_data(std::vector<Record> records, const model::Model& giv
 
 std::vector<Candidate> fit_candidates(const SearchData& data, const StructureFit& current,
                                       const CandidateSearch& search) {
-  std::vector<Cause> wanted;
-  for (const Cause& cause : search.only.empty() ? all_causes() : std::span(search.only)) {
-    if (cause.found_by_fitting && !position_of(current.point.model, cause)) wanted.push_back(cause);
-  }
-  std::vector<Candidate> candidates(wanted.size());
-  std::vector<std::vector<StructureFit>> looks(wanted.size());
-  const std::vector<Scan> scans = places(data, current);
-  std::atomic<std::size_t> tried{0};
-  parallel_for(wanted.size(), data.threads, [&](std::size_t i) {
-    candidates[i] = {wanted[i], std::nullopt, unanswerable(wanted[i], data.scales)};
-    if (candidates[i].why_not.empty()) {
-      looks[i] = look_at(data, current, scans, wanted[i]);
-      if (looks[i].empty()) candidates[i].why_not = "no start led to a fit";
-    }
-    if (search.progress) search.progress(++tried, wanted.size());
-  });
-
-  std::vector<std::optional<StructureFit>> thin(wanted.size());
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (!looks[i].empty()) thin[i] = looks[i].front();
-  }
-  std::vector<std::size_t> order = ranking(thin);
-  if (order.empty()) return candidates;
-  const double best_look = thin[order.front()]->mean_square_mm2;
-  if (search.is_hopeless && search.is_hopeless(best_look)) {
-    for (Candidate& candidate : candidates) {
-      if (candidate.why_not.empty()) candidate.why_not = "far behind another explanation";
-    }
-    return candidates;
-  }
-  parallel_for(order.size(), data.threads, [&](std::size_t rank) {
-    const std::size_t i = order[rank];
-    if (rank < always_followed || thin[i]->mean_square_mm2 < near_enough * best_look) {
-      thin[i] = follow(data, looks[i]);
-    }
-  });
-  order = ranking(thin);
-  const double best = thin[order.front()]->mean_square_mm2;
-  parallel_for(order.size(), data.threads, [&](std::size_t rank) {
-    const StructureFit& fit = *thin[order[rank]];
-    const bool finish = rank < always_finished || fit.mean_square_mm2 < next_to_best * best;
-    candidates[order[rank]].fit = finish ? fit_structure(data.records, fit.causes, fit.point, full)
-                                         : evaluate_structure(data.records, fit.causes, fit.point);
-  });
-  return candidates;
+  return CandidateFitter(data, current, search).run();
 }
 
 }  // namespace softgrip::sysid

@@ -14,7 +14,7 @@ namespace softgrip::sysid {
 /// A campaign as the search sees it.
 struct SearchData {
   std::vector<Record> records;
-  std::vector<Record> thinned;  ///< for the first look at many starts
+  std::vector<Record> thinned;  ///< until a candidate is finished
   Scales scales;
   unsigned threads = 0;  ///< 0: as many as there are cores
   FitPoint given;        ///< the model as it was given: a second place to start from
@@ -32,8 +32,8 @@ struct Candidate {
 
 struct CandidateSearch {
   std::vector<Cause> only = {};  ///< empty: all
-  /// Asked with the mean square of the best look: whether none is worth following to the end.
-  std::function<bool(double best_look_mm2)> is_hopeless = {};
+  /// Asked with the mean square that the best one leaves: whether the others are not worth following.
+  std::function<bool(double best_mm2)> is_hopeless = {};
   std::function<void(std::size_t tried, std::size_t of)> progress = {};  ///< from any thread
 };
 

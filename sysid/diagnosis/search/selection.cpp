@@ -19,7 +19,7 @@ constexpr std::size_t finalists = 4;
 /// what makes up for a form does not meet it whole.
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
-/// How much more than another explanation a first look may leave to be followed.
+/// How much more than another explanation the best of one more cause may leave for the others to be followed.
 constexpr double near_the_other = 2;
 
 class Selector {
@@ -54,7 +54,7 @@ class Selector {
   std::vector<Scored> score(const StructureFit& current) {
     CandidateSearch search;
     if (!result_.extended.causes.empty() && options_.to_beat_mm2)
-      search.is_hopeless = [this](double best_look_mm2) { return is_far_behind(best_look_mm2); };
+      search.is_hopeless = [this](double best_mm2) { return is_far_behind(best_mm2); };
     if (options_.progress) {
       search.progress = [&](std::size_t tried, std::size_t of) {
         const std::string number = "cause number " + std::to_string(current.causes.size() + 1);
@@ -87,12 +87,12 @@ class Selector {
     return scored;
   }
 
-  /// Whether another explanation leaves far less than the best look at one more cause; none leaves less than
+  /// Whether another explanation leaves far less than the best of one more cause; none leaves less than
   /// the noise.
-  bool is_far_behind(double best_look_mm2) {
-    if (best_look_mm2 <= near_the_other * square(noise_)) return false;
+  bool is_far_behind(double best_mm2) {
+    if (best_mm2 <= near_the_other * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
-    return best_look_mm2 > near_the_other * *to_beat_mm2_;
+    return best_mm2 > near_the_other * *to_beat_mm2_;
   }
 
   /// A gain whose interval excludes nothing and whose size is worth having. `without` and `with` are the

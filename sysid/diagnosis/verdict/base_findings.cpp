@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -44,6 +45,9 @@ constexpr double least_share = 0.01;
 /// Where a cause was missing a choice of the ridge and of the simplest structure says little.
 constexpr double most_ridge = 1e-5;
 
+/// On all readings, from where the fit to the thinned ones ended.
+constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
+
 /// What a finding is called, and with which blocks it stands in the model.
 struct FindingName {
   Ingredient ingredient;
@@ -81,11 +85,13 @@ bool foretells_better(const std::vector<Record>& records, const StructureTrial& 
 
 class Namer {
  public:
-  Namer(const SearchData& data, const StructureTrial& chosen, const BaseQuestion& question)
+  /// @param point  the chosen structure fitted to all readings.
+  Namer(const SearchData& data, const StructureTrial& chosen, const FitPoint& point,
+        const BaseQuestion& question)
       : chosen_(chosen),
         question_(question),
-        space_(chosen.point.model, data.records, free_numbers(chosen.point.model)),
-        at_(uncertain_point(data.records, chosen.point, space_)) {}
+        space_(point.model, data.records, free_numbers(point.model)),
+        at_(uncertain_point(data.records, point, space_)) {}
 
   [[nodiscard]] NamedCause name(const FindingName& finding, const StructureTrial& without) const {
     NamedCause named;
@@ -149,7 +155,6 @@ bool is_confounded(const NamedCause& finding, const std::vector<Cause>& causes) 
 }
 
 void take_back_confounded(BaseFindings& found, const SearchData& data, const BaseQuestion& question) {
-  constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
   std::erase_if(found.named, [&](const NamedCause& finding) {
     if (!is_confounded(finding, found.fit.causes)) return false;
     FitPoint rest = found.fit.point;
@@ -162,6 +167,16 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
     found.losses = std::move(losses);
     return true;
   });
+}
+
+/// Upon a base with many numbers every fit is dear, and thinned records say as well which cause is there.
+Selection select_among_thinned(const FitPoint& base, const SearchData& data, const BaseQuestion& question,
+                               const SelectionOptions& options) {
+  SearchData thinned = data;
+  thinned.records = data.thinned;
+  const Division division = thinned_like(question.division, data.records, data.thinned);
+  return select_causes_upon(thinned, evaluate_structure(thinned.records, {}, base), question.noise_mm,
+                            division, options);
 }
 
 /// The numbers of all names as they are beside each other.
@@ -185,26 +200,33 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   options.threads = question.threads;
   options.progress = question.progress;
   options.published_yields_below = worth_having;
-  auto better = better_structure(data.records, plain.base.point, options);
-  if (!better && !plain.extended.causes.empty()) {
-    // An effect that no structure has may spoil all of them; a drift that an unfit base hides is among none.
-    better = better_structure(without_effects(data.records, plain.extended.point, plain.extended.causes),
-                              plain.base.point, options);
-    if (!better)
-      better =
-          better_structure(without_wandering(data.records, {.delay = question.drive == Drive::command}, {}),
-                           plain.base.point, options);
+  // An effect that no structure has may spoil all of them; a drift that an unfit base hides is among none.
+  using Readings = std::vector<Record>;
+  std::vector<std::function<Readings(const Readings&)>> views{std::identity{}};
+  if (!plain.extended.causes.empty()) {
+    views.emplace_back([&](const Readings& all) {
+      return without_effects(all, plain.extended.point, plain.extended.causes);
+    });
+    views.emplace_back([&](const Readings& all) {
+      return without_wandering(all, {.delay = question.drive == Drive::command}, {});
+    });
+  }
+  std::optional<BetterStructure> better;
+  auto view = views.begin();
+  for (; view != views.end(); ++view) {
+    better = better_structure((*view)(data.thinned), plain.base.point, options);
+    if (better) break;
   }
   if (!better) return std::nullopt;
   const StructureTrial& chosen = better->chosen;
   BaseFindings found;
   found.chosen = chosen;
-  found.fit = evaluate_structure(data.records, {}, chosen.point);
+  found.fit = evaluate_structure(data.records, {}, fit_again(chosen, (*view)(data.records), question.drive));
   found.losses = linear_held_out_losses(data.records, question.division, found.fit);
   found.description = description_of(chosen.structure);
   const double excess_mm2 =
       std::max(std::pow(rmse_mm(plain.base_losses), 2) - question.noise_mm * question.noise_mm, 1e-300);
-  const Namer namer(data, chosen, question);
+  const Namer namer(data, chosen, found.fit.point, question);
   for (const FindingName& finding : names) {
     const auto without = std::find_if(better->ablation.begin(), better->ablation.end(),
                                       [&](const auto& w) { return w.ingredient == finding.ingredient; });
@@ -236,19 +258,21 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   options.base_again = [base, drive = question.drive](const std::vector<Record>& readings) {
     return fit_again(base, readings, drive);
   };
-  Selection selection = select_causes_upon(data, found.fit, question.noise_mm, question.division, options);
+  const Selection selection = select_among_thinned(found.fit.point, data, question, options);
   if (selection.chosen.empty()) return;
+  StructureFit with =
+      fit_structure(data.records, selection.extended.causes, selection.extended.point, finish);
   const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
   const bool clear = after * after < (1 - allowed.least_share) * before * before;
   if (!clear && !allowed.parts) return;
-  for (NamedCause& cause : name_chosen(data.records, selection.extended, selection.chosen)) {
+  for (NamedCause& cause : name_chosen(data.records, with, selection.chosen)) {
     if (clear || !is_among(found.possible, cause))
       (clear ? found.named : found.possible).push_back(std::move(cause));
   }
   if (!clear) return;
   found.description = description_of(base.structure);
-  found.fit = std::move(selection.extended);
-  found.losses = std::move(selection.extended_losses);
+  found.fit = std::move(with);
+  found.losses = linear_held_out_losses(data.records, question.division, found.fit);
   take_back_confounded(found, data, question);
   renumber(found, data);
 }
