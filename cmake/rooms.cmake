@@ -90,8 +90,8 @@ softgrip_room(sysid/changes
   USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments
-  USES base sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes sysid/diagnosis/search
-       sysid/diagnosis/gauge sysid/diagnosis/verdict)
+  USES base sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes
+       sysid/diagnosis/search sysid/diagnosis/gauge sysid/diagnosis/verdict)
 softgrip_room(sysid/diagnosis/report
   USES base model model/file sysid/logs sysid/pages sysid/fitting sysid/identification sysid/diagnosis/causes
        sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/diagnosis/verdict

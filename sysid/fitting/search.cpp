@@ -12,6 +12,7 @@
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/logs/strided_record.h"
 
 namespace softgrip::sysid {
 namespace {

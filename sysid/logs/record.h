@@ -81,14 +81,6 @@ struct Record {
 /// The samples at `kept` (ascending, the first is 0), with durations between them; of irregular sampling
 /// where nothing else is said.
 [[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
-/// Every `stride`-th sample of a record, from the first on: for a first look at many starts.
-[[nodiscard]] Record thinned_record(const Record& record, std::size_t stride);
-/// Thinned so that samples stand at most `interval_s` apart, where they are not farther apart already.
-[[nodiscard]] Record thinned_to(const Record& record, double interval_s);
-/// Thinned likewise, and each reading the mean of those that are nearer to it than to any other that is left:
-/// their noise falls with the root of their number. A motion is not blurred as long as it bends little within
-/// `interval_s`.
-[[nodiscard]] Record averaged_to(const Record& record, double interval_s);
 
 /// The readings' noise, from second differences of neighbours (robust; white noise assumed) [mm].
 [[nodiscard]] double fast_noise_mm(const Record& record);

@@ -10,7 +10,6 @@ namespace softgrip::sysid::causes {
 struct AsymmetricHysteresis {
   static constexpr std::string_view id = "asymmetric_hysteresis";
   static constexpr std::string_view title = "Asymmetric hysteresis";
-  static constexpr bool is_own_law = true;
   static constexpr WhenChanged when_changed{
       "the way back is another than the way there",
       {"Look for something that rubs on the finger or its guide in one direction.",

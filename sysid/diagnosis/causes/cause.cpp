@@ -122,7 +122,6 @@ constexpr Cause cause() {
   if constexpr (requires { C::limit; }) cause.limit = C::limit;
   if constexpr (requires { C::confounded_with; }) cause.confounded_with = C::confounded_with;
   if constexpr (requires { C::is_stop; }) cause.is_stop = C::is_stop;
-  if constexpr (requires { C::is_own_law; }) cause.is_own_law = C::is_own_law;
   if constexpr (requires { C::parts_twins; }) cause.parts_twins = C::parts_twins;
   if constexpr (requires { C::is_ideal; }) cause.is_ideal = C::is_ideal;
   if constexpr (requires { C::where_bases_miss; }) cause.where_bases_miss = C::where_bases_miss;

@@ -50,7 +50,6 @@ struct Cause {
   std::span<const std::string_view> counterparts;
   std::span<const std::string_view> confounded_with;
   bool is_stop = false;
-  bool is_own_law = false;
   bool parts_twins = false;
   bool is_ideal = false;
   bool where_bases_miss = false;

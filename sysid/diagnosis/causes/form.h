@@ -38,8 +38,6 @@
 //   static constexpr std::array<std::string_view, N> confounded_with{...};
 //       where one of these may be there too, the number is less certain than its fit says
 //   static constexpr bool is_stop = true;                  holds the readings back at a place
-//   static constexpr bool is_own_law = true;               any finger's loop has some of it: a richer base
-//                                                          stands for it but for a rest
 //   static constexpr bool parts_twins = true;
 //       remembers, between actuator and sensor: twins before it and behind it differ
 //   static constexpr bool is_ideal = true;

@@ -11,7 +11,6 @@ namespace softgrip::sysid::causes {
 struct RateDependentHysteresis {
   static constexpr std::string_view id = "rate_dependent_hysteresis";
   static constexpr std::string_view title = "Rate-dependent hysteresis";
-  static constexpr bool is_own_law = true;
   static constexpr bool where_bases_miss = true;
   /// A loop that relaxes before the next sample is a lag.
   static constexpr std::string_view contains = "sensor_lag";

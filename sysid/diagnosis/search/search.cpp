@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/search/scan.h"
+#include "sysid/logs/strided_record.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 /// are.
 constexpr double look_interval_s = 0.02;
 /// A first look at every start, then a longer one at those that may become the best or a rival.
-constexpr FitEffort glance{.most_iterations = 4, .tolerance = 1e-5};
+constexpr FitEffort glance{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
 /// So many causes are looked at for longer, and all whose glance leaves less than so many times the best
 /// one's.

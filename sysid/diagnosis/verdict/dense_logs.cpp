@@ -4,6 +4,8 @@
 
 #include "base/numbers.h"
 
+#include "sysid/logs/strided_record.h"
+
 namespace softgrip::sysid {
 
 bool average_dense(std::vector<Record>& records, std::vector<std::string>& warnings) {

@@ -1,0 +1,48 @@
+#include "sysid/diagnosis/search/holdout.h"
+
+#include <gtest/gtest.h>
+
+#include "sysid/logs/strided_record.h"
+
+namespace softgrip::sysid::holdout_test {
+namespace {
+
+Record of_length(double length_s, double rate_hz) {
+  Record record;
+  for (int i = 0; i <= static_cast<int>(length_s * rate_hz); ++i) {
+    record.time_s.push_back(i / rate_hz);
+    record.duration_s.push_back(i == 0 ? 0 : 1 / rate_hz);
+    record.drive_kpa.push_back(0);
+    record.reading_mm.push_back(0);
+  }
+  record.sample_time_s = 1 / rate_hz;
+  record.readings = record.size();
+  return record;
+}
+
+TEST(ThinnedDivision, HasTheSameStretchesOfTime) {
+  const std::vector<Record> records{of_length(33, 100), of_length(20, 60)};
+  std::vector<Record> thinned;
+  for (const Record& record : records) thinned.push_back(thinned_record(record, 3));
+  const Division all = divide(records, 8);
+  const Division few = thinned_like(all, records, thinned);
+  ASSERT_EQ(few.blocks.size(), all.blocks.size());
+  EXPECT_EQ(few.folds, all.folds);
+  std::vector<std::size_t> next(records.size());
+  for (std::size_t b = 0; b < all.blocks.size(); ++b) {
+    const Block& block = few.blocks[b];
+    EXPECT_EQ(block.fold, all.blocks[b].fold);
+    EXPECT_EQ(block.first, next[block.record]) << "no sample in two blocks, nor in none";
+    next[block.record] = block.last;
+    const Record& from = records[block.record];
+    for (std::size_t i = block.first; i < block.last; ++i) {
+      const double t_s = thinned[block.record].time_s[i];
+      EXPECT_GE(t_s, from.time_s[all.blocks[b].first]);
+      EXPECT_LE(t_s, from.time_s[all.blocks[b].last - 1]);
+    }
+  }
+  for (std::size_t r = 0; r < records.size(); ++r) EXPECT_EQ(next[r], thinned[r].size());
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::holdout_test
