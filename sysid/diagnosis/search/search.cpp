@@ -70,6 +70,7 @@ std::vector<StructureFit> glances(const SearchData& data, const StructureFit& cu
 /// The best looks, from where the glances ended.
 std::vector<StructureFit> looks(const SearchData& data, const std::vector<StructureFit>& from) {
   std::vector<StructureFit> fits;
+  fits.reserve(from.size());
   for (const StructureFit& fit : from)
     fits.push_back(fit_structure(data.thinned, fit.causes, fit.point, look));
   sort_and_keep(fits, followed);
