@@ -156,7 +156,7 @@ void actuator_inverse(benchmark::State& state) {
   double t = 0;
   while (state.KeepRunning()) {
     t += tick_s;
-    const auto solution = inverse.solve(reference.at(t).value, 0, 60);
+    const auto solution = inverse.solve(reference.value_at(t), 0, 60);
     inverse.advance(solution.pressure_kpa);
   }
 }

@@ -38,18 +38,29 @@ void Reference::start(double time_s, const ReferencePoint& point) noexcept {
   rest_ = point;
 }
 
-ReferencePoint Reference::evaluate(const Segment& segment, double time_s) noexcept {
+double Reference::value_of(const Segment& segment, double time_s) noexcept {
   const double t = time_s - segment.start_s;
   const auto& c = segment.c;
   switch (segment.shape) {
     case Shape::quintic:
-      return {c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5])))),
-              c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5]))),
+      return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))));
+    case Shape::sine:
+      return c[0] - c[1] * std::cos(c[2] * t);
+  }
+  return 0;
+}
+
+ReferencePoint Reference::evaluate(const Segment& segment, double time_s) noexcept {
+  const double t = time_s - segment.start_s;
+  const auto& c = segment.c;
+  const double value = value_of(segment, time_s);
+  switch (segment.shape) {
+    case Shape::quintic:
+      return {value, c[1] + t * (2 * c[2] + t * (3 * c[3] + t * (4 * c[4] + t * 5 * c[5]))),
               2 * c[2] + t * (6 * c[3] + t * (12 * c[4] + t * 20 * c[5]))};
     case Shape::sine: {
       const double phase = c[2] * t;
-      const double cosine = std::cos(phase);
-      return {c[0] - c[1] * cosine, c[1] * c[2] * std::sin(phase), c[1] * c[2] * c[2] * cosine};
+      return {value, c[1] * c[2] * std::sin(phase), c[1] * c[2] * c[2] * std::cos(phase)};
     }
   }
   return {};
@@ -61,15 +72,24 @@ ReferencePoint Reference::last_point() const noexcept {
   return evaluate(last, last.start_s + last.duration_s);
 }
 
-ReferencePoint Reference::at(double time_s) const noexcept {
+Reference::Place Reference::place(double time_s) const noexcept {
   for (std::size_t i = count_; i-- > 0;) {
     const Segment& segment = segments_[i];
     if (time_s < segment.start_s) continue;
-    if (time_s <= segment.start_s + segment.duration_s) return evaluate(segment, time_s);
-    return {evaluate(segment, segment.start_s + segment.duration_s).value, 0, 0};
+    const double end_s = segment.start_s + segment.duration_s;
+    return time_s <= end_s ? Place{&segment, time_s, true} : Place{&segment, end_s, false};
   }
-  if (count_ == 0) return {rest_.value, 0, 0};
-  return {evaluate(segments_[0], segments_[0].start_s).value, 0, 0};
+  return count_ == 0 ? Place{} : Place{&segments_[0], segments_[0].start_s, false};
+}
+
+ReferencePoint Reference::at(double time_s) const noexcept {
+  const Place there = place(time_s);
+  return there.moves ? evaluate(*there.segment, there.time_s) : ReferencePoint{value_at(time_s), 0, 0};
+}
+
+double Reference::value_at(double time_s) const noexcept {
+  const Place there = place(time_s);
+  return there.segment == nullptr ? rest_.value : value_of(*there.segment, there.time_s);
 }
 
 double Reference::end_s() const noexcept {

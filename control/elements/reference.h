@@ -50,6 +50,8 @@ class Reference {
   void forget_before(double time_s) noexcept;
 
   [[nodiscard]] ReferencePoint at(double time_s) const noexcept;
+  /// at(time_s).value, for less than half of the work.
+  [[nodiscard]] double value_at(double time_s) const noexcept;
   /// When the last segment ends; from then on final_value() is held.
   [[nodiscard]] double end_s() const noexcept;
   [[nodiscard]] double final_value() const noexcept;
@@ -63,6 +65,14 @@ class Reference {
     /// quintic: coefficients of the powers of (t - start_s); sine: mean, amplitude, angular frequency
     std::array<double, 6> c{};
   };
+  /// Where a time falls: on a segment that moves, at the end of one that is over, or on none (nullptr).
+  struct Place {
+    const Segment* segment = nullptr;
+    double time_s = 0;
+    bool moves = false;
+  };
+  [[nodiscard]] Place place(double time_s) const noexcept;
+  [[nodiscard]] static double value_of(const Segment& segment, double time_s) noexcept;
   [[nodiscard]] static ReferencePoint evaluate(const Segment& segment, double time_s) noexcept;
   [[nodiscard]] ReferencePoint last_point() const noexcept;
   Segment* append(Shape shape, double duration_s) noexcept;

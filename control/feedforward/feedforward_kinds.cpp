@@ -56,6 +56,11 @@ double time_constants_s(const model::Model& model, std::string_view direction) {
   return sum;
 }
 
+/// Where the element is wanted at `time_s`: the reference within the limits, without the offset [mm].
+double wanted_mm(const LimitSettings& limits, const FeedforwardQuery& query, double time_s) noexcept {
+  return limit_reference(limits, query.reference->value_at(time_s)).reference_mm - query.offset_mm;
+}
+
 }  // namespace
 
 BoucWenFeedforward::BoucWenFeedforward(const model::Model& model, const LimitSettings& limits, double tick_s)
@@ -67,8 +72,7 @@ void BoucWenFeedforward::enter(const RunningModel& running, const FeedforwardQue
 }
 
 FeedforwardStep BoucWenFeedforward::step(const FeedforwardQuery& query) noexcept {
-  const double target_mm =
-      limit_reference(limits_, query.reference->at(query.time_s).value).reference_mm - query.offset_mm;
+  const double target_mm = wanted_mm(limits_, query, query.time_s);
   const auto solution = inverse_.solve(target_mm, limits_.pressure_min_kpa, limits_.pressure_max_kpa);
   inverse_.advance(solution.pressure_kpa);
   return {solution.pressure_kpa, !solution.reached};
@@ -158,18 +162,18 @@ void FullModelFeedforward::fade_from(double displacement_mm, double speed_mm_per
 
 FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexcept {
   const double then_s = query.time_s + preview_s_;
-  const ReferencePoint wanted = target(query);
+  const double target_mm = wanted_mm(limits_, query, then_s);
   const double now_mm = inverse_.displacement_mm();
-  if (std::abs(wanted.value - 2 * last_target_mm_[0] + last_target_mm_[1]) > jump_mm) {
+  if (std::abs(target_mm - 2 * last_target_mm_[0] + last_target_mm_[1]) > jump_mm) {
     const double going_mm = now_mm - last_displacement_mm_;
-    fade_from(now_mm + going_mm, going_mm / tick_s_, wanted, then_s);
-    last_target_mm_[0] = wanted.value;
+    fade_from(now_mm + going_mm, going_mm / tick_s_, target(query), then_s);
+    last_target_mm_[0] = target_mm;
   }
-  last_target_mm_ = {wanted.value, last_target_mm_[0]};
+  last_target_mm_ = {target_mm, last_target_mm_[0]};
   last_displacement_mm_ = now_mm;
 
   const auto solution =
-      inverse_.solve(wanted.value + fade_.at(then_s).value, limits_.pressure_min_kpa, ceiling_kpa_);
+      inverse_.solve(target_mm + fade_.value_at(then_s), limits_.pressure_min_kpa, ceiling_kpa_);
   command_kpa_ = command_toward(solution.pressure_kpa);
   const double next_kpa = pressure_under(command_kpa_);
   inverse_.advance(next_kpa);
@@ -200,7 +204,7 @@ double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wa
   for (const double aside_s : {0.0, -clock_rounding_s, clock_rounding_s}) {
     const double on_plan_s = then_s - query.plan_origin_s + aside_s;
     const double planned_mm =
-        limit_reference(limits_, query.plan->reference.at(on_plan_s).value).reference_mm;
+        limit_reference(limits_, query.plan->reference.value_at(on_plan_s)).reference_mm;
     const double difference_mm = wanted_mm - planned_mm;
     if (std::abs(difference_mm) < std::abs(least_mm)) least_mm = difference_mm;
   }
@@ -209,15 +213,14 @@ double PlannedFeedforward::unplanned_mm(const FeedforwardQuery& query, double wa
 
 FeedforwardStep PlannedFeedforward::step(const FeedforwardQuery& query) noexcept {
   const double then_s = query.time_s + ahead_s_;
-  const double wanted_mm =
-      limit_reference(limits_, query.reference->at(then_s).value).reference_mm - query.offset_mm;
-  const double aside_mm = query.plan != nullptr ? unplanned_mm(query, wanted_mm, then_s) : 0;
+  const double target_mm = wanted_mm(limits_, query, then_s);
+  const double aside_mm = query.plan != nullptr ? unplanned_mm(query, target_mm, then_s) : 0;
   const bool changed = entering_ || query.plan != plan_ || query.plan_origin_s != origin_s_;
   if (changed) on_plan_ = query.plan != nullptr && std::abs(aside_mm) <= off_plan_mm;
   const auto* const plan = on_plan_ ? query.plan : nullptr;
   const double source = plan != nullptr
                             ? plan->at(then_s - query.plan_origin_s) + aside_mm / settled_.gain_mm_per_kpa
-                            : settled_.pressure_kpa(wanted_mm);
+                            : settled_.pressure_kpa(target_mm);
   if (changed) {
     entering_ = false;
     plan_ = query.plan;

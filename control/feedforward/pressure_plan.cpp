@@ -23,7 +23,7 @@ double PressurePlan::miss_mm(double time_s) const noexcept {
   const double last = static_cast<double>(displacement_mm.size() - 1);
   const double place = std::round(std::clamp((time_s - start_s) / step_s, 0.0, last));
   return std::abs(displacement_mm[static_cast<std::size_t>(place)] -
-                  reference.at(start_s + place * step_s).value);
+                  reference.value_at(start_s + place * step_s));
 }
 
 SettledLine settled_line(const model::Model& model, const LimitSettings& limits) {

@@ -245,7 +245,7 @@ PressurePlan Planner::plan(const Reference& reference, double from_s, double to_
   result.displacement_mm.push_back(chain.after(model::Station::load));
 
   const auto wanted_at = [&](std::size_t i) {
-    return limit_reference(limits_, reference.at(from_s + static_cast<double>(i) * step_s_).value)
+    return limit_reference(limits_, reference.value_at(from_s + static_cast<double>(i) * step_s_))
         .reference_mm;
   };
   const auto in_proportion = [&](double displacement_mm) {

@@ -234,7 +234,7 @@ double ChannelController::track(const ChannelDemand& demand, std::int64_t ticks,
   channel.feedforward_kpa = planned.pressure_kpa;
   channel.out_of_reach = planned.out_of_reach;
 
-  const LimitedReference now = limit_reference(limits_, demand.reference->at(demand.time_s).value);
+  const LimitedReference now = limit_reference(limits_, demand.reference->value_at(demand.time_s));
   channel.reference_mm = now.reference_mm;
   channel.reference_clamped = now.clamped;
   const bool released = loop_ == Loop::held && !demand.feedback_held;
@@ -243,7 +243,7 @@ double ChannelController::track(const ChannelDemand& demand, std::int64_t ticks,
   if (loop_ == Loop::closed && displacement_used_ && channel.validity == model::Validity::valid) {
     // The error is taken where the reading was: against the reference of that time, not of now.
     const double then_mm =
-        limit_reference(limits_, demand.reference->at(demand.time_s - channel.age_s).value).reference_mm;
+        limit_reference(limits_, demand.reference->value_at(demand.time_s - channel.age_s)).reference_mm;
     channel.feedback_kpa = pid_.step(then_mm, channel.displacement_mm, planned.pressure_kpa);
   } else {
     channel.feedback_kpa = pid_.hold(planned.pressure_kpa);

@@ -115,7 +115,7 @@ void ChannelPlayer::go_to(const Target& target, double value, double time_s,
     pressure_kpa_ = seen.command_kpa;
   } else if (mode_ == Mode::displacement) {
     reference.forget_before(time_s - kept_s);
-    start_value_ = reference.at(time_s).value;
+    start_value_ = reference.value_at(time_s);
     reference.cut(time_s + traits_.preview_s);
   } else {
     reference.start(time_s, seen.displacement_mm);
@@ -180,7 +180,7 @@ Progress ChannelPlayer::tick(double time_s, const ChannelOutput& seen) noexcept 
 
 double ChannelPlayer::pressure_at(double time_s) const noexcept {
   if (profile_) return value_at(step_->profile, time_s - profile_start_s_);
-  return pressure_.at(time_s).value;
+  return pressure_.value_at(time_s);
 }
 
 Progress ChannelPlayer::advance(double time_s, const ChannelOutput& seen) noexcept {

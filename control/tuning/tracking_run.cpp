@@ -160,13 +160,13 @@ TrackingResult track(const TrackingRun& run) {
     if (input.demand.time_s < start_s) continue;
     const double middle_s = 0.5 * (bench.exchange_s() + tick_s);
     for (const auto& [place, at_s] : {std::pair(places[0], middle_s), std::pair(places[1], tick_s)}) {
-      const double error = place - reference.at(input.demand.time_s + at_s).value;
+      const double error = place - reference.value_at(input.demand.time_s + at_s);
       squares += 0.5 * error * error;
       result.worst_mm = std::max(result.worst_mm, std::abs(error));
     }
     if (run.trace != nullptr) {
       run.trace->time_s.push_back(input.demand.time_s - start_s);
-      run.trace->reference_mm.push_back(reference.at(input.demand.time_s + tick_s).value);
+      run.trace->reference_mm.push_back(reference.value_at(input.demand.time_s + tick_s));
       run.trace->displacement_mm.push_back(places[1]);
     }
     result.pressure_mean_kpa += step.command_kpa;

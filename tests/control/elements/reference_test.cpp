@@ -44,6 +44,17 @@ TEST(Reference, HoldsWhereItStarted) {
   EXPECT_EQ(reference.end_s(), 5);
 }
 
+TEST(Reference, TheValueAloneIsTheValueOfThePoint) {
+  Reference reference;
+  reference.start(1, 2);
+  EXPECT_EQ(reference.value_at(5), reference.at(5).value);
+  ASSERT_TRUE(reference.ramp_to(12, 20));
+  ASSERT_TRUE(reference.hold_for(0.5));
+  ASSERT_TRUE(reference.sine(14, 3, 0.5, 1.25));
+  for (double t = 0; t < reference.end_s() + 1; t += 0.0137)
+    EXPECT_EQ(reference.value_at(t), reference.at(t).value) << "at " << t;
+}
+
 TEST(Reference, RampKeepsItsPeakSpeedAndEndsAtRest) {
   Reference reference;
   reference.start(1, 2);
