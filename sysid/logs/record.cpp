@@ -1,9 +1,7 @@
 #include "sysid/logs/record.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/quantisation.h"

@@ -41,7 +41,6 @@ constexpr std::size_t most_undecided = 2;
 /// What a further cause must take of what was left before it, as mean squares beyond the noise: a second
 /// effect is met by its own cause nearly whole.
 constexpr double most_of_the_rest = 0.6;
-constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
 
 /// Residuals over the numbers of one cause, less what the base could take away of them.
 class ResidualsBesideBase final : public Residuals {
@@ -190,7 +189,8 @@ class SelectorUpon {
   [[nodiscard]] ScoredCandidate finished(Start best, const std::vector<Cause>& causes) const {
     ScoredCandidate one;
     one.candidate.cause = causes.back();
-    one.candidate.fit = fit_structure(data_.records, causes, settled(std::move(best), causes), finish);
+    one.candidate.fit =
+        fit_structure(data_.records, causes, settled(std::move(best), causes), finishing_effort);
     one.losses = linear_held_out_losses(data_.records, division_, *one.candidate.fit);
     return one;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "base/parallel.h"
 #include "base/statistics.h"
@@ -70,25 +71,44 @@ std::vector<double> bands_of(const Scales& scales, double resolution_kpa) {
   return bands;
 }
 
-/// Mean, spread and interval of the distances over which the valve jumped, without the tenth that lies
-/// outermost: a jump that was seen a sample late makes a wrong one of its own.
-void measure_band(const Courses& courses, Staircase& found) {
+/// Distances over which the valve jumped, sorted.
+std::vector<double> distances_of(const Courses& courses) {
   std::vector<double> distances;
   for (const ValveCourse& course : courses.by_record)
     distances.insert(distances.end(), course.distances_kpa.begin(), course.distances_kpa.end());
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
+double mean(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Mean and spread of the distances without the tenth that lies outermost: a jump that was seen a sample late
+/// makes a wrong one of its own.
+void measure_band(std::span<const double> distances, Staircase& found) {
   found.jumps = distances.size();
   if (distances.size() < fewest_jumps) return;
-  std::sort(distances.begin(), distances.end());
   const std::size_t cut = distances.size() / 20;
-  const std::vector<double> kept(distances.begin() + static_cast<long>(cut),
-                                 distances.end() - static_cast<long>(cut));
-  const auto count = static_cast<double>(kept.size());
-  found.band_kpa = std::accumulate(kept.begin(), kept.end(), 0.0) / count;
+  const auto kept = distances.subspan(cut, distances.size() - 2 * cut);
+  found.band_kpa = mean(kept);
   double variance = 0;
-  for (const double d : kept) variance += (d - found.band_kpa) * (d - found.band_kpa) / (count - 1);
-  const double deviation = std::sqrt(variance);
-  found.scatter = deviation / found.band_kpa;
-  const double half = t_quantile(count - 1) * deviation / std::sqrt(count);
+  for (const double d : kept) variance += square(d - found.band_kpa) / (static_cast<double>(kept.size()) - 1);
+  found.scatter = std::sqrt(variance) / found.band_kpa;
+}
+
+/// Of a staircase that was found, the band and its interval: jumps that were taken for wrong ones are more
+/// often too short than too long, so that the mean is that of the middle half; its error is that of a trimmed
+/// mean, by the Winsorised variance (Tukey and McLaughlin, Sankhya A 25, 1963).
+void measure_band_of_most(std::span<const double> distances, Staircase& found) {
+  const std::size_t cut = distances.size() / 4;
+  const auto middle = distances.subspan(cut, distances.size() - 2 * cut);
+  found.band_kpa = mean(middle);
+  double winsorised = 0;
+  for (const double d : distances)
+    winsorised += square(std::clamp(d, middle.front(), middle.back()) - found.band_kpa);
+  const auto count = static_cast<double>(distances.size()), kept = static_cast<double>(middle.size());
+  const double half = t_quantile(kept - 1) * std::sqrt(winsorised / (count - 1) * count) / kept;
   found.band_ci95 = {found.band_kpa - half, found.band_kpa + half};
 }
 
@@ -111,10 +131,12 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
   Staircase found;
   found.band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
   found.fit = behind;
+  std::vector<double> distances;
   for (int round = 0; round < most_rounds; ++round) {
     const double before_kpa = found.band_kpa;
     const Courses courses = track_all(records, found.fit.point, found.band_kpa, resolution_kpa, threads);
-    measure_band(courses, found);
+    distances = distances_of(courses);
+    measure_band(distances, found);
     if (found.jumps < fewest_jumps) return std::nullopt;
     found.records = driven(records, courses);
     found.fit = fit_structure(found.records, behind.causes, found.fit.point);
@@ -122,6 +144,7 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
   }
   if (found.scatter > most_scatter || !(found.fit.mean_square_mm2 < behind.mean_square_mm2))
     return std::nullopt;
+  measure_band_of_most(distances, found);
   return found;
 }
 

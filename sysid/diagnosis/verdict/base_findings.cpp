@@ -45,9 +45,6 @@ constexpr double least_share = 0.01;
 /// Where a cause was missing a choice of the ridge and of the simplest structure says little.
 constexpr double most_ridge = 1e-5;
 
-/// On all readings, from where the fit to the thinned ones ended.
-constexpr FitEffort finish{.most_iterations = 15, .tolerance = 1e-6};
-
 /// What a finding is called, and with which blocks it stands in the model.
 struct FindingName {
   Ingredient ingredient;
@@ -159,7 +156,7 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
     if (!is_confounded(finding, found.fit.causes)) return false;
     FitPoint rest = found.fit.point;
     rest.model = model::without_block(std::move(rest.model), finding.block_type);
-    StructureFit fit = fit_structure(data.records, found.fit.causes, rest, finish);
+    StructureFit fit = fit_structure(data.records, found.fit.causes, rest, finishing_effort);
     BlockLosses losses = linear_held_out_losses(data.records, question.division, fit);
     const Spread gain = mean_difference(losses, found.losses, question.seed);
     if (gain.lower > 0 && gain.value > 0.01 * question.noise_mm * question.noise_mm) return false;
@@ -261,7 +258,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   const Selection selection = select_among_thinned(found.fit.point, data, question, options);
   if (selection.chosen.empty()) return;
   StructureFit with =
-      fit_structure(data.records, selection.extended.causes, selection.extended.point, finish);
+      fit_structure(data.records, selection.extended.causes, selection.extended.point, finishing_effort);
   const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
   const bool clear = after * after < (1 - allowed.least_share) * before * before;
   if (!clear && !allowed.parts) return;
