@@ -46,13 +46,15 @@ inline std::vector<double> command_kpa(unsigned seed, std::size_t samples, doubl
   return out;
 }
 
-inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = false) {
+/// @param samples  at 50 Hz.
+inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = false,
+                  std::size_t samples = 2000) {
   constexpr double rate_hz = 50;
   std::mt19937 random(seed + 100);
   std::normal_distribution<double> noise(0, 1);
   Log log;
   log.name = "log" + std::to_string(seed);
-  log.pressure_command_kpa = command_kpa(seed, 3000, rate_hz);
+  log.pressure_command_kpa = command_kpa(seed, samples, rate_hz);
   double play = 0, creep = 0, lost = 0, behind = 0, between = 0;
   const double phase = 2 * seed;
   const auto late = static_cast<std::size_t>(finger.delay_s * rate_hz);
@@ -82,8 +84,10 @@ inline Log log_of(const Finger& finger, unsigned seed, bool with_pressure = fals
   return log;
 }
 
-inline std::vector<Log> logs_of(const Finger& finger, unsigned first_seed, bool with_pressure = false) {
-  return {log_of(finger, first_seed, with_pressure), log_of(finger, first_seed + 1, with_pressure)};
+inline std::vector<Log> logs_of(const Finger& finger, unsigned first_seed, bool with_pressure = false,
+                                std::size_t samples = 2000) {
+  return {log_of(finger, first_seed, with_pressure, samples),
+          log_of(finger, first_seed + 1, with_pressure, samples)};
 }
 
 }  // namespace softgrip::sysid::test

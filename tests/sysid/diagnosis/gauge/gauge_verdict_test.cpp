@@ -75,13 +75,43 @@ double value_of(const NamedCause& named, const std::string& parameter) {
   return NAN;
 }
 
-TEST(GaugeVerdict, ABentScaleIsFoundBentAndNamed) {
+/// What stands in the JSON of a diagnosis with the gauge.
+void expect_gauge(const nlohmann::ordered_json& json, const GaugeFile& gauge) {
+  EXPECT_EQ(json["file"], "gauge.csv");
+  EXPECT_EQ(json["readings"].size(), gauge.readings.size());
+  EXPECT_EQ(json["ruled_out"], nlohmann::ordered_json({"stiffening"}));
+  EXPECT_GT(json["log_likelihood_ratio"], gauge_log_likelihood_needed);
+  EXPECT_EQ(json["hypotheses"].size(), 2U);
+}
+
+/// That a check with a gauge is proposed where it helps.
+void expect_check_proposed(const Diagnosis& before) {
+  const NextExperiment next = design_experiment(before, {});
+  EXPECT_FALSE(next.best);
+  ASSERT_TRUE(next.gauge_check);
+  EXPECT_EQ(next.gauge_check->separates.size(), 2U);
+  EXPECT_GE(next.gauge_check->positions_mm.size(), 27U);
+  EXPECT_NEAR(next.gauge_check->minutes, static_cast<double>(next.gauge_check->positions_mm.size()) / 3,
+              1e-9);
+  EXPECT_NE(next.advice.front().find("--gauge"), std::string::npos) << next.advice.front();
+  nlohmann::ordered_json json = json_of(before);
+  ASSERT_TRUE(json.contains("gauge"));
+  EXPECT_TRUE(json["gauge"].is_null());
+  add_experiment(json, next, "next_experiment.yaml");
+  EXPECT_TRUE(json["next_experiment"].is_null());
+  EXPECT_EQ(json["gauge_check"]["file"], "gauge_positions.csv");
+}
+
+TEST(GaugeVerdict, ABentScaleIsFoundBentAndNamedByTheCheckThatIsProposed) {
   const Diagnosis before = diagnosed(bent_scale, std::nullopt);
   ASSERT_EQ(before.verdict, Verdict::ambiguous) << verdict_sentence(before);
-  const Diagnosis d = diagnosed(bent_scale, gauge_of(bent_scale));
+  expect_check_proposed(before);
+  const GaugeFile gauge = gauge_of(bent_scale);
+  const Diagnosis d = diagnosed(bent_scale, gauge);
   expect_found(d, "sensor_nonlinearity");
   EXPECT_NEAR(value_of(d.causes[0], "bow_mm"), 0.6, 0.25);
   EXPECT_EQ(d.gauge->ruled_out, (std::vector<std::string>{"stiffening"}));
+  expect_gauge(json_of(d)["gauge"], gauge);
 }
 
 TEST(GaugeVerdict, AStraightSensorClearsItselfAndTheFingerIsNamed) {
@@ -156,11 +186,15 @@ TEST(GaugeVerdict, ABendOfAnotherSizeLeavesTheVerdictOpenAndSaysSo) {
   EXPECT_NE(verdict_sentence(d).find("not this one"), std::string::npos) << verdict_sentence(d);
 }
 
-TEST(GaugeVerdict, ANoisyGaugeLeavesTheVerdictAsItWas) {
+TEST(GaugeVerdict, ANoisyGaugeLeavesTheVerdictAsItWasAndIsNotProposedAgain) {
   const Diagnosis d = diagnosed(bent_scale, gauge_of(bent_scale, 1.5));
   EXPECT_EQ(d.verdict, Verdict::ambiguous);
   EXPECT_EQ(d.gauge->check.outcome, GaugeOutcome::undecided);
   EXPECT_NE(verdict_sentence(d).find("does not tell"), std::string::npos);
+  const NextExperiment again = design_experiment(d, {});
+  EXPECT_FALSE(again.gauge_check) << "it was made already";
+  ASSERT_FALSE(again.advice.empty());
+  EXPECT_NE(again.advice.front().find("change the load"), std::string::npos);
 }
 
 TEST(GaugeVerdict, ABendThatNoLogAsksForIsAWarningAndNoCause) {
@@ -194,40 +228,6 @@ TEST(GaugeVerdict, AFingerThatWasNamedAloneDoesNotStandAgainstTheGauge) {
     EXPECT_EQ(d.verdict, Verdict::ambiguous) << bow_mm;
     EXPECT_TRUE(warned_of(d, "gauge")) << bow_mm;
   }
-}
-
-TEST(GaugeVerdict, StandsInTheJson) {
-  const auto without = json_of(diagnosed(bent_scale, std::nullopt));
-  ASSERT_TRUE(without.contains("gauge"));
-  EXPECT_TRUE(without["gauge"].is_null());
-  const GaugeFile gauge = gauge_of(bent_scale);
-  const auto json = json_of(diagnosed(bent_scale, gauge))["gauge"];
-  EXPECT_EQ(json["file"], "gauge.csv");
-  EXPECT_EQ(json["readings"].size(), gauge.readings.size());
-  EXPECT_EQ(json["ruled_out"], nlohmann::ordered_json({"stiffening"}));
-  EXPECT_GT(json["log_likelihood_ratio"], gauge_log_likelihood_needed);
-  EXPECT_EQ(json["hypotheses"].size(), 2U);
-}
-
-TEST(GaugeVerdict, TheCheckIsProposedOnceWhereItHelps) {
-  const Diagnosis before = diagnosed(bent_scale, std::nullopt);
-  const NextExperiment next = design_experiment(before, {});
-  EXPECT_FALSE(next.best);
-  ASSERT_TRUE(next.gauge_check);
-  EXPECT_EQ(next.gauge_check->separates.size(), 2U);
-  EXPECT_GE(next.gauge_check->positions_mm.size(), 27U);
-  EXPECT_NEAR(next.gauge_check->minutes, static_cast<double>(next.gauge_check->positions_mm.size()) / 3,
-              1e-9);
-  EXPECT_NE(next.advice.front().find("--gauge"), std::string::npos) << next.advice.front();
-  nlohmann::ordered_json json = json_of(before);
-  add_experiment(json, next, "next_experiment.yaml");
-  EXPECT_TRUE(json["next_experiment"].is_null());
-  EXPECT_EQ(json["gauge_check"]["file"], "gauge_positions.csv");
-
-  const NextExperiment again = design_experiment(diagnosed(bent_scale, gauge_of(bent_scale, 1.5)), {});
-  EXPECT_FALSE(again.gauge_check) << "it was made already";
-  ASSERT_FALSE(again.advice.empty());
-  EXPECT_NE(again.advice.front().find("change the load"), std::string::npos);
 }
 
 }  // namespace

@@ -67,10 +67,12 @@ TEST(NullCalibration, WhiteNoiseIsNamedNothing) {
 
 TEST(NullCalibration, OneSeedGivesOneAnswerWhateverTheThreads) {
   Searched s = searched(1.5);
+  NullOptions two = options(2);
+  two.campaigns = 2;
   s.data.threads = 1;
-  const NullCalibration alone = calibrate_on_nulls(s.data, s.base, 3, s.division, options(2));
+  const NullCalibration alone = calibrate_on_nulls(s.data, s.base, 3, s.division, two);
   s.data.threads = 2;
-  const NullCalibration together = calibrate_on_nulls(s.data, s.base, 3, s.division, options(2));
+  const NullCalibration together = calibrate_on_nulls(s.data, s.base, 3, s.division, two);
   EXPECT_EQ(alone.named, together.named);
   EXPECT_EQ(alone.largest_gain_percent, together.largest_gain_percent);
 }
