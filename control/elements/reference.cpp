@@ -82,14 +82,17 @@ Reference::Place Reference::place(double time_s) const noexcept {
   return count_ == 0 ? Place{} : Place{&segments_[0], segments_[0].start_s, false};
 }
 
+double Reference::value_of(const Place& there) const noexcept {
+  return there.segment == nullptr ? rest_.value : value_of(*there.segment, there.time_s);
+}
+
 ReferencePoint Reference::at(double time_s) const noexcept {
   const Place there = place(time_s);
-  return there.moves ? evaluate(*there.segment, there.time_s) : ReferencePoint{value_at(time_s), 0, 0};
+  return there.moves ? evaluate(*there.segment, there.time_s) : ReferencePoint{value_of(there), 0, 0};
 }
 
 double Reference::value_at(double time_s) const noexcept {
-  const Place there = place(time_s);
-  return there.segment == nullptr ? rest_.value : value_of(*there.segment, there.time_s);
+  return value_of(place(time_s));
 }
 
 double Reference::end_s() const noexcept {

@@ -72,6 +72,7 @@ class Reference {
     bool moves = false;
   };
   [[nodiscard]] Place place(double time_s) const noexcept;
+  [[nodiscard]] double value_of(const Place& there) const noexcept;
   [[nodiscard]] static double value_of(const Segment& segment, double time_s) noexcept;
   [[nodiscard]] static ReferencePoint evaluate(const Segment& segment, double time_s) noexcept;
   [[nodiscard]] ReferencePoint last_point() const noexcept;
