@@ -1,11 +1,10 @@
 #include "sysid/import/mapping.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 #include "base/numbers.h"
+#include "base/shell_word.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -19,17 +18,6 @@ bool Mapping::complete() const {
   const Mapping& here = *this;
   return (here[Role::time].given() || rate_hz) && here[Role::displacement].given() &&
          (here[Role::command].given() || here[Role::pressure].given());
-}
-
-std::string shell_word(std::string_view text) {
-  const bool plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_-./=:+,").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (plain) return std::string(text);
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string options_of(const Mapping& mapping) {

@@ -73,8 +73,6 @@ struct Mapping {
 /// The options of `softgrip import` that say the same: "--time 'Time (s)' --unit pressure=psi". Words are
 /// quoted as a shell needs them.
 [[nodiscard]] std::string options_of(const Mapping& mapping);
-/// A word as a shell takes it for one.
-[[nodiscard]] std::string shell_word(std::string_view text);
 
 /// "comma", "tab" or a character; 0: none of these.
 [[nodiscard]] char separator_named(std::string_view word);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/shell_word.h"
 #include "sysid/import/conversion.h"
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/proposal.h"
@@ -15,8 +16,8 @@ std::string import_hint(const std::string& path) {
   if (!table) return {};
   const sysid::Proposal proposal = sysid::propose(*table, {}, true);
   const std::filesystem::path file(path);
-  const std::string begin = "softgrip import " + sysid::shell_word(path) + " ";
-  const std::string end = "--out " + sysid::shell_word(file.stem().stem().string() + "_log.csv");
+  const std::string begin = "softgrip import " + shell_word(path) + " ";
+  const std::string end = "--out " + shell_word(file.stem().stem().string() + "_log.csv");
   if (proposal.missing.empty() && sysid::convert(*table, proposal.mapping, problems))
     return path + " as a log: " + begin + sysid::options_of(proposal.mapping) + " " + end + "\n";
   // A log of our own that import cannot mend either has been told what is wrong.

@@ -11,6 +11,7 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
+#include "base/shell_word.h"
 #include "base/version.h"
 #include "document/problem.h"
 #include "sysid/import/conversion.h"
@@ -88,8 +89,8 @@ bool prepare(Job& job, const sysid::Mapping& given, document::Problems& problems
 }
 
 std::string command_line(const Job& job, const ImportOptions& options) {
-  return "softgrip import " + sysid::shell_word(job.file) + " " + sysid::options_of(job.mapping) + " --out " +
-         sysid::shell_word(options.out);
+  return "softgrip import " + shell_word(job.file) + " " + sysid::options_of(job.mapping) + " --out " +
+         shell_word(options.out);
 }
 
 /// Shows which column was guessed to be what. False where nothing was guessed.

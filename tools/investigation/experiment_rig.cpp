@@ -13,6 +13,7 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "base/random.h"
+#include "base/shell_word.h"
 #include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"
 
@@ -51,18 +52,11 @@ tl::expected<sysid::Log, NotPlayed> log_of(const std::string& path, const std::s
   return std::move(campaign.logs.front());
 }
 
-/// A word of a shell's command line.
-std::string single_quoted(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
 /// Calls `command IN OUT` and waits for it.
 tl::expected<void, NotPlayed> call(const std::string& command, const std::string& in,
                                    const std::string& out) {
   std::fflush(nullptr);
-  const int status = std::system((command + " " + single_quoted(in) + " " + single_quoted(out)).c_str());
+  const int status = std::system((command + " " + shell_word(in) + " " + shell_word(out)).c_str());
   const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
   if (by_signal) return stopped("the rig's command was stopped by a signal");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)

@@ -97,21 +97,6 @@ void measure_band(std::span<const double> distances, Staircase& found) {
   found.scatter = std::sqrt(variance) / found.band_kpa;
 }
 
-/// Of a staircase that was found, the band and its interval: jumps that were taken for wrong ones are more
-/// often too short than too long, so that the mean is that of the middle half; its error is that of a trimmed
-/// mean, by the Winsorised variance (Tukey and McLaughlin, Sankhya A 25, 1963).
-void measure_band_of_most(std::span<const double> distances, Staircase& found) {
-  const std::size_t cut = distances.size() / 4;
-  const auto middle = distances.subspan(cut, distances.size() - 2 * cut);
-  found.band_kpa = mean(middle);
-  double winsorised = 0;
-  for (const double d : distances)
-    winsorised += square(std::clamp(d, middle.front(), middle.back()) - found.band_kpa);
-  const auto count = static_cast<double>(distances.size()), kept = static_cast<double>(middle.size());
-  const double half = t_quantile(kept - 1) * std::sqrt(winsorised / (count - 1) * count) / kept;
-  found.band_ci95 = {found.band_kpa - half, found.band_kpa + half};
-}
-
 std::vector<Record> driven(const std::vector<Record>& records, const Courses& courses) {
   std::vector<Record> all;
   for (std::size_t k = 0; k < records.size(); ++k) all.push_back(driven_by(records[k], courses.by_record[k]));
@@ -119,6 +104,18 @@ std::vector<Record> driven(const std::vector<Record>& records, const Courses& co
 }
 
 }  // namespace
+
+Band band_of_jumps(std::span<const double> distances_kpa) {
+  const std::size_t cut = distances_kpa.size() / 4;
+  const auto middle = distances_kpa.subspan(cut, distances_kpa.size() - 2 * cut);
+  const double band_kpa = mean(middle);
+  double winsorised = 0;
+  for (const double d : distances_kpa)
+    winsorised += square(std::clamp(d, middle.front(), middle.back()) - band_kpa);
+  const auto count = static_cast<double>(distances_kpa.size()), kept = static_cast<double>(middle.size());
+  const double half = t_quantile(kept - 1) * std::sqrt(winsorised / (count - 1) * count) / kept;
+  return {band_kpa, {band_kpa - half, band_kpa + half}};
+}
 
 std::optional<Staircase> find_staircase(const std::vector<Record>& records, const StructureFit& behind,
                                         double noise_mm, unsigned threads) {
@@ -144,7 +141,9 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
   }
   if (found.scatter > most_scatter || !(found.fit.mean_square_mm2 < behind.mean_square_mm2))
     return std::nullopt;
-  measure_band_of_most(distances, found);
+  const Band band = band_of_jumps(distances);
+  found.band_kpa = band.value_kpa;
+  found.band_ci95 = band.ci95_kpa;
   return found;
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sysid/diagnosis/search/fit.h"
@@ -29,6 +30,18 @@ struct Staircase {
 /// scatter is 0.19.
 inline constexpr std::size_t fewest_jumps = 20;
 inline constexpr double most_scatter = 0.1;
+
+/// A band and its 95 % interval [kPa].
+struct Band {
+  double value_kpa = 0;
+  Interval ci95_kpa;
+};
+
+/// The band of a valve that jumped over `distances_kpa`, sorted, at least fewest_jumps of them. Jumps that
+/// were taken for wrong ones are more often too short than too long, so that it is the mean of the middle
+/// half; the interval is that of a trimmed mean, by the Winsorised variance (Tukey and McLaughlin, Sankhya A
+/// 25, 1963).
+[[nodiscard]] Band band_of_jumps(std::span<const double> distances_kpa);
 
 /// Looks for a staircase in front of a fitted structure. Nothing where there is none, or where the structure
 /// has a dead band already.

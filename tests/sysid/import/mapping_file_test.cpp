@@ -44,11 +44,7 @@ TEST(MappingFile, MistakesHaveTheirPlace) {
             std::string::npos);
 }
 
-TEST(Mapping, OptionsAreQuotedForAShell) {
-  EXPECT_EQ(shell_word("a b"), "'a b'");
-  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
-  EXPECT_EQ(shell_word("p=1.5"), "p=1.5");
-  EXPECT_EQ(shell_word(""), "''");
+TEST(Mapping, SeparatorsHaveNames) {
   EXPECT_EQ(separator_named("tab"), '\t');
   EXPECT_EQ(separator_named(";"), ';');
   EXPECT_EQ(separator_named("dots"), 0);
