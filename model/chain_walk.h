@@ -30,6 +30,11 @@ inline std::uint64_t seed_of(const Model& model, std::size_t index, std::uint64_
 
 template <class Block>
 inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
+/// A longer way of the pressure within a segment is walked in parts where a block behind the elements, one
+/// that an inverse does not see, takes their sum for a parabola: behind 44 kPa within 10 ms an inertia of 45
+/// ms was off by 0.07 mm, in parts by 1e-4.
+inline constexpr double longest_way_kpa = 5;
+
 template <class Block>
 inline constexpr bool is_implicit = std::remove_cvref_t<Block>::info.inverse == Inverse::implicit;
 
@@ -60,6 +65,7 @@ Chain<T>::Chain(const Model& model, std::span<const T> values, double sample_tim
     if (info.kind <= Kind::pressure) first_element_ = behind;
     if (info.kind <= Kind::element) first_displacement_ = behind;
     if (info.kind <= Kind::displacement) first_reading_ = behind;
+    leaps_in_parts_ |= info.kind == Kind::displacement && info.inverse == Inverse::ignored;
   }
   // A block may shape the chain's hysteresis, of which it is a part.
   for (const AnyBlock<T>& any : blocks_) {
@@ -149,10 +155,27 @@ void Chain<T>::walk_pressure(Index i, const Segment<T>& segment, const Surroundi
   });
 }
 
+template <class T>
+void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surroundings) {
+  if (leaps_in_parts_) {
+    const double way_kpa = std::abs(value_of(segment.end) - value_of(segment.begin));
+    if (way_kpa > walk::longest_way_kpa && value_of(segment.duration_s) > 0) {
+      Segment<T> rest = segment;
+      for (double parts = std::ceil(way_kpa / walk::longest_way_kpa); parts > 1; --parts) {
+        add_elements(rest.before(T(1.0 / parts)), surroundings);
+        rest = rest.beyond(T(1.0 / parts));
+      }
+      add_elements(rest, surroundings);
+      return;
+    }
+  }
+  add_elements(segment, surroundings);
+}
+
 // What is done for each block is inlined whatever the compiler thinks of its size, here and in peek(): left
 // to itself, GCC 12 calls Kelvin-Voigt out of line (41 ns instead of 17 for a trial with derivative).
 template <class T>
-void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surroundings) {
+void Chain<T>::add_elements(const Segment<T>& segment, const Surroundings& surroundings) {
   Segment<T> sum{segment.duration_s, T(0.0), T(0.0), T(0.0)};
   for (Index i = first_element_; i < first_displacement_; ++i) {
     visit_block(

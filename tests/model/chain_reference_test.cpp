@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -95,6 +97,58 @@ TEST(ChainReferenceFractionalDelay, AgreesOffTheGrid) {
     EXPECT_LT(largest_error(model, SignalName::steps, 200), 1e-6) << delay;
     EXPECT_LT(largest_error(model, SignalName::sp1, 200), 1e-6) << delay;
   }
+}
+
+// 44 kPa up, then down, each within one sample of 10 ms, and the displacement 100 times finer.
+constexpr double sample_s = 0.01;
+constexpr std::size_t finer = 100, samples = 60;
+
+double leapt_kpa(double time_s) {
+  return 44 *
+         (std::clamp((time_s - 0.1) / sample_s, 0.0, 1.0) - std::clamp((time_s - 0.35) / sample_s, 0.0, 1.0));
+}
+
+std::vector<double> displacement_mm(const Model& model) {
+  std::vector<double> command_kpa;
+  for (std::size_t i = 0; i <= samples * finer; ++i)
+    command_kpa.push_back(leapt_kpa(static_cast<double>(i) * sample_s / finer));
+  return integrate(physics_of(model), command_kpa, sample_s / finer);
+}
+
+/// Of z'' = acceleration(z, z', y) at the samples, by the classical Runge-Kutta method.
+template <class Acceleration>
+std::vector<double> followed_mm(const std::vector<double>& y, Acceleration&& acceleration) {
+  const double h = sample_s / finer;
+  std::vector<double> at_samples{0};
+  double z = 0, v = 0;
+  for (std::size_t i = 1; i < y.size(); ++i) {
+    const double middle = (y[i - 1] + y[i]) / 2;
+    const double z1 = v, v1 = acceleration(z, v, y[i - 1]);
+    const double z2 = v + h / 2 * v1, v2 = acceleration(z + h / 2 * z1, z2, middle);
+    const double z3 = v + h / 2 * v2, v3 = acceleration(z + h / 2 * z2, z3, middle);
+    const double z4 = v + h * v3, v4 = acceleration(z + h * z3, z4, y[i]);
+    z += h / 6 * (z1 + 2 * z2 + 2 * z3 + z4);
+    v += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
+    if (i % finer == 0) at_samples.push_back(z);
+  }
+  return at_samples;
+}
+
+TEST(ChainReferenceLeap, BehindALeapOfTheHysteresisInertiaIsWhereItShouldBe) {
+  constexpr double period_s = 0.045, damping = 0.16, omega = 2 * std::numbers::pi / period_s;
+  const Model finger = preset("zhang2025");
+  const std::vector<double> expected = followed_mm(displacement_mm(finger), [](double z, double v, double y) {
+    return omega * omega * (y - z) - 2 * damping * omega * v;
+  });
+  BlockSpec inertia = default_block(*find_block("inertia"));
+  inertia.values = {period_s, damping};
+  Chain<double> chain(with_block(finger, inertia), {}, sample_s);
+  double worst_mm = 0;
+  for (std::size_t i = 1; i <= samples; ++i) {
+    const double z = chain.step(sample_s, leapt_kpa(static_cast<double>(i) * sample_s));
+    worst_mm = std::fmax(worst_mm, std::fabs(z - expected[i]));
+  }
+  EXPECT_LT(worst_mm, 1.5e-4);
 }
 
 }  // namespace
