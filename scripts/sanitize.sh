@@ -5,7 +5,7 @@
 #   scripts/sanitize.sh all    every test program under the first two, all of the daemon's under the third
 #   scripts/sanitize.sh build  builds what the first form runs, and runs nothing
 # Without the tests that run other programs of the system. What a sanitizer reports is never forgiven, since the reports
-# are files: build/PRESET/reports.
+# are files: build/PRESET/reports. What other libraries keep until the process ends is in tests/support/lsan.supp.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . scripts/build.sh
@@ -22,7 +22,7 @@ sanitized() {
   ! $only_build || return 0
   rm -rf "$reports" && mkdir -p "$reports"
   ASAN_OPTIONS=log_path=$reports/asan UBSAN_OPTIONS=print_stacktrace=1:log_path=$reports/ubsan \
-    TSAN_OPTIONS=log_path=$reports/tsan \
+    TSAN_OPTIONS=log_path=$reports/tsan LSAN_OPTIONS=suppressions=$PWD/tests/support/lsan.supp:print_suppressions=0 \
     run_ctest "$preset" 'blind|campaign|system|recipe' -E '_NOT_BUILT|^(systemd|packaging|repository|workflow|BlocksPage)\.' |
     grep -v ' Start \| Passed ' || failed=1
   if [ -n "$(ls "$reports")" ]; then
