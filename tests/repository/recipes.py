@@ -1,0 +1,39 @@
+#!/usr/bin/python3
+"""The edits of a how-to page still fit the sources: in a copy, without building what `ctest -L recipe` builds."""
+
+import pathlib
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "recipe")]
+
+import add_a_cause  # noqa: E402
+import recipe  # noqa: E402
+
+
+def edits_of_the_cause(folder):
+    """How many edits the page of causes has; each is made, or an AssertionError says which does not fit."""
+    add_a_cause.copy_of(ROOT, folder)
+    made = 0
+    for language, info, body in add_a_cause.FENCE.findall((ROOT / add_a_cause.PAGE).read_text()):
+        if language == "diff":
+            add_a_cause.insert(folder / info.removeprefix("file="), body)
+            made += 1
+    return made
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="softgrip-recipes-") as folder:
+        try:
+            of_command = recipe.Tree(folder).carry_out("docs/how-to/add-a-command.md")
+            of_cause = edits_of_the_cause(pathlib.Path(folder) / "cause")
+        except AssertionError as error:
+            print(error, file=sys.stderr)
+            return 1
+    print(f"{of_command} edits of a command and {of_cause} of a cause fit")
+    return 0 if of_command and of_cause else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
