@@ -34,6 +34,8 @@ inline constexpr Kind kind_of = std::remove_cvref_t<Block>::info.kind;
 /// that an inverse does not see, takes their sum for a parabola: behind 44 kPa within 10 ms an inertia of 45
 /// ms was off by 0.07 mm, in parts by 1e-4.
 inline constexpr double longest_way_kpa = 5;
+/// Whatever the command is.
+inline constexpr double most_parts = 100;
 
 template <class Block>
 inline constexpr bool is_implicit = std::remove_cvref_t<Block>::info.inverse == Inverse::implicit;
@@ -161,9 +163,11 @@ void Chain<T>::walk_elements(const Segment<T>& segment, const Surroundings& surr
     const double way_kpa = std::abs(value_of(segment.end) - value_of(segment.begin));
     if (way_kpa > walk::longest_way_kpa && value_of(segment.duration_s) > 0) {
       Segment<T> rest = segment;
-      for (double parts = std::ceil(way_kpa / walk::longest_way_kpa); parts > 1; --parts) {
-        add_elements(rest.before(T(1.0 / parts)), surroundings);
-        rest = rest.beyond(T(1.0 / parts));
+      const double wanted = std::ceil(way_kpa / walk::longest_way_kpa);
+      for (auto parts = static_cast<int>(std::fmin(wanted, walk::most_parts)); parts > 1; --parts) {
+        const T share(1.0 / parts);
+        add_elements(rest.before(share), surroundings);
+        rest = rest.beyond(share);
       }
       add_elements(rest, surroundings);
       return;
