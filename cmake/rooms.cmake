@@ -85,7 +85,8 @@ softgrip_room(sysid/diagnosis/gauge
        sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/verdict
   USES base model sysid/logs sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
-       sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge)
+       sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge
+  LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/changes
   USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)

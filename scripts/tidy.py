@@ -54,10 +54,16 @@ def commands():
             found[name] = alike(found[room], name)
     # What only another build has, such as a fuzz target, is compiled like its neighbour.
     for name in sources(["."]):
-        if name not in found:
+        if name not in found and not other_library(name, found):
             near = max(found, key=lambda other: len(os.path.commonprefix([name, other])))
             found[name] = alike(found[near], name)
     return found, rooms
+
+
+def other_library(name, found):
+    """Whether this machine's library is another version than the one that the file is written for: its twin is built."""
+    twin = re.sub(r"_([12])\.cpp$", lambda match: f"_{3 - int(match[1])}.cpp", name)
+    return name not in found and twin != name and twin in found
 
 
 def files_of(room):
@@ -144,6 +150,7 @@ def main():
         print("tidy.py: no sources there", file=sys.stderr)
         return 2
     found, rooms = commands()
+    wanted = [name for name in wanted if not other_library(name, found)]
     CACHE.mkdir(parents=True, exist_ok=True)
     (CACHE / "compile_commands.json").write_text(json.dumps(list(found.values())))
     keys = Keys(found)

@@ -120,7 +120,8 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
   return minimum;
 }
 
-PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, std::vector<double> start) {
+PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, std::vector<double> start,
+                            double tolerance) {
   quieten_log();
   auto* cost = new ceres::DynamicNumericDiffCostFunction<PlainFunctor, ceres::CENTRAL>(
       new PlainFunctor{residuals, start.size(), count});
@@ -133,7 +134,7 @@ PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, 
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.num_threads = 1;
   solver.max_num_iterations = 100;
-  solver.function_tolerance = 1e-12;
+  solver.function_tolerance = tolerance;
   solver.gradient_tolerance = 0;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

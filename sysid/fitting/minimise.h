@@ -47,7 +47,8 @@ struct PlainMinimum {
 
 /// Of a few numbers without bounds that are no model's, with differences for derivatives.
 /// @param count  how many residuals.
+/// @param tolerance  relative change of the cost at which the search ends.
 [[nodiscard]] PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count,
-                                          std::vector<double> start);
+                                          std::vector<double> start, double tolerance = 1e-12);
 
 }  // namespace softgrip::sysid

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/pressure_saturation.h"
+#include "model/blocks/supply_sag.h"
 #include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_deadband.h"
 #include "model/named.h"
+#include "model/play.h"
 #include "model/two_way_lag.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/logs/input_smoothing.h"
@@ -17,46 +21,153 @@ namespace {
 
 using Segment = model::Segment<double>;
 
-/// The search's numbers: the delay in tenths of a second by its magnitude, both lags by their logarithm.
-ValveStage stage_at(std::span<const double> t) {
-  ValveStage stage;
-  stage.delay_s = std::min(0.1 * std::abs(t[0]), 5.0);
-  stage.filling_s = std::clamp(std::exp(t[1]), 1e-4, 10.0);
-  stage.venting_s = std::clamp(std::exp(t[2]), 1e-4, 10.0);
-  return stage;
-}
-
 double first_finite(const std::vector<double>& values) {
   const auto found = std::find_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
   return found == values.end() ? 0 : *found;
 }
 
-struct Part {
-  const Log& log;
-  std::size_t fitted = 0;
+/// What the search knows of the logs.
+struct Scene {
+  double lowest_kpa = std::numeric_limits<double>::infinity();
+  double highest_kpa = -lowest_kpa;
+  double noise_kpa = 0;
+  double highest_supply_kpa = 0;
 };
 
-/// Prediction minus measurement over the fitted part of every log; a missing measurement counts nothing.
-void errors(const std::vector<Part>& parts, const ValveStage& stage, bool held, std::span<double> out) {
-  std::size_t at = 0;
-  for (const Part& part : parts) {
-    const std::vector<double> p = predicted_pressure_kpa(stage, part.log, held);
-    for (std::size_t i = 0; i < part.fitted; ++i) {
-      const double error = p[i] - part.log.pressure_kpa[i];
-      out[at++] = std::isfinite(error) ? error : 0;
+Scene scene_of(const std::vector<Log>& logs) {
+  Scene scene;
+  for (const Log& log : logs) {
+    for (const double p : log.pressure_kpa) {
+      if (!std::isfinite(p)) continue;
+      scene.lowest_kpa = std::min(scene.lowest_kpa, p);
+      scene.highest_kpa = std::max(scene.highest_kpa, p);
     }
+    for (const double s : log.supply_kpa) {
+      if (std::isfinite(s)) scene.highest_supply_kpa = std::max(scene.highest_supply_kpa, s);
+    }
+    scene.noise_kpa = std::max(scene.noise_kpa, white_noise_of(log.time_s, log.pressure_kpa));
   }
+  return scene;
 }
 
-double root_mean_square(const Log& log, const std::vector<double>& p, std::size_t first, std::size_t last,
-                        double& sum, std::size_t& count) {
-  for (std::size_t i = first; i < last; ++i) {
-    const double error = p[i] - log.pressure_kpa[i];
-    if (!std::isfinite(error)) continue;
-    sum += error * error;
-    ++count;
+/// The search's numbers, of order one each: the delay in tenths of a second and the band in kPa by their
+/// magnitude, lags by their logarithm, the limit in tenths of the highest pressure.
+class Coordinates {
+ public:
+  Coordinates(ValveParts parts, const Scene& scene) : parts_(parts), scene_(scene) {}
+
+  [[nodiscard]] ValveStage stage_at(std::span<const double> t) const {
+    ValveStage stage;
+    std::size_t at = 0;
+    if (has(ValvePart::delay)) stage.delay_s = std::min(0.1 * std::abs(t[at++]), 5.0);
+    if (has(ValvePart::dead_band)) stage.band_kpa = std::abs(t[at++]);
+    if (has(ValvePart::lag)) stage.filling_s = stage.venting_s = time_constant_s(t[at++]);
+    if (has(ValvePart::two_ways)) stage.venting_s = time_constant_s(t[at++]);
+    stage.nominal_supply_kpa = scene_.highest_supply_kpa;
+    if (has(ValvePart::supply_sag)) stage.coupling = std::clamp(t[at++], 0.0, 1.0);
+    if (has(ValvePart::limit)) stage.limit_kpa = 0.1 * scene_.highest_kpa * t[at++];
+    return stage;
   }
-  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
+
+  [[nodiscard]] std::vector<double> at(const ValveStage& stage) const {
+    std::vector<double> t;
+    const auto logarithm = [](double time_constant_s) { return std::log(std::max(time_constant_s, 1e-3)); };
+    if (has(ValvePart::delay)) t.push_back(std::max(10 * stage.delay_s, 0.05));
+    if (has(ValvePart::dead_band)) t.push_back(std::max(stage.band_kpa, 0.01 * scene_.highest_kpa));
+    if (has(ValvePart::lag)) t.push_back(logarithm(stage.filling_s));
+    if (has(ValvePart::two_ways)) t.push_back(logarithm(stage.venting_s));
+    if (has(ValvePart::supply_sag)) t.push_back(std::max(stage.coupling, 0.1));
+    if (has(ValvePart::limit))
+      t.push_back(std::isfinite(stage.limit_kpa) ? 10 * stage.limit_kpa / scene_.highest_kpa : 9.8);
+    return t;
+  }
+
+ private:
+  static double time_constant_s(double t) { return std::clamp(std::exp(t), 1e-4, 10.0); }
+  [[nodiscard]] bool has(ValvePart part) const { return parts_.test(index_of(part)); }
+
+  ValveParts parts_;
+  const Scene& scene_;
+};
+
+/// Prediction minus measurement of every log, as one row; a missing or unfitted measurement counts nothing.
+class Errors {
+ public:
+  Errors(const std::vector<Log>& logs, const ValveFit& fit) : logs_(logs), fit_(fit) {
+    for (const Log& log : logs) count_ += log.size();
+  }
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+  /// Leaves gain and zero of the gauge in the stage.
+  void evaluate(ValveStage& stage, std::span<double> out) const {
+    std::vector<std::vector<double>> predicted;
+    for (const Log& log : logs_) predicted.push_back(predicted_pressure_kpa(stage, log, fit_.held));
+    if (fit_.gauge) read_gauge(predicted, stage);
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < logs_.size(); ++k) {
+      for (std::size_t i = 0; i < logs_[k].size(); ++i) {
+        const double error =
+            stage.gauge_gain * predicted[k][i] + stage.gauge_zero_kpa - logs_[k].pressure_kpa[i];
+        out[at++] = counts(k, i) && std::isfinite(error) ? error : 0;
+      }
+    }
+  }
+
+  /// Root mean square of the samples that are fitted, or of the others [kPa].
+  [[nodiscard]] double rmse_kpa(const ValveStage& stage, bool fitted) const {
+    double sum = 0;
+    std::size_t used = 0;
+    for (std::size_t k = 0; k < logs_.size(); ++k) {
+      const std::vector<double> p = predicted_pressure_kpa(stage, logs_[k], fit_.held);
+      for (std::size_t i = 0; i < p.size(); ++i) {
+        const double error = p[i] - logs_[k].pressure_kpa[i];
+        if (counts(k, i) != fitted || !std::isfinite(error)) continue;
+        sum += error * error;
+        ++used;
+      }
+    }
+    return used == 0 ? 0 : std::sqrt(sum / static_cast<double>(used));
+  }
+
+ private:
+  [[nodiscard]] bool counts(std::size_t log, std::size_t sample) const {
+    return !fit_.is_fitted || fit_.is_fitted(log, sample);
+  }
+
+  /// The straight line from prediction to measurement.
+  void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (std::size_t k = 0; k < logs_.size(); ++k) {
+      for (std::size_t i = 0; i < predicted[k].size(); ++i) {
+        const double from = predicted[k][i], to = logs_[k].pressure_kpa[i];
+        if (!counts(k, i) || !std::isfinite(to)) continue;
+        n += 1, x += from, y += to, xx += from * from, xy += from * to;
+      }
+    }
+    const double spread = n * xx - x * x;
+    if (!(spread > 0)) return;
+    stage.gauge_gain = (n * xy - x * y) / spread;
+    stage.gauge_zero_kpa = (y - stage.gauge_gain * x) / n;
+  }
+
+  const std::vector<Log>& logs_;
+  const ValveFit& fit_;
+  std::size_t count_ = 0;
+};
+
+/// Where the search begins.
+std::vector<ValveStage> starts_of(const ValveFit& fit) {
+  if (!fit.from.empty()) return fit.from;
+  std::vector<ValveStage> starts;
+  for (const auto& [delay_s, filling_s, venting_s] :
+       {std::array{0.02, 0.1, 0.2}, std::array{0.1, 0.05, 0.1}, std::array{0.02, 0.5, 1.5}}) {
+    ValveStage& start = starts.emplace_back();
+    start.delay_s = delay_s;
+    start.filling_s = filling_s;
+    start.venting_s = venting_s;
+  }
+  return starts;
 }
 
 }  // namespace
@@ -66,14 +177,32 @@ std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& l
   const Sampling sampling = sampling_of(log);
   model::TransportDelay<double> delay(std::array{stage.delay_s},
                                       {.sample_time_s = sampling.regular ? sampling.median_interval_s : 0});
+  model::Play<double> dead_band(stage.band_kpa / 2);
   model::TwoWayLag<double> lag(stage.filling_s, stage.venting_s, 0);
   delay.reset(u.front());
-  lag.reset(first_finite(log.pressure_kpa));
-  std::vector<double> p(u.size(), lag.output());
+  const double first_kpa = first_finite(log.pressure_kpa);
+  // Where in its band the valve stands, the first pressure tells.
+  dead_band.reset(first_kpa + stage.band_kpa / 2);
+  dead_band.settle(u.front());
+  lag.reset(first_kpa);
+  const auto behind = [&](const Segment& s) { lag.step(s, [](const Segment&) {}); };
   const auto walk = [&](double duration_s, double from, double to) {
-    delay.step(Segment::straight(duration_s, from, to), {},
-               [&](const Segment& s) { lag.step(s, [](const Segment&) {}); });
+    delay.step(Segment::straight(duration_s, from, to), {}, [&](const Segment& s) {
+      if (stage.band_kpa > 0) {
+        dead_band.step(s, behind);
+      } else {
+        behind(s);
+      }
+    });
   };
+  const auto shown = [&](std::size_t i) {
+    double p = lag.output();
+    if (stage.coupling > 0)
+      p *= 1 - stage.coupling * std::max(0.0, 1 - log.supply_kpa[i] / stage.nominal_supply_kpa);
+    return stage.gauge_gain * std::min(p, stage.limit_kpa) + stage.gauge_zero_kpa;
+  };
+  std::vector<double> p(u.size());
+  p.front() = shown(0);
   for (std::size_t i = 1; i < u.size(); ++i) {
     const double dt = log.time_s[i] - log.time_s[i - 1];
     if (held) {
@@ -82,56 +211,59 @@ std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& l
     } else {
       walk(dt, u[i - 1], u[i]);
     }
-    p[i] = lag.output();
+    p[i] = shown(i);
   }
   return p;
 }
 
-ValveStage fit_valve_stage(const std::vector<Log>& logs, double share, bool held) {
-  std::vector<Part> parts;
-  std::size_t samples = 0;
-  double low = std::numeric_limits<double>::infinity(), high = -low, noise = 0;
-  for (const Log& log : logs) {
-    parts.push_back({log, static_cast<std::size_t>(share * static_cast<double>(log.size()))});
-    samples += parts.back().fitted;
-    for (const double p : log.pressure_kpa) {
-      if (!std::isfinite(p)) continue;
-      low = std::min(low, p);
-      high = std::max(high, p);
-    }
-    noise = std::max(noise, white_noise_of(log.time_s, log.pressure_kpa));
-  }
+ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit) {
+  const Scene scene = scene_of(logs);
+  const Coordinates coordinates(fit.parts, scene);
+  const Errors errors(logs, fit);
   const auto residuals = [&](std::span<const double> t, std::span<double> r) {
-    errors(parts, stage_at(t), held, r);
+    ValveStage stage = coordinates.stage_at(t);
+    errors.evaluate(stage, r);
   };
   ValveStage best;
   double lowest = std::numeric_limits<double>::infinity();
-  for (const std::array<double, 3>& from :
-       {std::array{0.2, std::log(0.1), std::log(0.2)}, std::array{1.0, std::log(0.05), std::log(0.1)},
-        std::array{0.2, std::log(0.5), std::log(1.5)}}) {
-    const PlainMinimum minimum = minimise_plain(residuals, samples, {from.begin(), from.end()});
+  std::vector<double> r(errors.count());
+  for (const ValveStage& start : starts_of(fit)) {
+    const PlainMinimum minimum =
+        minimise_plain(residuals, errors.count(), coordinates.at(start), fit.tolerance);
     if (!(minimum.sum_of_squares < lowest)) continue;
     lowest = minimum.sum_of_squares;
-    best = stage_at(minimum.p);
+    best = coordinates.stage_at(minimum.p);
+    errors.evaluate(best, r);
     best.converged = true;
   }
-  double fitted = 0, rest = 0;
-  std::size_t fitted_count = 0, rest_count = 0;
-  for (const Part& part : parts) {
-    const std::vector<double> p = predicted_pressure_kpa(best, part.log, held);
-    best.rmse_kpa = root_mean_square(part.log, p, 0, part.fitted, fitted, fitted_count);
-    best.held_out_rmse_kpa = root_mean_square(part.log, p, part.fitted, part.log.size(), rest, rest_count);
-  }
-  best.rmse_percent = high > low ? 100 * best.rmse_kpa / (high - low) : 0;
-  best.noise_kpa = noise;
+  best.rmse_kpa = errors.rmse_kpa(best, true);
+  best.held_out_rmse_kpa = errors.rmse_kpa(best, false);
+  const double range_kpa = scene.highest_kpa - scene.lowest_kpa;
+  best.rmse_percent = range_kpa > 0 ? 100 * best.rmse_kpa / range_kpa : 0;
+  best.noise_kpa = scene.noise_kpa;
   return best;
 }
 
+ValveStage fit_valve_stage(const std::vector<Log>& logs, double share, bool held) {
+  ValveFit fit;
+  fit.held = held;
+  fit.is_fitted = [&](std::size_t log, std::size_t sample) {
+    return sample < static_cast<std::size_t>(share * static_cast<double>(logs[log].size()));
+  };
+  return fit_valve_stage(logs, fit);
+}
+
 model::Model with_valve(model::Model actuator, const ValveStage& stage) {
-  actuator =
-      model::with_block(std::move(actuator), {model::block_type<model::TransportDelay>(), {stage.delay_s}});
-  return model::with_block(std::move(actuator), {model::block_type<model::AsymmetricValveLag>(),
-                                                 {stage.filling_s, stage.venting_s}});
+  const auto add = [&](std::size_t type, std::vector<double> values) {
+    actuator = model::with_block(std::move(actuator), {type, std::move(values)});
+  };
+  add(model::block_type<model::TransportDelay>(), {stage.delay_s});
+  if (stage.band_kpa > 0) add(model::block_type<model::ValveDeadband>(), {stage.band_kpa});
+  add(model::block_type<model::AsymmetricValveLag>(), {stage.filling_s, stage.venting_s});
+  if (stage.coupling > 0)
+    add(model::block_type<model::SupplySag>(), {stage.coupling, stage.nominal_supply_kpa});
+  if (std::isfinite(stage.limit_kpa)) add(model::block_type<model::PressureSaturation>(), {stage.limit_kpa});
+  return actuator;
 }
 
 }  // namespace softgrip::sysid

@@ -1,7 +1,11 @@
 #pragma once
-// Command to measured pressure, judged by the measured pressure: dead time and a lag for filling and for
-// venting.
+// Command to measured pressure, judged by the measured pressure: dead time, a lag for filling and for
+// venting, and what else a valve may do.
 
+#include <bitset>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <vector>
 
 #include "model/model.h"
@@ -9,19 +13,61 @@
 
 namespace softgrip::sysid {
 
+/// What may stand between command and measured pressure, in the order in which the signal meets it.
+enum class ValvePart : std::uint8_t {
+  delay,
+  dead_band,
+  lag,
+  two_ways,  ///< of the lag: another time constant while it vents
+  supply_sag,
+  limit,
+};
+inline constexpr std::size_t valve_part_count = 6;
+using ValveParts = std::bitset<valve_part_count>;
+
+[[nodiscard]] constexpr std::size_t index_of(ValvePart part) {
+  return static_cast<std::size_t>(part);
+}
+/// Dead time and a lag for either direction: what every valve has.
+[[nodiscard]] inline ValveParts usual_valve_parts() {
+  return ValveParts()
+      .set(index_of(ValvePart::delay))
+      .set(index_of(ValvePart::lag))
+      .set(index_of(ValvePart::two_ways));
+}
+
 struct ValveStage {
   double delay_s = 0;
+  double band_kpa = 0;  ///< change of the command after a reversal that the valve ignores
   double filling_s = 0;
   double venting_s = 0;
+  double coupling = 0;            ///< share of a relative loss of supply that reaches the pressure
+  double nominal_supply_kpa = 0;  ///< the loss is counted from here; 0: the supply is not recorded
+  double limit_kpa = std::numeric_limits<double>::infinity();
+  double gauge_gain = 1;  ///< of the pressure's sensor
+  double gauge_zero_kpa = 0;
   double rmse_kpa = 0;           ///< of the fitted samples
   double rmse_percent = 0;       ///< of the measured pressure's range
-  double held_out_rmse_kpa = 0;  ///< of the continuation; 0 where everything was fitted
+  double held_out_rmse_kpa = 0;  ///< of the others; 0 where everything was fitted
   double noise_kpa = 0;          ///< of the measured pressure, sample to sample
   bool converged = false;
 };
 
-/// Fits the first `share` of every log. Every log needs a pressure_kpa column; each begins at its first
-/// measured pressure, wherever the command is.
+/// What is fitted, and to which samples.
+struct ValveFit {
+  ValveParts parts = usual_valve_parts();
+  bool gauge = false;  ///< gain and zero of the pressure's sensor, too
+  bool held = false;   ///< the command keeps its value until the next sample
+  /// Empty: all samples.
+  std::function<bool(std::size_t log, std::size_t sample)> is_fitted = {};
+  std::vector<ValveStage> from = {};  ///< the search begins at each of them; empty: at three usual ones
+  double tolerance = 1e-12;           ///< relative change of the cost at which it ends
+};
+
+/// Every log needs a pressure_kpa column, and a supply_kpa column where parts hold supply_sag; each begins at
+/// its first measured pressure, wherever the command is.
+[[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit);
+/// The usual parts, fitted to the first `share` of every log.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, double share, bool held);
 
 /// The measured pressure that the stage predicts for a log [kPa].

@@ -100,6 +100,10 @@ void print_summary(const sysid::Diagnosis& d, const std::string& out) {
   if (d.evidence && d.structure_recalibrated.present)
     std::printf("%s\n", sysid::dependence_sentence(d.evidence->recalibrated).c_str());
   for (const sysid::NamedCause& named : d.causes) print_cause(named);
+  if (d.in_valve && !d.in_valve->named.empty()) {
+    std::puts("  In the valve, by the measured pressure:");
+    for (const sysid::NamedCause& named : d.in_valve->named) print_cause(named);
+  }
   if (!d.partial.empty()) std::puts("  Part of it, but not enough to be named the cause:");
   for (const sysid::NamedCause& named : d.partial) print_cause(named);
   if (const auto& nulls = d.null_calibration) {

@@ -26,13 +26,28 @@ Json cause_json(const NamedCause& named, const Budget& budget) {
     one["ci95"] = p.has_interval ? Json{p.ci95.lower, p.ci95.upper} : Json(nullptr);
     parameters[p.name] = std::move(one);
   }
-  return {{"id", named.cause.id},
-          {"form", model::catalogue()[named.block_type].info.id},
-          {"station", model::name_of(named.cause.station)},
-          {"parameters", std::move(parameters)},
-          {"heldout_gain_percent", spread(named.heldout_gain_percent)},
-          {"inclusion", named.inclusion},
-          {"share_percent", budget.share_percent(named)}};
+  Json json{{"id", named.cause.id},
+            {"form", model::catalogue()[named.block_type].info.id},
+            {"station", model::name_of(named.cause.station)},
+            {"parameters", std::move(parameters)},
+            {"heldout_gain_percent", spread(named.heldout_gain_percent)},
+            {"inclusion", named.inclusion},
+            {"share_percent", budget.share_percent(named)}};
+  if (named.gain_kpa2) {
+    json["judged_by"] = "pressure_kpa";
+    json["gain_kpa2"] = spread(*named.gain_kpa2);
+  }
+  return json;
+}
+
+/// What stands between the command and the measured pressure.
+Json valve_json(const ValveFindings& in_valve) {
+  const ValveStage& stage = in_valve.stage;
+  return {{"delay_s", stage.delay_s},
+          {"filling_time_constant_s", stage.filling_s},
+          {"venting_time_constant_s", stage.venting_s},
+          {"heldout_rmse_kpa", in_valve.heldout_rmse_kpa},
+          {"noise_kpa", stage.noise_kpa}};
 }
 
 /// Where the misfit goes, in mean squares of held-out readings.
@@ -165,7 +180,7 @@ Json gauge_json(const GaugeEvidence& gauge) {
 Json json_of(const Diagnosis& d) {
   Json json;
   json["schema"] = 1;
-  json["verdict"] = name_of(d.verdict);
+  json["verdict"] = name_of(whole_verdict(d));
   const Budget budget = budget_of(d);
   json["causes"] = Json::array();
   json["alternatives"] = Json::array();
@@ -174,6 +189,13 @@ Json json_of(const Diagnosis& d) {
     Json ids = Json::array();
     for (const Cause& rival : named.rivals) ids.push_back(rival.id);
     json["alternatives"].push_back(std::move(ids));
+  }
+  json["valve"] = d.in_valve ? valve_json(*d.in_valve) : Json(nullptr);
+  if (d.in_valve) {
+    for (const NamedCause& named : d.in_valve->named) {
+      json["causes"].push_back(cause_json(named, budget));
+      json["alternatives"].push_back(Json::array());
+    }
   }
   json["noise_mm"] = d.noise_mm;
   json["heldout_rmse_mm"] = {{"as_given", number(d.as_given_rmse_mm)},

@@ -11,6 +11,7 @@
 #include "sysid/diagnosis/report/report_forest.h"
 #include "sysid/diagnosis/report/report_reached.h"
 #include "sysid/diagnosis/report/report_tables.h"
+#include "sysid/diagnosis/report/report_valve.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -93,9 +94,10 @@ void add_found(Page& page, const DiagnosisReport& report) {
 
 Page diagnosis_page(const DiagnosisReport& report) {
   const Diagnosis& d = report.result;
-  Page page("Diagnosis of " + report.given.name, verdict_sentence(d), tone_of(d.verdict));
+  Page page("Diagnosis of " + report.given.name, verdict_sentence(d), tone_of(whole_verdict(d)));
   page.provenance(looked_at(report));
   add_found(page, report);
+  if (d.in_valve) add_valve_section(page, *d.in_valve);
   add_next(page, report);
   add_reached(page, report);
   add_appendix(page, report);

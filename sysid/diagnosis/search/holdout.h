@@ -26,6 +26,9 @@ struct Division {
   double gap_s = 0;  ///< readings so near to a held-out block are not fitted either
 };
 
+/// Of the blocks on which causes are judged: what resembles itself for longer is rare.
+inline constexpr double block_length_s = 8;
+
 /// Blocks of about `block_s`, at least eight of them; the gap is a tenth of a block.
 [[nodiscard]] Division divide(const std::vector<Record>& records, double block_s);
 /// The same stretches of time among the samples that are left of `records`.

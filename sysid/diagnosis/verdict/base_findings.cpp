@@ -38,8 +38,6 @@ namespace {
 
 /// A richer base must leave less than this share of the error that was reached without it, held out.
 constexpr double worth_having = 0.9;
-/// Named alone at this inclusion and above.
-constexpr double full_inclusion = 0.95;
 /// What an ingredient must bring of the mean square that the recalibrated base left beyond the noise.
 constexpr double least_share = 0.01;
 /// Where a cause was missing a choice of the ridge and of the simplest structure says little.

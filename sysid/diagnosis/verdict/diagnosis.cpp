@@ -18,7 +18,6 @@
 #include "sysid/diagnosis/verdict/mixed_intervals.h"
 #include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/fitting/trajectory.h"
-#include "sysid/structure/valve_stage.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -26,7 +25,6 @@ namespace {
 using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
-constexpr double block_s = 8;
 constexpr std::size_t fewest_samples = 200;
 /// What a staircase may leave of the mean square that stood without it: courses of tiny steps nibble at
 /// anything.
@@ -61,6 +59,13 @@ class Diagnostician {
       : logs_(logs), given_(given), options_(options) {}
 
   tl::expected<Diagnosis, std::string> run() {
+    if (auto done = judge_displacement(); !done) return Failure(done.error());
+    if (d_.in_valve) take_out_named(*d_.in_valve);
+    return std::move(d_);
+  }
+
+ private:
+  tl::expected<void, std::string> judge_displacement() {
     StageClock clock(d_);
     if (options_.progress) options_.progress("recalibrates");
     if (auto ready = prepare(); !ready) return Failure(ready.error());
@@ -71,7 +76,10 @@ class Diagnostician {
     if (const auto wrong = why_not_about(data_.records, *base)) return Failure(*wrong);
     data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm);
     clock.ended("recalibration");
-    const Division division = divide(data_.records, block_s);
+    if (options_.progress) options_.progress("looks at the measured pressure");
+    d_.in_valve = find_in_valve(logs_, {given_, options_.record.held, d_.noise_mm, options_.seed});
+    if (d_.in_valve) clock.ended("valve");
+    const Division division = divide(data_.records, block_length_s);
     Selection selection = search(std::move(*base), division);
     clock.ended("search");
     if (leaves_too_much(selection) || (base_ && selection.left.present)) {
@@ -88,7 +96,7 @@ class Diagnostician {
       measure_recalibrated(selection);
       adopt_base(selection);
       clock.ended("held-out logs and intervals");
-      return std::move(d_);
+      return {};
     }
     if (options_.gauge) {
       const GaugeQuestion question{*options_.gauge, d_.noise_mm, options_.seed, !d_.staircase};
@@ -107,10 +115,17 @@ class Diagnostician {
       if (base_) adopt_base(selection);
       clock.ended("base");
     }
-    return std::move(d_);
+    return {};
   }
 
- private:
+  /// What the displacement has shown already.
+  void take_out_named(ValveFindings& in_valve) {
+    std::erase_if(in_valve.named, [&](const NamedCause& one) {
+      return std::any_of(d_.causes.begin(), d_.causes.end(),
+                         [&](const NamedCause& other) { return other.cause == one.cause; });
+    });
+  }
+
   tl::expected<void, std::string> prepare() {
     std::vector<Record> records = make_records(logs_, options_.record);
     std::size_t readings = 0;
@@ -258,8 +273,7 @@ class Diagnostician {
         std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
     model::Model model = d_.extended.point.model;
     // For the daemon, which commands: what the valve does stands in front again.
-    if (options_.record.drive == Drive::measured)
-      model = with_valve(std::move(model), fit_valve_stage(logs_, 1, options_.record.held));
+    if (options_.record.drive == Drive::measured) model = with_valve(std::move(model), d_.in_valve->stage);
     d_.extended_model = named_model(std::move(model), "extended");
     d_.causes = std::move(base_->named);
     d_.partial = std::move(base_->possible);
@@ -409,6 +423,12 @@ const char* name_of(Verdict verdict) {
       return "unexplained";
   }
   return "unexplained";
+}
+
+Verdict whole_verdict(const Diagnosis& d) {
+  if (!d.in_valve || d.in_valve->named.empty()) return d.verdict;
+  if (d.verdict == Verdict::adequate || d.verdict == Verdict::recalibrate) return Verdict::cause_found;
+  return d.verdict == Verdict::unexplained ? Verdict::partly_explained : d.verdict;
 }
 
 void examine(Diagnosis& d, const DiagnosisOptions& options) {

@@ -19,6 +19,7 @@
 #include "sysid/diagnosis/search/selection.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
 #include "sysid/diagnosis/verdict/named_cause.h"
+#include "sysid/diagnosis/verdict/valve_findings.h"
 #include "sysid/identification/identify.h"
 #include "sysid/logs/log.h"
 
@@ -39,9 +40,9 @@ struct DiagnosisOptions {
 };
 
 struct Diagnosis {
-  Verdict verdict = Verdict::unexplained;
-  std::vector<NamedCause> causes;   ///< of cause_found, ambiguous and partly_explained
-  std::vector<NamedCause> partial;  ///< of unexplained: what explains part of it
+  Verdict verdict = Verdict::unexplained;  ///< of the displacement; see whole_verdict()
+  std::vector<NamedCause> causes;                       ///< of cause_found, ambiguous and partly_explained
+  std::vector<NamedCause> partial;                      ///< of unexplained: what explains part of it
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
   Spread gain;  ///< extended against recalibrated, held out [%]
@@ -56,6 +57,7 @@ struct Diagnosis {
   OutlierEvidence outliers;
   std::optional<StaircaseEvidence> staircase;  ///< where the named dead band is one
   std::optional<GaugeEvidence> gauge;          ///< where gauge readings were given
+  std::optional<ValveFindings> in_valve;       ///< where the pressure was measured; none of `causes` again
   std::string base;  ///< what a richer base is made of, where the given one does not hold; empty: it holds
   Structure structure_recalibrated;
   Structure structure_left;
@@ -75,6 +77,9 @@ struct Diagnosis {
 [[nodiscard]] inline bool is_extended(const Diagnosis& d) {
   return !d.extended.causes.empty() || !d.base.empty();
 }
+
+/// The verdict with what only the measured pressure shows.
+[[nodiscard]] Verdict whole_verdict(const Diagnosis& d);
 
 /// Takes the time of a diagnosis' stages, one after the other.
 class StageClock {

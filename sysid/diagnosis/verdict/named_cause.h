@@ -2,6 +2,7 @@
 // A cause as a verdict names it, with what speaks for it.
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,12 +22,17 @@ struct CauseParameter {
   [[nodiscard]] bool determined() const { return has_interval && is_determined(ci95, value); }
 };
 
+/// Named alone at this inclusion and above.
+inline constexpr double full_inclusion = 0.95;
+
 struct NamedCause {
   Cause cause;
   std::size_t block_type = 0;  ///< of the form in which it was found
   std::vector<CauseParameter> parameters;
   Spread heldout_gain_percent;
-  Spread gain_mm2;       ///< what the held-out mean square falls by with it
+  Spread gain_mm2;  ///< what the held-out mean square falls by with it
+  /// The same of the measured pressure, where that has judged it [kPa^2].
+  std::optional<Spread> gain_kpa2;
   double inclusion = 1;  ///< the weight of the structures in the confidence set that contain it
   std::vector<Cause> rivals;
   std::vector<CandidateScore> candidates;

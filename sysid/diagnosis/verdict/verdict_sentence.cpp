@@ -62,13 +62,29 @@ std::string unexplained_sentence(const Diagnosis& d, const std::string& before, 
          significant(d.structure_left.excess_mm / d.noise_mm, 2) + " times the noise.";
 }
 
+bool valve_lacks(const Diagnosis& d) {
+  return d.in_valve && !d.in_valve->named.empty();
+}
+
+/// " Between the command and the measured pressure it lacks valve dead band (band_kpa 1.34)."
+std::string sentence_of_valve(const Diagnosis& d) {
+  std::string numbers;
+  for (const NamedCause& named : d.in_valve->named) {
+    for (const CauseParameter& p : named.parameters)
+      numbers += (numbers.empty() ? "" : ", ") + p.name + " " + significant(p.value, 3);
+  }
+  return " Between the command and the measured pressure it lacks " + listed(d.in_valve->named) + " (" +
+         numbers + ").";
+}
+
 std::string sentence_of_logs(const Diagnosis& d) {
   const std::string before = significant(d.recalibrated_rmse_mm, 2) + " mm";
   const std::string after = significant(d.extended_rmse_mm, 2) + " mm";
   switch (d.verdict) {
     case Verdict::adequate:
-      return "The model explains these logs to the noise (" + significant(d.noise_mm, 2) +
-             " mm): nothing to change.";
+      return "The model explains " + std::string(valve_lacks(d) ? "the displacement" : "these logs") +
+             " to the noise (" + significant(d.noise_mm, 2) + " mm)" +
+             (valve_lacks(d) ? "." : ": nothing to change.");
     case Verdict::recalibrate:
       return "The structure is right and its numbers are not: recalibrated, the error falls from " +
              significant(d.as_given_rmse_mm, 2) + " to " + before + ".";
@@ -92,7 +108,8 @@ std::string sentence_of_logs(const Diagnosis& d) {
 }  // namespace
 
 std::string verdict_sentence(const Diagnosis& d) {
-  return sentence_of_logs(d) + (d.gauge ? " " + d.gauge->sentence : std::string());
+  return sentence_of_logs(d) + (valve_lacks(d) ? sentence_of_valve(d) : std::string()) +
+         (d.gauge ? " " + d.gauge->sentence : std::string());
 }
 
 }  // namespace softgrip::sysid

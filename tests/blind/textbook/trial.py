@@ -117,8 +117,9 @@ def diagnosed(build, model, logs, work, world, threads):
     valve, message = judging.diagnose(build, model, logs, work / "valve", *threads)
     if valve is None:
         return valve, message
+    named = {cause["id"] for cause in diagnosis["causes"]}
     for cause, rivals in zip(valve["causes"], valve["alternatives"]):
-        if cause["id"] in OF_THE_VALVE:
+        if cause["id"] in OF_THE_VALVE - named:
             diagnosis["causes"].append(cause)
             diagnosis["alternatives"].append(rivals)
     diagnosis["wall_s"] += valve["wall_s"]

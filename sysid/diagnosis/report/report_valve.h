@@ -1,0 +1,12 @@
+#pragma once
+// What the report shows of the valve where the pressure was measured.
+
+#include "sysid/diagnosis/verdict/valve_findings.h"
+#include "sysid/pages/page.h"
+
+namespace softgrip::sysid {
+
+/// The section of the page.
+void add_valve_section(Page& page, const ValveFindings& in_valve);
+
+}  // namespace softgrip::sysid

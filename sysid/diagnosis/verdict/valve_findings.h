@@ -1,0 +1,35 @@
+#pragma once
+// What the valve does between the command and the measured pressure, judged by the measured pressure: where
+// the pressure is recorded, a cause in the valve is no guess from the finger's motion.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "model/model.h"
+#include "sysid/diagnosis/verdict/named_cause.h"
+#include "sysid/logs/log.h"
+#include "sysid/structure/valve_stage.h"
+
+namespace softgrip::sysid {
+
+struct ValveFindings {
+  /// At full inclusion and without rivals; what the given model has already is not among them. Their gains
+  /// are of the measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
+  std::vector<NamedCause> named;
+  ValveStage stage;  ///< dead time, lag and what is named
+  double heldout_rmse_kpa = 0;
+};
+
+struct ValveQuestion {
+  const model::Model& given;
+  bool held = false;
+  double noise_mm = 0;  ///< of the finger's readings: what moves it by less is not named
+  std::uint64_t seed = 1;
+};
+
+/// Nothing where a log has no measured pressure.
+[[nodiscard]] std::optional<ValveFindings> find_in_valve(const std::vector<Log>& logs,
+                                                         const ValveQuestion& question);
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,70 @@
+#include "sysid/diagnosis/report/report_valve.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "model/blocks/valve_deadband.h"
+#include "model/named.h"
+#include "sysid/diagnosis/causes/valve_deadband.h"
+#include "sysid/diagnosis/report/diagnosis_json.h"
+#include "sysid/diagnosis/verdict/diagnosis.h"
+
+namespace softgrip::sysid::report_valve_test {
+namespace {
+
+ValveFindings dead_band_found() {
+  NamedCause named;
+  named.cause = *find_cause(causes::ValveDeadband::id);
+  named.block_type = model::block_type<model::ValveDeadband>();
+  named.parameters.push_back({"band_kpa", "kPa", 1.25, {1.125, 1.375}, true});
+  named.heldout_gain_percent = {31, 3, 25, 37};
+  named.gain_kpa2 = Spread{0.45, 0.1, 0.25, 0.65};
+  ValveFindings found;
+  found.named.push_back(named);
+  found.stage.delay_s = 0.018;
+  found.heldout_rmse_kpa = 0.63;
+  return found;
+}
+
+TEST(ReportValve, NamesEveryNumberWithItsIntervalAndWhatIsLeft) {
+  Page page("title", "sentence", Tone::bad);
+  add_valve_section(page, dead_band_found());
+  const std::string html = page.to_html();
+  for (const char* text : {"by the measured pressure", "Valve dead band", "band_kpa", "1.25",
+                           "1.125 to 1.375", "0.018", "0.63 kPa on held-out blocks", "31 (25 to 37)"}) {
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+  }
+}
+
+TEST(ReportValve, IsNoTableWhereNothingIsLacking) {
+  Page page("title", "sentence", Tone::good);
+  ValveFindings nothing = dead_band_found();
+  nothing.named.clear();
+  add_valve_section(page, nothing);
+  EXPECT_EQ(page.to_html().find("band_kpa"), std::string::npos);
+  EXPECT_NE(page.to_html().find("0.018"), std::string::npos);
+}
+
+TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
+  Diagnosis d;
+  d.verdict = Verdict::adequate;
+  EXPECT_EQ(json_of(d)["verdict"], "adequate");
+  EXPECT_TRUE(json_of(d)["valve"].is_null());
+  d.in_valve = dead_band_found();
+  const auto json = json_of(d);
+  EXPECT_EQ(json["verdict"], "cause_found");
+  ASSERT_EQ(json["causes"].size(), 1U);
+  EXPECT_EQ(json["alternatives"].size(), 1U);
+  EXPECT_EQ(json["causes"][0]["id"], "valve_deadband");
+  EXPECT_EQ(json["causes"][0]["judged_by"], "pressure_kpa");
+  EXPECT_EQ(json["causes"][0]["gain_kpa2"]["value"], 0.45);
+  EXPECT_EQ(json["valve"]["heldout_rmse_kpa"], 0.63);
+  EXPECT_NE(verdict_sentence(d).find("valve dead band (band_kpa 1.25)"), std::string::npos)
+      << verdict_sentence(d);
+  d.verdict = Verdict::unexplained;
+  EXPECT_EQ(json_of(d)["verdict"], "partly_explained");
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::report_valve_test
