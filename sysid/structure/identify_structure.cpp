@@ -103,8 +103,7 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
     valve.from_command.push_back(
         score_of(result.fitted, records[k], result.scores[k].start, logs[k].displacement_mm));
   result.model = with_valve(result.fitted, stage);
-  constexpr double far_off_percent = 5;
-  if (stage.rmse_percent > far_off_percent) {
+  if (stage.is_far_off()) {
     result.warnings.push_back("the valve is no dead time with a lag: between command and measured pressure " +
                               significant(stage.rmse_kpa, 3) + " kPa are left, " +
                               significant(stage.rmse_percent, 2) + " % of its range");

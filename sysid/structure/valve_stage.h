@@ -51,6 +51,9 @@ struct ValveStage {
   double held_out_rmse_kpa = 0;  ///< of the others; 0 where everything was fitted
   double noise_kpa = 0;          ///< of the measured pressure, sample to sample
   bool converged = false;
+
+  /// It leaves more than a twentieth of the range: the valve is another thing than these parts.
+  [[nodiscard]] bool is_far_off() const { return rmse_percent > 5; }
 };
 
 /// What is fitted, and to which samples.

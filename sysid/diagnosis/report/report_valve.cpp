@@ -31,13 +31,17 @@ Table parts_table(const ValveFindings& in_valve) {
 void add_valve_section(Page& page, const ValveFindings& in_valve) {
   const ValveStage& stage = in_valve.stage;
   page.section("The valve, by the measured pressure");
-  page.paragraph("Command and measured pressure were compared beside the displacement. A dead time of " +
-                 significant(stage.delay_s, 2) + " s and a lag of " + significant(stage.filling_s, 2) +
-                 " s while filling and " + significant(stage.venting_s, 2) + " s while venting" +
-                 (in_valve.named.empty() ? "" : ", with what the table names,") + " leave " +
-                 significant(in_valve.heldout_rmse_kpa, 2) +
-                 " kPa on held-out blocks; the pressure's noise is " + significant(stage.noise_kpa, 2) +
-                 " kPa.");
+  page.paragraph(
+      "Command and measured pressure were compared beside the displacement. A dead time of " +
+      significant(stage.delay_s, 2) + " s and a lag of " + significant(stage.filling_s, 2) +
+      " s while filling and " + significant(stage.venting_s, 2) + " s while venting" +
+      (in_valve.named.empty() ? "" : ", with what the table names,") + " leave " +
+      significant(in_valve.heldout_rmse_kpa, 2) + " kPa on held-out blocks; the pressure's noise is " +
+      significant(stage.noise_kpa, 2) + " kPa." +
+      (stage.is_far_off()
+           ? " That is more than a twentieth of its range: this valve is another thing, and nothing is "
+             "named in it."
+           : ""));
   if (!in_valve.named.empty()) page.table(parts_table(in_valve));
 }
 

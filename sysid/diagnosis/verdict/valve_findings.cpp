@@ -326,6 +326,7 @@ class Search {
     }
     found.stage = valve_.fit(kept, {whole_.stage}, 1e-12);
     found.heldout_rmse_kpa = rmse_mm(valve_.held_out_losses(kept, found.stage));
+    if (found.stage.is_far_off()) return found;
     for (const auto& [name, of] : there) {
       NamedCause named = named_as(name, of);
       if (position_of(question_.given, named.cause)) continue;

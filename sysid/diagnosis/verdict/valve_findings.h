@@ -14,8 +14,8 @@
 namespace softgrip::sysid {
 
 struct ValveFindings {
-  /// At full inclusion and without rivals; what the given model has already is not among them. Their gains
-  /// are of the measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
+  /// At full inclusion and without rivals; none where the stage is far off, and none that the given model
+  /// has. Their gains are of the measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
   std::vector<NamedCause> named;
   ValveStage stage;  ///< dead time, lag and what is named
   double heldout_rmse_kpa = 0;

@@ -44,6 +44,10 @@ TEST(ReportValve, IsNoTableWhereNothingIsLacking) {
   add_valve_section(page, nothing);
   EXPECT_EQ(page.to_html().find("band_kpa"), std::string::npos);
   EXPECT_NE(page.to_html().find("0.018"), std::string::npos);
+  EXPECT_EQ(page.to_html().find("another thing"), std::string::npos);
+  nothing.stage.rmse_percent = 8;
+  add_valve_section(page, nothing);
+  EXPECT_NE(page.to_html().find("another thing"), std::string::npos);
 }
 
 TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {

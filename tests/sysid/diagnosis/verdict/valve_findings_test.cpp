@@ -156,6 +156,19 @@ TEST(FindInValve, AValveOfSecondOrderHasNoDeadBandNoLimitAndNoSag) {
   }
 }
 
+TEST(FindInValve, NamesNothingInAValveThatGoesItsOwnWay) {
+  OwnValve valve;
+  valve.limit_kpa = 35;
+  std::vector<Log> logs = own_logs(valve, 81);
+  // As if another hand were on the regulator.
+  for (Log& log : logs) {
+    for (std::size_t i = 0; i < log.size(); ++i) log.pressure_kpa[i] += 6 * std::sin(1.7 * log.time_s[i]);
+  }
+  const ValveFindings found = found_in(logs, without_a_valve());
+  EXPECT_TRUE(found.stage.is_far_off()) << found.stage.rmse_percent;
+  EXPECT_TRUE(found.named.empty());
+}
+
 TEST(FindInValve, WhatMovesTheFingerByLessThanItsNoiseIsNotNamed) {
   OwnValve valve;
   valve.band_kpa = 0.4;
