@@ -41,8 +41,8 @@ struct DiagnosisOptions {
 
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;  ///< of the displacement; see whole_verdict()
-  std::vector<NamedCause> causes;                       ///< of cause_found, ambiguous and partly_explained
-  std::vector<NamedCause> partial;                      ///< of unexplained: what explains part of it
+  std::vector<NamedCause> causes;          ///< of cause_found, ambiguous and partly_explained
+  std::vector<NamedCause> partial;         ///< of unexplained: what explains part of it
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
   Spread gain;  ///< extended against recalibrated, held out [%]
