@@ -273,7 +273,8 @@ class Diagnostician {
         std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
     model::Model model = d_.extended.point.model;
     // For the daemon, which commands: what the valve does stands in front again.
-    if (options_.record.drive == Drive::measured) model = with_valve(std::move(model), d_.in_valve->stage);
+    if (options_.record.drive == Drive::measured && d_.in_valve)
+      model = with_valve(std::move(model), d_.in_valve->stage);
     d_.extended_model = named_model(std::move(model), "extended");
     d_.causes = std::move(base_->named);
     d_.partial = std::move(base_->possible);
