@@ -27,7 +27,9 @@ std::vector<std::size_t> nearest_to_centres(const Record& record, double interva
 
 Record thinned_to_centres(const Record& record, double interval_s) {
   if (interval_s <= record.mean_interval_s()) return record;
-  return thinned_record(record, nearest_to_centres(record, interval_s));
+  Record thin = thinned_record(record, nearest_to_centres(record, interval_s));
+  thin.finest_interval_s = thin.mean_interval_s();
+  return thin;
 }
 
 }  // namespace softgrip::sysid

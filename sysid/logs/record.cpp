@@ -53,6 +53,7 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   record.duration_s.resize(record.size());
   for (std::size_t i = 1; i < record.size(); ++i)
     record.duration_s[i] = on_grid(log.time_s[i] - log.time_s[i - 1]);
+  record.finest_interval_s = record.mean_interval_s();
   const Sampling sampling = sampling_of(log);
   const double nominal = on_grid(sampling.median_interval_s);
   const double worst =

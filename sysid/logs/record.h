@@ -53,7 +53,10 @@ struct Record {
   std::vector<double> reading_mm;  ///< NaN: none
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
-  double sample_time_s = 0;       ///< 0 when irregular
+  double sample_time_s = 0;  ///< 0 when irregular
+  /// Between readings that are told apart: the log's own mean interval even where only some samples are left;
+  /// where a sample stands for those around it, the interval of what is left.
+  double finest_interval_s = 0;
   double campaign_time_s = 0;     ///< when it began, counted from the first log's start
   double span_mm = 0;             ///< of the readings
   double drive_noise_kpa = 0;     ///< of a measured drive, before it was smoothed
@@ -67,7 +70,7 @@ struct Record {
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }
   /// From the first sample to the last [s]. There is one at least.
   [[nodiscard]] double length_s() const noexcept { return time_s.back() - time_s.front(); }
-  /// Mean time between samples [s]; the nominal one may not be known (sample_time_s).
+  /// Mean time between the samples that are here [s]; the nominal one may not be known (sample_time_s).
   [[nodiscard]] double mean_interval_s() const noexcept {
     return length_s() / static_cast<double>(size() > 2 ? size() - 1 : 1);
   }

@@ -88,6 +88,7 @@ Record averaged_to(const Record& record, double interval_s) {
   const std::size_t stride = stride_for(record, interval_s);
   if (stride <= 1) return record;
   Record thin = thinned_record(record, stride);
+  thin.finest_interval_s = thin.mean_interval_s();
   thin.readings = 0;
   for (std::size_t to = 0; to < thin.size(); ++to) {
     const std::size_t at = to * stride;

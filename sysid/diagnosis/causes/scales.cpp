@@ -18,7 +18,7 @@ Scales scales_of(const std::vector<Record>& records) {
     s.span_mm = std::max(s.span_mm, record.span_mm);
     s.largest_kpa = std::max(s.largest_kpa, record.largest_kpa);
     s.campaign_s += record.length_s();
-    s.sample_s = std::min(s.sample_s, record.mean_interval_s());
+    s.sample_s = std::min(s.sample_s, record.finest_interval_s);
     s.has_temperature |= varies(record.temperature_c);
     s.has_supply |= varies(record.supply_kpa);
     for (const double supply : record.supply_kpa)

@@ -24,7 +24,7 @@ struct Scales {
   double span_mm = 0;             ///< of the displacement
   double largest_kpa = 0;         ///< of the drive
   double campaign_s = 0;          ///< all records together
-  double sample_s = 0;            ///< shortest usual interval
+  double sample_s = 0;            ///< shortest usual interval between readings that are told apart
   double largest_supply_kpa = 0;  ///< 0: no such column
   bool has_temperature = false;   ///< and it varies
   bool has_supply = false;        ///< and it varies

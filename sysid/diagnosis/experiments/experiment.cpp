@@ -156,6 +156,7 @@ class Designer {
     if (!last.temperature_c.empty()) record.temperature_c.assign(count, last.temperature_c.back());
     if (!last.supply_kpa.empty()) record.supply_kpa.assign(count, last.supply_kpa.back());
     record.sample_time_s = interval_s;
+    record.finest_interval_s = interval_s;
     record.campaign_time_s = last.campaign_time_s + last.time_s.back();
     record.span_mm = data_.scales.span_mm;
     record.largest_kpa = limits_.pressure_max_kpa;

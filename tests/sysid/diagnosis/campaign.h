@@ -19,6 +19,7 @@ inline std::vector<Record> known_campaign(std::size_t logs) {
     Record r;
     r.name = "log_" + std::to_string(k + 1);
     r.sample_time_s = 0.02;
+    r.finest_interval_s = 0.02;
     r.campaign_time_s = 60.0 * static_cast<double>(k);
     r.largest_before_kpa = largest;
     for (std::size_t i = 0; i < 3000; ++i) {

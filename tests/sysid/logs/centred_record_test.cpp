@@ -18,6 +18,7 @@ Record ramp() {
     record.temperature_c.push_back(20 + 1e-3 * i);
   }
   record.sample_time_s = 1e-3;
+  record.finest_interval_s = 1e-3;
   record.readings = record.size();
   return record;
 }
@@ -27,6 +28,7 @@ TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
   ASSERT_GE(thin.size(), 364U);
   EXPECT_EQ(thin.time_s[0], 0);
   EXPECT_EQ(thin.sample_time_s, 0) << "the first step is another one";
+  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "a sample stands for those around it";
   for (std::size_t i = 1; i + 1 < thin.size(); ++i) {
     EXPECT_NEAR(thin.time_s[i], 0.011 * (static_cast<double>(i) - 0.5), 0.51e-3);
     EXPECT_NEAR(thin.duration_s[i], thin.time_s[i] - thin.time_s[i - 1], 1e-9);

@@ -24,6 +24,7 @@ Record parabola(double noise_mm) {
     record.reading_mm.push_back(2 * t_s * t_s + noise_mm * noise(random));
   }
   record.sample_time_s = 1e-3;
+  record.finest_interval_s = 1e-3;
   record.readings = record.size();
   return record;
 }
@@ -118,6 +119,11 @@ TEST(AveragedRecord, ReadingsThatAreNotThereAreNotInvented) {
 TEST(AveragedRecord, ThatIsSparseEnoughStaysAsItIs) {
   const Record record = parabola(0.05);
   EXPECT_EQ(averaged_to(record, 0.0015).reading_mm, record.reading_mm);
+}
+
+TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
+  EXPECT_EQ(thinned_to(parabola(0), 0.02).finest_interval_s, 1e-3);
+  EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12) << "a mean blurs what is faster";
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ Record record_of(std::string name, std::vector<double> drive_kpa, double campaig
   record.duration_s.assign(count, interval_s);
   record.duration_s[0] = 0;
   record.sample_time_s = interval_s;
+  record.finest_interval_s = interval_s;
   record.campaign_time_s = campaign_time_s;
   record.largest_kpa = *std::max_element(record.drive_kpa.begin(), record.drive_kpa.end());
   return record;
