@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::size_t most_tracks = 40;
 constexpr std::size_t most_landings = 24;
+/// Of courses that stand nearer to each other [in resolutions] one is followed: their number is there for
+/// such as differ.
+constexpr double same_place = 1;
 /// A course that is behind by so much of squared error [in squares of what the resolution makes] is given up.
 constexpr double hopeless_resolutions = 4000;
 /// Samples without a jump after which courses are compared again.
@@ -165,7 +168,7 @@ class JumpTracker {
       Track& track = next_[at];
       if (tracks_.size() >= most_tracks || track.cost_mm2 > most_mm2) break;
       const bool twin = std::ranges::any_of(tracks_.span(), [&](const Track& kept) {
-        return std::abs(kept.held_kpa - track.held_kpa) < 0.25 * resolution_kpa_;
+        return std::abs(kept.held_kpa - track.held_kpa) < same_place * resolution_kpa_;
       });
       if (!twin) tracks_.take(track);
     }

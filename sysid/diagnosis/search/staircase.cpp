@@ -20,9 +20,12 @@ namespace {
 constexpr double next_band = 1.3;
 /// As shares of the largest pressure.
 constexpr double narrowest = 0.004, widest = 0.25;
-/// The band and what stands behind the valve are estimated in turns, until the band stays.
-constexpr int most_rounds = 12;
-constexpr double stays = 5e-4;
+/// The band and what stands behind the valve are estimated in turns, until the band stays and what is left
+/// does, as shares.
+constexpr int most_rounds = 20;
+/// After so many of them the distances of a band scatter less than by chance.
+constexpr int rounds_of_chance = 6;
+constexpr double band_stays = 5e-4, rest_stays = 0.01;
 /// A sum that is larger by more than rounding can make it.
 constexpr double clearly_more = 1 + 1e-9;
 
@@ -103,6 +106,38 @@ std::vector<Record> driven(const std::vector<Record>& records, const Courses& co
   return all;
 }
 
+/// What the staircase comes to that begins with a band; nothing where there are too few jumps or their
+/// distances come by chance.
+std::optional<Staircase> staircase_from(const std::vector<Record>& records, const StructureFit& behind,
+                                        double band_kpa, double resolution_kpa, unsigned threads) {
+  Staircase found;
+  found.band_kpa = band_kpa;
+  found.fit = behind;
+  std::vector<double> distances;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double before_kpa = found.band_kpa, before_mm2 = found.fit.mean_square_mm2;
+    const Courses courses = track_all(records, found.fit.point, found.band_kpa, resolution_kpa, threads);
+    distances = distances_of(courses);
+    measure_band(distances, found);
+    if (found.jumps < fewest_jumps || (round >= rounds_of_chance && found.scatter > scatter_of_chance))
+      return std::nullopt;
+    found.records = driven(records, courses);
+    found.fit = fit_structure(found.records, behind.causes, found.fit.point);
+    if (std::abs(found.band_kpa - before_kpa) < band_stays * before_kpa &&
+        found.fit.mean_square_mm2 > (1 - rest_stays) * before_mm2)
+      break;
+  }
+  const Band band = band_of_jumps(distances);
+  found.band_kpa = band.value_kpa;
+  found.band_ci95 = band.ci95_kpa;
+  return found;
+}
+
+bool is_a_band(const Staircase& found, double resolution_kpa) {
+  return found.scatter <=
+         std::min(std::hypot(most_scatter, resolution_kpa / found.band_kpa), most_scatter_in_all);
+}
+
 }  // namespace
 
 Band band_of_jumps(std::span<const double> distances_kpa) {
@@ -125,26 +160,15 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
   const double resolution_kpa = 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
-  Staircase found;
-  found.band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
-  found.fit = behind;
-  std::vector<double> distances;
-  for (int round = 0; round < most_rounds; ++round) {
-    const double before_kpa = found.band_kpa;
-    const Courses courses = track_all(records, found.fit.point, found.band_kpa, resolution_kpa, threads);
-    distances = distances_of(courses);
-    measure_band(distances, found);
-    if (found.jumps < fewest_jumps) return std::nullopt;
-    found.records = driven(records, courses);
-    found.fit = fit_structure(found.records, behind.causes, found.fit.point);
-    if (std::abs(found.band_kpa - before_kpa) < stays * before_kpa) break;
+  const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
+  // With jumps over half the band a course comes nearly everywhere, and leaves less than the right one as
+  // long as what stands behind the valve is not known well.
+  for (const double start_kpa : {band_kpa, 2 * band_kpa}) {
+    auto found = staircase_from(records, behind, start_kpa, resolution_kpa, threads);
+    if (found && is_a_band(*found, resolution_kpa) && found->fit.mean_square_mm2 < behind.mean_square_mm2)
+      return found;
   }
-  if (found.scatter > most_scatter || !(found.fit.mean_square_mm2 < behind.mean_square_mm2))
-    return std::nullopt;
-  const Band band = band_of_jumps(distances);
-  found.band_kpa = band.value_kpa;
-  found.band_ci95 = band.ci95_kpa;
-  return found;
+  return std::nullopt;
 }
 
 }  // namespace softgrip::sysid

@@ -26,10 +26,12 @@ struct Staircase {
   StructureFit fit;             ///< what stands behind the valve, fitted to these
 };
 
-/// What makes distances a band: fewer are none; where anything is possible between the tracker's bounds the
-/// scatter is 0.19.
+/// What makes distances a band: fewer are none.
 inline constexpr std::size_t fewest_jumps = 20;
-inline constexpr double most_scatter = 0.1;
+/// The scatter of a band's distances beyond what the readings resolve of it, and in all.
+inline constexpr double most_scatter = 0.1, most_scatter_in_all = 0.13;
+/// Where anything is possible between the tracker's bounds.
+inline constexpr double scatter_of_chance = 0.19;
 
 /// A band and its 95 % interval [kPa].
 struct Band {

@@ -12,6 +12,9 @@
 namespace softgrip::sysid {
 namespace {
 
+/// What a course leaves [in noises] that is a jump off here and there.
+constexpr double a_jump_off = 0.5;
+
 /// The cause in its smooth form: what is left of all staircases in the mean.
 Cause dragged_along(Cause dead_band) {
   constexpr std::size_t play = model::block_type<model::ValveDeadband>();
@@ -44,7 +47,7 @@ std::optional<Staircase> staircase_before(const SearchData& data, const Selectio
     auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
     if (!found || (best && found->fit.mean_square_mm2 > best->fit.mean_square_mm2)) continue;
     best = std::move(found);
-    if (!structure_of(best->fit.residual_mm, noise_mm).present) break;
+    if (structure_of(best->fit.residual_mm, noise_mm).excess_mm < a_jump_off * noise_mm) break;
   }
   return best;
 }
