@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numeric>
 
 #include <ceres/ceres.h>
 #include <glog/logging.h>
@@ -122,6 +123,11 @@ Minimum minimise(const Residuals& residuals, std::vector<double> z, const Minimi
 
 PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count, std::vector<double> start,
                             double tolerance) {
+  if (start.empty()) {
+    std::vector<double> r(count);
+    residuals({}, r);
+    return {{}, std::inner_product(r.begin(), r.end(), r.begin(), 0.0)};
+  }
   quieten_log();
   auto* cost = new ceres::DynamicNumericDiffCostFunction<PlainFunctor, ceres::CENTRAL>(
       new PlainFunctor{residuals, start.size(), count});

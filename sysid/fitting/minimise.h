@@ -45,7 +45,7 @@ struct PlainMinimum {
   double sum_of_squares = 0;
 };
 
-/// Of a few numbers without bounds that are no model's, with differences for derivatives.
+/// Of a few numbers, or none, without bounds that are no model's, with differences for derivatives.
 /// @param count  how many residuals.
 /// @param tolerance  relative change of the cost at which the search ends.
 [[nodiscard]] PlainMinimum minimise_plain(const PlainResiduals& residuals, std::size_t count,

@@ -7,8 +7,6 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Dense>
-
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/supply_sag.h"
@@ -22,6 +20,7 @@
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/holdout.h"
+#include "sysid/diagnosis/verdict/measured_valve.h"
 #include "sysid/logs/input_smoothing.h"
 
 namespace softgrip::sysid {
@@ -107,137 +106,6 @@ double range_of(const std::vector<Log>& logs, std::vector<double> Log::*column) 
   return highest > lowest ? highest - lowest : 0;
 }
 
-class Valve {
- public:
-  Valve(const std::vector<Log>& logs, const ValveQuestion& question) : logs_(logs), question_(question) {
-    for (const Log& log : logs_)
-      first_block_.push_back(blocks_of(log) + (first_block_.empty() ? 0 : first_block_.back()));
-  }
-
-  /// A fit of some parts to everything; `tolerance`: of one that is told to the last digits.
-  [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from,
-                               double tolerance = 1e-6) const {
-    ValveFit fit = fit_of(parts, from);
-    fit.tolerance = tolerance;
-    return fit_valve_stage(logs_, fit);
-  }
-
-  /// The better of a fit from several places and of one from `other`, of which it has all parts and more.
-  [[nodiscard]] ValveStage better_fit(ValveParts parts, const ValveStage& one,
-                                      const ValveStage& other) const {
-    if (!(other.rmse_kpa < 1.5 * one.rmse_kpa)) return one;
-    const ValveStage again = fit(parts, {other});
-    return again.rmse_kpa < one.rmse_kpa ? again : one;
-  }
-
-  /// Mean square of every block while it was not fitted, blocks taking turns [kPa^2].
-  [[nodiscard]] BlockLosses held_out_losses(ValveParts parts, const ValveStage& whole) const {
-    BlockLosses losses(first_block_.back(), 0);
-    std::vector<double> counts(losses.size(), 0);
-    for (std::size_t fold = 0; fold < 2; ++fold) {
-      ValveFit fit = fit_of(parts, {whole});
-      fit.is_fitted = [&](std::size_t log, std::size_t sample) { return block(log, sample) % 2 != fold; };
-      const ValveStage stage = fit_valve_stage(logs_, fit);
-      for (std::size_t k = 0; k < logs_.size(); ++k) {
-        const std::vector<double> p = predicted_pressure_kpa(stage, logs_[k], question_.held);
-        for (std::size_t i = 0; i < p.size(); ++i) {
-          const double error = p[i] - logs_[k].pressure_kpa[i];
-          if (block(k, i) % 2 != fold || !std::isfinite(error)) continue;
-          losses[block(k, i)] += error * error;
-          ++counts[block(k, i)];
-        }
-      }
-    }
-    BlockLosses means;
-    for (std::size_t b = 0; b < losses.size(); ++b) {
-      if (counts[b] > 0) means.push_back(losses[b] / counts[b]);
-    }
-    return means;
-  }
-
-  /// Standard errors of numbers that were fitted together. The larger of two: of white noise; and by the
-  /// sandwich whose filling is the sum over whole blocks, so that what resembles itself within a block counts
-  /// once (White, Econometrica 48, 1980; Liang & Zeger, Biometrika 73, 1986). That one is too small where few
-  /// blocks say most: the edges of a few steps.
-  [[nodiscard]] Eigen::VectorXd standard_errors(const ValveStage& at,
-                                                const std::vector<double ValveStage::*>& numbers) const {
-    const auto n = static_cast<Eigen::Index>(numbers.size());
-    const auto rows = static_cast<Eigen::Index>(samples());
-    Eigen::MatrixXd slopes(rows, n);
-    for (Eigen::Index a = 0; a < n; ++a) slopes.col(a) = derivative(at, numbers[static_cast<std::size_t>(a)]);
-    Eigen::VectorXd error = errors(at);
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      if (std::isfinite(error[row])) continue;
-      error[row] = 0;
-      slopes.row(row).setZero();
-    }
-    Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(first_block_.back()));
-    Eigen::Index row = 0;
-    for (std::size_t k = 0; k < logs_.size(); ++k) {
-      for (std::size_t i = 0; i < logs_[k].size(); ++i, ++row)
-        scores.col(static_cast<Eigen::Index>(block(k, i))) += error[row] * slopes.row(row).transpose();
-    }
-    const Eigen::MatrixXd inverse =
-        (slopes.transpose() * slopes).completeOrthogonalDecomposition().pseudoInverse();
-    const Eigen::VectorXd white = inverse.diagonal() * (error.squaredNorm() / static_cast<double>(rows));
-    const Eigen::VectorXd sandwich = (inverse * scores * scores.transpose() * inverse).diagonal();
-    return white.cwiseMax(sandwich).cwiseSqrt();
-  }
-
- private:
-  [[nodiscard]] ValveFit fit_of(ValveParts parts, const std::vector<ValveStage>& from) const {
-    ValveFit fit;
-    fit.parts = parts;
-    fit.gauge = true;
-    fit.held = question_.held;
-    fit.from = from;
-    fit.tolerance = 1e-6;
-    return fit;
-  }
-
-  static std::size_t blocks_of(const Log& log) {
-    return std::max<std::size_t>(
-        1, static_cast<std::size_t>((log.time_s.back() - log.time_s.front()) / block_length_s));
-  }
-  [[nodiscard]] std::size_t block(std::size_t log, std::size_t sample) const {
-    const std::size_t before = log == 0 ? 0 : first_block_[log - 1];
-    const double at_s = logs_[log].time_s[sample] - logs_[log].time_s.front();
-    return std::min(before + static_cast<std::size_t>(at_s / block_length_s), first_block_[log] - 1);
-  }
-
-  [[nodiscard]] std::size_t samples() const {
-    std::size_t all = 0;
-    for (const Log& log : logs_) all += log.size();
-    return all;
-  }
-
-  [[nodiscard]] Eigen::VectorXd errors(const ValveStage& stage) const {
-    Eigen::VectorXd all(static_cast<Eigen::Index>(samples()));
-    Eigen::Index at = 0;
-    for (const Log& log : logs_) {
-      const std::vector<double> p = predicted_pressure_kpa(stage, log, question_.held);
-      for (std::size_t i = 0; i < p.size(); ++i) all[at++] = p[i] - log.pressure_kpa[i];
-    }
-    return all;
-  }
-
-  [[nodiscard]] Eigen::VectorXd derivative(const ValveStage& at, double ValveStage::*number) const {
-    const double step = std::max(1e-3 * std::abs(at.*number), 1e-5);
-    ValveStage above = at, below = at;
-    above.*number += step;
-    below.*number -= step;
-    if (number == &ValveStage::filling_s && at.filling_s == at.venting_s) {  // one lag for either direction
-      above.venting_s = above.filling_s;
-      below.venting_s = below.filling_s;
-    }
-    return (errors(above) - errors(below)) / (2 * step);
-  }
-
-  const std::vector<Log>& logs_;
-  const ValveQuestion& question_;
-  std::vector<std::size_t> first_block_;  ///< behind every log's last one
-};
-
 double least_share_of(ValvePart part) {
   return part == ValvePart::two_ways ? least_detail : least_part;
 }
@@ -270,7 +138,7 @@ struct PartEvidence {
 class Search {
  public:
   Search(const std::vector<Log>& logs, const ValveQuestion& question)
-      : logs_(logs), question_(question), valve_(logs, question) {
+      : logs_(logs), question_(question), valve_(logs, question.held) {
     bool supplied = true;
     for (const Log& log : logs) supplied = supplied && !log.supply_kpa.empty();
     ValveParts all = ValveParts().set();
@@ -388,7 +256,7 @@ class Search {
 
   const std::vector<Log>& logs_;
   const ValveQuestion& question_;
-  Valve valve_;
+  MeasuredValve valve_;
   Trial whole_;
   std::array<std::optional<Trial>, valve_part_count> ablation_;
 };

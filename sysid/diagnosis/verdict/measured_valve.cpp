@@ -1,0 +1,124 @@
+#include "sysid/diagnosis/verdict/measured_valve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Dense>
+
+namespace softgrip::sysid {
+namespace {
+
+std::size_t blocks_of(const Log& log) {
+  return std::max<std::size_t>(
+      1, static_cast<std::size_t>((log.time_s.back() - log.time_s.front()) / block_length_s));
+}
+
+}  // namespace
+
+MeasuredValve::MeasuredValve(const std::vector<Log>& logs, bool held) : logs_(logs), held_(held) {
+  for (const Log& log : logs_) {
+    blocks_end_.push_back(blocks_of(log) + (blocks_end_.empty() ? 0 : blocks_end_.back()));
+    samples_ += log.size();
+  }
+}
+
+ValveStage MeasuredValve::fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance) const {
+  ValveFit fit = fit_of(parts, from);
+  fit.tolerance = tolerance;
+  return fit_valve_stage(logs_, fit);
+}
+
+ValveStage MeasuredValve::better_fit(ValveParts parts, const ValveStage& one, const ValveStage& other) const {
+  if (!(other.rmse_kpa < 1.5 * one.rmse_kpa)) return one;
+  const ValveStage again = fit(parts, {other});
+  return again.rmse_kpa < one.rmse_kpa ? again : one;
+}
+
+BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& whole) const {
+  BlockLosses losses(blocks_end_.back(), 0);
+  std::vector<double> counts(losses.size(), 0);
+  for (std::size_t fold = 0; fold < 2; ++fold) {
+    ValveFit fit = fit_of(parts, {whole});
+    fit.is_fitted = [&](std::size_t log, std::size_t sample) { return block(log, sample) % 2 != fold; };
+    const ValveStage stage = fit_valve_stage(logs_, fit);
+    for (std::size_t k = 0; k < logs_.size(); ++k) {
+      const std::vector<double> p = predicted_pressure_kpa(stage, logs_[k], held_);
+      for (std::size_t i = 0; i < p.size(); ++i) {
+        const double error = p[i] - logs_[k].pressure_kpa[i];
+        if (block(k, i) % 2 != fold || !std::isfinite(error)) continue;
+        losses[block(k, i)] += error * error;
+        ++counts[block(k, i)];
+      }
+    }
+  }
+  BlockLosses means;
+  for (std::size_t b = 0; b < losses.size(); ++b) {
+    if (counts[b] > 0) means.push_back(losses[b] / counts[b]);
+  }
+  return means;
+}
+
+Eigen::VectorXd MeasuredValve::standard_errors(const ValveStage& at,
+                                               const std::vector<double ValveStage::*>& numbers) const {
+  const auto n = static_cast<Eigen::Index>(numbers.size());
+  const auto rows = static_cast<Eigen::Index>(samples_);
+  Eigen::MatrixXd slopes(rows, n);
+  for (Eigen::Index a = 0; a < n; ++a) slopes.col(a) = derivative(at, numbers[static_cast<std::size_t>(a)]);
+  Eigen::VectorXd error = errors(at);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    if (std::isfinite(error[row])) continue;
+    error[row] = 0;
+    slopes.row(row).setZero();
+  }
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(n, static_cast<Eigen::Index>(blocks_end_.back()));
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < logs_.size(); ++k) {
+    for (std::size_t i = 0; i < logs_[k].size(); ++i, ++row)
+      scores.col(static_cast<Eigen::Index>(block(k, i))) += error[row] * slopes.row(row).transpose();
+  }
+  const Eigen::MatrixXd inverse =
+      (slopes.transpose() * slopes).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::VectorXd white = inverse.diagonal() * (error.squaredNorm() / static_cast<double>(rows));
+  const Eigen::VectorXd sandwich = (inverse * scores * scores.transpose() * inverse).diagonal();
+  return white.cwiseMax(sandwich).cwiseSqrt();
+}
+
+ValveFit MeasuredValve::fit_of(ValveParts parts, const std::vector<ValveStage>& from) const {
+  ValveFit fit;
+  fit.parts = parts;
+  fit.gauge = true;
+  fit.held = held_;
+  fit.from = from;
+  fit.tolerance = 1e-6;
+  return fit;
+}
+
+std::size_t MeasuredValve::block(std::size_t log, std::size_t sample) const {
+  const std::size_t before = log == 0 ? 0 : blocks_end_[log - 1];
+  const double at_s = logs_[log].time_s[sample] - logs_[log].time_s.front();
+  return std::min(before + static_cast<std::size_t>(at_s / block_length_s), blocks_end_[log] - 1);
+}
+
+Eigen::VectorXd MeasuredValve::errors(const ValveStage& stage) const {
+  Eigen::VectorXd all(static_cast<Eigen::Index>(samples_));
+  Eigen::Index at = 0;
+  for (const Log& log : logs_) {
+    const std::vector<double> p = predicted_pressure_kpa(stage, log, held_);
+    for (std::size_t i = 0; i < p.size(); ++i) all[at++] = p[i] - log.pressure_kpa[i];
+  }
+  return all;
+}
+
+Eigen::VectorXd MeasuredValve::derivative(const ValveStage& at, double ValveStage::*number) const {
+  const double step = std::max(1e-3 * std::abs(at.*number), 1e-5);
+  ValveStage above = at, below = at;
+  above.*number += step;
+  below.*number -= step;
+  if (number == &ValveStage::filling_s && at.filling_s == at.venting_s) {  // one lag for either direction
+    above.venting_s = above.filling_s;
+    below.venting_s = below.filling_s;
+  }
+  return (errors(above) - errors(below)) / (2 * step);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,104 @@
+#include "sysid/diagnosis/verdict/measured_valve.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace softgrip::sysid::measured_valve_test {
+namespace {
+
+constexpr double sample_s = 0.01, gain = 1.05, zero_kpa = 2.0, noise_kpa = 0.2;
+constexpr std::size_t block_samples = 800;  // of 8 s
+
+// A valve that does nothing behind a gauge: command and pressure are on a straight line.
+Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Log log;
+  double offset = 0;
+  for (std::size_t i = 0; i < blocks * block_samples; ++i) {
+    if (i % block_samples == 0) offset = offset_kpa * normal(random);
+    const double t = sample_s * static_cast<double>(i);
+    log.time_s.push_back(t);
+    log.pressure_command_kpa.push_back(40 + 30 * std::sin(2 * std::numbers::pi * 0.031 * t));
+    log.displacement_mm.push_back(0);
+    log.pressure_kpa.push_back(gain * log.pressure_command_kpa.back() + zero_kpa + offset +
+                               noise_kpa * normal(random));
+  }
+  return log;
+}
+
+/// A straight line through the samples of every second block, in closed form.
+struct Line {
+  double slope, zero, mean_u, sum_uu;
+};
+/// A log of so many blocks' samples ends one before its last block is full: that stretch belongs to the one
+/// before.
+std::size_t block_of(const Log& log, std::size_t sample) {
+  return std::min(sample / block_samples, log.size() / block_samples - 2);
+}
+Line line_through(const Log& log, bool even) {
+  double n = 0, su = 0, sp = 0, suu = 0, sup = 0;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    if ((block_of(log, i) % 2 == 0) != even) continue;
+    const double u = log.pressure_command_kpa[i], p = log.pressure_kpa[i];
+    n += 1, su += u, sp += p, suu += u * u, sup += u * p;
+  }
+  const double slope = (sup - su * sp / n) / (suu - su * su / n);
+  return {slope, (sp - slope * su) / n, su / n, suu - su * su / n};
+}
+
+TEST(MeasuredValve, WhatIsLeftOfABlockIsOfAFitToTheOthers) {
+  const std::vector<Log> logs{straight_log(8, 0.5, 3)};
+  const MeasuredValve valve(logs, false);
+  const BlockLosses losses = valve.held_out_losses({}, valve.fit({}, {ValveStage{}}));
+  ASSERT_EQ(losses.size(), 7U);
+  // The log's first sample is the measured pressure, read through the gauge once more.
+  for (std::size_t block = 1; block < 6; ++block) {
+    const Line line = line_through(logs[0], block % 2 == 1);
+    double sum_kpa2 = 0;
+    for (std::size_t i = block * block_samples; i < (block + 1) * block_samples; ++i) {
+      const double error = line.slope * logs[0].pressure_command_kpa[i] + line.zero - logs[0].pressure_kpa[i];
+      sum_kpa2 += error * error;
+    }
+    EXPECT_NEAR(losses[block], sum_kpa2 / block_samples, 0.02 * losses[block]) << block;
+  }
+}
+
+TEST(MeasuredValve, StandardErrorsOfAGaugeAreThoseOfAStraightLine) {
+  const std::vector<Log> logs{straight_log(40, 0, 5)};
+  const MeasuredValve valve(logs, false);
+  const ValveStage stage = valve.fit({}, {ValveStage{}}, 1e-12);
+  const auto errors = valve.standard_errors(stage, {&ValveStage::gauge_gain, &ValveStage::gauge_zero_kpa});
+  double su = 0, suu = 0;
+  const double n = static_cast<double>(logs[0].size());
+  for (const double u : logs[0].pressure_command_kpa) su += u, suu += u * u;
+  const double about_mean = suu - su * su / n;
+  const double of_gain = noise_kpa / std::sqrt(about_mean);
+  const double of_zero = noise_kpa * std::sqrt(suu / (n * about_mean));
+  EXPECT_NEAR(stage.gauge_gain, gain, 4 * of_gain);
+  EXPECT_NEAR(stage.gauge_zero_kpa, zero_kpa, 4 * of_zero);
+  // Never below white noise's; the sum over forty blocks of it is known to a tenth.
+  EXPECT_GT(errors[0], 0.97 * of_gain);
+  EXPECT_LT(errors[0], 1.4 * of_gain);
+  EXPECT_GT(errors[1], 0.97 * of_zero);
+  EXPECT_LT(errors[1], 1.4 * of_zero);
+}
+
+TEST(MeasuredValve, ALastingErrorCountsOncePerBlock) {
+  const std::vector<Log> white{straight_log(40, 0, 7)}, lasting{straight_log(40, noise_kpa, 7)};
+  const auto error_of = [](const std::vector<Log>& logs) {
+    const MeasuredValve valve(logs, false);
+    return valve.standard_errors(valve.fit({}, {ValveStage{}}, 1e-12),
+                                 {&ValveStage::gauge_gain, &ValveStage::gauge_zero_kpa})[1];
+  };
+  // An offset of its own for each of 40 blocks, as large as the noise: like 40 readings, not 32,000.
+  EXPECT_GT(error_of(lasting), 10 * error_of(white));
+  EXPECT_LT(error_of(lasting), 60 * error_of(white));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::measured_valve_test
