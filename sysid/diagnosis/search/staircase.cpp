@@ -23,9 +23,9 @@ constexpr double narrowest = 0.004, widest = 0.25;
 /// The band and what stands behind the valve are estimated in turns, until the band stays and what is left
 /// does, as shares.
 constexpr int most_rounds = 20;
+constexpr double band_stays = 5e-4, rest_stays = 0.01;
 /// After so many of them the distances of a band scatter less than by chance.
 constexpr int rounds_of_chance = 6;
-constexpr double band_stays = 5e-4, rest_stays = 0.01;
 /// A sum that is larger by more than rounding can make it.
 constexpr double clearly_more = 1 + 1e-9;
 

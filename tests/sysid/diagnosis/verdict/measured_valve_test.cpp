@@ -31,15 +31,16 @@ Log straight_log(std::size_t blocks, double offset_kpa, std::uint32_t seed) {
   return log;
 }
 
-/// A straight line through the samples of every second block, in closed form.
-struct Line {
-  double slope, zero, mean_u, sum_uu;
-};
 /// A log of so many blocks' samples ends one before its last block is full: that stretch belongs to the one
 /// before.
 std::size_t block_of(const Log& log, std::size_t sample) {
   return std::min(sample / block_samples, log.size() / block_samples - 2);
 }
+
+struct Line {
+  double slope, zero;
+};
+/// A straight line through the samples of every second block, in closed form.
 Line line_through(const Log& log, bool even) {
   double n = 0, su = 0, sp = 0, suu = 0, sup = 0;
   for (std::size_t i = 0; i < log.size(); ++i) {
@@ -48,7 +49,7 @@ Line line_through(const Log& log, bool even) {
     n += 1, su += u, sp += p, suu += u * u, sup += u * p;
   }
   const double slope = (sup - su * sp / n) / (suu - su * su / n);
-  return {slope, (sp - slope * su) / n, su / n, suu - su * su / n};
+  return {slope, (sp - slope * su) / n};
 }
 
 TEST(MeasuredValve, WhatIsLeftOfABlockIsOfAFitToTheOthers) {
