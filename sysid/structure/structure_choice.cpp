@@ -20,11 +20,25 @@ constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
 /// In a fold the nonlinear numbers are not far from those of all readings.
 constexpr int fold_iterations = 5;
 
+/// Whether the creep ladder has a rung between every two.
+enum class RungsBetween { no, yes };
+
+std::vector<double> with_rungs_between(const std::vector<double>& ladder_s) {
+  std::vector<double> finer_s;
+  for (const double tau_s : ladder_s) {
+    if (!finer_s.empty()) finer_s.push_back(std::sqrt(finer_s.back() * tau_s));
+    finer_s.push_back(tau_s);
+  }
+  return finer_s;
+}
+
 class Judge {
  public:
-  Judge(const std::vector<Record>& records, const StructureChoiceOptions& options)
+  Judge(const std::vector<Record>& records, const StructureChoiceOptions& options,
+        RungsBetween rungs = RungsBetween::no)
       : records_(records), options_(options), grid_(grid_for(records)), blocks_(records) {
     if (options.slow_from_s > 0) grid_.slow_from_s = options.slow_from_s;
+    if (rungs == RungsBetween::yes) grid_.ladder_s = with_rungs_between(grid_.ladder_s);
   }
 
   [[nodiscard]] std::size_t blocks() const { return blocks_.count(); }
@@ -236,8 +250,11 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
     ablation.back().trial.structure = rest;
   }
   const Judge judge(records, options);
+  const Judge among_more_rungs(records, options, RungsBetween::yes);
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
-    ablation[i].trial = judge.judge(ablation[i].trial.structure, choice.ridge);
+    // A branch of the finger's own between two rungs is made up for by both; the upper one may be slow creep.
+    const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
+    ablation[i].trial = fair.judge(ablation[i].trial.structure, choice.ridge);
   });
   return ablation;
 }

@@ -19,7 +19,7 @@ struct SlowCreep : FormOf<model::SlowCreep> {
 
   static Starts starts(const Scales& s) {
     const double gain = s.gain_mm_per_kpa();
-    return every({{"gain_mm_per_kpa", {0.05 * gain, 0.2 * gain}},
+    return every({{"gain_mm_per_kpa", {0.05 * gain, 0.2 * gain, 0.8 * gain}},
                   {"time_constant_s", {0.15 * s.campaign_s, 0.5 * s.campaign_s, 2 * s.campaign_s}}});
   }
   /// As fast as a branch of the base it is that branch; much slower than the campaign only gain per time

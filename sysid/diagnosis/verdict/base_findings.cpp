@@ -119,12 +119,13 @@ bool is_among(const std::vector<NamedCause>& causes, const NamedCause& one) {
                      [&](const NamedCause& other) { return other.cause == one.cause; });
 }
 
-/// From where on creep is slow for a base that has branches of its own.
+/// From where on creep is slow for a base that has branches of its own. What was missing may have made them
+/// look faster than they are.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
   double longest_s = 0, slowest_s = 0;
   for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
   for (const double tau_s : branch_time_constants_s(recalibrated)) slowest_s = std::max(slowest_s, tau_s);
-  return std::max(longest_s / 10, std::min(1.5 * slowest_s, longest_s));
+  return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }
 
 /// A structure that foretells better, and what it is without its ingredients.
