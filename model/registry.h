@@ -15,6 +15,7 @@
 #include "model/blocks/chamber_lag.h"
 #include "model/blocks/characteristic.h"
 #include "model/blocks/contact.h"
+#include "model/blocks/crescent_hysteresis.h"
 #include "model/blocks/duhem_hysteresis.h"
 #include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
@@ -23,6 +24,7 @@
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
 #include "model/blocks/pressure_saturation.h"
+#include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/quantisation.h"
 #include "model/blocks/rate_dependent_levelling.h"
 #include "model/blocks/rate_dependent_width.h"
@@ -79,12 +81,14 @@ using Blocks = BlockList<TransportDelay,          //
                          ChamberLag,              //
                          ActuatorThreshold,       //
                          StressSoftening,         //
+                         PseudoElasticSoftening,  //
                          BoucWen,                 //
                          PrandtlIshlinskii,       //
                          KelvinVoigt,             //
                          PressureDependentCreep,  //
                          SlowCreep,               //
                          DuhemHysteresis,         //
+                         CrescentHysteresis,      //
                          AsymmetricBoucWen,       //
                          RelaxingFriction,        //
                          RateDependentWidth,      //

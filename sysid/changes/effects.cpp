@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "model/blocks/ageing.h"
+#include "model/blocks/crescent_hysteresis.h"
 #include "model/blocks/duhem_hysteresis.h"
+#include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/sensor_nonlinearity.h"
 #include "model/blocks/sensor_wander.h"
 #include "model/blocks/stiffening.h"
@@ -82,6 +84,9 @@ class Collector {
     if (starts.empty()) return;
     const model::BlockDescriptor& descriptor = model::catalogue()[form.type];
     if (form.type == model::block_type<model::SensorWander>()) return;  // knots follow it too
+    // add_softening() and add_crescent() have what acts like these on any base's answer.
+    if (form.type == model::block_type<model::PseudoElasticSoftening>()) return;
+    if (form.type == model::block_type<model::CrescentHysteresis>()) return;
     if (cause.station != model::Station::valve && !is_carried(base_, starts.front())) return;
     Effect effect = form_of(cause, descriptor.info.id);
     effect.free_form = form.free_form;

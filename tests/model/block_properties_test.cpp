@@ -126,6 +126,8 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
                                              block_type<ChamberLag>(),
                                              block_type<SupplySag>(),
                                              block_type<StressSoftening>(),
+                                             block_type<PseudoElasticSoftening>(),
+                                             block_type<CrescentHysteresis>(),
                                              block_type<PressureDependentCreep>(),
                                              block_type<RelaxingFriction>(),
                                              block_type<RateDependentWidth>(),

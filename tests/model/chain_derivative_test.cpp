@@ -132,8 +132,10 @@ TEST(ChainDerivatives, NeutralValuesHaveThem) {
   const Model twin = preset("bench_twin");
   for (const std::string id : {"supply_sag",
                                "stress_softening",
+                               "pseudo_elastic_softening",
                                "slow_creep",
                                "duhem_hysteresis",
+                               "crescent_hysteresis",
                                "asymmetric_bouc_wen",
                                "relaxing_friction",
                                "rate_dependent_width",

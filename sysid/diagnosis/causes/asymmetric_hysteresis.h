@@ -2,6 +2,7 @@
 // The loading and unloading branches of a loop differ in shape.
 
 #include "model/blocks/asymmetric_bouc_wen.h"
+#include "model/blocks/crescent_hysteresis.h"
 #include "model/blocks/duhem_hysteresis.h"
 #include "sysid/diagnosis/causes/form.h"
 
@@ -45,7 +46,20 @@ struct AsymmetricHysteresis {
     }
   };
 
-  using Forms = List<OwnLoop, Skew>;
+  /// A loop that is wide in the middle. Where it closes is the largest pressure.
+  struct Crescent : FormOf<model::CrescentHysteresis> {
+    static constexpr std::array<Parameter, 2> fitted{"gain_mm_per_kpa", "bend"};
+    static Starts starts(const Scales& s) {
+      const double gain = s.gain_mm_per_kpa();
+      return every({{"gain_mm_per_kpa", {-0.05 * gain, 0.05 * gain}},
+                    {"bend", {2, 6}},
+                    {"range_kpa", {s.largest_kpa}}});
+    }
+    /// Straight it is nothing, bent more it is a step at the end.
+    static Bounds bounds(const Scales&, const model::Model&) { return {{"bend", 0.5, 30}}; }
+  };
+
+  using Forms = List<OwnLoop, Skew, Crescent>;
 };
 
 }  // namespace softgrip::sysid::causes

@@ -1,6 +1,7 @@
 #pragma once
 // Softer after the largest load so far (Mullins).
 
+#include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/stress_softening.h"
 #include "sysid/diagnosis/causes/form.h"
 
@@ -32,7 +33,19 @@ struct StressSoftening {
     }
   };
 
-  using Forms = List<Proportional, Levelling>;
+  /// Not at once, but over some way below the largest load.
+  struct PseudoElastic : FormOf<model::PseudoElasticSoftening> {
+    static Starts starts(const Scales& s) {
+      return every({{"softening_per_kpa", {0.05 / s.largest_kpa, 0.3 / s.largest_kpa}},
+                    {"range_kpa", {0.1 * s.largest_kpa, 0.3 * s.largest_kpa}}});
+    }
+    /// Narrower than what a log shows of a turn it comes at once; wider it never comes.
+    static Bounds bounds(const Scales& s, const model::Model&) {
+      return {{"range_kpa", 0.02 * s.largest_kpa, 2 * s.largest_kpa}};
+    }
+  };
+
+  using Forms = List<Proportional, Levelling, PseudoElastic>;
 };
 
 }  // namespace softgrip::sysid::causes

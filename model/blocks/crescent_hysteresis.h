@@ -1,0 +1,76 @@
+#pragma once
+// A loop that is wide in the middle of the pressures and closes at both ends.
+
+#include "model/block.h"
+#include "model/clip.h"
+
+namespace softgrip::model {
+
+/// A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989, chapter 2): c rests
+/// until it meets one of two envelopes and then follows it, the lower one up and the upper one down. Over x =
+/// p/range the upper one is straight and the lower one sags, x/(1 + bend (1 - x)); outside [0, 1] both are
+/// one line and nothing is added. The middle of both is taken away, so that a base keeps its gain. Rate
+/// independent.
+template <class T>
+class CrescentHysteresis {
+ public:
+  static constexpr BlockInfo info = block_info(
+      "crescent_hysteresis", Station::actuator, Kind::element, Inverse::implicit, "Crescent hysteresis",
+      "A loop that is wide in the middle of the pressures and closes at both ends.",
+      "y += gain range (c - (x + l)/2); l = x/(1 + bend (1 - x)) <= c <= x = p/range");
+  static constexpr std::array parameters{
+      parameter("gain_mm_per_kpa", "mm/kPa", "added per pressure of the loop's width", Typical{0.02},
+                Within{-10.0, 10.0}, Scale{0.02}, Neutral{0.0}),
+      parameter("bend", "", "of the lower envelope: its slope at full range is 1 + bend", Typical{3.0},
+                Within{0.0, 1000.0}, Scale{1.0}),
+      parameter("range_kpa", "kPa", "pressure at which the loop closes", Typical{60.0}, Within{0.01, 10000.0},
+                Scale{20.0})};
+
+  CrescentHysteresis(std::span<const T> values, const Preparation&)
+      : gain_(values[0]), bend_(values[1]), range_kpa_(values[2]) {}
+
+  void reset(const T& input) {
+    at_ = followed(T(0.0), T(input / range_kpa_));
+    output_ = added(at_, T(input / range_kpa_));
+  }
+  [[nodiscard]] T output() const { return output_; }
+
+  // The mean by Simpson's rule of a straight p.
+  Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    const T begin = output_;
+    const T half = (in.begin + in.end) * 0.5 / range_kpa_, end = in.end / range_kpa_;
+    const T middle = added(followed(at_, half), half);
+    at_ = followed(at_, end);
+    output_ = added(at_, end);
+    return {in.duration_s, begin, output_, (begin + middle * 4.0 + output_) * (1.0 / 6.0)};
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+    const U x = end_kpa / range_kpa_;
+    return added(followed(U(at_), x), x);
+  }
+
+ private:
+  template <class U>
+  [[nodiscard]] U lower(const U& x) const {
+    if (value_of(x) <= 0.0 || value_of(x) >= 1.0) return x;
+    return x / (1.0 + bend_ * (1.0 - x));
+  }
+  template <class U>
+  [[nodiscard]] U followed(const U& at, const U& x) const {
+    return lesser(greater(at, lower(x)), x);
+  }
+  template <class U>
+  [[nodiscard]] U added(const U& at, const U& x) const {
+    return gain_ * range_kpa_ * (at - (x + lower(x)) * 0.5);
+  }
+
+  T gain_;
+  T bend_;
+  T range_kpa_;
+  T at_{0.0};  // c
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model
