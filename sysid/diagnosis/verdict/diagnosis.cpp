@@ -172,7 +172,7 @@ class Diagnostician {
   /// Whether a selection leaves more than what is named may leave, or structure where nothing is named.
   [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
     if (!selection.left.present) return false;
-    if (selection.chosen.empty()) {
+    if (selection.extended.causes.empty()) {
       return !left_by_outliers(selection.left) && selection.left.excess_mm > 0.2 * d_.noise_mm;
     }
     return sysid::leaves_too_much(selection.left, selection.base_structure, d_.noise_mm);
