@@ -51,12 +51,13 @@ struct AsymmetricHysteresis {
     static constexpr std::array<Parameter, 2> fitted{"gain_mm_per_kpa", "bend"};
     static Starts starts(const Scales& s) {
       const double gain = s.gain_mm_per_kpa();
-      return every({{"gain_mm_per_kpa", {-0.05 * gain, 0.05 * gain}},
-                    {"bend", {2, 6}},
-                    {"range_kpa", {s.largest_kpa}}});
+      return every({{"gain_mm_per_kpa", {0.05 * gain}}, {"bend", {2, 6}}, {"range_kpa", {s.largest_kpa}}});
     }
-    /// Straight it is nothing, bent more it is a step at the end.
-    static Bounds bounds(const Scales&, const model::Model&) { return {{"bend", 0.5, 30}}; }
+    /// Straight it is nothing, bent more it is a step at the end. Below zero it would give back more than it
+    /// was given: what is then too wide is the base's own loop.
+    static Bounds bounds(const Scales&, const model::Model&) {
+      return {{"gain_mm_per_kpa", 0}, {"bend", 0.5, 30}};
+    }
   };
 
   using Forms = List<OwnLoop, Skew, Crescent>;
