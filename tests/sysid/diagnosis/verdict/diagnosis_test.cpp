@@ -26,7 +26,7 @@ model::Model without_valve() {
 TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   const model::Model given = without_valve();
   const model::Model truth =
-      model::with_block(given, model::block_of<model::TransportDelay>({{"delay_s", 0.13}}));
+      model::with_block(given, model::block_of<model::TransportDelay>({{"delay_s", 0.4}}));
   std::vector<Log> logs;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
     logs.push_back(simulated(truth, signal, 25, noise_mm, 17));
