@@ -19,11 +19,13 @@
 #include "model/blocks/duhem_hysteresis.h"
 #include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/leak.h"
 #include "model/blocks/outliers.h"
 #include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
 #include "model/blocks/pressure_saturation.h"
+#include "model/blocks/pressure_scale.h"
 #include "model/blocks/pseudo_elastic_softening.h"
 #include "model/blocks/quantisation.h"
 #include "model/blocks/rate_dependent_levelling.h"
@@ -79,6 +81,8 @@ using Blocks = BlockList<TransportDelay,          //
                          SupplySag,               //
                          PressureSaturation,      //
                          ChamberLag,              //
+                         PressureScale,           //
+                         Leak,                    //
                          ActuatorThreshold,       //
                          StressSoftening,         //
                          PseudoElasticSoftening,  //

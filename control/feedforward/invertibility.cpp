@@ -112,7 +112,8 @@ tl::expected<void, Refusal> check_gain(const model::Model& model, double pressur
 /// The sensor does not move the finger and is left alone.
 bool is_undone(const BlockInfo& info) {
   if (info.station == Station::sensor || info.inverse == Inverse::ignored) return true;
-  if (info.station != Station::valve) return info.inverse == Inverse::implicit;
+  if (info.inverse == Inverse::implicit) return true;
+  if (info.station != Station::valve) return false;
   return info.inverse == Inverse::preview ||
          model::is<model::ValveLag, model::AsymmetricValveLag, model::ChamberLag, model::PressureSaturation>(
              info);

@@ -14,6 +14,11 @@ bool runs(const BlockInfo& info) {
   return info.inverse != Inverse::preview && info.inverse != Inverse::ignored;
 }
 
+/// What stands between valve and finger without a memory is undone with the finger.
+bool is_of_valve(const BlockInfo& info) {
+  return info.station == Station::valve && info.inverse != Inverse::implicit;
+}
+
 }  // namespace
 
 double dead_time_s(const model::Model& model) {
@@ -26,13 +31,11 @@ double dead_time_s(const model::Model& model) {
 }
 
 model::Model valve_of(const model::Model& model) {
-  return model::only(model,
-                     [](const BlockInfo& info) { return info.station == Station::valve && runs(info); });
+  return model::only(model, [](const BlockInfo& info) { return is_of_valve(info) && runs(info); });
 }
 
 model::Model body_of(const model::Model& model) {
-  return model::only(model,
-                     [](const BlockInfo& info) { return info.station != Station::valve && runs(info); });
+  return model::only(model, [](const BlockInfo& info) { return !is_of_valve(info) && runs(info); });
 }
 
 RunningModel::RunningModel(const model::Model& model, double tick_s, double extra_latency_s,

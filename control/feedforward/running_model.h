@@ -56,7 +56,8 @@ class RunningModel {
 
 /// The sum of the model's dead times [s].
 [[nodiscard]] double dead_time_s(const model::Model& model);
-/// The model without dead times and without what is only noise.
+/// The model without dead times and without what is only noise: what takes time to follow the command, and
+/// everything behind it.
 [[nodiscard]] model::Model valve_of(const model::Model& model);
 [[nodiscard]] model::Model body_of(const model::Model& model);
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "sysid/diagnosis/causes/form.h"
+#include "sysid/diagnosis/causes/leak.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 
 namespace softgrip::sysid {
@@ -26,7 +27,7 @@ inline constexpr CauseOfTheAir blocked_line{
     causes::ValveLag::id};
 
 inline constexpr CauseOfTheAir leak{
-    "leak",
+    causes::Leak::id,
     "Leak",
     {"pressure is lost while it should hold",
      {"Hold full pressure and listen or spray soapy water along tube, fittings and finger.",

@@ -6,10 +6,13 @@
 #include <utility>
 
 #include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/leak.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/supply_sag.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_deadband.h"
+#include "model/blocks/valve_lag.h"
+#include "model/line_loss.h"
 #include "model/named.h"
 #include "model/play.h"
 #include "model/two_way_lag.h"
@@ -51,7 +54,8 @@ Scene scene_of(const std::vector<Log>& logs) {
 }
 
 /// The search's numbers, of order one each: the delay in tenths of a second and the band in kPa by their
-/// magnitude, lags by their logarithm, the limit in tenths of the highest pressure.
+/// magnitude, lags by their logarithm, the limit in tenths of the highest pressure, the leak's share by its
+/// magnitude.
 class Coordinates {
  public:
   Coordinates(ValveParts parts, const Scene& scene) : parts_(parts), scene_(scene) {}
@@ -66,6 +70,8 @@ class Coordinates {
     stage.nominal_supply_kpa = scene_.highest_supply_kpa;
     if (has(ValvePart::supply_sag)) stage.coupling = std::clamp(t[at++], 0.0, 1.0);
     if (has(ValvePart::limit)) stage.limit_kpa = 0.1 * scene_.highest_kpa * t[at++];
+    if (has(ValvePart::second_lag)) stage.second_s = time_constant_s(t[at++]);
+    if (has(ValvePart::leak)) stage.leak_share = std::abs(t[at++]);
     return stage;
   }
 
@@ -79,6 +85,8 @@ class Coordinates {
     if (has(ValvePart::supply_sag)) t.push_back(std::max(stage.coupling, 0.1));
     if (has(ValvePart::limit))
       t.push_back(std::isfinite(stage.limit_kpa) ? 10 * stage.limit_kpa / scene_.highest_kpa : 9.8);
+    if (has(ValvePart::second_lag)) t.push_back(logarithm(stage.second_s));
+    if (has(ValvePart::leak)) t.push_back(std::max(stage.leak_share, 0.01));
     return t;
   }
 
@@ -103,7 +111,7 @@ class Errors {
   void evaluate(ValveStage& stage, std::span<double> out) const {
     std::vector<std::vector<double>> predicted;
     for (const Log& log : logs_) predicted.push_back(predicted_pressure_kpa(stage, log, fit_.held));
-    if (fit_.gauge) read_gauge(predicted, stage);
+    if (fit_.sensor != PressureSensorFit::nothing) read_gauge(predicted, stage);
     std::size_t at = 0;
     for (std::size_t k = 0; k < logs_.size(); ++k) {
       for (std::size_t i = 0; i < logs_[k].size(); ++i) {
@@ -135,7 +143,7 @@ class Errors {
     return !fit_.is_fitted || fit_.is_fitted(log, sample);
   }
 
-  /// The straight line from prediction to measurement.
+  /// The straight line from prediction to measurement, or the one of slope one.
   void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (std::size_t k = 0; k < logs_.size(); ++k) {
@@ -147,7 +155,7 @@ class Errors {
     }
     const double spread = n * xx - x * x;
     if (!(spread > 0)) return;
-    stage.gauge_gain = (n * xy - x * y) / spread;
+    if (fit_.sensor == PressureSensorFit::gain_and_zero) stage.gauge_gain = (n * xy - x * y) / spread;
     stage.gauge_zero_kpa = (y - stage.gauge_gain * x) / n;
   }
 
@@ -178,14 +186,18 @@ std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& l
   model::TransportDelay<double> delay(std::array{stage.delay_s},
                                       {.sample_time_s = sampling.regular ? sampling.median_interval_s : 0});
   model::Play<double> dead_band(stage.band_kpa / 2);
-  model::TwoWayLag<double> lag(stage.filling_s, stage.venting_s, 0);
+  model::TwoWayLag<double> lag(stage.filling_s, stage.venting_s, 0),
+      second(stage.second_s, stage.second_s, 0);
   delay.reset(u.front());
   const double first_kpa = first_finite(log.pressure_kpa);
   // Where in its band the valve stands, the first pressure tells.
   dead_band.reset(first_kpa + stage.band_kpa / 2);
   dead_band.settle(u.front());
   lag.reset(first_kpa);
-  const auto behind = [&](const Segment& s) { lag.step(s, [](const Segment&) {}); };
+  second.reset(first_kpa);
+  const auto behind = [&](const Segment& s) {
+    lag.step(s, [&](const Segment& lagged) { second.step(lagged, [](const Segment&) {}); });
+  };
   const auto walk = [&](double duration_s, double from, double to) {
     delay.step(Segment::straight(duration_s, from, to), {}, [&](const Segment& s) {
       if (stage.band_kpa > 0) {
@@ -195,11 +207,14 @@ std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& l
       }
     });
   };
+  const model::LineLoss<double> leak{stage.leak_share};
   const auto shown = [&](std::size_t i) {
-    double p = lag.output();
+    double p = second.output();
     if (stage.coupling > 0)
       p *= 1 - stage.coupling * std::max(0.0, 1 - log.supply_kpa[i] / stage.nominal_supply_kpa);
-    return stage.gauge_gain * std::min(p, stage.limit_kpa) + stage.gauge_zero_kpa;
+    p = std::min(p, stage.limit_kpa);
+    if (stage.leak_share > 0) p = leak.behind(p);
+    return stage.gauge_gain * p + stage.gauge_zero_kpa;
   };
   std::vector<double> p(u.size());
   p.front() = shown(0);
@@ -259,10 +274,12 @@ model::Model with_valve(model::Model actuator, const ValveStage& stage) {
   };
   add(model::block_type<model::TransportDelay>(), {stage.delay_s});
   if (stage.band_kpa > 0) add(model::block_type<model::ValveDeadband>(), {stage.band_kpa});
+  if (stage.second_s > 0) add(model::block_type<model::ValveLag>(), {stage.second_s});
   add(model::block_type<model::AsymmetricValveLag>(), {stage.filling_s, stage.venting_s});
   if (stage.coupling > 0)
     add(model::block_type<model::SupplySag>(), {stage.coupling, stage.nominal_supply_kpa});
   if (std::isfinite(stage.limit_kpa)) add(model::block_type<model::PressureSaturation>(), {stage.limit_kpa});
+  if (stage.leak_share > 0) add(model::block_type<model::Leak>(), {stage.leak_share});
   return actuator;
 }
 

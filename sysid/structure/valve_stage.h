@@ -21,8 +21,10 @@ enum class ValvePart : std::uint8_t {
   two_ways,  ///< of the lag: another time constant while it vents
   supply_sag,
   limit,
+  second_lag,  ///< behind the other, both ways alike
+  leak,
 };
-inline constexpr std::size_t valve_part_count = 6;
+inline constexpr std::size_t valve_part_count = 8;
 using ValveParts = std::bitset<valve_part_count>;
 
 [[nodiscard]] constexpr std::size_t index_of(ValvePart part) {
@@ -41,9 +43,11 @@ struct ValveStage {
   double band_kpa = 0;  ///< change of the command after a reversal that the valve ignores
   double filling_s = 0;
   double venting_s = 0;
+  double second_s = 0;            ///< of the second lag
   double coupling = 0;            ///< share of a relative loss of supply that reaches the pressure
   double nominal_supply_kpa = 0;  ///< the loss is counted from here; 0: the supply is not recorded
   double limit_kpa = std::numeric_limits<double>::infinity();
+  double leak_share = 0;  ///< of a small pressure, lost on the way (model/line_loss.h)
   double gauge_gain = 1;  ///< of the pressure's sensor
   double gauge_zero_kpa = 0;
   double rmse_kpa = 0;           ///< of the fitted samples
@@ -56,11 +60,14 @@ struct ValveStage {
   [[nodiscard]] bool is_far_off() const { return rmse_percent > 5; }
 };
 
+/// What is fitted of the pressure's sensor.
+enum class PressureSensorFit : std::uint8_t { nothing, zero, gain_and_zero };
+
 /// What is fitted, and to which samples.
 struct ValveFit {
   ValveParts parts = usual_valve_parts();
-  bool gauge = false;  ///< gain and zero of the pressure's sensor, too
-  bool held = false;   ///< the command keeps its value until the next sample
+  PressureSensorFit sensor = PressureSensorFit::nothing;
+  bool held = false;  ///< the command keeps its value until the next sample
   /// Empty: all samples.
   std::function<bool(std::size_t log, std::size_t sample)> is_fitted = {};
   std::vector<ValveStage> from = {};  ///< the search begins at each of them; empty: at three usual ones

@@ -125,6 +125,7 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
   const std::vector<std::size_t> approximate{block_type<AsymmetricValveLag>(),
                                              block_type<ChamberLag>(),
                                              block_type<SupplySag>(),
+                                             block_type<Leak>(),
                                              block_type<StressSoftening>(),
                                              block_type<PseudoElasticSoftening>(),
                                              block_type<CrescentHysteresis>(),

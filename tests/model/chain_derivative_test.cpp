@@ -131,6 +131,8 @@ TEST(ChainDerivatives, EveryBlockInTheTwin) {
 TEST(ChainDerivatives, NeutralValuesHaveThem) {
   const Model twin = preset("bench_twin");
   for (const std::string id : {"supply_sag",
+                               "leak",
+                               "pressure_scale",
                                "stress_softening",
                                "pseudo_elastic_softening",
                                "slow_creep",

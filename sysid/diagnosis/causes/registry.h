@@ -10,9 +10,11 @@
 #include "sysid/diagnosis/causes/contact.h"
 #include "sysid/diagnosis/causes/hysteresis_shape.h"
 #include "sysid/diagnosis/causes/inertia.h"
+#include "sysid/diagnosis/causes/leak.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/periodic_disturbance.h"
 #include "sysid/diagnosis/causes/pressure_saturation.h"
+#include "sysid/diagnosis/causes/pressure_scale.h"
 #include "sysid/diagnosis/causes/rate_dependent_hysteresis.h"
 #include "sysid/diagnosis/causes/sensor_drift.h"
 #include "sysid/diagnosis/causes/sensor_lag.h"
@@ -36,9 +38,11 @@ using All = List<ActuatorThreshold,        //
                  Contact,                  //
                  HysteresisShape,          //
                  Inertia,                  //
+                 Leak,                     //
                  Outliers,                 //
                  PeriodicDisturbance,      //
                  PressureSaturation,       //
+                 PressureScale,            //
                  RateDependentHysteresis,  //
                  SensorDrift,              //
                  SensorLag,                //

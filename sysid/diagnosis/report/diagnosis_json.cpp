@@ -63,6 +63,12 @@ Json budget_json(const Diagnosis& d, const Budget& budget) {
           {"noise", budget.noise}};
 }
 
+Json ids_of(const std::vector<Cause>& causes) {
+  Json ids = Json::array();
+  for (const Cause& cause : causes) ids.push_back(cause.id);
+  return ids;
+}
+
 Json candidates_json(const std::vector<CandidateScore>& candidates) {
   Json list = Json::array();
   for (const CandidateScore& c : candidates) {
@@ -186,15 +192,13 @@ Json json_of(const Diagnosis& d) {
   json["alternatives"] = Json::array();
   for (const NamedCause& named : d.causes) {
     json["causes"].push_back(cause_json(named, budget));
-    Json ids = Json::array();
-    for (const Cause& rival : named.rivals) ids.push_back(rival.id);
-    json["alternatives"].push_back(std::move(ids));
+    json["alternatives"].push_back(ids_of(named.rivals));
   }
   json["valve"] = d.in_valve ? valve_json(*d.in_valve) : Json(nullptr);
   if (d.in_valve) {
     for (const NamedCause& named : d.in_valve->named) {
       json["causes"].push_back(cause_json(named, budget));
-      json["alternatives"].push_back(Json::array());
+      json["alternatives"].push_back(ids_of(named.rivals));
     }
   }
   json["noise_mm"] = d.noise_mm;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/numbers.h"
+#include "sysid/diagnosis/verdict/naming.h"
 #include "sysid/identification/identify.h"
 
 namespace softgrip::sysid {
@@ -16,9 +17,11 @@ Table parts_table(const ValveFindings& in_valve) {
   table.numeric = {false, false, true, true, false, true};
   for (const NamedCause& named : in_valve.named) {
     const Spread& gain = named.heldout_gain_percent;
+    std::string title(named.cause.title);
+    for (const Cause& rival : named.rivals) title += " or " + rival_title(rival, in_valve.named);
     for (const CauseParameter& p : named.parameters) {
       table.rows.push_back(
-          {std::string(named.cause.title), p.name, significant(p.value, 4),
+          {title, p.name, significant(p.value, 4),
            p.has_interval ? text_of(p.ci95, p.value, " to ") : "not fitted", p.unit,
            fixed(gain.value, 0) + " (" + fixed(gain.lower, 0) + " to " + fixed(gain.upper, 0) + ")"});
     }

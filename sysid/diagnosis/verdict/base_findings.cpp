@@ -93,9 +93,8 @@ class Namer {
     named.cause = *find_cause(finding.id);
     named.block_type = finding.block(question_.drive);
     if (!finding.rival.empty()) named.rivals.push_back(*find_cause(finding.rival));
-    // Between the point where the pressure is measured and the reading it may be either.
-    if (finding.ingredient == Ingredient::lag && question_.drive == Drive::measured)
-      named.rivals.push_back(*find_cause(causes::SensorLag::id));
+    // Behind the command or the measured pressure, before or behind the finger.
+    if (finding.ingredient == Ingredient::lag) named.rivals.push_back(*find_cause(causes::SensorLag::id));
     // Behind a lag a second one looks like a delay.
     if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
       named.rivals.push_back(*find_cause(causes::ValveLag::id));

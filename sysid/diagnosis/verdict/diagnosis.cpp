@@ -84,7 +84,10 @@ class Diagnostician {
     clock.ended("recalibration");
     if (options_.progress) options_.progress("looks at the measured pressure");
     d_.in_valve = find_in_valve(logs_, {given_, options_.record.held, d_.noise_mm, options_.seed});
-    if (d_.in_valve) clock.ended("valve");
+    if (d_.in_valve) {
+      if (!d_.in_valve->advice.empty()) d_.warnings.push_back(d_.in_valve->advice);
+      clock.ended("valve");
+    }
     const Division division = divide(data_.records, block_length_s);
     Selection selection = search(std::move(*base), division);
     clock.ended("search");
@@ -284,11 +287,7 @@ class Diagnostician {
     d_.structure_left = structure_of(d_.extended.residual_mm, d_.noise_mm);
     d_.unexplained_percent =
         std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
-    model::Model model = d_.extended.point.model;
-    // For the daemon, which commands: what the valve does stands in front again.
-    if (options_.record.drive == Drive::measured && d_.in_valve)
-      model = with_valve(std::move(model), d_.in_valve->stage);
-    d_.extended_model = named_model(std::move(model), "extended");
+    d_.extended_model = named_model(d_.extended.point.model, "extended");
     d_.causes = std::move(base_->named);
     d_.partial = std::move(base_->possible);
     const bool whole = !sysid::leaves_too_much(d_.structure_left, selection.base_structure, d_.noise_mm);
@@ -345,6 +344,9 @@ class Diagnostician {
 
   /// One name for two models would let nobody tell which a file or a figure shows.
   [[nodiscard]] model::Model named_model(model::Model model, const std::string& how) const {
+    // For the daemon, which commands: what the valve does stands in front again.
+    if (options_.record.drive == Drive::measured && d_.in_valve)
+      model = with_valve(std::move(model), d_.in_valve->stage);
     model.name = given_.name + '_' + how.substr(0, how.find(' '));
     std::string files;
     for (const Log& log : logs_) files += (files.empty() ? "" : ", ") + log.name;
@@ -441,8 +443,10 @@ const char* name_of(Verdict verdict) {
 
 Verdict whole_verdict(const Diagnosis& d) {
   if (!d.in_valve || d.in_valve->named.empty()) return d.verdict;
-  if (d.verdict == Verdict::adequate || d.verdict == Verdict::recalibrate) return Verdict::cause_found;
-  return d.verdict == Verdict::unexplained ? Verdict::partly_explained : d.verdict;
+  if (d.verdict == Verdict::unexplained) return Verdict::partly_explained;
+  if (d.verdict == Verdict::partly_explained) return d.verdict;
+  return d.verdict == Verdict::ambiguous || any_rivals(d.in_valve->named) ? Verdict::ambiguous
+                                                                          : Verdict::cause_found;
 }
 
 void examine(Diagnosis& d, const DiagnosisOptions& options) {

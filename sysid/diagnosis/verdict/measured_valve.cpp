@@ -22,8 +22,9 @@ MeasuredValve::MeasuredValve(const std::vector<Log>& logs, bool held) : logs_(lo
   }
 }
 
-ValveStage MeasuredValve::fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance) const {
-  ValveFit fit = fit_of(parts, from);
+ValveStage MeasuredValve::fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance,
+                              PressureSensorFit sensor) const {
+  ValveFit fit = fit_of(parts, from, sensor);
   fit.tolerance = tolerance;
   return fit_valve_stage(logs_, fit);
 }
@@ -34,11 +35,12 @@ ValveStage MeasuredValve::better_fit(ValveParts parts, const ValveStage& one, co
   return again.rmse_kpa < one.rmse_kpa ? again : one;
 }
 
-BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& whole) const {
+BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& whole,
+                                           PressureSensorFit sensor) const {
   BlockLosses losses(blocks_end_.back(), 0);
   std::vector<double> counts(losses.size(), 0);
   for (std::size_t fold = 0; fold < 2; ++fold) {
-    ValveFit fit = fit_of(parts, {whole});
+    ValveFit fit = fit_of(parts, {whole}, sensor);
     fit.is_fitted = [&](std::size_t log, std::size_t sample) { return block(log, sample) % 2 != fold; };
     const ValveStage stage = fit_valve_stage(logs_, fit);
     for (std::size_t k = 0; k < logs_.size(); ++k) {
@@ -83,10 +85,11 @@ Eigen::VectorXd MeasuredValve::standard_errors(const ValveStage& at,
   return white.cwiseMax(sandwich).cwiseSqrt();
 }
 
-ValveFit MeasuredValve::fit_of(ValveParts parts, const std::vector<ValveStage>& from) const {
+ValveFit MeasuredValve::fit_of(ValveParts parts, const std::vector<ValveStage>& from,
+                               PressureSensorFit sensor) const {
   ValveFit fit;
   fit.parts = parts;
-  fit.gauge = true;
+  fit.sensor = sensor;
   fit.held = held_;
   fit.from = from;
   fit.tolerance = 1e-6;

@@ -20,15 +20,17 @@ class MeasuredValve {
   MeasuredValve(const std::vector<Log>& logs, bool held);
 
   /// A fit of some parts, and the gauge, to everything; `tolerance`: of one that is told to the last digits.
-  [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from,
-                               double tolerance = 1e-6) const;
+  [[nodiscard]] ValveStage fit(ValveParts parts, const std::vector<ValveStage>& from, double tolerance = 1e-6,
+                               PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
   /// The better of `one`, a fit of `parts`, and of one that begins at `other`, which has some of them; the
   /// latter is tried where `other` leaves not much more than `one`.
   [[nodiscard]] ValveStage better_fit(ValveParts parts, const ValveStage& one, const ValveStage& other) const;
 
   /// Mean square of every block while it was not fitted, blocks taking turns [kPa^2].
-  [[nodiscard]] BlockLosses held_out_losses(ValveParts parts, const ValveStage& whole) const;
+  [[nodiscard]] BlockLosses held_out_losses(
+      ValveParts parts, const ValveStage& whole,
+      PressureSensorFit sensor = PressureSensorFit::gain_and_zero) const;
 
   /// Standard errors of numbers that were fitted together, in their units and order. The larger of two: of
   /// white noise; and by the sandwich whose filling is the sum over whole blocks, so that what resembles
@@ -38,7 +40,8 @@ class MeasuredValve {
                                                 const std::vector<double ValveStage::*>& numbers) const;
 
  private:
-  [[nodiscard]] ValveFit fit_of(ValveParts parts, const std::vector<ValveStage>& from) const;
+  [[nodiscard]] ValveFit fit_of(ValveParts parts, const std::vector<ValveStage>& from,
+                                PressureSensorFit sensor) const;
   [[nodiscard]] std::size_t block(std::size_t log, std::size_t sample) const;
   [[nodiscard]] Eigen::VectorXd errors(const ValveStage& stage) const;
   [[nodiscard]] Eigen::VectorXd derivative(const ValveStage& at, double ValveStage::*number) const;

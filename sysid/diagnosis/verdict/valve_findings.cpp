@@ -7,19 +7,24 @@
 #include <string>
 #include <utility>
 
+#include "base/numbers.h"
 #include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/leak.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/supply_sag.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_deadband.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
+#include "sysid/diagnosis/causes/leak.h"
 #include "sysid/diagnosis/causes/pressure_saturation.h"
+#include "sysid/diagnosis/causes/pressure_scale.h"
 #include "sysid/diagnosis/causes/supply_sag.h"
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/holdout.h"
+#include "sysid/diagnosis/verdict/lost_pressure.h"
 #include "sysid/diagnosis/verdict/measured_valve.h"
 #include "sysid/logs/input_smoothing.h"
 
@@ -77,6 +82,13 @@ std::vector<PartName> part_names(bool two_ways) {
            causes::PressureSaturation::id,
            [] { return model::block_type<model::PressureSaturation>(); },
            {{"limit_kpa", "kPa", &ValveStage::limit_kpa}}}};
+}
+
+PartName leak_name() {
+  return {ValvePart::leak,
+          causes::Leak::id,
+          [] { return model::block_type<model::Leak>(); },
+          {{"share", "", &ValveStage::leak_share}}};
 }
 
 std::vector<double> strided(const std::vector<double>& values, std::size_t stride) {
@@ -141,7 +153,8 @@ class Search {
       : logs_(logs), question_(question), valve_(logs, question.held) {
     bool supplied = true;
     for (const Log& log : logs) supplied = supplied && !log.supply_kpa.empty();
-    ValveParts all = ValveParts().set();
+    ValveParts all =
+        ValveParts().set().reset(index_of(ValvePart::leak)).reset(index_of(ValvePart::second_lag));
     if (!supplied) all.reset(index_of(ValvePart::supply_sag));
     ValveStage narrow = valve_.fit(usual_valve_parts(), {}), wide = narrow;
     const double pressures_kpa = range_of(logs, &Log::pressure_kpa);
@@ -171,13 +184,7 @@ class Search {
   [[nodiscard]] PartEvidence evidence(ValvePart part) const {
     const auto& without = ablation_[index_of(part)];
     if (!without) return {};
-    const BlockLosses &before = without->losses_kpa2, &after = whole_.losses_kpa2;
-    PartEvidence evidence{mean_difference(before, after, question_.seed),
-                          gain_percent(before, after, question_.seed),
-                          winning_share(after, before, question_.seed), 0};
-    const double left = std::pow(rmse_mm(before), 2);
-    evidence.share = left > 0 ? evidence.gain_kpa2.value / left : 0;
-    return evidence;
+    return evidence(without->losses_kpa2, whole_.losses_kpa2);
   }
 
   [[nodiscard]] ValveFindings findings() const {
@@ -199,12 +206,55 @@ class Search {
       NamedCause named = named_as(name, of);
       if (position_of(question_.given, named.cause)) continue;
       named.parameters = parameters_of(name, found.stage, kept);
+      if (name.part == ValvePart::delay && may_be_second_lag())
+        named.rivals.push_back(*find_cause(causes::ValveLag::id));
       found.named.push_back(std::move(named));
     }
+    add_lost_pressure(found, kept);
     return found;
   }
 
  private:
+  [[nodiscard]] PartEvidence evidence(const BlockLosses& before, const BlockLosses& after) const {
+    PartEvidence evidence{mean_difference(before, after, question_.seed),
+                          gain_percent(before, after, question_.seed),
+                          winning_share(after, before, question_.seed), 0};
+    const double left = std::pow(rmse_mm(before), 2);
+    evidence.share = left > 0 ? evidence.gain_kpa2.value / left : 0;
+    return evidence;
+  }
+
+  /// Whether two lags in a row leave next to as little as a dead time and one.
+  [[nodiscard]] bool may_be_second_lag() const {
+    const ValveParts parts = without(whole_.parts, ValvePart::delay).set(index_of(ValvePart::second_lag));
+    ValveStage start = whole_.stage;
+    start.second_s = start.delay_s;
+    start.delay_s = 0;
+    const ValveStage lagging = valve_.fit(parts, {start});
+    return !evidence(valve_.held_out_losses(parts, lagging), whole_.losses_kpa2).is_clear(least_part);
+  }
+
+  void add_lost_pressure(ValveFindings& found, ValveParts kept) const {
+    // What a supply that sags or a ceiling takes is missing too, until it is fitted.
+    if (!(whole_.stage.gauge_gain < 1 - scales_agree_within)) return;
+    const auto lost = find_lost_pressure(logs_, valve_, kept, found.stage);
+    if (!lost) return;
+    const PartName name = leak_name();
+    const PartEvidence of = evidence(lost->without_kpa2, lost->losses_kpa2);
+    NamedCause named = named_as(name, of);
+    if (!of.is_clear(least_part) || !moves_the_finger(of) || position_of(question_.given, named.cause))
+      return;
+    found.stage = lost->stage;
+    found.heldout_rmse_kpa = rmse_mm(lost->losses_kpa2);
+    named.parameters = parameters_of(name, found.stage, lost->parts);
+    named.rivals = {*find_cause(causes::PressureScale::id)};
+    found.named.push_back(std::move(named));
+    found.advice = "at " + significant(lost->highest_kpa, 3) + " kPa " + significant(lost->missing_kpa, 2) +
+                   " kPa of the command are missing, whether it rises or falls: hold full pressure and close "
+                   "the line behind the valve; if the finger's pressure falls, it leaks, and if it stays, "
+                   "the valve's or the pressure sensor's scale is not what was entered";
+  }
+
   [[nodiscard]] bool moves_the_finger(const PartEvidence& of) const {
     const double pressures_kpa = range_of(logs_, &Log::pressure_kpa);
     if (!(pressures_kpa > 0)) return false;
@@ -222,7 +272,7 @@ class Search {
         numbers.push_back(number);
     };
     const auto has = [&](ValvePart part) { return kept.test(index_of(part)); };
-    beside(&ValveStage::gauge_gain, true);
+    beside(&ValveStage::gauge_gain, !has(ValvePart::leak));
     beside(&ValveStage::gauge_zero_kpa, true);
     beside(&ValveStage::delay_s, has(ValvePart::delay));
     beside(&ValveStage::band_kpa, has(ValvePart::dead_band));

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "model/model.h"
@@ -14,10 +15,12 @@
 namespace softgrip::sysid {
 
 struct ValveFindings {
-  /// At full inclusion and without rivals; none where the stage is far off, and none that the given model
-  /// has. Their gains are of the measured pressure (gain_kpa2, heldout_gain_percent), and gain_mm2 is 0.
+  /// At full inclusion and, but for a leak, which a scale may pass for, without rivals; none where the stage
+  /// is far off, and none that the given model has. Their gains are of the measured pressure (gain_kpa2,
+  /// heldout_gain_percent), and gain_mm2 is 0.
   std::vector<NamedCause> named;
-  ValveStage stage;  ///< dead time, lag and what is named
+  std::string advice;  ///< what tells a leak that is named from a scale; empty: none is
+  ValveStage stage;    ///< dead time, lag and what is named
   double heldout_rmse_kpa = 0;
 };
 

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/feedforward/invertibility.h"
 #include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/leak.h"
+#include "model/blocks/pressure_scale.h"
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
@@ -107,6 +110,20 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 2e-3);
   EXPECT_EQ(run.out_of_reach, 0);
+}
+
+// What is lost on the way is asked for on top.
+TEST(FullModelFeedforward, TracksThroughALineThatLeaks) {
+  const model::Model twin = model_named("bench_twin");
+  const Reference sine = sine_reference(0.1);
+  for (const model::Model& model :
+       {model::with_block(twin, model::block_of<model::Leak>({{"share", 0.1}})),
+        model::with_block(twin, model::block_of<model::PressureScale>({{"scale", 0.92}}))}) {
+    ASSERT_TRUE(check_feedforward(model, {FeedforwardKind::full_model, 0}, limits, tick_s));
+    const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, sine);
+    EXPECT_LT(run.worst_mm, 3e-3);
+    EXPECT_EQ(run.out_of_reach, 0);
+  }
 }
 
 TEST(FullModelFeedforward, AReferenceBeyondTheRangeIsFollowedToItsEnd) {

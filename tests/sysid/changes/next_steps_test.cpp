@@ -15,7 +15,8 @@ TEST(NextSteps, EveryCauseHasTwoThingsToDoAndPlainWords) {
   std::vector<std::string_view> ids;
   for (const CauseOfTheAir& cause : causes_of_the_air) ids.push_back(cause.id);
   for (const Cause& cause : all_causes()) {
-    if (cause.id != "hysteresis_shape") ids.push_back(cause.id);  // of a base, not of a change
+    // Of a base, and what a leak may be taken for: no changes.
+    if (cause.id != "hysteresis_shape" && cause.id != "pressure_scale") ids.push_back(cause.id);
   }
   for (const std::string_view id : ids) {
     const auto steps = next_steps(id);
@@ -31,7 +32,7 @@ TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
   std::size_t numbers = 0;
   for (const Cause& cause : all_causes()) {
     const SizedBy size = sized_by(cause.id);
-    if (size.of != SizedBy::Of::number) continue;
+    if (size.of != SizedBy::Of::number || cause.id == leak.id) continue;  // a leak's is of its own search
     ++numbers;
     EXPECT_FALSE(size.unit.empty()) << cause.id;
     const bool known = std::any_of(cause.forms.begin(), cause.forms.end(), [&](const CauseForm& form) {

@@ -71,5 +71,19 @@ TEST(DiagnosisJson, ACauseThatTheMeasuredPressureShowsStandsAmongTheCauses) {
   EXPECT_EQ(json_of(d)["verdict"], "partly_explained");
 }
 
+TEST(DiagnosisJson, ALeakThatMayBeAScaleIsAmbiguousWithTheScaleForItsAlternative) {
+  Diagnosis d;
+  d.verdict = Verdict::recalibrate;
+  d.in_valve = dead_band_found();
+  d.in_valve->named.front().rivals = {*find_cause("pressure_scale")};
+  const auto json = json_of(d);
+  EXPECT_EQ(json["verdict"], "ambiguous");
+  EXPECT_EQ(json["alternatives"][0], nlohmann::json::array({"pressure_scale"}));
+  EXPECT_NE(verdict_sentence(d).find("valve dead band or pressure scale"), std::string::npos);
+  Page page("title", "sentence", Tone::bad);
+  add_valve_section(page, *d.in_valve);
+  EXPECT_NE(page.to_html().find("Valve dead band or pressure scale"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::report_valve_test

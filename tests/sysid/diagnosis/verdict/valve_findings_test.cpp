@@ -6,11 +6,15 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "base/numbers.h"
 #include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_deadband.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
@@ -30,7 +34,27 @@ struct OwnValve {
   double second_s = 0;  ///< of another lag behind the first
   double limit_kpa = 1e9;
   double coupling = 0;
+  double leak = 0;   ///< its conductance over the line's
+  double scale = 1;  ///< of the pressure's sensor
 };
+
+/// ISO 6358-1 with a critical ratio of 0.3, absolute pressures, per conductance.
+double flow(double from_kpa, double to_kpa) {
+  const double ratio = std::max(to_kpa / from_kpa, 0.3);
+  return from_kpa * std::sqrt(1 - std::pow((ratio - 0.3) / 0.7, 2));
+}
+
+/// Behind a line from which as much leaks out as flows in, by bisection.
+double behind_leak(double kpa, double leak) {
+  if (!(leak > 0) || !(kpa > 0)) return kpa;
+  constexpr double open_kpa = 101.325;
+  double low = 0, high = kpa;
+  for (int i = 0; i < 40; ++i) {
+    const double p = 0.5 * (low + high);
+    (flow(kpa + open_kpa, p + open_kpa) > leak * flow(p + open_kpa, open_kpa) ? low : high) = p;
+  }
+  return low;
+}
 
 double command_kpa(double t, int log) {
   const double sine =
@@ -57,8 +81,9 @@ Log own_log(const OwnValve& valve, int number, std::uint32_t seed) {
     log.pressure_command_kpa.push_back(command_kpa(t, number));
     log.supply_kpa.push_back(supply_kpa(t));
     const double sag = 1 - valve.coupling * (1 - supply_kpa(t) / 180);
-    const double p = std::min((valve.second_s > 0 ? second : first) * sag, valve.limit_kpa);
-    log.pressure_kpa.push_back(p + noise_kpa * normal(random));
+    const double p =
+        behind_leak(std::min((valve.second_s > 0 ? second : first) * sag, valve.limit_kpa), valve.leak);
+    log.pressure_kpa.push_back(valve.scale * p + noise_kpa * normal(random));
     log.displacement_mm.push_back(0.5 * p + noise_mm * normal(random));
     for (int k = 0; k < parts; ++k) {
       // Between samples the command goes straight, as a log says it does.
@@ -136,6 +161,55 @@ TEST(FindInValve, NamesADeadBandASupplyThatSagsAndALimit) {
   expect_holds(found_in(own_logs(stops, 31), without_a_valve()), "pressure_saturation", "limit_kpa", 52);
 }
 
+TEST(FindInValve, ADeadTimeThatASecondLagExplainsAsWellHasItForItsAlternative) {
+  const auto rivals_of_delay = [](const OwnValve& valve) -> std::optional<std::vector<std::string>> {
+    for (const NamedCause& named : found_in(own_logs(valve, 111), without_a_valve()).named) {
+      if (named.cause.id != "transport_delay") continue;
+      std::vector<std::string> ids;
+      for (const Cause& rival : named.rivals) ids.emplace_back(rival.id);
+      return ids;
+    }
+    return std::nullopt;
+  };
+  EXPECT_EQ(rivals_of_delay({.delay_s = 0.005, .second_s = 0.1}), std::vector<std::string>{"valve_lag"});
+  EXPECT_EQ(rivals_of_delay({}), std::vector<std::string>{});
+}
+
+bool names(const ValveFindings& found, std::string_view cause) {
+  return std::any_of(found.named.begin(), found.named.end(),
+                     [&](const NamedCause& named) { return named.cause.id == cause; });
+}
+
+TEST(FindInValve, NamesALeakAndThatAScaleMayPassForOne) {
+  const ValveFindings found = found_in(own_logs({.leak = 0.2}, 91), without_a_valve());
+  // 0.2 squared, within what another critical ratio makes of it.
+  const CauseParameter* const share = find(found, "leak", "share");
+  ASSERT_NE(share, nullptr);
+  EXPECT_NEAR(share->value, 0.04, 0.008);
+  EXPECT_NEAR(found.heldout_rmse_kpa, noise_kpa, 0.5 * noise_kpa);
+  for (const NamedCause& named : found.named) {
+    EXPECT_EQ(named.rivals.size(), named.cause.id == "leak" ? 1U : 0U) << named.cause.id;
+    if (named.cause.id == "leak") {
+      EXPECT_EQ(named.rivals.front().id, "pressure_scale");
+      EXPECT_GT(named.gain_kpa2->lower, 0);
+    }
+  }
+  const double missing_kpa = 55 - behind_leak(55, 0.2);
+  EXPECT_NE(found.advice.find(significant(missing_kpa, 2) + " kPa of the command"), std::string::npos)
+      << found.advice << " " << missing_kpa;
+  EXPECT_TRUE(names(found_in(own_logs({.scale = 0.96}, 94), without_a_valve()), "leak"));
+}
+
+TEST(FindInValve, NamesNoLeakWhereScalesMayDifferSagsOrCeilingsTakeIt) {
+  for (const OwnValve& valve :
+       {OwnValve{.scale = 0.99}, OwnValve{.scale = 1.04}, OwnValve{.limit_kpa = 40},
+        OwnValve{.coupling = 0.5}, OwnValve{.band_kpa = 2}, OwnValve{.second_s = 0.3}}) {
+    const ValveFindings found = found_in(own_logs(valve, 101), without_a_valve());
+    EXPECT_FALSE(names(found, "leak")) << valve.scale << " " << valve.limit_kpa << " " << valve.coupling;
+    EXPECT_TRUE(found.advice.empty()) << found.advice;
+  }
+}
+
 TEST(FindInValve, TellsFillingFromVentingWhereTheyDiffer) {
   OwnValve valve;
   valve.filling_s = 0.05;
@@ -150,9 +224,7 @@ TEST(FindInValve, AValveOfSecondOrderHasNoDeadBandNoLimitAndNoSag) {
   valve.second_s = 0.05;
   const ValveFindings found = found_in(own_logs(valve, 51), without_a_valve());
   for (const char* id : {"valve_deadband", "pressure_saturation", "supply_sag"}) {
-    EXPECT_TRUE(std::none_of(found.named.begin(), found.named.end(), [&](const NamedCause& named) {
-      return named.cause.id == id;
-    })) << id;
+    EXPECT_FALSE(names(found, id)) << id;
   }
 }
 
@@ -222,6 +294,11 @@ TEST(Diagnose, AFingerThatIsExplainedFromTheMeasuredPressureStillHasAValveThatIg
   ASSERT_TRUE(diagnosis->in_valve);
   EXPECT_NE(find(*diagnosis->in_valve, "valve_deadband", "band_kpa"), nullptr);
   EXPECT_NE(verdict_sentence(*diagnosis).find("valve dead band"), std::string::npos);
+  // The daemon commands: its model begins there, whichever pressure drove the diagnosis.
+  for (const model::Model& model : {diagnosis->recalibrated_model, diagnosis->extended_model}) {
+    EXPECT_TRUE(model::position_of<model::TransportDelay>(model)) << model.name;
+    EXPECT_TRUE(model::position_of<model::ValveDeadband>(model)) << model.name;
+  }
 }
 
 }  // namespace

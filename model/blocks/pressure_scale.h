@@ -1,0 +1,41 @@
+#pragma once
+// The valve delivers another share of what is asked.
+
+#include "model/block.h"
+
+namespace softgrip::model {
+
+/// p = scale u.
+template <class T>
+class PressureScale {
+ public:
+  static constexpr BlockInfo info =
+      block_info("pressure_scale", Station::valve, Kind::pressure, Inverse::implicit, "Pressure scale",
+                 "The pressure is a fixed share of what is asked.", "p = scale u");
+  static constexpr std::array parameters{parameter("scale", "", "pressure for each kPa that is asked",
+                                                   Typical{0.97}, Within{0.05, 20.0}, Scale{0.02},
+                                                   Neutral{1.0})};
+
+  PressureScale(std::span<const T> values, const Preparation&) : scale_(values[0]) {}
+
+  void reset(const T& input) { output_ = scale_ * input; }
+  [[nodiscard]] T output() const { return output_; }
+
+  template <class Next>
+  void step(const Segment<T>& in, const Surroundings&, Next&& next) {
+    const T begin = output_;
+    output_ = scale_ * in.end;
+    next(Segment<T>{in.duration_s, begin, output_, scale_ * in.mean});
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+    return end_kpa * scale_;
+  }
+
+ private:
+  T scale_;
+  T output_{0.0};
+};
+
+}  // namespace softgrip::model
