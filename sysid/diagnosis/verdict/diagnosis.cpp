@@ -9,6 +9,7 @@
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
 #include "sysid/diagnosis/verdict/another_base.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
