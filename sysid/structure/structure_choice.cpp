@@ -129,16 +129,6 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   return list;
 }
 
-constexpr std::array ingredients{Ingredient::hysteresis,
-                                 Ingredient::play_operators,
-                                 Ingredient::creep,
-                                 Ingredient::slow_creep,
-                                 Ingredient::pressure_dependent_creep,
-                                 Ingredient::delay,
-                                 Ingredient::lag,
-                                 Ingredient::venting_lag,
-                                 Ingredient::characteristic};
-
 /// The structure without the ingredient; as it is where it does not have it.
 BaseStructure without(BaseStructure s, Ingredient ingredient) {
   switch (ingredient) {
@@ -163,6 +153,9 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
     case Ingredient::lag:
       s.lag = false;
       break;
+    case Ingredient::latency:
+      s.delay = s.lag = false;
+      break;
     case Ingredient::venting_lag:
       s.two_way = false;
       break;
@@ -171,6 +164,12 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
       break;
   }
   return s;
+}
+
+bool has(const BaseStructure& s, Ingredient ingredient) {
+  // Of one of the two alone the other says all.
+  if (ingredient == Ingredient::latency) return s.delay && s.lag;
+  return without(s, ingredient) != s;
 }
 
 std::size_t best_of(const std::vector<StructureTrial>& trials) {
@@ -196,10 +195,17 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
 }  // namespace
 
 std::string_view name_of(Ingredient ingredient) {
-  constexpr std::array<std::string_view, 9> names{
-      "hysteresis", "play operators (Bouc-Wen instead)",      "creep",
-      "slow creep", "dependence of creep on pressure",        "delay",
-      "lag",        "a time constant of its own for venting", "bent characteristic"};
+  constexpr std::array<std::string_view, all_ingredients.size()> names{
+      "hysteresis",
+      "play operators (Bouc-Wen instead)",
+      "creep",
+      "slow creep",
+      "dependence of creep on pressure",
+      "delay",
+      "lag",
+      "delay and lag",
+      "a time constant of its own for venting",
+      "bent characteristic"};
   return names[static_cast<std::size_t>(ingredient)];
 }
 
@@ -238,16 +244,16 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
 }
 
 std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, const StructureChoice& choice,
-                                           const StructureChoiceOptions& options) {
+                                           const StructureChoiceOptions& options,
+                                           std::span<const Ingredient> ingredients) {
   std::vector<WithoutIngredient> ablation;
   const StructureTrial& chosen = choice.trials[choice.chosen];
   if (chosen.structure.published) return ablation;
   if (options.progress) options.progress("taking one ingredient away after the other");
   for (const Ingredient ingredient : ingredients) {
-    const BaseStructure rest = without(chosen.structure, ingredient);
-    if (rest == chosen.structure) continue;
+    if (!has(chosen.structure, ingredient)) continue;
     ablation.push_back({ingredient, {}});
-    ablation.back().trial.structure = rest;
+    ablation.back().trial.structure = without(chosen.structure, ingredient);
   }
   const Judge judge(records, options);
   const Judge among_more_rungs(records, options, RungsBetween::yes);

@@ -1,8 +1,10 @@
 #pragma once
 // Which structure a finger has: a few fixed ones, judged on readings that they were not fitted to.
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,9 +40,20 @@ enum class Ingredient {
   pressure_dependent_creep,
   delay,
   lag,
+  latency,      ///< delay and lag: each makes up for most of the other
   venting_lag,  ///< one time constant for both directions
   characteristic
 };
+inline constexpr std::array all_ingredients{Ingredient::hysteresis,
+                                            Ingredient::play_operators,
+                                            Ingredient::creep,
+                                            Ingredient::slow_creep,
+                                            Ingredient::pressure_dependent_creep,
+                                            Ingredient::delay,
+                                            Ingredient::lag,
+                                            Ingredient::latency,
+                                            Ingredient::venting_lag,
+                                            Ingredient::characteristic};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
 
 /// One structure, fitted to everything and, fold by fold, without the blocks on which it is then judged.
@@ -75,11 +88,12 @@ struct WithoutIngredient {
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 
-/// The choice without each of its ingredients: what each brings. None of the published element.
+/// The choice without each of those of the ingredients that it has: what each brings. None of the published
+/// element.
 /// @param records, options  those of the choice.
-[[nodiscard]] std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records,
-                                                         const StructureChoice& choice,
-                                                         const StructureChoiceOptions& options);
+[[nodiscard]] std::vector<WithoutIngredient> ablation_of(
+    const std::vector<Record>& records, const StructureChoice& choice, const StructureChoiceOptions& options,
+    std::span<const Ingredient> ingredients = all_ingredients);
 
 /// The same structure with the same ridge fitted to other readings of the same records.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,

@@ -43,6 +43,10 @@ constexpr double least_share = 0.01;
 /// Where a cause was missing a choice of the ridge and of the simplest structure says little.
 constexpr double most_ridge = 1e-5;
 
+/// Of the published element's search: its recalibration has searched, and it is only to be seen whether it is
+/// far behind.
+constexpr std::size_t published_starts = 6;
+
 /// What a finding is called, and with which blocks it stands in the model.
 struct FindingName {
   Ingredient ingredient;
@@ -66,6 +70,19 @@ constexpr std::array names{
                 }},
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
                 [](Drive) { return model::block_type<model::Characteristic>(); }}};
+
+/// What is taken away to see what it brings; the delay and the lag together as well.
+std::vector<Ingredient> taken_away() {
+  std::vector<Ingredient> list{Ingredient::latency};
+  for (const FindingName& name : names) list.push_back(name.ingredient);
+  return list;
+}
+
+const StructureTrial* trial_without(const std::vector<WithoutIngredient>& ablation, Ingredient ingredient) {
+  const auto found = std::find_if(ablation.begin(), ablation.end(),
+                                  [&](const auto& without) { return without.ingredient == ingredient; });
+  return found == ablation.end() ? nullptr : &found->trial;
+}
 
 /// Whether the richer base foretells the second halves of the logs from the first clearly better than the
 /// given one; a given one that moves the wrong way first is none of a finger, however well it follows one.
@@ -118,12 +135,43 @@ bool is_among(const std::vector<NamedCause>& causes, const NamedCause& one) {
                      [&](const NamedCause& other) { return other.cause == one.cause; });
 }
 
+/// A delay makes up for most of a lag, and a lag for most of a delay, so that neither may be missed although
+/// the finger is late: the one that is missed more stands for both. Nothing where one has its name already.
+std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Namer& namer,
+                                     const BaseFindings& found) {
+  const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);
+  if (neither == nullptr) return std::nullopt;
+  const FindingName* missed_more = nullptr;
+  double missed_mm2 = 0;
+  std::vector<Cause> late{*find_cause(causes::SensorLag::id)};
+  for (const FindingName& finding : names) {
+    if (finding.ingredient != Ingredient::delay && finding.ingredient != Ingredient::lag) continue;
+    const NamedCause one = namer.name(finding, *trial_without(ablation, finding.ingredient));
+    if (is_among(found.named, one)) return std::nullopt;
+    late.push_back(one.cause);
+    if (missed_more == nullptr || one.gain_mm2.value > missed_mm2) {
+      missed_more = &finding;
+      missed_mm2 = one.gain_mm2.value;
+    }
+  }
+  NamedCause latency = namer.name(*missed_more, *neither);
+  std::erase(late, latency.cause);
+  latency.rivals = std::move(late);
+  return latency;
+}
+
+double slowest_branch_s(const model::Model& model) {
+  double slowest_s = 0;
+  for (const double tau_s : branch_time_constants_s(model)) slowest_s = std::max(slowest_s, tau_s);
+  return slowest_s;
+}
+
 /// From where on creep is slow for a base that has branches of its own. What was missing may have made them
-/// look faster than they are.
+/// look faster than they are, and a recalibration without a slower branch gives them its time constant.
 double slow_from_s(const SearchData& data, const model::Model& recalibrated) {
-  double longest_s = 0, slowest_s = 0;
+  double longest_s = 0;
   for (const Record& record : data.records) longest_s = std::max(longest_s, record.length_s());
-  for (const double tau_s : branch_time_constants_s(recalibrated)) slowest_s = std::max(slowest_s, tau_s);
+  const double slowest_s = std::min(slowest_branch_s(data.given.model), slowest_branch_s(recalibrated));
   return std::max(longest_s / 10, std::min(2 * slowest_s, longest_s));
 }
 
@@ -140,7 +188,7 @@ std::optional<BetterStructure> better_structure(const std::vector<Record>& recor
   // The published element with delay and lag is the given one with two causes: they are searched as causes.
   if (chosen.structure.published || !foretells_better(records, chosen, given, options.drive))
     return std::nullopt;
-  return BetterStructure{chosen, ablation_of(records, choice, options)};
+  return BetterStructure{chosen, ablation_of(records, choice, options, taken_away())};
 }
 
 /// What a cause is confounded with may have been the base's answer to it.
@@ -195,6 +243,7 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   options.threads = question.threads;
   options.progress = question.progress;
   options.published_yields_below = worth_having;
+  options.starts = published_starts;
   // An effect that no structure has may spoil all of them; a drift that an unfit base hides is among none.
   using Readings = std::vector<Record>;
   std::vector<std::function<Readings(const Readings&)>> views{std::identity{}};
@@ -223,13 +272,21 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
       std::max(std::pow(rmse_mm(plain.base_losses), 2) - question.noise_mm * question.noise_mm, 1e-300);
   const Namer namer(data, chosen, found.fit.point, question);
   for (const FindingName& finding : names) {
-    const auto without = std::find_if(better->ablation.begin(), better->ablation.end(),
-                                      [&](const auto& w) { return w.ingredient == finding.ingredient; });
-    if (without == better->ablation.end()) continue;
-    NamedCause named = namer.name(finding, without->trial);
+    const StructureTrial* const without = trial_without(better->ablation, finding.ingredient);
+    if (without == nullptr) continue;
+    NamedCause named = namer.name(finding, *without);
     if (named.gain_mm2.value < least_share * excess_mm2) continue;
     if (is_among(found.named, named) || is_among(found.possible, named)) continue;
     (named.inclusion >= full_inclusion ? found.named : found.possible).push_back(std::move(named));
+  }
+  auto latency = latency_of(better->ablation, namer, found);
+  if (latency && latency->gain_mm2.value >= least_share * excess_mm2 &&
+      latency->inclusion >= full_inclusion) {
+    std::erase_if(found.possible, [&](const NamedCause& one) {
+      return one.cause == latency->cause ||
+             std::find(latency->rivals.begin(), latency->rivals.end(), one.cause) != latency->rivals.end();
+    });
+    found.named.push_back(std::move(*latency));
   }
   return found;
 }

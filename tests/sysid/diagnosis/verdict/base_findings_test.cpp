@@ -8,7 +8,11 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_saturation.h"
+#include "model/blocks/valve_lag.h"
 #include "model/named.h"
+#include "sysid/diagnosis/causes/sensor_lag.h"
+#include "sysid/diagnosis/causes/transport_delay.h"
+#include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/fit.h"
 #include "tests/sysid/simulated.h"
 
@@ -68,6 +72,28 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_GT(shape->gain_mm2.lower, 0);
   EXPECT_LT(rmse_mm(found.base->losses), 0.5 * rmse_mm(found.plain.base_losses));
   EXPECT_TRUE(outdoes(*found.base, found.plain));
+}
+
+/// At slow commands a delay does what a lag does: without either the other serves as well, and without both
+/// the finger is late.
+TEST(BaseFindings, ALatencyIsNamedThoughNobodyCanSayOfWhichKind) {
+  const model::Model late =
+      model::with_block(plays(), model::block_of<model::ValveLag>({{"time_constant_s", 0.08}}));
+  const Found found = found_in(late);
+  ASSERT_TRUE(found.base);
+  const auto latency =
+      std::find_if(found.base->named.begin(), found.base->named.end(), [](const NamedCause& n) {
+        return n.cause.id == causes::ValveLag::id || n.cause.id == causes::TransportDelay::id;
+      });
+  ASSERT_NE(latency, found.base->named.end()) << found.base->description;
+  const std::string_view other =
+      latency->cause.id == causes::ValveLag::id ? causes::TransportDelay::id : causes::ValveLag::id;
+  for (const std::string_view id : {other, causes::SensorLag::id}) {
+    EXPECT_TRUE(std::any_of(latency->rivals.begin(), latency->rivals.end(), [&](const Cause& rival) {
+      return rival.id == id;
+    })) << id;
+  }
+  EXPECT_GE(latency->inclusion, 0.95);
 }
 
 /// Upon a base that is not the given one causes are still told apart.
