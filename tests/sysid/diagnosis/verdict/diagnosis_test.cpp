@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/transport_delay.h"
 #include "model/named.h"
 #include "tests/sysid/simulated.h"
@@ -51,6 +55,31 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
     EXPECT_NE(text, "looks for another base");
     EXPECT_NE(text, "looks for a staircase");
   }
+}
+
+// What stands upon another base keeps what was found before any base was fitted.
+TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
+  const model::Model given = without_valve();
+  model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
+  plays = model::with_block(std::move(plays), {model::block_type<model::PrandtlIshlinskii>(),
+                                               {0, 0, 0.1, 1, 0.1, 6, 0.02, 15, 0.08, 25, 0.06}});
+  std::vector<Log> logs;
+  std::size_t wrong = 0;
+  for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {
+    logs.push_back(simulated(plays, signal, 25, noise_mm, 17));
+    std::vector<double>& y_mm = logs.back().displacement_mm;
+    for (std::size_t i = 40; i < y_mm.size(); i += 97) y_mm[i] += wrong++ % 2 == 0 ? 1 : -1;
+  }
+  const auto diagnosis = diagnose(logs, given, {});
+  ASSERT_TRUE(diagnosis) << diagnosis.error();
+  EXPECT_FALSE(diagnosis->base.empty());
+  const auto names = [&](std::string_view id) {
+    return std::any_of(diagnosis->causes.begin(), diagnosis->causes.end(),
+                       [&](const NamedCause& cause) { return cause.cause.id == id; });
+  };
+  EXPECT_TRUE(names("hysteresis_shape"));
+  EXPECT_TRUE(names("outliers"));
+  EXPECT_NEAR(static_cast<double>(diagnosis->outliers.count), static_cast<double>(wrong), 2);
 }
 
 }  // namespace
