@@ -149,6 +149,15 @@ Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std:
   });
 }
 
+Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed) {
+  return bootstrap(worse.size(), seed, [&](const std::vector<std::size_t>& indices) {
+    double sum = 0;
+    for (const std::size_t i : indices)
+      sum += worse[i] > 0 && better[i] > 0 ? std::log(worse[i] / better[i]) : 0;
+    return sum / static_cast<double>(indices.size());
+  });
+}
+
 Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed) {
   return bootstrap(before.size(), seed, [&](const std::vector<std::size_t>& indices) {
     double old_sum = 0, new_sum = 0;

@@ -55,6 +55,10 @@ struct Spread {
 /// Mean over blocks of worse minus better, with the spread of a bootstrap that draws whole blocks, so that
 /// correlation within a block does not matter.
 [[nodiscard]] Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
+/// Mean over blocks of log(worse / better) by the same bootstrap: each block counts by how many times less it
+/// loses, so that one in which a fit without it went astray does not outweigh all others. A block without
+/// loss counts as a tie.
+[[nodiscard]] Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
 /// 100 (1 - rms(after)/rms(before)) by the same bootstrap [%].
 [[nodiscard]] Spread gain_percent(const BlockLosses& before, const BlockLosses& after, std::uint64_t seed);
 /// How often `ours` loses less than `other` when whole blocks are drawn in pairs; ties count half.

@@ -230,7 +230,8 @@ class SelectorUpon {
 
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, double worth_mm2) const {
     const Spread gain = mean_difference(before, after, options_.seed);
-    return gain.lower > 0 && gain.value > worth_mm2;
+    return gain.value > worth_mm2 &&
+           (gain.lower > 0 || mean_log_ratio(before, after, options_.seed).lower > 0);
   }
 
   /// The best of what was tried in one place, if it stands there.
@@ -311,7 +312,8 @@ class SelectorUpon {
   [[nodiscard]] bool stands(ChosenCause& chosen, const std::vector<ScoredCandidate>& scored) const {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {
-      return winning_share(best.losses, losses, options_.seed) >= least_inclusion;
+      return winning_share(best.losses, losses, options_.seed) >= least_inclusion ||
+             mean_log_ratio(losses, best.losses, options_.seed).lower > 0;
     };
     if (!beats(result_.extended_losses)) return false;
     std::size_t undecided = 0;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sysid/logs/strided_record.h"
 
 namespace softgrip::sysid::holdout_test {
@@ -42,6 +44,24 @@ TEST(ThinnedDivision, HasTheSameStretchesOfTime) {
     }
   }
   for (std::size_t r = 0; r < records.size(); ++r) EXPECT_EQ(next[r], thinned[r].size());
+}
+
+TEST(MeanLogRatio, OneBlockThatWentAstrayDoesNotOutweighTheOthers) {
+  BlockLosses worse(12, 2.0), better(12, 1.0);
+  better.front() = 15;
+  EXPECT_LT(mean_difference(worse, better, 1).lower, 0);
+  const Spread ratio = mean_log_ratio(worse, better, 1);
+  EXPECT_GT(ratio.lower, 0);
+  EXPECT_NEAR(ratio.value, (11 * std::log(2.0) - std::log(7.5)) / 12, 1e-12);
+  const Spread back = mean_log_ratio(better, worse, 1);
+  EXPECT_LT(back.upper, 0);
+}
+
+TEST(MeanLogRatio, ABlockWithoutLossIsATie) {
+  const Spread ratio = mean_log_ratio({0, 4, 4, 4}, {1, 4, 0, 4}, 1);
+  EXPECT_EQ(ratio.value, 0);
+  EXPECT_EQ(ratio.lower, 0);
+  EXPECT_EQ(ratio.upper, 0);
 }
 
 }  // namespace
