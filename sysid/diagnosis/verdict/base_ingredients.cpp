@@ -1,0 +1,159 @@
+#include "sysid/diagnosis/verdict/base_ingredients.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/chamber_lag.h"
+#include "model/blocks/characteristic.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/pressure_dependent_creep.h"
+#include "model/blocks/transport_delay.h"
+#include "model/catalogue.h"
+#include "sysid/diagnosis/causes/hysteresis_shape.h"
+#include "sysid/diagnosis/causes/sensor_lag.h"
+#include "sysid/diagnosis/causes/sensor_nonlinearity.h"
+#include "sysid/diagnosis/causes/slow_creep.h"
+#include "sysid/diagnosis/causes/stiffening.h"
+#include "sysid/diagnosis/causes/transport_delay.h"
+#include "sysid/diagnosis/causes/valve_lag.h"
+#include "sysid/diagnosis/verdict/naming.h"
+
+namespace softgrip::sysid {
+namespace {
+
+/// What an ingredient must bring of the mean square that the recalibrated base left beyond the noise.
+constexpr double least_share = 0.01;
+
+/// What a finding is called, and with which blocks it stands in the model.
+struct FindingName {
+  Ingredient ingredient;
+  std::string_view id;
+  std::string_view rival;  ///< gives the same readings whatever the command; empty: none
+  std::size_t (*block)(Drive drive);
+};
+constexpr std::array names{
+    FindingName{Ingredient::play_operators, causes::HysteresisShape::id, "",
+                [](Drive) { return model::block_type<model::PrandtlIshlinskii>(); }},
+    FindingName{Ingredient::slow_creep, causes::SlowCreep::id, "",
+                [](Drive) { return model::block_type<model::KelvinVoigt>(); }},
+    FindingName{Ingredient::pressure_dependent_creep, causes::SlowCreep::id, "",
+                [](Drive) { return model::block_type<model::PressureDependentCreep>(); }},
+    FindingName{Ingredient::delay, causes::TransportDelay::id, "",
+                [](Drive) { return model::block_type<model::TransportDelay>(); }},
+    FindingName{Ingredient::lag, causes::ValveLag::id, "",
+                [](Drive drive) {
+                  return drive == Drive::measured ? model::block_type<model::ChamberLag>()
+                                                  : model::block_type<model::AsymmetricValveLag>();
+                }},
+    FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
+                [](Drive) { return model::block_type<model::Characteristic>(); }}};
+
+const StructureTrial* trial_without(const std::vector<WithoutIngredient>& ablation, Ingredient ingredient) {
+  const auto found = std::find_if(ablation.begin(), ablation.end(),
+                                  [&](const auto& without) { return without.ingredient == ingredient; });
+  return found == ablation.end() ? nullptr : &found->trial;
+}
+
+class Namer {
+ public:
+  /// @param point  the chosen structure fitted to all readings.
+  Namer(const SearchData& data, const StructureTrial& chosen, const FitPoint& point,
+        const BaseQuestion& question)
+      : chosen_(chosen),
+        question_(question),
+        space_(point.model, data.records, free_numbers(point.model)),
+        at_(uncertain_point(data.records, point, space_)) {}
+
+  [[nodiscard]] NamedCause name(const FindingName& finding, const StructureTrial& without) const {
+    NamedCause named;
+    named.cause = *find_cause(finding.id);
+    named.block_type = finding.block(question_.drive);
+    if (!finding.rival.empty()) named.rivals.push_back(*find_cause(finding.rival));
+    // Behind the command or the measured pressure, before or behind the finger.
+    if (finding.ingredient == Ingredient::lag) named.rivals.push_back(*find_cause(causes::SensorLag::id));
+    // Behind a lag a second one looks like a delay.
+    if (finding.ingredient == Ingredient::delay && chosen_.structure.lag)
+      named.rivals.push_back(*find_cause(causes::ValveLag::id));
+    named.heldout_gain_percent =
+        gain_percent(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
+    named.gain_mm2 = mean_difference(without.block_losses_mm2, chosen_.block_losses_mm2, question_.seed);
+    named.inclusion = winning_share(chosen_.block_losses_mm2, without.block_losses_mm2, question_.seed);
+    named.parameters = block_numbers(at_, named.block_type);
+    return named;
+  }
+
+ private:
+  const StructureTrial& chosen_;
+  const BaseQuestion& question_;
+  FitSpace space_;
+  UncertainPoint at_;
+};
+
+/// A delay makes up for most of a lag, and a lag for most of a delay, so that neither may be missed although
+/// the finger is late: the one that is missed more stands for both. Nothing where one has its name already.
+std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablation, const Namer& namer,
+                                     const BaseFindings& found) {
+  const StructureTrial* const neither = trial_without(ablation, Ingredient::latency);
+  if (neither == nullptr) return std::nullopt;
+  const FindingName* missed_more = nullptr;
+  double missed_mm2 = 0;
+  std::vector<Cause> late{*find_cause(causes::SensorLag::id)};
+  for (const FindingName& finding : names) {
+    if (finding.ingredient != Ingredient::delay && finding.ingredient != Ingredient::lag) continue;
+    const NamedCause one = namer.name(finding, *trial_without(ablation, finding.ingredient));
+    if (is_among(found.named, one)) return std::nullopt;
+    late.push_back(one.cause);
+    if (missed_more == nullptr || one.gain_mm2.value > missed_mm2) {
+      missed_more = &finding;
+      missed_mm2 = one.gain_mm2.value;
+    }
+  }
+  NamedCause latency = namer.name(*missed_more, *neither);
+  std::erase(late, latency.cause);
+  latency.rivals = std::move(late);
+  return latency;
+}
+
+}  // namespace
+
+std::vector<Ingredient> named_ingredients() {
+  std::vector<Ingredient> list{Ingredient::latency};
+  for (const FindingName& name : names) list.push_back(name.ingredient);
+  return list;
+}
+
+bool is_among(const std::vector<NamedCause>& causes, const NamedCause& one) {
+  return std::any_of(causes.begin(), causes.end(),
+                     [&](const NamedCause& other) { return other.cause == one.cause; });
+}
+
+void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
+                      const BaseSearch& search) {
+  const double noise_mm = search.question.noise_mm;
+  const double least_mm2 =
+      least_share * std::max(std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm, 1e-300);
+  const Namer namer(search.data, found.chosen, found.fit.point, search.question);
+  for (const FindingName& finding : names) {
+    const StructureTrial* const without = trial_without(ablation, finding.ingredient);
+    if (without == nullptr) continue;
+    NamedCause named = namer.name(finding, *without);
+    if (named.gain_mm2.value < least_mm2) continue;
+    if (is_among(found.named, named) || is_among(found.possible, named)) continue;
+    (named.inclusion >= full_inclusion ? found.named : found.possible).push_back(std::move(named));
+  }
+  auto latency = latency_of(ablation, namer, found);
+  if (!latency || latency->gain_mm2.value < least_mm2 || latency->inclusion < full_inclusion) return;
+  std::erase_if(found.possible, [&](const NamedCause& one) {
+    return one.cause == latency->cause ||
+           std::find(latency->rivals.begin(), latency->rivals.end(), one.cause) != latency->rivals.end();
+  });
+  found.named.push_back(std::move(*latency));
+}
+
+}  // namespace softgrip::sysid
