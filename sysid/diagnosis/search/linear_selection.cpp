@@ -32,6 +32,9 @@ constexpr int look_iterations = 15;
 constexpr std::array answers{1.0, 0.5, 0.2, 0.0};
 /// The share of the resampled blocks in which a cause is ahead of what it clearly beats.
 constexpr double least_inclusion = 0.95;
+/// Or by how much, as a log ratio of a block's losses, it is ahead at least: a contact and a sensor that
+/// clips are 0.01 apart, in every block (textbook worlds).
+constexpr double clearly_ahead = 0.05;
 /// What a cause must take, in squares of the noise. A base has the form of the finger's loop but for a rest,
 /// of which one cause or another takes 0.1 to 1.4 in worlds that do not have it; what is hidden at twice the
 /// noise takes 1.9 to 12 (textbook worlds, and worlds with a lag that differs between filling and venting).
@@ -313,7 +316,7 @@ class SelectorUpon {
     const ScoredCandidate& best = scored.front();
     const auto beats = [&](const BlockLosses& losses) {
       return winning_share(best.losses, losses, options_.seed) >= least_inclusion ||
-             mean_log_ratio(losses, best.losses, options_.seed).lower > 0;
+             mean_log_ratio(losses, best.losses, options_.seed).lower > clearly_ahead;
     };
     if (!beats(result_.extended_losses)) return false;
     std::size_t undecided = 0;
