@@ -135,7 +135,9 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
     const StructureFit judged = evaluate_structure(records, fit.causes, without.point);
     for (std::size_t b = 0; b < losses.size(); ++b) {
       const Block& block = division.blocks[b];
-      if (block.fold == fold) losses[b] = loss(judged.residual_mm[block.record], block);
+      if (block.fold != fold) continue;
+      const double span_mm = records[block.record].span_mm;
+      losses[b] = std::min(loss(judged.residual_mm[block.record], block), span_mm * span_mm);
     }
   }
   return losses;

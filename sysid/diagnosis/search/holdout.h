@@ -39,6 +39,8 @@ inline constexpr double block_length_s = 8;
 
 /// Mean square error of every block while it was held out [mm^2].
 using BlockLosses = std::vector<double>;
+/// A fit that runs off where it was not fitted loses no more than one that foretells nothing: the square of
+/// its record's span. What it lost would stand for nothing but itself in every mean.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
 /// The same for a model that is not refitted.

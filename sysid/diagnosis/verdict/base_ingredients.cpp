@@ -29,6 +29,8 @@ namespace {
 
 /// What an ingredient must bring of the mean square that the recalibrated base left beyond the noise.
 constexpr double least_share = 0.01;
+/// A base that leaves more than so many times as much held out as fitted has run off there.
+constexpr double ran_off_above = 3;
 
 /// What a finding is called, and with which blocks it stands in the model.
 struct FindingName {
@@ -53,6 +55,15 @@ constexpr std::array names{
                 }},
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
                 [](Drive) { return model::block_type<model::Characteristic>(); }}};
+
+/// What the recalibrated base leaves beyond the noise, held out. A fold in which it ran off does not tell how
+/// much there is to be explained.
+double left_by_the_given_mm2(const BaseSearch& search) {
+  const double noise_mm = search.question.noise_mm;
+  const double held_out_mm2 = std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm;
+  const double most_mm2 = std::pow(ran_off_above * search.plain.base_structure.excess_mm, 2);
+  return std::max(std::min(held_out_mm2, most_mm2), 1e-300);
+}
 
 const StructureTrial* trial_without(const std::vector<WithoutIngredient>& ablation, Ingredient ingredient) {
   const auto found = std::find_if(ablation.begin(), ablation.end(),
@@ -135,9 +146,7 @@ bool is_among(const std::vector<NamedCause>& causes, const NamedCause& one) {
 
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search) {
-  const double noise_mm = search.question.noise_mm;
-  const double least_mm2 =
-      least_share * std::max(std::pow(rmse_mm(search.plain.base_losses), 2) - noise_mm * noise_mm, 1e-300);
+  const double least_mm2 = least_share * left_by_the_given_mm2(search);
   const Namer namer(search.data, found.chosen, found.fit.point, search.question);
   for (const FindingName& finding : names) {
     const StructureTrial* const without = trial_without(ablation, finding.ingredient);

@@ -371,32 +371,6 @@ class Diagnostician {
 
 }  // namespace
 
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::adequate:
-      return "adequate";
-    case Verdict::recalibrate:
-      return "recalibrate";
-    case Verdict::cause_found:
-      return "cause_found";
-    case Verdict::ambiguous:
-      return "ambiguous";
-    case Verdict::partly_explained:
-      return "partly_explained";
-    case Verdict::unexplained:
-      return "unexplained";
-  }
-  return "unexplained";
-}
-
-Verdict whole_verdict(const Diagnosis& d) {
-  if (!d.in_valve || d.in_valve->named.empty()) return d.verdict;
-  if (d.verdict == Verdict::unexplained) return Verdict::partly_explained;
-  if (d.verdict == Verdict::partly_explained) return d.verdict;
-  return d.verdict == Verdict::ambiguous || any_rivals(d.in_valve->named) ? Verdict::ambiguous
-                                                                          : Verdict::cause_found;
-}
-
 void examine(Diagnosis& d, const DiagnosisOptions& options) {
   StageClock clock(d);
   d.evidence = examine_fits(d.records, d.as_given, d.recalibrated, d.extended, d.noise_mm, options.seed);

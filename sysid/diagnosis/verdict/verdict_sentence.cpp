@@ -107,6 +107,32 @@ std::string sentence_of_logs(const Diagnosis& d) {
 
 }  // namespace
 
+const char* name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::adequate:
+      return "adequate";
+    case Verdict::recalibrate:
+      return "recalibrate";
+    case Verdict::cause_found:
+      return "cause_found";
+    case Verdict::ambiguous:
+      return "ambiguous";
+    case Verdict::partly_explained:
+      return "partly_explained";
+    case Verdict::unexplained:
+      return "unexplained";
+  }
+  return "unexplained";
+}
+
+Verdict whole_verdict(const Diagnosis& d) {
+  if (!d.in_valve || d.in_valve->named.empty()) return d.verdict;
+  if (d.verdict == Verdict::unexplained) return Verdict::partly_explained;
+  if (d.verdict == Verdict::partly_explained) return d.verdict;
+  return d.verdict == Verdict::ambiguous || any_rivals(d.in_valve->named) ? Verdict::ambiguous
+                                                                          : Verdict::cause_found;
+}
+
 std::string verdict_sentence(const Diagnosis& d) {
   return sentence_of_logs(d) + (valve_lacks(d) ? sentence_of_valve(d) : std::string()) +
          (d.gauge ? " " + d.gauge->sentence : std::string());

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "sysid/diagnosis/search/search.h"
 #include "sysid/logs/strided_record.h"
+#include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::holdout_test {
 namespace {
@@ -44,6 +47,21 @@ TEST(ThinnedDivision, HasTheSameStretchesOfTime) {
     }
   }
   for (std::size_t r = 0; r < records.size(); ++r) EXPECT_EQ(next[r], thinned[r].size());
+}
+
+TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
+  std::vector<Record> records =
+      make_records({simulated(loaded("bench_twin"), model::SignalName::tp1, 25, 0.05, 3)}, {});
+  const SearchData data = make_search_data(records, loaded("zhang2025"));
+  const StructureFit fit = evaluate_structure(records, {}, data.given);
+  const Division division = divide(records, 8);
+  const BlockLosses losses = held_out_losses(records, division, fit);
+  const double most = *std::max_element(losses.begin(), losses.end());
+  EXPECT_LT(most, records[0].span_mm * records[0].span_mm);
+  records[0].span_mm = 0.5 * std::sqrt(most);
+  const BlockLosses cut = held_out_losses(records, division, fit);
+  for (std::size_t b = 0; b < losses.size(); ++b)
+    EXPECT_DOUBLE_EQ(cut[b], std::min(losses[b], 0.25 * most)) << b;
 }
 
 TEST(MeanLogRatio, OneBlockThatWentAstrayDoesNotOutweighTheOthers) {
