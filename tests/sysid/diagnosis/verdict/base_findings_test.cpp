@@ -14,6 +14,7 @@
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/fit.h"
+#include "sysid/diagnosis/verdict/base_ingredients.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::base_findings_test {
@@ -107,6 +108,12 @@ TEST(BaseFindings, ACauseUponAnotherBaseIsNamed) {
   find_causes_upon(*found.base, found.data, found.question, upon_much_left);
   EXPECT_TRUE(names(*found.base, "pressure_saturation"));
   EXPECT_LT(rmse_mm(found.base->losses), 0.5 * before_mm);
+}
+
+TEST(BaseIngredients, TheLatencyIsTakenAwayAsAWhole) {
+  const std::vector<Ingredient> away = named_ingredients();
+  for (const Ingredient one : {Ingredient::delay, Ingredient::lag, Ingredient::latency})
+    EXPECT_EQ(std::count(away.begin(), away.end(), one), 1);
 }
 
 TEST(BaseFindings, WhereTheGivenBaseHoldsThereIsNone) {
