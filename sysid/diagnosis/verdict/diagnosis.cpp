@@ -12,6 +12,7 @@
 #include "sysid/diagnosis/search/coherence.h"
 #include "sysid/diagnosis/search/staircase_selection.h"
 #include "sysid/diagnosis/verdict/another_base.h"
+#include "sysid/diagnosis/verdict/base_ingredients.h"
 #include "sysid/diagnosis/verdict/data_warnings.h"
 #include "sysid/diagnosis/verdict/dense_logs.h"
 #include "sysid/diagnosis/verdict/mixed_intervals.h"
@@ -117,10 +118,7 @@ class Diagnostician {
 
   /// What the displacement has shown already.
   void take_out_named(ValveFindings& in_valve) {
-    std::erase_if(in_valve.named, [&](const NamedCause& one) {
-      return std::any_of(d_.causes.begin(), d_.causes.end(),
-                         [&](const NamedCause& other) { return other.cause == one.cause; });
-    });
+    std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one); });
   }
 
   tl::expected<void, std::string> prepare() {
