@@ -170,7 +170,7 @@ class Page(web.WebTest):
         self.assertIn("VENT", seen.visible_buttons())
 
     def test_a_session_ends(self):
-        seen = self.browse(self.start_web(access="without_token: none\n  session_s: 4"))
+        seen = self.browse(self.start_web(access="without_token: none\n  session_s: 10"))
         seen.wait_for_state("log in first")
         self.log_in(seen, web.OPERATE)
         seen.wait_for_state("idle")
