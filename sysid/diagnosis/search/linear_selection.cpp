@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
 #include "sysid/diagnosis/search/linear_holdout.h"
 #include "sysid/diagnosis/search/scan.h"
 #include "sysid/diagnosis/search/scored.h"
+#include "sysid/diagnosis/search/slack.h"
 #include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
@@ -35,10 +37,10 @@ constexpr double least_inclusion = 0.95;
 /// Or by how much, as a log ratio of a block's losses, it is ahead at least: a contact and a sensor that
 /// clips are 0.01 apart, in every block (textbook worlds).
 constexpr double clearly_ahead = 0.05;
-/// What a cause must take, in squares of the noise. A base has the form of the finger's loop but for a rest,
-/// of which one cause or another takes 0.1 to 1.4 in worlds that do not have it; what is hidden at twice the
-/// noise takes 1.9 to 12 (textbook worlds, and worlds with a lag that differs between filling and venting).
-constexpr double least_of_a_cause = 1.5;
+/// The mean of the blocks' log ratios from which a gain is one of most blocks, see LeastTaken.
+constexpr double in_most_blocks = 0.15;
+/// Operators of which less than this share is elastic may be making up for a backlash.
+constexpr double little_elastic = 0.3;
 /// Causes that a named one does not clearly beat.
 constexpr std::size_t most_undecided = 2;
 /// What a further cause must take of what was left before it, as mean squares beyond the noise: a second
@@ -212,10 +214,33 @@ class SelectorUpon {
       causes.push_back(cause);
       scored[i] = finished(best_answer(data_.thinned, scan, cause, look), causes);
     });
+    if (auto slack = slack_as_backlash()) put_if_better(std::move(*slack), scored);
     std::stable_sort(scored.begin(), scored.end(), [](const ScoredCandidate& a, const ScoredCandidate& b) {
       return rmse_mm(a.losses) < rmse_mm(b.losses);
     });
     return scored;
+  }
+
+  /// A base whose operators make up for a backlash is far from where it stands with one.
+  [[nodiscard]] std::optional<ScoredCandidate> slack_as_backlash() const {
+    const FitPoint& point = result_.extended.point;
+    if (elastic_share(point.model) > little_elastic) return std::nullopt;
+    const auto model = with_slack_as_backlash(point.model);
+    if (!model) return std::nullopt;
+    std::vector<Cause> causes = result_.extended.causes;
+    causes.push_back(*find_cause(causes::Backlash::id));
+    return finished(start_at(data_.thinned, {*model, point.starts}), causes);
+  }
+
+  static void put_if_better(ScoredCandidate one, std::vector<ScoredCandidate>& scored) {
+    const auto same = std::find_if(scored.begin(), scored.end(), [&](const ScoredCandidate& other) {
+      return other.candidate.cause == one.candidate.cause;
+    });
+    if (same == scored.end()) {
+      scored.push_back(std::move(one));
+    } else if (rmse_mm(one.losses) < rmse_mm(same->losses)) {
+      *same = std::move(one);
+    }
   }
 
   bool add_one() {
@@ -223,7 +248,7 @@ class SelectorUpon {
     result_.last_candidates = describe(scored, result_.extended_losses, options_.seed);
     if (scored.empty()) return false;
     const ScoredCandidate& best = scored.front();
-    if (!is_gain(result_.extended_losses, best.losses, worth_mm2())) return false;
+    if (!is_gain(result_.extended_losses, best.losses, share_worth_mm2())) return false;
     const BlockLosses before = result_.extended_losses;
     if (!take(scored)) return false;
     if (result_.chosen.size() > 1) return both_stay(before);
@@ -233,8 +258,11 @@ class SelectorUpon {
 
   [[nodiscard]] bool is_gain(const BlockLosses& before, const BlockLosses& after, double worth_mm2) const {
     const Spread gain = mean_difference(before, after, options_.seed);
-    return gain.value > worth_mm2 &&
-           (gain.lower > 0 || mean_log_ratio(before, after, options_.seed).lower > 0);
+    const Spread ratio = mean_log_ratio(before, after, options_.seed);
+    const LeastTaken& least = options_.least_taken;
+    const double noises = ratio.lower > in_most_blocks ? least.in_most_blocks : least.anyhow;
+    return gain.value > std::max(worth_mm2, noises * noise_mm_ * noise_mm_) &&
+           (gain.lower > 0 || ratio.lower > 0);
   }
 
   /// The best of what was tried in one place, if it stands there.
@@ -271,7 +299,7 @@ class SelectorUpon {
 
   /// @param before  the losses without it.
   [[nodiscard]] bool is_worth_its_place(const BlockLosses& before) const {
-    return is_gain(before, result_.extended_losses, further_worth_mm2(before));
+    return is_gain(before, result_.extended_losses, further_share_mm2(before));
   }
 
   /// One of two fitted without the other, from where both stand.
@@ -292,14 +320,13 @@ class SelectorUpon {
     take(in_first_place_);
   }
 
-  /// What one more cause must take of the mean square.
-  [[nodiscard]] double worth_mm2() const {
-    return result_.chosen.empty() ? least_worth_mm2() : further_worth_mm2(result_.extended_losses);
+  /// What one more cause must take of what was there before it [mean square].
+  [[nodiscard]] double share_worth_mm2() const {
+    return result_.chosen.empty() ? 0 : further_share_mm2(result_.extended_losses);
   }
-  [[nodiscard]] double least_worth_mm2() const { return least_of_a_cause * noise_mm_ * noise_mm_; }
-  [[nodiscard]] double further_worth_mm2(const BlockLosses& before) const {
-    return std::max({least_worth_mm2(), one_more_share * std::pow(result_.base_structure.excess_mm, 2),
-                     most_of_the_rest * beyond_noise_mm2(before)});
+  [[nodiscard]] double further_share_mm2(const BlockLosses& before) const {
+    return std::max(one_more_share * std::pow(result_.base_structure.excess_mm, 2),
+                    most_of_the_rest * beyond_noise_mm2(before));
   }
 
   [[nodiscard]] double beyond_noise_mm2(const BlockLosses& losses) const {
@@ -308,7 +335,8 @@ class SelectorUpon {
 
   /// No cause takes what is not there.
   [[nodiscard]] bool more_can_be_worth() const {
-    return beyond_noise_mm2(result_.extended_losses) > worth_mm2();
+    const double least_mm2 = options_.least_taken.in_most_blocks * noise_mm_ * noise_mm_;
+    return beyond_noise_mm2(result_.extended_losses) > std::max(least_mm2, share_worth_mm2());
   }
 
   /// By itself or as one of a few: what it does not clearly beat is a rival. More than a few settle nothing.

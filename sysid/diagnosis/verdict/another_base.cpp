@@ -47,9 +47,11 @@ void AnotherBase::go_on(const Selection& selection) {
   if (leaves_too_much(left, selection.base_structure, question_.noise_mm)) {
     find_causes_upon(*found_, data_, question_, upon_much_left);
   } else if (left.present && left.excess_mm > worth_asking * question_.noise_mm) {
-    find_causes_upon(*found_, data_, question_, upon_little_left);
+    const bool measured = question_.drive == Drive::measured;
+    find_causes_upon(*found_, data_, question_, measured ? upon_little_left_measured : upon_little_left);
   }
-  if (!outdoes(*found_, selection)) found_.reset();
+  const bool plain_explains = !leaves_too_much(selection.left, selection.base_structure, question_.noise_mm);
+  if (!outdoes(*found_, selection, plain_explains)) found_.reset();
 }
 
 double AnotherBase::mean_square_mm2() const {

@@ -91,6 +91,15 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
   });
 }
 
+/// What stands by itself now is no other explanation of an ingredient.
+void take_back_rivals(BaseFindings& found) {
+  for (NamedCause& finding : found.named) {
+    std::erase_if(finding.rivals, [&](const Cause& rival) {
+      return std::find(found.fit.causes.begin(), found.fit.causes.end(), rival) != found.fit.causes.end();
+    });
+  }
+}
+
 /// Upon a base with many numbers every fit is dear, and thinned records say as well which cause is there.
 Selection select_among_thinned(const FitPoint& base, const SearchData& data, const BaseQuestion& question,
                                const SelectionOptions& options) {
@@ -151,8 +160,11 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   return found;
 }
 
-bool outdoes(const BaseFindings& found, const Selection& plain) {
-  if (rmse_mm(found.losses) < worth_having * rmse_mm(plain.extended_losses)) return true;
+bool outdoes(const BaseFindings& found, const Selection& plain, bool plain_explains) {
+  // Nothing is named of causes that leave too much: what leaves no more and has names says more.
+  const bool says_more = !plain_explains && !plain.extended.causes.empty() && !found.named.empty();
+  const double at_most = says_more ? 1 : worth_having;
+  if (rmse_mm(found.losses) < at_most * rmse_mm(plain.extended_losses)) return true;
   return beta_over_gain(plain.extended.point.model) > 1 &&
          found.fit.mean_square_mm2 < plain.extended.mean_square_mm2;
 }
@@ -163,6 +175,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   options.seed = question.seed;
   options.progress = question.progress;
   options.most_causes = allowed.most;
+  options.least_taken = question.drive == Drive::measured ? from_the_measured_pressure : from_the_command;
   StructureTrial base = found.chosen;
   base.structure.hysteresis = HysteresisForm::play;
   base.structure.characteristic = true;
@@ -186,6 +199,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   found.fit = std::move(with);
   found.losses = linear_held_out_losses(data.records, question.division, found.fit);
   take_back_confounded(found, data, question);
+  take_back_rivals(found);
   renumber(found, data);
 }
 

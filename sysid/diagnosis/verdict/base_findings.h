@@ -47,8 +47,9 @@ struct CausesUpon {
   bool parts;          ///< those that take less are told as a part of it
 };
 inline constexpr CausesUpon upon_much_left{2, 0.3, true};
-/// Where the base leaves little, its form is most of it.
+/// Where the base leaves little, its form is most of it; from the command, the valve's too.
 inline constexpr CausesUpon upon_little_left{1, 0.65, false};
+inline constexpr CausesUpon upon_little_left_measured{1, 0.35, false};
 
 /// Goes on with the search for causes upon a richer base, and adds what it finds.
 void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question,
@@ -56,6 +57,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
 
 /// Whether a richer base, with what stands upon it, leaves clearly less held out than what was selected on
 /// the given one; or as little, where that is unphysical.
-[[nodiscard]] bool outdoes(const BaseFindings& found, const Selection& plain);
+/// @param plain_explains  whether the selection on the given base leaves little enough to be named.
+[[nodiscard]] bool outdoes(const BaseFindings& found, const Selection& plain, bool plain_explains);
 
 }  // namespace softgrip::sysid

@@ -120,5 +120,17 @@ TEST(Weigh, IsTheGainOverTheStructureWithoutTheCause) {
   EXPECT_NEAR(alone.gain_mm2.value, 1, 1e-12);
 }
 
+/// The valve's rest is not in the measured pressure: what takes little is found where it takes it everywhere.
+TEST(LinearSelection, FromTheMeasuredPressureLessIsEnough) {
+  const Campaign c =
+      campaign_of(model::with_block(finger(), model::block_of<model::Backlash>({{"gap_mm", 0.1}})));
+  SelectionOptions measured;
+  measured.least_taken = from_the_measured_pressure;
+  EXPECT_TRUE(select_causes_upon(c.data, c.base, 0.03, c.division, {}).chosen.empty());
+  const Selection found = select_causes_upon(c.data, c.base, 0.03, c.division, measured);
+  ASSERT_EQ(found.chosen.size(), 1U);
+  EXPECT_EQ(found.chosen.front().cause.id, "backlash");
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::linear_selection_test

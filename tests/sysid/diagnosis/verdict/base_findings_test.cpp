@@ -4,12 +4,14 @@
 
 #include <algorithm>
 
+#include "model/blocks/backlash.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
+#include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/causes/sensor_lag.h"
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
@@ -72,7 +74,39 @@ TEST(BaseFindings, LoopsOfAnotherFormAreNamed) {
   EXPECT_GE(shape->inclusion, 0.95);
   EXPECT_GT(shape->gain_mm2.lower, 0);
   EXPECT_LT(rmse_mm(found.base->losses), 0.5 * rmse_mm(found.plain.base_losses));
-  EXPECT_TRUE(outdoes(*found.base, found.plain));
+  EXPECT_TRUE(outdoes(*found.base, found.plain, true));
+}
+
+/// Operators without an elastic one stand still after a reversal, as a backlash does; others do not.
+TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
+  const auto has_backlash = [](const Found& found) {
+    const auto shape = std::find_if(found.base->named.begin(), found.base->named.end(),
+                                    [](const NamedCause& n) { return n.cause.id == "hysteresis_shape"; });
+    return shape != found.base->named.end() &&
+           std::any_of(shape->rivals.begin(), shape->rivals.end(),
+                       [](const Cause& rival) { return rival.id == causes::Backlash::id; });
+  };
+  const Found elastic = found_in(plays());
+  ASSERT_TRUE(elastic.base);
+  EXPECT_FALSE(has_backlash(elastic));
+  const Found slack =
+      found_in(model::with_block(plays(), model::block_of<model::Backlash>({{"gap_mm", 3}})));
+  ASSERT_TRUE(slack.base);
+  EXPECT_TRUE(has_backlash(slack));
+}
+
+/// Of a selection that leaves too much nothing is named.
+TEST(BaseFindings, WhatSaysNothingIsOutdoneByWhatLeavesALittleLess) {
+  Found found = found_in(plays());
+  ASSERT_TRUE(found.base);
+  Selection plain = found.plain;
+  plain.extended_losses = found.base->losses;
+  for (double& loss : plain.extended_losses) loss *= 1.05;
+  plain.extended.causes = {*find_cause("contact")};
+  EXPECT_FALSE(outdoes(*found.base, plain, true));
+  EXPECT_TRUE(outdoes(*found.base, plain, false));
+  found.base->named.clear();
+  EXPECT_FALSE(outdoes(*found.base, plain, false));
 }
 
 /// At slow commands a delay does what a lag does: without either the other serves as well, and without both
