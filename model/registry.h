@@ -24,6 +24,7 @@
 #include "model/blocks/periodic_disturbance.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
+#include "model/blocks/pressure_regulator.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/pressure_scale.h"
 #include "model/blocks/pseudo_elastic_softening.h"
@@ -78,6 +79,7 @@ using Blocks = BlockList<TransportDelay,          //
                          ValveStiction,           //
                          ValveLag,                //
                          AsymmetricValveLag,      //
+                         PressureRegulator,       //
                          SupplySag,               //
                          PressureSaturation,      //
                          ChamberLag,              //

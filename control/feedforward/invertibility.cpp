@@ -14,6 +14,7 @@
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/chamber_lag.h"
+#include "model/blocks/pressure_regulator.h"
 #include "model/blocks/pressure_saturation.h"
 #include "model/blocks/valve_lag.h"
 #include "model/chain.h"
@@ -115,8 +116,8 @@ bool is_undone(const BlockInfo& info) {
   if (info.inverse == Inverse::implicit) return true;
   if (info.station != Station::valve) return false;
   return info.inverse == Inverse::preview ||
-         model::is<model::ValveLag, model::AsymmetricValveLag, model::ChamberLag, model::PressureSaturation>(
-             info);
+         model::is<model::ValveLag, model::AsymmetricValveLag, model::ChamberLag, model::PressureRegulator,
+                   model::PressureSaturation>(info);
 }
 
 tl::expected<void, Refusal> check_bouc_wen(const model::Model& model, const LimitSettings& limits,

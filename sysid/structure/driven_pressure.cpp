@@ -1,27 +1,58 @@
 #include "sysid/structure/driven_pressure.h"
 
 #include "model/blocks/transport_delay.h"
+#include "model/play.h"
+#include "model/regulated_pressure.h"
 #include "model/two_way_lag.h"
 
 namespace softgrip::sysid {
+namespace {
+
+using Segment = model::Segment<double>;
+
+/// Delay, and lag or regulator, as far as the structure has them.
+class Valve {
+ public:
+  Valve(const Record& record, const BaseStructure& structure, const NonlinearNumbers& n, double first_kpa)
+      : regulates_(structure.lag && structure.regulator),
+        delay_(std::vector<double>{structure.delay ? n.delay_s : 0}, {.sample_time_s = record.sample_time_s}),
+        lag_(structure.lag ? n.filling_s : 0, structure.lag ? n.venting_s : 0, record.sample_time_s),
+        pilot_(n.pilot_band_kpa / 2),
+        regulator_({n.filling_s, n.venting_s, n.overlap_kpa, n.integral_s, n.full_open_kpa}) {
+    delay_.reset(first_kpa);
+    lag_.reset(first_kpa);
+    pilot_.reset(first_kpa);
+    regulator_.reset(pilot_.output());
+  }
+
+  template <class Next>
+  void step(const Segment& command, Next&& next) {
+    delay_.step(command, {}, [&](const Segment& delayed) {
+      if (!regulates_) return lag_.step(delayed, next);
+      pilot_.step(delayed, [&](const Segment& asked) { regulator_.step(asked, next); });
+    });
+  }
+
+ private:
+  bool regulates_;
+  model::TransportDelay<double> delay_;
+  model::TwoWayLag<double> lag_;
+  model::Play<double> pilot_;
+  model::RegulatedPressure<double> regulator_;
+};
+
+}  // namespace
 
 DrivenPressure driven_pressure(const Record& record, const BaseStructure& structure,
                                const NonlinearNumbers& numbers) {
-  using Segment = model::Segment<double>;
   DrivenPressure driven;
   driven.first_kpa = record.drive_kpa.front();
   driven.segments.reserve(3 * record.size());
   driven.until.reserve(record.size());
-  model::TwoWayLag<double> lag(structure.lag ? numbers.filling_s : 0, structure.lag ? numbers.venting_s : 0,
-                               record.sample_time_s);
-  model::TransportDelay<double> delay(std::vector<double>{structure.delay ? numbers.delay_s : 0},
-                                      {.sample_time_s = record.sample_time_s});
-  delay.reset(driven.first_kpa);
-  lag.reset(driven.first_kpa);
+  Valve valve(record, structure, numbers, driven.first_kpa);
   const auto step = [&](double duration_s, double from_kpa, double to_kpa) {
-    delay.step(Segment::straight(duration_s, from_kpa, to_kpa), {}, [&](const Segment& delayed) {
-      lag.step(delayed, [&](const Segment& q) { driven.segments.push_back(q); });
-    });
+    valve.step(Segment::straight(duration_s, from_kpa, to_kpa),
+               [&](const Segment& q) { driven.segments.push_back(q); });
   };
   driven.until.push_back(0);
   for (std::size_t i = 1; i < record.size(); ++i) {

@@ -22,7 +22,7 @@ struct DrivenPressure {
   }
 };
 
-/// @param numbers  delay_s, filling_s and venting_s count, as far as `structure` has them.
+/// @param numbers  those of the delay, the lag and the regulator count, as far as `structure` has them.
 [[nodiscard]] DrivenPressure driven_pressure(const Record& record, const BaseStructure& structure,
                                              const NonlinearNumbers& numbers);
 

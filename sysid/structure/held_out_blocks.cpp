@@ -89,4 +89,17 @@ LossDifference loss_difference(const std::vector<double>& worse, const std::vect
   return {mean, std::sqrt(square / n)};
 }
 
+bool is_clearly_less(const std::vector<double>& better, const std::vector<double>& worse) {
+  constexpr double clearly = 2;  // standard errors
+  const LossDifference plain = loss_difference(worse, better);
+  if (!(plain.mean_mm2 > 0)) return false;
+  if (plain.mean_mm2 > clearly * plain.standard_error_mm2) return true;
+  const auto logarithms = [](std::vector<double> losses) {
+    for (double& loss : losses) loss = std::log(std::max(loss, 1e-300));
+    return losses;
+  };
+  const LossDifference by_ratio = loss_difference(logarithms(worse), logarithms(better));
+  return by_ratio.mean_mm2 > clearly * by_ratio.standard_error_mm2;
+}
+
 }  // namespace softgrip::sysid

@@ -57,5 +57,8 @@ struct LossDifference {
 };
 [[nodiscard]] LossDifference loss_difference(const std::vector<double>& worse,
                                              const std::vector<double>& better);
+/// Whether less is lost by twice the standard error: in the mean over blocks, or, where that is no more, in
+/// the mean of the logarithms, in which a block that is hard for both does not outweigh the others.
+[[nodiscard]] bool is_clearly_less(const std::vector<double>& better, const std::vector<double>& worse);
 
 }  // namespace softgrip::sysid

@@ -21,7 +21,8 @@ std::string description_of(const BaseStructure& s) {
   if (s.creep) text += s.slow_creep ? ", creep ladder" : ", creep ladder without its slow end";
   if (s.hinged_creep) text += ", pressure-dependent creep";
   if (s.delay) text += ", delay";
-  if (s.lag) text += s.two_way ? ", lag (filling and venting)" : ", lag";
+  if (s.lag && s.regulator) text += ", regulator with overlap";
+  if (s.lag && !s.regulator) text += s.two_way ? ", lag (filling and venting)" : ", lag";
   if (s.characteristic) text += ", characteristic";
   return text;
 }

@@ -25,6 +25,7 @@ struct BaseStructure {
   bool delay = true;           ///< dead time between the drive and the finger
   bool lag = true;             ///< a first-order lag behind it
   bool two_way = true;         ///< filling and venting have a time constant each
+  bool regulator = false;      ///< the lag is that of a regulator with an overlap, see RegulatedPressure
   bool characteristic = true;  ///< a bent, monotone map behind the sum
   bool hinged_creep = false;   ///< creep that depends on the pressure: a short ladder behind every hinge
   bool wandering = false;      ///< beside it every record's zero wanders as it likes; no part of the finger
@@ -56,6 +57,10 @@ struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant while the pressure rises; 0: none
   double venting_s = 0;
+  double pilot_band_kpa = 0;  ///< regulator: of the command, ignored after a reversal
+  double overlap_kpa = 0;     ///< regulator: as in RegulatorNumbers, like the next two
+  double integral_s = 0;
+  double full_open_kpa = 0;
   double curvature = 0;                 ///< of the characteristic
   double growing_per_kpa = 0;           ///< Bouc-Wen: gamma + eta
   double narrowing = 0.5;               ///< Bouc-Wen: eta / (gamma + eta), in (0, 1]

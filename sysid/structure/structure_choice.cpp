@@ -47,6 +47,18 @@ class Judge {
     return fit_form(records_, structure, grid_, with(ridge));
   }
 
+  /// From the numbers of a similar one on.
+  [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
+                                          const NonlinearNumbers& numbers) const {
+    return judge(fit_form(records_, structure, grid_, with(ridge), &numbers), ridge, fold_iterations);
+  }
+
+  /// With a regulator in the place of the lag, from the numbers of a trial with the lag on.
+  [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
+    structure.regulator = true;
+    return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
+  }
+
   [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge) const {
     return structure.published ? judge_published(structure)
                                : judge(fit(structure, ridge), ridge, fold_iterations);
@@ -56,6 +68,7 @@ class Judge {
   [[nodiscard]] StructureTrial judge(const FittedStructure& whole, double ridge, int iterations) const {
     StructureTrial trial = trial_of(whole.structure);
     trial.ridge = ridge;
+    trial.numbers = whole.numbers;
     trial.point = point_of(whole, records_, options_.drive);
     trial.rmse_mm = std::sqrt(whole.mean_square_mm2);
     trial.converged = whole.converged;
@@ -156,6 +169,9 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
     case Ingredient::latency:
       s.delay = s.lag = false;
       break;
+    case Ingredient::regulator:
+      s.regulator = false;
+      break;
     case Ingredient::venting_lag:
       s.two_way = false;
       break;
@@ -192,6 +208,21 @@ std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std:
   return best;
 }
 
+/// The chosen structure with a regulator, and, since creep may have made up for one, with simpler creep.
+void try_regulators(const Judge& judge, unsigned threads, StructureChoice& choice) {
+  const StructureTrial chosen = choice.trials[choice.chosen];
+  std::vector<BaseStructure> structures{chosen.structure};
+  if (chosen.structure.hinged_creep)
+    structures.insert(structures.begin(), without(chosen.structure, Ingredient::pressure_dependent_creep));
+  std::vector<StructureTrial> regulated(structures.size());
+  parallel_for(structures.size(), threads,
+               [&](std::size_t i) { regulated[i] = judge.judge_regulated(structures[i], chosen); });
+  StructureTrial& simplest = regulated[simplest_of_the_best(regulated)];
+  if (!is_clearly_less(simplest.block_losses_mm2, chosen.block_losses_mm2)) return;
+  choice.chosen = choice.trials.size();
+  choice.trials.push_back(std::move(simplest));
+}
+
 }  // namespace
 
 std::string_view name_of(Ingredient ingredient) {
@@ -204,6 +235,7 @@ std::string_view name_of(Ingredient ingredient) {
       "delay",
       "lag",
       "delay and lag",
+      "a regulator's overlap (a lag instead)",
       "a time constant of its own for venting",
       "bent characteristic"};
   return names[static_cast<std::size_t>(ingredient)];
@@ -240,6 +272,10 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   if (simplest.structure.published && choice.trials[best_of(choice.trials)].heldout_rmse_mm <
                                           options.published_yields_below * simplest.heldout_rmse_mm)
     choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
+  if (options.drive == Drive::command && !choice.trials[choice.chosen].structure.published) {
+    say("a regulator instead of the lag");
+    try_regulators(judge, options.threads, choice);
+  }
   return choice;
 }
 
@@ -260,7 +296,10 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
     // A branch of the finger's own between two rungs is made up for by both; the upper one may be slow creep.
     const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
-    ablation[i].trial = fair.judge(ablation[i].trial.structure, choice.ridge);
+    const BaseStructure& structure = ablation[i].trial.structure;
+    ablation[i].trial = structure.lag && structure.regulator
+                            ? fair.judge_near(structure, choice.ridge, chosen.numbers)
+                            : fair.judge(structure, choice.ridge);
   });
   return ablation;
 }
@@ -269,7 +308,9 @@ FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& recor
   if (trial.structure.published) return refit_published(records, trial.point);
   StructureFitOptions options;
   options.ridge = trial.ridge;
-  return point_of(fit_form(records, trial.structure, grid_for(records), options), records, drive);
+  // A regulator is dear to search for, and stays where it is whatever the finger does.
+  const NonlinearNumbers* const near = trial.structure.regulator ? &trial.numbers : nullptr;
+  return point_of(fit_form(records, trial.structure, grid_for(records), options, near), records, drive);
 }
 
 }  // namespace softgrip::sysid

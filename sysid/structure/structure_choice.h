@@ -41,6 +41,7 @@ enum class Ingredient {
   delay,
   lag,
   latency,      ///< delay and lag: each makes up for most of the other
+  regulator,    ///< instead of it a lag
   venting_lag,  ///< one time constant for both directions
   characteristic
 };
@@ -52,6 +53,7 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::delay,
                                             Ingredient::lag,
                                             Ingredient::latency,
+                                            Ingredient::regulator,
                                             Ingredient::venting_lag,
                                             Ingredient::characteristic};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
@@ -60,6 +62,7 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
 struct StructureTrial {
   BaseStructure structure;
   FitPoint point;
+  NonlinearNumbers numbers;  ///< empty of the published element
   double ridge = 0;
   double rmse_mm = 0;  ///< of the readings it was fitted to
   bool converged = false;
@@ -84,7 +87,8 @@ struct WithoutIngredient {
 
 /// The ridge is chosen first, with the richest structure; then the simplest structure whose held-out loss is
 /// within one standard error (of the difference, block by block) of the best (Breiman et al. 1984,
-/// section 3.4.3).
+/// section 3.4.3). From the command its lag is then a regulator's, as a further trial, where that loses
+/// clearly less.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 

@@ -165,6 +165,17 @@ std::vector<RowPlace> rows_of(const std::vector<Record>& records) {
   return rows;
 }
 
+namespace {
+
+/// Whether the pressure in the finger is the same.
+bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
+  return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
+         a.pilot_band_kpa == b.pilot_band_kpa && a.overlap_kpa == b.overlap_kpa &&
+         a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
+}
+
+}  // namespace
+
 StructureColumns::StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
                                    const StructureGrid& grid)
     : records_(records),
@@ -176,9 +187,7 @@ StructureColumns::StructureColumns(const std::vector<Record>& records, const Bas
 }
 
 const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
-  const bool driven_alike = !driven_.empty() && numbers_.delay_s == numbers.delay_s &&
-                            numbers_.filling_s == numbers.filling_s &&
-                            numbers_.venting_s == numbers.venting_s;
+  const bool driven_alike = !driven_.empty() && drive_alike(numbers_, numbers);
   NonlinearNumbers same = numbers;
   same.curvature = numbers_.curvature;  // comes behind the columns
   if (driven_alike && same == numbers_) return columns_;

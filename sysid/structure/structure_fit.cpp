@@ -139,6 +139,12 @@ class Search {
         add_driving(std::move(both));
       }
     }
+    if (structure_.lag && structure_.regulator) {
+      add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, 20));
+      add_driving(straight(&N::overlap_kpa, 1, 0, 0, 20));
+      add_driving(logarithmic(&N::integral_s, 1.5, 0.5, 0.02, 100));
+      add_driving(logarithmic(&N::full_open_kpa, 1.5, 15, 1, 1000));
+    }
     if (structure_.characteristic) coordinates_.push_back(straight(&N::curvature, 1, 0, -4, 4));
     if (structure_.hysteretic && structure_.hysteresis == HysteresisForm::bouc_wen) {
       const double growing = 3 / grid_.largest_kpa;
@@ -243,12 +249,31 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
   std::vector<double> peaks;
   peaks.reserve(records.size());
   for (const Record& record : records) peaks.push_back(record.start_unknown ? record.drive_kpa.front() : 0);
-  NonlinearNumbers quick{0.02, 0.15, 0.15, 0, 2 / grid.largest_kpa, 0.5, 0, peaks};
-  NonlinearNumbers late{0.15, 0.05, 0.05, 0, 6 / grid.largest_kpa, 0.5, 1.2 * grid.largest_kpa, peaks};
+  const NonlinearNumbers quick{.delay_s = 0.02,
+                               .filling_s = 0.15,
+                               .venting_s = 0.15,
+                               .growing_per_kpa = 2 / grid.largest_kpa,
+                               .peak_before_kpa = peaks};
+  const NonlinearNumbers late{.delay_s = 0.15,
+                              .filling_s = 0.05,
+                              .venting_s = 0.05,
+                              .growing_per_kpa = 6 / grid.largest_kpa,
+                              .trained_kpa = 1.2 * grid.largest_kpa,
+                              .peak_before_kpa = peaks};
   return {quick, late};
 }
 
 }  // namespace
+
+NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid) {
+  numbers.filling_s = std::clamp(numbers.filling_s, 1e-3, 0.03);
+  numbers.venting_s = std::clamp(numbers.venting_s, 1e-3, 0.05);
+  numbers.pilot_band_kpa = 0.006 * grid.largest_kpa;
+  numbers.overlap_kpa = 0.006 * grid.largest_kpa;
+  numbers.integral_s = 0.4;
+  numbers.full_open_kpa = 0.2 * grid.largest_kpa;
+  return numbers;
+}
 
 StructureGrid grid_for(const std::vector<Record>& records) {
   StructureGrid grid;
@@ -283,6 +308,7 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   for (NonlinearNumbers& start : starts) {
     if (!structure.delay) start.delay_s = 0;
     if (!structure.lag) start.filling_s = start.venting_s = 0;
+    if (structure.regulator && near == nullptr) start = with_usual_regulator(std::move(start), grid);
     bool converged = false;
     Search::State found = look.run(start, converged);
     fit.start_rmse_mm.push_back(std::sqrt(found.projection.mean_square_mm2));

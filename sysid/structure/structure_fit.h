@@ -33,6 +33,10 @@ struct FittedStructure {
 /// Thresholds, time constants and hinges for these records. With few cycles of data there are fewer plays.
 [[nodiscard]] StructureGrid grid_for(const std::vector<Record>& records);
 
+/// The numbers with a regulator's in the place of the lag's, where a search for them may begin: overlap and
+/// error of a fully open port by the pressures that there are.
+[[nodiscard]] NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid);
+
 /// From several starts of its own, or from `near`, where numbers are known already.
 [[nodiscard]] FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure& structure,
                                        const StructureGrid& grid, const StructureFitOptions& options,

@@ -9,7 +9,9 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
+#include "model/blocks/pressure_regulator.h"
 #include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_deadband.h"
 #include "model/named.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_columns.h"
@@ -29,8 +31,12 @@ class Builder {
   model::Model model(Drive drive) {
     const NonlinearNumbers& n = fit_.numbers;
     if (fit_.structure.delay && n.delay_s > 0) add<model::TransportDelay>({n.delay_s});
-    if (fit_.structure.lag && drive == Drive::command)
+    if (fit_.structure.lag && fit_.structure.regulator) {
+      if (n.pilot_band_kpa > 0) add<model::ValveDeadband>({n.pilot_band_kpa});
+      add<model::PressureRegulator>({n.filling_s, n.venting_s, n.overlap_kpa, n.integral_s, n.full_open_kpa});
+    } else if (fit_.structure.lag && drive == Drive::command) {
       add<model::AsymmetricValveLag>({n.filling_s, n.venting_s});
+    }
     if (fit_.structure.lag && drive == Drive::measured) add<model::ChamberLag>({n.filling_s, n.venting_s});
     add_hysteresis();
     add_creep();

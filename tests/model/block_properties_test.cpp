@@ -124,6 +124,7 @@ TEST(EveryBlock, StepsInHalvesAsInOne) {
   // Both lags are exact for straight input; here they stand behind another one.
   const std::vector<std::size_t> approximate{block_type<AsymmetricValveLag>(),
                                              block_type<ChamberLag>(),
+                                             block_type<PressureRegulator>(),
                                              block_type<SupplySag>(),
                                              block_type<Leak>(),
                                              block_type<StressSoftening>(),

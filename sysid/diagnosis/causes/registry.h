@@ -59,6 +59,7 @@ using All = List<ActuatorThreshold,        //
 
 /// Blocks that are no form of a cause: the base structure, and the sensor's random error.
 using NoCauses = List<model::AsymmetricValveLag<double>,      //
+                      model::PressureRegulator<double>,       //
                       model::ChamberLag<double>,              //
                       model::BoucWen<double>,                 //
                       model::KelvinVoigt<double>,             //

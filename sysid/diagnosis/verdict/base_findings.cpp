@@ -91,6 +91,28 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
   });
 }
 
+/// The numbers of all names as they are beside each other.
+void renumber(BaseFindings& found, const SearchData& data) {
+  const FitSpace space = structure_space(data.records, found.fit.point.model, found.fit.causes);
+  const UncertainPoint at = uncertain_point(data.records, found.fit.point, space);
+  for (NamedCause& named : found.named) {
+    if (model::position_of(found.fit.point.model, named.block_type))
+      named.parameters = block_numbers(at, named.block_type);
+  }
+}
+
+/// What a base may do beside a cause it may do alone, or the cause would be given what that gains.
+void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const SearchData& data,
+                   const BaseQuestion& question) {
+  const FitPoint alone = fit_again(as_beside_causes, data.records, question.drive);
+  StructureFit fit = fit_structure(data.records, {}, alone, finishing_effort);
+  BlockLosses losses = linear_held_out_losses(data.records, question.division, fit);
+  if (!(rmse_mm(losses) < rmse_mm(found.losses))) return;
+  found.fit = std::move(fit);
+  found.losses = std::move(losses);
+  renumber(found, data);
+}
+
 /// What stands by itself now is no other explanation of an ingredient.
 void take_back_rivals(BaseFindings& found) {
   for (NamedCause& finding : found.named) {
@@ -108,16 +130,6 @@ Selection select_among_thinned(const FitPoint& base, const SearchData& data, con
   const Division division = thinned_like(question.division, data.records, data.thinned);
   return select_causes_upon(thinned, evaluate_structure(thinned.records, {}, base), question.noise_mm,
                             division, options);
-}
-
-/// The numbers of all names as they are beside each other.
-void renumber(BaseFindings& found, const SearchData& data) {
-  const FitSpace space = structure_space(data.records, found.fit.point.model, found.fit.causes);
-  const UncertainPoint at = uncertain_point(data.records, found.fit.point, space);
-  for (NamedCause& named : found.named) {
-    if (model::position_of(found.fit.point.model, named.block_type))
-      named.parameters = block_numbers(at, named.block_type);
-  }
 }
 
 }  // namespace
@@ -153,7 +165,10 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   const StructureTrial& chosen = better->chosen;
   BaseFindings found;
   found.chosen = chosen;
-  found.fit = evaluate_structure(data.records, {}, fit_again(chosen, (*view)(data.records), question.drive));
+  // Its time constants stand on a grid: a cause upon them would be given what moving them gains.
+  const FitPoint on_grid = fit_again(chosen, (*view)(data.records), question.drive);
+  found.fit = view == views.begin() ? fit_structure(data.records, {}, on_grid, finishing_effort)
+                                    : evaluate_structure(data.records, {}, on_grid);
   found.losses = linear_held_out_losses(data.records, question.division, found.fit);
   found.description = description_of(chosen.structure);
   name_ingredients(found, better->ablation, {data, plain, question});
@@ -180,6 +195,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   base.structure.hysteresis = HysteresisForm::play;
   base.structure.characteristic = true;
   base.ridge = std::min(base.ridge, most_ridge);
+  free_the_base(found, base, data, question);
   options.base_again = [base, drive = question.drive](const std::vector<Record>& readings) {
     return fit_again(base, readings, drive);
   };

@@ -13,6 +13,7 @@
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_dependent_creep.h"
+#include "model/blocks/pressure_regulator.h"
 #include "model/blocks/transport_delay.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/causes/backlash.h"
@@ -22,6 +23,7 @@
 #include "sysid/diagnosis/causes/slow_creep.h"
 #include "sysid/diagnosis/causes/stiffening.h"
 #include "sysid/diagnosis/causes/transport_delay.h"
+#include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/slack.h"
 #include "sysid/diagnosis/verdict/naming.h"
@@ -43,24 +45,28 @@ struct FindingName {
   Ingredient ingredient;
   std::string_view id;
   std::string_view rival;  ///< gives the same readings whatever the command; empty: none
-  std::size_t (*block)(Drive drive);
+  std::size_t (*block)(const BaseStructure& structure, Drive drive);
 };
 constexpr std::array names{
     FindingName{Ingredient::play_operators, causes::HysteresisShape::id, "",
-                [](Drive) { return model::block_type<model::PrandtlIshlinskii>(); }},
+                [](const BaseStructure&, Drive) { return model::block_type<model::PrandtlIshlinskii>(); }},
     FindingName{Ingredient::slow_creep, causes::SlowCreep::id, "",
-                [](Drive) { return model::block_type<model::KelvinVoigt>(); }},
-    FindingName{Ingredient::pressure_dependent_creep, causes::SlowCreep::id, "",
-                [](Drive) { return model::block_type<model::PressureDependentCreep>(); }},
+                [](const BaseStructure&, Drive) { return model::block_type<model::KelvinVoigt>(); }},
+    FindingName{
+        Ingredient::pressure_dependent_creep, causes::SlowCreep::id, "",
+        [](const BaseStructure&, Drive) { return model::block_type<model::PressureDependentCreep>(); }},
     FindingName{Ingredient::delay, causes::TransportDelay::id, "",
-                [](Drive) { return model::block_type<model::TransportDelay>(); }},
+                [](const BaseStructure&, Drive) { return model::block_type<model::TransportDelay>(); }},
     FindingName{Ingredient::lag, causes::ValveLag::id, "",
-                [](Drive drive) {
+                [](const BaseStructure& structure, Drive drive) {
                   return drive == Drive::measured ? model::block_type<model::ChamberLag>()
+                         : structure.regulator    ? model::block_type<model::PressureRegulator>()
                                                   : model::block_type<model::AsymmetricValveLag>();
                 }},
+    FindingName{Ingredient::regulator, causes::ValveDeadband::id, "",
+                [](const BaseStructure&, Drive) { return model::block_type<model::PressureRegulator>(); }},
     FindingName{Ingredient::characteristic, causes::Stiffening::id, causes::SensorNonlinearity::id,
-                [](Drive) { return model::block_type<model::Characteristic>(); }}};
+                [](const BaseStructure&, Drive) { return model::block_type<model::Characteristic>(); }}};
 
 /// What the recalibrated base leaves beyond the noise, held out. A fold in which it ran off does not tell how
 /// much there is to be explained.
@@ -91,7 +97,7 @@ class Namer {
   [[nodiscard]] NamedCause name(const FindingName& finding, const StructureTrial& without) const {
     NamedCause named;
     named.cause = *find_cause(finding.id);
-    named.block_type = finding.block(question_.drive);
+    named.block_type = finding.block(chosen_.structure, question_.drive);
     if (!finding.rival.empty()) named.rivals.push_back(*find_cause(finding.rival));
     if (finding.ingredient == Ingredient::play_operators && stands_still_)
       named.rivals.push_back(*find_cause(causes::Backlash::id));

@@ -7,6 +7,7 @@
 #include "model/blocks/characteristic.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/pressure_regulator.h"
 #include "model/blocks/transport_delay.h"
 #include "model/catalogue.h"
 #include "model/chain.h"
@@ -99,7 +100,8 @@ TEST(StructureProjection, WeightsAreNeverNegative) {
   const BaseStructure structure{.characteristic = false};
   const StructureGrid grid = grid_for(records);
   const Eigen::MatrixXd columns =
-      structure_columns(records, structure, grid, {0.05, 0.1, 0.1, 0, 0, 0.5, 0, {0}});
+      structure_columns(records, structure, grid,
+                        {.delay_s = 0.05, .filling_s = 0.1, .venting_s = 0.1, .peak_before_kpa = {0}});
   const ColumnLayout layout(structure, grid, records);
   const Eigen::VectorXd readings = Eigen::Map<const Eigen::VectorXd>(
       records[0].reading_mm.data(), static_cast<Eigen::Index>(records[0].reading_mm.size()));
@@ -189,6 +191,27 @@ TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {
   EXPECT_GT(found->model.blocks[*block].values.front(), 30);
 }
 
+/// From the command alone a regulator's overlap is seen in the finger; a lag is not taken for one.
+TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
+  model::Model regulated =
+      model::without_block(play_finger(), model::block_type<model::AsymmetricValveLag>());
+  regulated = model::with_block(std::move(regulated),
+                                {model::block_type<model::PressureRegulator>(), {0.03, 0.05, 0.8, 0.4, 12}});
+  for (const bool regulator : {false, true}) {
+    std::vector<Log> logs;
+    for (const SignalName signal : {SignalName::tp1, SignalName::sp2})
+      logs.push_back(simulated(regulator ? regulated : play_finger(), signal, 100, 0.03, 15));
+    const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
+    ASSERT_TRUE(found) << found.error();
+    const auto position = model::position_of<model::PressureRegulator>(found->model);
+    EXPECT_EQ(position.has_value(), regulator);
+    EXPECT_LT(found->rmse_mm, 1.3 * 0.03);
+    if (!position) continue;
+    const std::vector<double>& values = found->model.blocks[*position].values;
+    EXPECT_NEAR(values[model::parameter_index<model::PressureRegulator>("overlap_kpa")], 0.8, 0.4);
+  }
+}
+
 TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
   const Log log = simulated(play_finger(), SignalName::tp1, 100, 0.03, 7);
   const auto one = identify_structure({log}, StructureQuestion::prandtl_ishlinskii);
@@ -209,7 +232,8 @@ TEST(IdentifyStructure, NeverEndsAboveItsOwnRelaxation) {
   const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 100, 0.03, 8)};
   const std::vector<Record> records = make_records(logs, {});
   const StructureGrid grid = grid_for(records);
-  const NonlinearNumbers truth{0.06, 0.08, 0.2, 0.6, 0, 0.5, 0, {0}};
+  const NonlinearNumbers truth{
+      .delay_s = 0.06, .filling_s = 0.08, .venting_s = 0.2, .curvature = 0.6, .peak_before_kpa = {0}};
   StructureFitOptions options;
   options.ridge = 1e-7;
   const FittedStructure searched = fit_form(records, {}, grid, options);

@@ -1,0 +1,210 @@
+#pragma once
+// What a pressure regulator does: a spool, moved by the error and its integral, opens a port to the supply or
+// to the atmosphere, and does not open at all within its overlap (Beater, Pneumatic Drives, 2007, chapters 5
+// and 8).
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/exponential.h"
+#include "model/number.h"
+#include "model/segment.h"
+
+namespace softgrip::model {
+
+/// The numbers of a regulator. Each does nothing at 0; without time constants the pressure follows at once.
+template <class T>
+struct RegulatorNumbers {
+  T filling_s{0.0};      ///< time constant while the port to the supply is open
+  T venting_s{0.0};      ///< while the port to the atmosphere is, at 50 kPa
+  T overlap_kpa{0.0};    ///< error within which neither is
+  T integral_s{0.0};     ///< time in which a steady error moves the spool as far again as it does at once
+  T full_open_kpa{0.0};  ///< error beyond which a port opens no further
+};
+
+/// With v = e + integral of e / integral_s, e = u - p, clamped to full_open_kpa:
+///   filling_s p' = v - overlap where v > overlap;  venting_s p' / outflow(p) = v + overlap where v <
+///   -overlap; else p' = 0. The integral stands still while v is clamped and would grow.
+/// With no more than its time constants it is a TwoWayLag but for the outflow. In steps of at most
+/// `longest_step_s`, in each of which the integral is straight and the outflow is that of its begin; else
+/// exact for straight input.
+template <class T>
+class RegulatedPressure {
+ public:
+  explicit RegulatedPressure(const RegulatorNumbers<T>& numbers) : n_(numbers) {}
+
+  void reset(const T& input) {
+    pressure_kpa_ = input;
+    integral_kpa_ = T(0.0);
+  }
+  [[nodiscard]] const T& output() const { return pressure_kpa_; }
+
+  /// Passes one segment on, or one for every direction that the pressure takes.
+  template <class Next>
+  void step(const Segment<T>& in, Next&& next) {
+    if (value_of(n_.filling_s) <= 0 && value_of(n_.venting_s) <= 0) {
+      pressure_kpa_ = in.end;
+      next(in);
+      return;
+    }
+    if (is_zero(in.duration_s)) return;  // no air flows at once
+    const double duration_s = value_of(in.duration_s);
+    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / longest_step_s - 1e-9)));
+    const T step_s = in.duration_s / static_cast<double>(steps);
+    Segment<T> out{T(0.0), pressure_kpa_, pressure_kpa_, pressure_kpa_};
+    T area(0.0);
+    for (int i = 0; i < steps; ++i) {
+      const T from = in.at(T(static_cast<double>(i) / steps)), to = in.at(T((i + 1.0) / steps));
+      const T before = pressure_kpa_;
+      const T mean = go(step_s, from, to);
+      const double way = value_of(pressure_kpa_) - value_of(before);
+      if (way * (value_of(out.end) - value_of(out.begin)) < 0) {
+        out.mean = area / out.duration_s;
+        next(out);
+        out = {T(0.0), before, before, before};
+        area = T(0.0);
+      }
+      out.duration_s += step_s;
+      out.end = pressure_kpa_;
+      area += mean * step_s;
+    }
+    out.mean = area / out.duration_s;
+    next(out);
+  }
+
+ private:
+  static constexpr double longest_step_s = 0.005;
+  static constexpr double atmosphere_kpa = 101.325;
+  /// ISO 6358-1: critical pressure ratio of a usual port, and the ratio above which its flow is linear.
+  static constexpr double critical_ratio = 0.3, linear_above = 0.995;
+  /// Pressure at which venting_s is meant.
+  static constexpr double usual_kpa = 50;
+  static constexpr double shortest_s = 1e-4;
+
+  /// Flow to the atmosphere over what it is without any back pressure [kPa], for a pressure above it [kPa].
+  static T outflow(const T& gauge_kpa) {
+    using std::sqrt;
+    if (value_of(gauge_kpa) <= 0) return T(0.0);
+    const T from_kpa = gauge_kpa + atmosphere_kpa;
+    const T ratio = atmosphere_kpa / from_kpa;
+    const auto subsonic = [](const T& r) -> T {
+      const T x = (r - critical_ratio) * (1 / (1 - critical_ratio));
+      return sqrt(1.0 - x * x);
+    };
+    if (value_of(ratio) < linear_above) return from_kpa * subsonic(ratio);
+    return from_kpa * subsonic(T(linear_above)) * ((1.0 - ratio) * (1 / (1 - linear_above)));
+  }
+
+  /// One step on input from `from` to `to`; the mean of the pressure over it.
+  T go(const T& step_s, const T& from, const T& to) {
+    if (!(value_of(n_.integral_s) > 0)) return follow(step_s, from, to);
+    const T begins = from - pressure_kpa_;
+    const double stopped_before = stops_by(begins);
+    const T drift = stopped_before > 0 ? T(0.0) : T(begins * step_s / n_.integral_s);
+    const T mean = follow(step_s, from + integral_kpa_, to + integral_kpa_ + drift);
+    const T ends = to - pressure_kpa_;
+    const double stopped_after = stops_by(ends);
+    // By the error, now that the pressure is known, over the part of the step in which the integral moves.
+    if (stopped_before > 0 && stopped_after > 0) return mean;
+    T error = (from + to) * 0.5 - mean;
+    double share = 1;
+    if (stopped_before > 0 || stopped_after > 0) {
+      const double least = std::min(stopped_before, stopped_after);
+      share = -least / (std::max(stopped_before, stopped_after) - least);
+      const T& moving = stopped_before > 0 ? ends : begins;
+      const T& other = stopped_before > 0 ? begins : ends;
+      error = moving + (other - moving) * (0.5 * share);
+    }
+    integral_kpa_ += share * error * step_s / n_.integral_s;
+    return mean;
+  }
+
+  /// By how much the integral is beyond where it stands still [kPa]; not above 0: it moves.
+  [[nodiscard]] double stops_by(const T& error) const {
+    const double full = value_of(n_.full_open_kpa), asked = value_of(error) + value_of(integral_kpa_);
+    if (!(full > 0)) return -1;
+    return asked * value_of(error) > 0 ? std::abs(asked) - full : -1;
+  }
+
+  /// The band around what is wanted goes straight from `wanted` to `wanted_after`; the pressure goes towards
+  /// the edge that is nearer, if it is outside. The mean over the step.
+  T follow(const T& step_s, const T& wanted, const T& wanted_after) {
+    const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
+    const bool fills = p < value_of(wanted) - band;
+    if (!fills && !(p > value_of(wanted) + band)) return wait(step_s, wanted, wanted_after);
+    const T aside = fills ? -n_.overlap_kpa : n_.overlap_kpa;
+    const T edge = wanted + aside;
+    T mean(0.0);
+    const T lasts_s =
+        towards(step_s, edge, wanted_after + aside, fills ? n_.filling_s : venting_s(edge, step_s), mean);
+    const T rest_s = step_s - lasts_s;
+    if (!(value_of(rest_s) > 1e-6 * value_of(step_s))) return mean;
+    const T met = wanted + (wanted_after - wanted) * (lasts_s / step_s);
+    return (mean * lasts_s + wait(rest_s, met, wanted_after) * rest_s) / step_s;
+  }
+
+  /// Within the band, until an edge of it comes along.
+  T wait(const T& step_s, const T& wanted, const T& wanted_after) {
+    const double p = value_of(pressure_kpa_), band = value_of(n_.overlap_kpa);
+    const bool fills = p < value_of(wanted_after) - band;
+    if (!fills && !(p > value_of(wanted_after) + band)) return pressure_kpa_;
+    const T aside = fills ? -n_.overlap_kpa : n_.overlap_kpa;
+    const T edge = wanted + aside, edge_after = wanted_after + aside, before = pressure_kpa_;
+    const T waits =
+        value_of(edge_after) == value_of(edge) ? T(0.0) : T((before - edge) / (edge_after - edge));
+    const T rest_s = step_s * (1.0 - waits);
+    T mean(0.0);
+    (void)towards(rest_s, before, edge_after, fills ? n_.filling_s : venting_s(edge_after, rest_s), mean);
+    return before * waits + mean * (1.0 - waits);
+  }
+
+  /// The time constant at the pressure where the venting towards `target_kpa` is halfway through the step.
+  T venting_s(const T& target_kpa, const T& step_s) const {
+    static const double usual = value_of(outflow(T(usual_kpa)));
+    const T begins = outflow(pressure_kpa_);
+    if (value_of(begins) <= 0) return T(1e9);  // nothing leaves a chamber without pressure
+    const T z = step_s * begins / (n_.venting_s * usual);
+    const T halfway = outflow(pressure_kpa_ + (target_kpa - pressure_kpa_) * (z / (2.0 + z)));
+    return n_.venting_s * (usual / (value_of(halfway) > 0 ? halfway : begins));
+  }
+
+  /// Lags behind a straight target until it meets it. How long that lasts, and the mean meanwhile.
+  T towards(const T& step_s, const T& target, const T& target_after, const T& time_constant, T& mean) {
+    using std::log1p;
+    const T tau = value_of(time_constant) > shortest_s ? time_constant : T(shortest_s);
+    const T slope = (target_after - target) / step_s, most = n_.full_open_kpa - n_.overlap_kpa;
+    T gap = target - pressure_kpa_, open_s(0.0), area(0.0);
+    const double way = value_of(gap) != 0 ? value_of(gap) : value_of(slope);
+    const double sign = way > 0 ? 1 : -1;
+    if (value_of(n_.full_open_kpa) > 0 && std::abs(value_of(gap)) > value_of(most)) {
+      // The port is as open as it gets.
+      const T rate = sign * most / tau;
+      open_s = step_s;
+      if (sign * (value_of(rate) - value_of(slope)) > 0) {
+        const T until_s = (gap - sign * most) / (rate - slope);
+        if (value_of(until_s) < value_of(step_s)) open_s = until_s;
+      }
+      area = (pressure_kpa_ + rate * open_s * 0.5) * open_s;
+      pressure_kpa_ += rate * open_s;
+      gap += (slope - rate) * open_s;
+    }
+    T lags_s = step_s - open_s;
+    if (value_of(gap) * value_of(slope) < 0) {
+      const T meets_s = tau * log1p(-gap / (slope * tau));
+      if (value_of(meets_s) < value_of(lags_s)) lags_s = meets_s;
+    }
+    const T z = lags_s / tau;
+    const PhiFunctions<T> f = phi_functions(z);
+    const T rise = slope * lags_s, before = pressure_kpa_;
+    pressure_kpa_ = before + z * f.phi1 * gap + z * f.phi2 * rise;
+    area += (before + z * f.phi2 * gap + z * f.phi3 * rise) * lags_s;
+    const T lasts_s = open_s + lags_s;
+    mean = value_of(lasts_s) > 0 ? T(area / lasts_s) : pressure_kpa_;
+    return lasts_s;
+  }
+
+  RegulatorNumbers<T> n_;
+  T pressure_kpa_{0.0}, integral_kpa_{0.0};
+};
+
+}  // namespace softgrip::model

@@ -1,0 +1,124 @@
+#include "model/blocks/pressure_regulator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "model/blocks/asymmetric_valve_lag.h"
+#include "model/regulated_pressure.h"
+#include "tests/model/drive.h"
+
+namespace softgrip::model::testing::pressure_regulator_test {
+namespace {
+
+using Block = PressureRegulator<double>;
+
+/// The equations in steps of two microseconds: a referee that knows no exponential, with the flow of ISO 6358
+/// written down once more.
+class SmallSteps {
+ public:
+  SmallSteps(double filling_s, double venting_s, double overlap, double integral_s, double full)
+      : filling_s_(filling_s),
+        venting_s_(venting_s),
+        overlap_(overlap),
+        integral_s_(integral_s),
+        full_(full) {}
+
+  void go(double lasts, double from, double to) {
+    const int count = static_cast<int>(lasts / 2e-6);
+    const double h = lasts / count;
+    for (int k = 0; k < count; ++k) {
+      const double error = from + (to - from) * (k + 0.5) / count - pressure_;
+      const double asked = error + integral_;
+      if (!(full_ > 0 && std::abs(asked) > full_ && asked * error > 0)) integral_ += h * error / integral_s_;
+      const double v = full_ > 0 ? std::clamp(asked, -full_, full_) : asked;
+      if (v > overlap_) pressure_ += h * (v - overlap_) / filling_s_;
+      if (v < -overlap_) pressure_ += h * (v + overlap_) / venting_s_ * outflow(pressure_) / outflow(50);
+    }
+  }
+  double pressure_ = 0;
+
+ private:
+  static double outflow(double gauge) {
+    if (gauge <= 0) return 0;
+    const double from = gauge + 101.325, ratio = 101.325 / from, b = 0.3;
+    const auto psi = [b](double r) { return std::sqrt(1 - std::pow((r - b) / (1 - b), 2)); };
+    return from * (ratio < 0.995 ? psi(ratio) : psi(0.995) * (1 - ratio) / 0.005);
+  }
+
+  double filling_s_, venting_s_, overlap_, integral_s_, full_;
+  double integral_ = 0;
+};
+
+/// Steps as a board holds them, and ramps of up to 600 kPa/s.
+TEST(PressureRegulator, MeetsASmallStepIntegrator) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> pressure(0, 60), duration(0.1, 0.4);
+  Block block = make<Block>({0.03, 0.05, 0.6, 0.4, 11});
+  SmallSteps referee(0.03, 0.05, 0.6, 0.4, 11);
+  double at = 0, worst = 0;
+  for (int i = 0; i < 80; ++i) {
+    const double to = pressure(random), lasts = duration(random), from = i % 2 == 0 ? at : to;
+    referee.go(lasts, from, to);
+    if (from != at) pass(block, Segment<double>::straight(0, at, from));
+    pass(block, Segment<double>::straight(lasts, from, to));
+    worst = std::max(worst, std::abs(block.output() - referee.pressure_));
+    at = to;
+  }
+  // Where the integral begins to move again within a step: a fifth of a percent of the largest jump.
+  EXPECT_LT(worst, 0.002 * 62) << "seed 31";
+}
+
+TEST(PressureRegulator, StandsStillWithinItsOverlapUntilTheIntegralHasGrown) {
+  Block block = make<Block>({0.02, 0.02, 0.5, 0.4, 0});
+  block.reset(20);
+  pass(block, Segment<double>::straight(0, 20, 20.4));
+  pass(block, Segment<double>::straight(0.05, 20.4, 20.4));
+  EXPECT_EQ(block.output(), 20);
+  // 0.4 + 0.4 t / 0.4 s reaches 0.5 after 0.1 s.
+  pass(block, Segment<double>::straight(0.04, 20.4, 20.4));
+  EXPECT_EQ(block.output(), 20);
+  pass(block, Segment<double>::straight(0.5, 20.4, 20.4));
+  EXPECT_GT(block.output(), 20.2);
+}
+
+TEST(PressureRegulator, EndsWhereItIsAskedToBe) {
+  Block block = make<Block>({0.02, 0.03, 0.5, 0.4, 12});
+  pass(block, Segment<double>::straight(0, 0, 30));
+  for (int i = 0; i < 400; ++i) pass(block, Segment<double>::straight(0.02, 30, 30));
+  EXPECT_NEAR(block.output(), 30, 0.05);
+}
+
+TEST(PressureRegulator, OpensNoFurtherThanItGets) {
+  Block block = make<Block>({0.05, 0.05, 0, 0, 10});
+  pass(block, Segment<double>::straight(0, 0, 60));
+  pass(block, Segment<double>::straight(0.1, 60, 60));
+  EXPECT_NEAR(block.output(), 0.1 * 10 / 0.05, 1e-9);
+}
+
+TEST(PressureRegulator, IsTheLagOfTheValveWhereItOnlyFills) {
+  Block regulator = make<Block>({0.06, 0.1, 0, 0, 0});
+  auto lag = make<AsymmetricValveLag<double>>({0.06, 0.1});
+  for (const auto& [from, to] : {std::pair{0.0, 10.0}, {10.0, 35.0}, {35.0, 60.0}}) {
+    pass(regulator, Segment<double>::straight(0.03, from, to));
+    pass(lag, Segment<double>::straight(0.03, from, to));
+    EXPECT_NEAR(regulator.output(), lag.output(), 1e-9);
+  }
+}
+
+TEST(RegulatedPressure, PassesOnWhatItIsInTheMean) {
+  RegulatedPressure<double> whole({0.03, 0.05, 0.4, 0.4, 12}), fine({0.03, 0.05, 0.4, 0.4, 12});
+  double area = 0, fine_area = 0;
+  whole.step(Segment<double>::straight(0.08, 0, 40),
+             [&](const Segment<double>& s) { area += s.mean * s.duration_s; });
+  for (int i = 0; i < 160; ++i) {
+    fine.step(Segment<double>::straight(0.0005, 0.25 * i, 0.25 * (i + 1)),
+              [&](const Segment<double>& s) { fine_area += s.mean * s.duration_s; });
+  }
+  EXPECT_NEAR(area, fine_area, 2e-3 * fine_area);
+}
+
+}  // namespace
+}  // namespace softgrip::model::testing::pressure_regulator_test
