@@ -89,8 +89,7 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
   const Found elastic = found_in(plays());
   ASSERT_TRUE(elastic.base);
   EXPECT_FALSE(has_backlash(elastic));
-  const Found slack =
-      found_in(model::with_block(plays(), model::block_of<model::Backlash>({{"gap_mm", 3}})));
+  const Found slack = found_in(model::with_block(plays(), model::block_of<model::Backlash>({{"gap_mm", 3}})));
   ASSERT_TRUE(slack.base);
   EXPECT_TRUE(has_backlash(slack));
 }
