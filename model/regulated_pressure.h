@@ -48,14 +48,21 @@ class RegulatedPressure {
       return;
     }
     if (is_zero(in.duration_s)) return;  // no air flows at once
-    const double duration_s = value_of(in.duration_s);
-    const int steps = std::max(1, static_cast<int>(std::ceil(duration_s / longest_step_s - 1e-9)));
+    const double wanted = std::ceil(value_of(in.duration_s) / longest_step_s - 1e-9);
+    const int steps = static_cast<int>(std::clamp(wanted, 1.0, most_steps));
     const T step_s = in.duration_s / static_cast<double>(steps);
     Segment<T> out{T(0.0), pressure_kpa_, pressure_kpa_, pressure_kpa_};
     T area(0.0);
     for (int i = 0; i < steps; ++i) {
       const T from = in.at(T(static_cast<double>(i) / steps)), to = in.at(T((i + 1.0) / steps));
       const T before = pressure_kpa_;
+      if (rests(from, to)) {
+        // Whatever else there is of a long rest.
+        const T rest_s = step_s * static_cast<double>(steps - i);
+        out.duration_s += rest_s;
+        area += before * rest_s;
+        break;
+      }
       const T mean = go(step_s, from, to);
       const double way = value_of(pressure_kpa_) - value_of(before);
       if (way * (value_of(out.end) - value_of(out.begin)) < 0) {
@@ -74,6 +81,8 @@ class RegulatedPressure {
 
  private:
   static constexpr double longest_step_s = 0.005;
+  /// Of a segment, more than an hour of it; a longer one has come to rest before.
+  static constexpr double most_steps = 1e6;
   static constexpr double atmosphere_kpa = 101.325;
   /// ISO 6358-1: critical pressure ratio of a usual port, and the ratio above which its flow is linear.
   static constexpr double critical_ratio = 0.3, linear_above = 0.995;
@@ -93,6 +102,13 @@ class RegulatedPressure {
     };
     if (value_of(ratio) < linear_above) return from_kpa * subsonic(ratio);
     return from_kpa * subsonic(T(linear_above)) * ((1.0 - ratio) * (1 / (1 - linear_above)));
+  }
+
+  /// Nothing is asked for, and nothing will be.
+  [[nodiscard]] bool rests(const T& from, const T& to) const {
+    constexpr double nothing_kpa = 1e-9;
+    return value_of(from) == value_of(to) && std::abs(value_of(to) - value_of(pressure_kpa_)) < nothing_kpa &&
+           std::abs(value_of(integral_kpa_)) <= value_of(n_.overlap_kpa);
   }
 
   /// One step on input from `from` to `to`; the mean of the pressure over it.

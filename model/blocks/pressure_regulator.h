@@ -1,6 +1,8 @@
 #pragma once
 // A pressure regulator whose spool has an overlap and whose control integrates.
 
+#include <string_view>
+
 #include "model/block.h"
 #include "model/regulated_pressure.h"
 
@@ -25,6 +27,11 @@ class PressureRegulator {
                 Typical{0.4}, Within{0.0, 1000.0}, Scale{0.5}, Placed{}, Neutral{0.0}),
       parameter("full_open_kpa", "kPa", "error beyond which no port opens further; 0: none", Typical{12.0},
                 Within{0.0, 1000.0}, Scale{10.0}, Placed{}, Neutral{0.0})};
+
+  static std::string_view objection(std::span<const double> values) {
+    if (values[4] > 0 && values[4] <= values[2]) return "full_open_kpa must be above overlap_kpa, or 0";
+    return {};
+  }
 
   PressureRegulator(std::span<const T> values, const Preparation&)
       : regulated_({values[0], values[1], values[2], values[3], values[4]}) {}

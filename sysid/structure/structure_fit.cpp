@@ -18,6 +18,8 @@ namespace {
 constexpr double prior = 0.05;
 /// What follows the pressure at once has at least this share of the finger's gain over all pressures.
 constexpr double least_elastic_share = 0.01;
+/// Share of the largest pressure that a regulator's dead band has at most; data sheets say 0.005 to 0.02.
+constexpr double widest_of_a_regulator = 0.03;
 /// From one time constant of the ladder to the next.
 constexpr double ladder_ratio = 3;
 
@@ -140,8 +142,10 @@ class Search {
       }
     }
     if (structure_.lag && structure_.regulator) {
-      add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, 20));
-      add_driving(straight(&N::overlap_kpa, 1, 0, 0, 20));
+      // A wider one is no regulator's: a backlash would be taken for it.
+      const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
+      add_driving(straight(&N::pilot_band_kpa, 1, 0, 0, widest_kpa));
+      add_driving(straight(&N::overlap_kpa, 1, 0, 0, widest_kpa));
       add_driving(logarithmic(&N::integral_s, 1.5, 0.5, 0.02, 100));
       add_driving(logarithmic(&N::full_open_kpa, 1.5, 15, 1, 1000));
     }

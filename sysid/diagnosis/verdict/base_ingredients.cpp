@@ -90,7 +90,7 @@ class Namer {
         const BaseQuestion& question)
       : chosen_(chosen),
         question_(question),
-        stands_still_(elastic_share(point.model) < stands_still_below),
+        stands_still_(elastic_share(chosen.point.model) < stands_still_below),
         space_(point.model, data.records, free_numbers(point.model)),
         at_(uncertain_point(data.records, point, space_)) {}
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -106,6 +107,21 @@ TEST(PressureRegulator, IsTheLagOfTheValveWhereItOnlyFills) {
     pass(lag, Segment<double>::straight(0.03, from, to));
     EXPECT_NEAR(regulator.output(), lag.output(), 1e-9);
   }
+}
+
+TEST(PressureRegulator, ALongRestIsNotWalkedThrough) {
+  Block block = make<Block>({0.02, 0.03, 0.5, 0.4, 12});
+  block.reset(20);
+  const auto out = pass(block, Segment<double>::straight(1e9, 20, 20));
+  ASSERT_EQ(out.size(), 1U);
+  EXPECT_EQ(out.front().duration_s, 1e9);
+  EXPECT_EQ(out.front().mean, 20);
+}
+
+TEST(PressureRegulator, ObjectsToAPortThatIsFullyOpenWithinItsOverlap) {
+  EXPECT_FALSE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.5}).empty());
+  EXPECT_TRUE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.6}).empty());
+  EXPECT_TRUE(Block::objection(std::array{0.02, 0.03, 0.5, 0.4, 0.0}).empty());
 }
 
 TEST(RegulatedPressure, PassesOnWhatItIsInTheMean) {

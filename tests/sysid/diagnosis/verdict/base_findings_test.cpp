@@ -16,6 +16,7 @@
 #include "sysid/diagnosis/causes/transport_delay.h"
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/fit.h"
+#include "sysid/diagnosis/search/slack.h"
 #include "sysid/diagnosis/verdict/base_ingredients.h"
 #include "tests/sysid/simulated.h"
 
@@ -91,7 +92,8 @@ TEST(BaseIngredients, ABacklashMayBeWhatOperatorsWithoutAnElasticOneMakeUpFor) {
   EXPECT_FALSE(has_backlash(elastic));
   const Found slack = found_in(model::with_block(plays(), model::block_of<model::Backlash>({{"gap_mm", 3}})));
   ASSERT_TRUE(slack.base);
-  EXPECT_TRUE(has_backlash(slack));
+  EXPECT_TRUE(has_backlash(slack)) << slack.base->description << ", elastic share "
+                                   << elastic_share(slack.base->fit.point.model);
 }
 
 /// Of a selection that leaves too much nothing is named.
