@@ -26,8 +26,8 @@ struct RegulatorNumbers {
 ///   filling_s p' = v - overlap where v > overlap;  venting_s p' / outflow(p) = v + overlap where v <
 ///   -overlap; else p' = 0. The integral stands still while v is clamped and would grow.
 /// With no more than its time constants it is a TwoWayLag but for the outflow. In steps of at most
-/// `longest_step_s`, in each of which the integral is straight and the outflow is that of its begin; else
-/// exact for straight input.
+/// `longest_step_s`, in each of which the integral is straight and the outflow is that of its middle;
+/// else exact for straight input.
 template <class T>
 class RegulatedPressure {
  public:

@@ -13,6 +13,13 @@ namespace {
 using Segment = model::Segment<double>;
 using Weights = model::ExponentialWeights<double>;
 
+/// Whether the pressure in the finger is the same.
+bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
+  return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
+         a.pilot_band_kpa == b.pilot_band_kpa && a.overlap_kpa == b.overlap_kpa &&
+         a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
+}
+
 /// The branches of a ladder, all behind the same signal, two by two.
 class Ladder {
  public:
@@ -164,17 +171,6 @@ std::vector<RowPlace> rows_of(const std::vector<Record>& records) {
   }
   return rows;
 }
-
-namespace {
-
-/// Whether the pressure in the finger is the same.
-bool drive_alike(const NonlinearNumbers& a, const NonlinearNumbers& b) {
-  return a.delay_s == b.delay_s && a.filling_s == b.filling_s && a.venting_s == b.venting_s &&
-         a.pilot_band_kpa == b.pilot_band_kpa && a.overlap_kpa == b.overlap_kpa &&
-         a.integral_s == b.integral_s && a.full_open_kpa == b.full_open_kpa;
-}
-
-}  // namespace
 
 StructureColumns::StructureColumns(const std::vector<Record>& records, const BaseStructure& structure,
                                    const StructureGrid& grid)

@@ -312,7 +312,6 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
   for (NonlinearNumbers& start : starts) {
     if (!structure.delay) start.delay_s = 0;
     if (!structure.lag) start.filling_s = start.venting_s = 0;
-    if (structure.regulator && near == nullptr) start = with_usual_regulator(std::move(start), grid);
     bool converged = false;
     Search::State found = look.run(start, converged);
     fit.start_rmse_mm.push_back(std::sqrt(found.projection.mean_square_mm2));

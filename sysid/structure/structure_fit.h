@@ -37,7 +37,8 @@ struct FittedStructure {
 /// error of a fully open port by the pressures that there are.
 [[nodiscard]] NonlinearNumbers with_usual_regulator(NonlinearNumbers numbers, const StructureGrid& grid);
 
-/// From several starts of its own, or from `near`, where numbers are known already.
+/// From several starts of its own, or from `near`, where numbers are known already; a structure with a
+/// regulator is fitted from `near` alone, see with_usual_regulator().
 [[nodiscard]] FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure& structure,
                                        const StructureGrid& grid, const StructureFitOptions& options,
                                        const NonlinearNumbers* near = nullptr);

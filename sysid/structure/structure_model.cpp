@@ -31,13 +31,7 @@ class Builder {
   model::Model model(Drive drive) {
     const NonlinearNumbers& n = fit_.numbers;
     if (fit_.structure.delay && n.delay_s > 0) add<model::TransportDelay>({n.delay_s});
-    if (fit_.structure.lag && fit_.structure.regulator) {
-      if (n.pilot_band_kpa > 0) add<model::ValveDeadband>({n.pilot_band_kpa});
-      add<model::PressureRegulator>({n.filling_s, n.venting_s, n.overlap_kpa, n.integral_s, n.full_open_kpa});
-    } else if (fit_.structure.lag && drive == Drive::command) {
-      add<model::AsymmetricValveLag>({n.filling_s, n.venting_s});
-    }
-    if (fit_.structure.lag && drive == Drive::measured) add<model::ChamberLag>({n.filling_s, n.venting_s});
+    if (fit_.structure.lag) add_lag(drive);
     add_hysteresis();
     add_creep();
     add_hinged_creep();
@@ -51,6 +45,18 @@ class Builder {
   void add(std::vector<double> values) {
     model_ = model::with_block(std::move(model_), {model::block_type<Block>(), std::move(values)});
   }
+  void add_lag(Drive drive) {
+    const NonlinearNumbers& n = fit_.numbers;
+    if (drive == Drive::measured) {
+      add<model::ChamberLag>({n.filling_s, n.venting_s});
+    } else if (fit_.structure.regulator) {
+      if (n.pilot_band_kpa > 0) add<model::ValveDeadband>({n.pilot_band_kpa});
+      add<model::PressureRegulator>({n.filling_s, n.venting_s, n.overlap_kpa, n.integral_s, n.full_open_kpa});
+    } else {
+      add<model::AsymmetricValveLag>({n.filling_s, n.venting_s});
+    }
+  }
+
   [[nodiscard]] double weight(Eigen::Index column) const { return fit_.weights(column); }
 
   void add_hysteresis() {

@@ -101,15 +101,24 @@ void renumber(BaseFindings& found, const SearchData& data) {
   }
 }
 
+/// The structure fitted to the readings as they are, and its time constants off their grid: a cause upon them
+/// would be given what moving them gains.
+StructureFit fit_off_grid(const StructureTrial& trial, const SearchData& data, Drive drive) {
+  return fit_structure(data.records, {}, fit_again(trial, data.records, drive), finishing_effort);
+}
+
 /// What a base may do beside a cause it may do alone, or the cause would be given what that gains.
 void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, const SearchData& data,
                    const BaseQuestion& question) {
-  const FitPoint alone = fit_again(as_beside_causes, data.records, question.drive);
-  StructureFit fit = fit_structure(data.records, {}, alone, finishing_effort);
+  const bool is_free = found.chosen.structure == as_beside_causes.structure &&
+                       found.chosen.ridge == as_beside_causes.ridge && found.off_grid;
+  if (is_free) return;
+  StructureFit fit = fit_off_grid(as_beside_causes, data, question.drive);
   BlockLosses losses = linear_held_out_losses(data.records, question.division, fit);
   if (!(rmse_mm(losses) < rmse_mm(found.losses))) return;
   found.fit = std::move(fit);
   found.losses = std::move(losses);
+  found.description = description_of(as_beside_causes.structure);
   renumber(found, data);
 }
 
@@ -165,10 +174,10 @@ std::optional<BaseFindings> find_base(const SearchData& data, const Selection& p
   const StructureTrial& chosen = better->chosen;
   BaseFindings found;
   found.chosen = chosen;
-  // Its time constants stand on a grid: a cause upon them would be given what moving them gains.
-  const FitPoint on_grid = fit_again(chosen, (*view)(data.records), question.drive);
-  found.fit = view == views.begin() ? fit_structure(data.records, {}, on_grid, finishing_effort)
-                                    : evaluate_structure(data.records, {}, on_grid);
+  found.off_grid = view == views.begin();
+  found.fit = found.off_grid ? fit_off_grid(chosen, data, question.drive)
+                             : evaluate_structure(data.records, {},
+                                                  fit_again(chosen, (*view)(data.records), question.drive));
   found.losses = linear_held_out_losses(data.records, question.division, found.fit);
   found.description = description_of(chosen.structure);
   name_ingredients(found, better->ablation, {data, plain, question});

@@ -35,19 +35,17 @@ Nanoseconds now() {
   return MonotonicClock().now();
 }
 
-/// After a fault the next session listens for as long as the longest frame takes: a quarter of a second at
-/// 9600 baud, far more than a loaded machine delays a byte by; 22 ms at 115200 are not.
-SerialLine listening_long() {
-  SerialLine line;
-  line.baud = 9600;
-  return line;
-}
-
 SerialLine line_at(const std::string& device, std::uint32_t baud = 115200) {
   SerialLine line;
   line.device = device;
   line.baud = baud;
   return line;
+}
+
+/// After a fault the next session listens for as long as the longest frame takes: a quarter of a second at
+/// 9600 baud, far more than a loaded machine delays a byte by; 22 ms at 115200 are not.
+SerialLine listening_long() {
+  return line_at("", 9600);
 }
 
 /// Input register N holds 1000 + N.
