@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "model/chain.h"
+#include "model/named.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/fitting/trajectory_walk.h"
 
@@ -73,13 +74,26 @@ class Tracks {
   std::size_t count_ = 0;
 };
 
+/// Takes whole samples out of a transport delay, and says how many: a jump is seen in as many samples later,
+/// and no course can be told from another one before.
+std::size_t take_whole_samples(model::Model& model, const Record& record) {
+  model::BlockSpec* delay = model::find_block<model::TransportDelay>(model);
+  if (delay == nullptr || record.sample_time_s <= 0) return 0;
+  double& delay_s = model::value<model::TransportDelay>(*delay, "delay_s");
+  const double most = static_cast<double>(record.size() - 1);
+  const double samples = std::clamp(std::floor(delay_s / record.sample_time_s), 0.0, most);
+  delay_s -= samples * record.sample_time_s;
+  return static_cast<std::size_t>(samples);
+}
+
 class JumpTracker {
  public:
   JumpTracker(const Record& record, const FitPoint& point, const StartState& start, double band_kpa,
               double resolution_kpa, double worth_mm2)
       : record_(record), band_kpa_(band_kpa), resolution_kpa_(resolution_kpa), worth_mm2_(worth_mm2) {
-    Track first{model::Chain<double>(point.model, {}, record.sample_time_s), record.drive_kpa.front(), 0,
-                no_jump};
+    model::Model behind = point.model;
+    seen_later_ = take_whole_samples(behind, record);
+    Track first{model::Chain<double>(behind, {}, record.sample_time_s), record.drive_kpa.front(), 0, no_jump};
     sysid::start(first.chain, record, start.peak_before_kpa);
     start_mm_.resize(record.size());
     add_start(point.model, record, start, start_mm_);
@@ -89,7 +103,7 @@ class JumpTracker {
   }
 
   ValveCourse run() {
-    for (std::size_t i = 1; i < record_.size(); ++i) {
+    for (std::size_t i = 1; i + seen_later_ < record_.size(); ++i) {
       step(i);
       if (is_beaten_) return {{}, {}, std::numeric_limits<double>::infinity()};
     }
@@ -98,7 +112,7 @@ class JumpTracker {
 
  private:
   void step(std::size_t i) {
-    around_ = surroundings_at(record_, i);
+    around_ = surroundings_at(record_, i + seen_later_);
     const double to = drive_at_end(record_, i);
     const double from = record_.held ? to : record_.drive_kpa[i - 1];
     next_.clear();
@@ -119,7 +133,7 @@ class JumpTracker {
         next_.take(track);
       }
     }
-    if (any_jump || i % look_again == 0 || i + 1 == record_.size()) {
+    if (any_jump || i % look_again == 0 || i + seen_later_ + 1 == record_.size()) {
       prune();
     } else {
       std::swap(tracks_, next_);
@@ -128,8 +142,9 @@ class JumpTracker {
 
   void advance(Track& track, std::size_t i, double held_kpa) {
     track.held_kpa = held_kpa;
-    const double y = track.chain.step(record_.duration_s[i], held_kpa, around_) + start_mm_[i];
-    const double error = record_.reading_mm[i] - y;
+    const std::size_t seen = i + seen_later_;
+    const double y = track.chain.step(record_.duration_s[i], held_kpa, around_) + start_mm_[seen];
+    const double error = record_.reading_mm[seen] - y;
     if (!std::isnan(error)) track.cost_mm2 += error * error;
   }
 
@@ -192,6 +207,7 @@ class JumpTracker {
 
   const Record& record_;
   double band_kpa_, resolution_kpa_, worth_mm2_;
+  std::size_t seen_later_ = 0;  ///< samples after which a reading shows a jump
   double give_up_mm2_ = 0;
   bool is_beaten_ = false;
   std::vector<double> start_mm_;

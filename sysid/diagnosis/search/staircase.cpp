@@ -133,6 +133,11 @@ std::optional<Staircase> staircase_from(const std::vector<Record>& records, cons
   return found;
 }
 
+/// Half the noise, in pressure.
+double resolution_of(const Scales& scales, double noise_mm) {
+  return 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
+}
+
 bool is_a_band(const Staircase& found, double resolution_kpa) {
   return found.scatter <=
          std::min(std::hypot(most_scatter, resolution_kpa / found.band_kpa), most_scatter_in_all);
@@ -156,8 +161,7 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
                                         double noise_mm, unsigned threads) {
   const Scales scales = scales_of(records);
   if (scales.largest_kpa <= 0 || scales.span_mm <= 0) return std::nullopt;
-  // Half the noise, in pressure.
-  const double resolution_kpa = 0.5 * noise_mm * scales.largest_kpa / scales.span_mm;
+  const double resolution_kpa = resolution_of(scales, noise_mm);
   const std::vector<double> bands = bands_of(scales, resolution_kpa);
   if (bands.empty()) return std::nullopt;
   const double band_kpa = best_band(records, behind.point, bands, resolution_kpa, threads);
@@ -169,6 +173,15 @@ std::optional<Staircase> find_staircase(const std::vector<Record>& records, cons
       return found;
   }
   return std::nullopt;
+}
+
+std::optional<Staircase> staircase_without(const std::vector<Record>& records, const Staircase& found,
+                                           const Cause& cause, double noise_mm, unsigned threads) {
+  const double resolution_kpa = resolution_of(scales_of(records), noise_mm);
+  const StructureFit rest = fit_without_cause(found.records, found.fit, cause);
+  auto again = staircase_from(records, rest, found.band_kpa, resolution_kpa, threads);
+  if (!again || !is_a_band(*again, resolution_kpa)) return std::nullopt;
+  return again;
 }
 
 }  // namespace softgrip::sysid

@@ -51,4 +51,9 @@ struct Band {
                                                       const StructureFit& behind, double noise_mm,
                                                       unsigned threads);
 
+/// The same without one of the causes that stand behind it, from where it stands.
+[[nodiscard]] std::optional<Staircase> staircase_without(const std::vector<Record>& records,
+                                                         const Staircase& found, const Cause& cause,
+                                                         double noise_mm, unsigned threads);
+
 }  // namespace softgrip::sysid

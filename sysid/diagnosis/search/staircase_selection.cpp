@@ -34,6 +34,18 @@ std::optional<StructureFit> behind_the_valve(const SearchData& data, const Struc
   return without_cause(*fits.front().fit, dead_band);
 }
 
+/// Of two causes that were selected while the staircase was missing one may have stood in for it: it leaves no
+/// less beside it.
+Staircase without_stand_in(const SearchData& data, Staircase found, double noise_mm) {
+  if (found.fit.causes.size() < 2) return found;
+  const std::vector<Cause> causes = found.fit.causes;
+  for (const Cause& cause : causes) {
+    auto rest = staircase_without(data.records, found, cause, noise_mm, data.threads);
+    if (rest && rest->fit.mean_square_mm2 <= found.fit.mean_square_mm2) return std::move(*rest);
+  }
+  return found;
+}
+
 /// The staircase in front of the base, or of all that was selected: whichever leaves less. A cause that was
 /// selected without one may be a second effect, or stand in for the staircase itself.
 std::optional<Staircase> staircase_before(const SearchData& data, const Selection& plain,
@@ -45,6 +57,7 @@ std::optional<Staircase> staircase_before(const SearchData& data, const Selectio
     const auto behind = behind_the_valve(data, *structure, dead_band);
     if (!behind) continue;
     auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
+    if (found) found = without_stand_in(data, std::move(*found), noise_mm);
     if (!found || (best && found->fit.mean_square_mm2 > best->fit.mean_square_mm2)) continue;
     best = std::move(found);
     if (structure_of(best->fit.residual_mm, noise_mm).excess_mm < a_jump_off * noise_mm) break;

@@ -58,10 +58,11 @@ double AnotherBase::mean_square_mm2() const {
   return found_ ? found_->fit.mean_square_mm2 : std::numeric_limits<double>::infinity();
 }
 
-bool AnotherBase::is_far_better(const Selection& selection) const {
+bool AnotherBase::settles(const Selection& selection) const {
   if (!found_) return false;
-  const double left_mm = structure_of(found_->fit.residual_mm, question_.noise_mm).excess_mm;
-  return square(left_mm) < left_by_what_was_missing * square(selection.left.excess_mm);
+  const Structure left = structure_of(found_->fit.residual_mm, question_.noise_mm);
+  return !leaves_too_much(left, selection.base_structure, question_.noise_mm) &&
+         square(left.excess_mm) < left_by_what_was_missing * square(selection.left.excess_mm);
 }
 
 }  // namespace softgrip::sysid

@@ -35,8 +35,8 @@ class AnotherBase {
   [[nodiscard]] BaseFindings& found() { return *found_; }
   /// Infinite where none is found [mm^2].
   [[nodiscard]] double mean_square_mm2() const;
-  /// Whether one is found that leaves far less structure than the selection does.
-  [[nodiscard]] bool is_far_better(const Selection& selection) const;
+  /// Whether one is found that explains the data and leaves far less structure than the selection does.
+  [[nodiscard]] bool settles(const Selection& selection) const;
 
  private:
   const SearchData& data_;

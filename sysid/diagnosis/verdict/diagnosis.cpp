@@ -83,7 +83,7 @@ class Diagnostician {
     if (leaves_too_much(selection) || (another.is_found() && selection.left.present)) {
       if (may_ask_at_once()) look_for_base(another, selection);
       clock.ended("base");
-      if (!another.is_far_better(selection) && look_for_staircase(selection, division)) {
+      if (!another.settles(selection) && look_for_staircase(selection, division)) {
         another.drop();
         clock.ended("staircase");
       }

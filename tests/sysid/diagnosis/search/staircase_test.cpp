@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "model/catalogue.h"
+#include "model/named.h"
 #include "sysid/diagnosis/search/jump_tracking.h"
 #include "sysid/fitting/fit_space.h"
 #include "tests/sysid/diagnosis/campaign.h"
@@ -72,6 +73,34 @@ TEST(Staircase, FindsTheBandOfAValveThatSticksAndJumps) {
     // The readings' noise is all that stays once it is known where the valve stood.
     EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.2 * noise_mm);
   }
+}
+
+// A course that jumps is told from one that does not when the delay is over: 17.5 samples later.
+TEST(Staircase, IsFoundBehindALongDelay) {
+  constexpr double band_kpa = 3.1, delay_s = 0.35;
+  std::vector<Record> early = known_campaign(2);
+  for (Record& r : early) {  // the valve's command, as it arrives
+    const std::vector<double> sent = r.drive_kpa;
+    const auto samples = static_cast<std::size_t>(std::floor(delay_s / r.sample_time_s));
+    const double rest = delay_s / r.sample_time_s - static_cast<double>(samples);
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      const double after = i < samples ? sent.front() : sent[i - samples];
+      const double before = i < samples + 1 ? sent.front() : sent[i - samples - 1];
+      r.drive_kpa[i] = after + rest * (before - after);
+    }
+  }
+  const auto answers = answered(
+      early, [&](double p, double u, double) { return sticking(band_kpa, p, u); }, 16);
+  std::vector<Record> records = known_campaign(2);
+  for (std::size_t k = 0; k < records.size(); ++k) records[k].reading_mm = answers[k].reading_mm;
+
+  const model::Model model =
+      model::with_block(plain_model(), model::block_of<model::TransportDelay>({{"delay_s", delay_s}}));
+  const auto found = find_staircase(
+      records, evaluate_structure(records, {}, {model, rest_starts(model, records)}), noise_mm, 2);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->band_kpa, band_kpa, 0.02 * band_kpa);
+  EXPECT_LT(std::sqrt(found->fit.mean_square_mm2), 1.5 * noise_mm);
 }
 
 TEST(Staircase, FollowsACourseAsFarAsItIsWorth) {

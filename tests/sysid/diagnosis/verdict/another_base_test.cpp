@@ -35,11 +35,11 @@ TEST(MayLackABase, WhereMoreThanTheNoiseIsLeftHoweverMuchThereWas) {
   EXPECT_TRUE(may_lack_a_base(left_of(1.1 * noise_mm, 1000 * noise_mm), noise_mm));
 }
 
-TEST(AnotherBase, ThatIsNotFoundIsFarBetterThanNothing) {
+TEST(AnotherBase, ThatIsNotFoundSettlesNothing) {
   const SearchData data;
   AnotherBase another(data, {});
   EXPECT_FALSE(another.is_found());
-  EXPECT_FALSE(another.is_far_better(left_of(1000, 1000)));
+  EXPECT_FALSE(another.settles(left_of(1000, 1000)));
   EXPECT_TRUE(std::isinf(another.mean_square_mm2()));
   another.go_on(left_of(1, 1));
   EXPECT_FALSE(another.is_found());
