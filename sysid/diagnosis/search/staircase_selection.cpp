@@ -7,6 +7,7 @@
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/spectrum_peaks.h"
+#include "sysid/diagnosis/search/scored.h"
 #include "sysid/diagnosis/search/staircase.h"
 
 namespace softgrip::sysid {
@@ -24,18 +25,27 @@ Cause dragged_along(Cause dead_band) {
   return dead_band;
 }
 
-/// What stands behind the valve, as far as a dead band that is simulated from the command can show it: a
-/// model without one has swallowed the valve's mean lag.
-std::optional<StructureFit> behind_the_valve(const SearchData& data, const StructureFit& selected,
-                                             const Cause& dead_band) {
-  if (position_of(selected.point.model, dead_band)) return without_cause(selected, dead_band);
+/// A structure with the dead band in its smooth form. A model without one has swallowed the valve's mean lag.
+std::optional<StructureFit> with_mean_of_staircases(const SearchData& data, const StructureFit& selected,
+                                                    const Cause& dead_band) {
+  if (position_of(selected.point.model, dead_band)) return selected;
   std::vector<Candidate> fits = fit_candidates(data, selected, {.only = {dragged_along(dead_band)}});
-  if (fits.empty() || !fits.front().fit) return std::nullopt;
-  return without_cause(*fits.front().fit, dead_band);
+  return fits.empty() ? std::nullopt : std::move(fits.front().fit);
 }
 
-/// Of two causes that were selected while the staircase was missing one may have stood in for it: it leaves no
-/// less beside it.
+/// The law that meets best what the mean of the staircases leaves: a second effect that was not selected
+/// while the first cause had to stand for both.
+std::optional<StructureFit> with_second_effect(const SearchData& data, const StructureFit& beside) {
+  std::optional<StructureFit> best;
+  for (Candidate& candidate : fit_candidates(data, beside)) {
+    if (!candidate.fit || is_free_form({candidate, {}})) continue;
+    if (!best || candidate.fit->mean_square_mm2 < best->mean_square_mm2) best = std::move(candidate.fit);
+  }
+  return best;
+}
+
+/// Of two causes that were selected while the staircase was missing one may have stood in for it: it leaves
+/// no less beside it.
 Staircase without_stand_in(const SearchData& data, Staircase found, double noise_mm) {
   if (found.fit.causes.size() < 2) return found;
   const std::vector<Cause> causes = found.fit.causes;
@@ -46,23 +56,45 @@ Staircase without_stand_in(const SearchData& data, Staircase found, double noise
   return found;
 }
 
+/// The staircase that leaves least, of those in front of several structures.
+class BestStaircase {
+ public:
+  BestStaircase(const SearchData& data, const Cause& dead_band, double noise_mm)
+      : data_(data), dead_band_(dead_band), noise_mm_(noise_mm) {}
+
+  /// @param beside  a structure with the mean of the staircases in front.
+  void look(const std::optional<StructureFit>& beside) {
+    if (!beside) return;
+    auto found = find_staircase(data_.records, without_cause(*beside, dead_band_), noise_mm_, data_.threads);
+    if (found) found = without_stand_in(data_, std::move(*found), noise_mm_);
+    if (!found || (best_ && found->fit.mean_square_mm2 > best_->fit.mean_square_mm2)) return;
+    best_ = std::move(found);
+  }
+  /// Whether it leaves no more than a jump off here and there.
+  [[nodiscard]] bool meets_all() const {
+    return best_ && structure_of(best_->fit.residual_mm, noise_mm_).excess_mm < a_jump_off * noise_mm_;
+  }
+  [[nodiscard]] const std::optional<Staircase>& best() const { return best_; }
+
+ private:
+  const SearchData& data_;
+  const Cause& dead_band_;
+  double noise_mm_;
+  std::optional<Staircase> best_;
+};
+
 /// The staircase in front of the base, or of all that was selected: whichever leaves less. A cause that was
-/// selected without one may be a second effect, or stand in for the staircase itself.
+/// selected without one may be a second effect, or stand in for the staircase itself. Where there is neither,
+/// in front of the base and a second effect.
 std::optional<Staircase> staircase_before(const SearchData& data, const Selection& plain,
                                           const Cause& dead_band, double noise_mm) {
-  std::optional<Staircase> best;
-  std::vector<const StructureFit*> selected{&plain.base};
-  if (!plain.chosen.empty()) selected.push_back(&plain.extended);
-  for (const StructureFit* structure : selected) {
-    const auto behind = behind_the_valve(data, *structure, dead_band);
-    if (!behind) continue;
-    auto found = find_staircase(data.records, *behind, noise_mm, data.threads);
-    if (found) found = without_stand_in(data, std::move(*found), noise_mm);
-    if (!found || (best && found->fit.mean_square_mm2 > best->fit.mean_square_mm2)) continue;
-    best = std::move(found);
-    if (structure_of(best->fit.residual_mm, noise_mm).excess_mm < a_jump_off * noise_mm) break;
-  }
-  return best;
+  BestStaircase staircase(data, dead_band, noise_mm);
+  const auto beside_base = with_mean_of_staircases(data, plain.base, dead_band);
+  staircase.look(beside_base);
+  if (!staircase.meets_all() && !plain.chosen.empty())
+    staircase.look(with_mean_of_staircases(data, plain.extended, dead_band));
+  if (!staircase.best() && beside_base) staircase.look(with_second_effect(data, *beside_base));
+  return staircase.best();
 }
 
 /// The base alone, fitted to records whose drive is where the valve stood.
