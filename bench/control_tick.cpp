@@ -13,7 +13,10 @@
 #include "control/feedforward/actuator_inverse.h"
 #include "control/feedforward/running_model.h"
 #include "control/tick/channel_controller.h"
+#include "model/blocks/pressure_regulator.h"
+#include "model/blocks/valve_deadband.h"
 #include "model/file/model_file.h"
+#include "model/named.h"
 
 namespace {
 
@@ -76,8 +79,7 @@ struct Tape {
   std::vector<double> readings_mm;
 };
 
-void channel(benchmark::State& state) {
-  const auto settings = settings_for(static_cast<control::FeedforwardKind>(state.range(0)));
+void tick(benchmark::State& state, const control::ChannelSettings& settings) {
   Tape tape(settings);
   control::ChannelController controller(settings, tick_s);
   control::ChannelOutput output;
@@ -96,7 +98,26 @@ void channel(benchmark::State& state) {
     ++k;
   }
 }
+void channel(benchmark::State& state) {
+  tick(state, settings_for(static_cast<control::FeedforwardKind>(state.range(0))));
+}
 BENCHMARK(channel)->ArgName("feedforward")->Arg(0)->Arg(1)->Arg(2);
+
+// Behind a dead band and a regulator in the place of the lag: what the command alone shows of such a valve.
+void channel_behind_a_regulator(benchmark::State& state) {
+  control::ChannelSettings settings = settings_for(control::FeedforwardKind::full_model);
+  model::Model& model = settings.model;
+  model = model::without_block(model, *model::find_block("valve_lag"));
+  model = model::with_block(model, model::block_of<model::ValveDeadband>({{"band_kpa", 0.2}}));
+  model =
+      model::with_block(model, model::block_of<model::PressureRegulator>({{"filling_time_constant_s", 0.015},
+                                                                          {"venting_time_constant_s", 0.022},
+                                                                          {"overlap_kpa", 0.4},
+                                                                          {"integral_time_s", 0.3},
+                                                                          {"full_open_kpa", 15}}));
+  tick(state, settings);
+}
+BENCHMARK(channel_behind_a_regulator);
 
 // Each tick of two fingers by itself, for the percentiles.
 void two_channels_percentiles(benchmark::State& state) {

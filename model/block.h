@@ -81,6 +81,7 @@ enum class Inverse : std::uint8_t {
   implicit,  ///< solved together with the actuator: output monotone in the newest pressure
   lead,      ///< the derivative of the planned signal
   preview,   ///< asking for the future value of the reference
+  play,      ///< half the band in the direction of travel
   bound,     ///< no inverse: bounds the reference
   ignored,   ///< not to be inverted (noise, quantisation)
 };

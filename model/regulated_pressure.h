@@ -38,6 +38,9 @@ class RegulatedPressure {
     integral_kpa_ = T(0.0);
   }
   [[nodiscard]] const T& output() const { return pressure_kpa_; }
+  /// What the integral has added to the error [kPa].
+  [[nodiscard]] const T& integral_kpa() const { return integral_kpa_; }
+  [[nodiscard]] const RegulatorNumbers<T>& numbers() const { return n_; }
 
   /// Passes one segment on, or one for every direction that the pressure takes.
   template <class Next>

@@ -11,8 +11,8 @@ softgripd's loop at 200 Hz follows the same sines on all four. First four PIDs t
 gives them for sensitivities of at most 2, 1.6, 1.3 and 1.15; the better two of them are kept. Then four controllers follow
 all sines: the identified model's feedforward with PID, the two PIDs, and the paper's scheme, which is the inverse of the
 Bouc-Wen element with PID, both with the gains of `softgrip tune`. What is told is the root mean square of reading minus
-reference from the second cycle on, and the same without the sensor's noise, which comes after the motion and so adds its
-own mean square to every scheme's.
+reference, each reading against the reference of its own time, from the second cycle on, and the same without the sensor's
+noise, which comes after the motion and so adds its own mean square to every scheme's.
 """
 import argparse
 import concurrent.futures
@@ -95,17 +95,22 @@ def cycles_at(hz):
 
 
 def errors_mm(recording, names, frequencies_hz):
-    """Root mean square of reading minus reference by (frequency, scheme), the first cycle left out."""
+    """Root mean square of reading minus reference by (frequency, scheme), the first cycle left out. A reading is held
+    against the reference of its own time, which is age_s before the row's."""
     rows = {}
     with open(recording / "run.csv", encoding="ascii") as file:
         for row in csv.DictReader(file):
             if row["reference_mm"] and row["displacement_mm"]:
                 rows.setdefault((int(row["step"]), row["channel"]), []).append(
-                    float(row["displacement_mm"]) - float(row["reference_mm"]))
+                    [float(row[name]) for name in ("time_s", "reference_mm", "displacement_mm", "age_s")])
     errors = {}
     for number, hz in enumerate(frequencies_hz):
         for name in names:
-            values = rows[2 * number + 1, name]
+            found = rows[2 * number + 1, name]
+            values = []
+            for before, now in zip(found, found[1:]):
+                back = now[3] / (now[0] - before[0])
+                values.append(now[2] - (now[1] + back * (before[1] - now[1])))
             values = values[len(values) // cycles_at(hz):]
             errors[hz, name] = math.sqrt(statistics.fmean(value * value for value in values))
     return errors
@@ -185,7 +190,9 @@ def page(results, frequencies_hz, command):
                      f"{statistics.median(paper):.1f} times |")
     every = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", beyond_noise)]
     raw = [x for hz in frequencies_hz for x in ratios(results, hz, "identified", float)]
+    exact = [best_pid(r, hz) / NOISE_MM for r in results for hz in frequencies_hz]
     lines += ["", f"Over all fingers and frequencies: {statistics.median(raw):.1f} times better than the best PID as it is read, "
+              f"where a finger that followed exactly would read {statistics.median(exact):.1f} times; "
               f"{statistics.median(every):.1f} times without the noise.", "", "## Finger by finger, as it is read", "",
               "| make | seed | reference | " + " | ".join(f"{hz:g} Hz: identified, best PID, paper" for hz in frequencies_hz) + " |",
               "|---" * (3 + len(frequencies_hz)) + "|"]

@@ -44,18 +44,6 @@ model::Model bouc_wen_of(const model::Model& model) {
   });
 }
 
-/// The sum of the time constants of the lags in the valve, in the direction of this name [s].
-double time_constants_s(const model::Model& model, std::string_view direction) {
-  double sum = 0;
-  for (const model::BlockSpec& block : valve_of(model).blocks) {
-    if (model::catalogue()[block.type].info.inverse != model::Inverse::lead) continue;
-    const auto own = model::find_parameter(block, direction);
-    const auto both = model::find_parameter(block, "time_constant_s");
-    if (own || both) sum += block.values[own ? *own : *both];
-  }
-  return sum;
-}
-
 /// Where the element is wanted at `time_s`: the reference within the limits, without the offset [mm].
 double wanted_mm(const LimitSettings& limits, const FeedforwardQuery& query, double time_s) noexcept {
   return limit_reference(limits, query.reference->value_at(time_s)).reference_mm - query.offset_mm;
@@ -84,13 +72,9 @@ FullModelFeedforward::FullModelFeedforward(const model::Model& model, const Feed
       tick_s_(tick_s),
       ceiling_kpa_(std::min(limits.pressure_max_kpa, value_in<model::PressureSaturation>(model, "limit_kpa")
                                                          .value_or(std::numeric_limits<double>::max()))),
+      valve_(model, tick_s),
       preview_s_(tick_s + dead_time_s(model) + settings.extra_latency_s),
       inverse_(body_of(model), tick_s) {
-  for (auto [lag, name] :
-       {std::pair{&filling_, "filling_time_constant_s"}, {&venting_, "venting_time_constant_s"}}) {
-    lag->time_constant_s = time_constants_s(model, name);
-    if (lag->time_constant_s > 0) lag->share = -std::expm1(-tick_s / lag->time_constant_s);
-  }
   // What follows the pressure at once moves with its slew; what creeps accelerates with it.
   const model::Chain<double> body(body_of(model), {}, tick_s);
   const double at_once = body.peek(0.0, model::Dual<double>(0, 1)).v;
@@ -112,37 +96,33 @@ ReferencePoint FullModelFeedforward::target(const FeedforwardQuery& query) const
 double FullModelFeedforward::command_toward(double wanted_kpa) noexcept {
   const double now = inverse_.pressure_kpa();
   double next = wanted_kpa;
-  const Lag& lag = lag_towards(wanted_kpa);
-  if (lag.time_constant_s > 0) {
+  const double time_constant_s = valve_.time_constant_s(now, wanted_kpa);
+  if (time_constant_s > 0) {
     // The way that is left when the pressure has moved along with what it is wanted to be.
     const double along = std::clamp(wanted_kpa - last_wanted_kpa_, -limits_.slew_down_kpa_per_s * tick_s_,
                                     limits_.slew_up_kpa_per_s * tick_s_);
     const double left = wanted_kpa - now - along;
     const double brake =
-        (left > 0 ? limits_.slew_down_kpa_per_s : limits_.slew_up_kpa_per_s) / lag.time_constant_s;
+        (left > 0 ? limits_.slew_down_kpa_per_s : limits_.slew_up_kpa_per_s) / time_constant_s;
     const double stoppable = tick_s_ * std::sqrt(2 * brake * std::abs(left));
     if (std::abs(left) > stoppable) next = now + along + std::copysign(stoppable, left);
   }
   last_wanted_kpa_ = wanted_kpa;
-  const double ideal = lag.time_constant_s > 0 ? now + (next - now) / lag.share : 0.5 * (now + next);
+  const double ideal = valve_.command_for(now, next);
   return limit(limits_, ideal, command_kpa_, tick_s_).command_kpa;
-}
-
-double FullModelFeedforward::pressure_under(double command_kpa) const noexcept {
-  const double now = inverse_.pressure_kpa();
-  const Lag& lag = lag_towards(command_kpa);
-  const double next = lag.time_constant_s > 0 ? now + lag.share * (command_kpa - now) : 2 * command_kpa - now;
-  return std::min(next, ceiling_kpa_);
 }
 
 void FullModelFeedforward::enter(const RunningModel& running, const FeedforwardQuery& query,
                                  double command_kpa) noexcept {
   inverse_.take_over(running.body(), running.pressure_kpa());
+  valve_.take_over(running.valve());
   command_kpa_ = command_kpa;
   last_wanted_kpa_ = running.pressure_kpa();
   // Left alone, the pressure goes on toward the command; where the model then is, the fade begins.
   const double before_mm = inverse_.displacement_mm();
-  const double alone_mm = inverse_.displacement_at(pressure_under(command_kpa));
+  ValveInverse alone = valve_;
+  const double alone_kpa = std::min(alone.advance(running.pressure_kpa(), command_kpa), ceiling_kpa_);
+  const double alone_mm = inverse_.displacement_at(alone_kpa);
   const ReferencePoint wanted = target(query);
   fade_from(alone_mm, (alone_mm - before_mm) / tick_s_, wanted, query.time_s + preview_s_);
   last_displacement_mm_ = before_mm;
@@ -175,7 +155,7 @@ FeedforwardStep FullModelFeedforward::step(const FeedforwardQuery& query) noexce
   const auto solution =
       inverse_.solve(target_mm + fade_.value_at(then_s), limits_.pressure_min_kpa, ceiling_kpa_);
   command_kpa_ = command_toward(solution.pressure_kpa);
-  const double next_kpa = pressure_under(command_kpa_);
+  const double next_kpa = std::min(valve_.advance(inverse_.pressure_kpa(), command_kpa_), ceiling_kpa_);
   inverse_.advance(next_kpa);
   const bool late = std::abs(next_kpa - solution.pressure_kpa) > late_kpa;
   return {command_kpa_, late || !solution.reached};

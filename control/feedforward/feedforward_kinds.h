@@ -10,6 +10,7 @@
 #include "control/feedforward/actuator_inverse.h"
 #include "control/feedforward/pressure_plan.h"
 #include "control/feedforward/running_model.h"
+#include "control/feedforward/valve_inverse.h"
 #include "model/model.h"
 
 namespace softgrip::control {
@@ -57,12 +58,7 @@ class BoucWenFeedforward {
 
 /// The whole chain undone from right to left. The pressure at the actuator is planned ahead: each tick adds
 /// the pressure at which everything behind the valve reaches the reference one tick plus all dead time from
-/// now, the plan so far being the truth. From the plan follows the command:
-///
-///   behind a lag:  u = p[k-1] + (p[k] - p[k-1]) / (1 - exp(-T/tau)), held for the tick: the exact inverse of
-///                  a first-order lag under a held input, so lead and the hold's half sample are one; tau is
-///                  that of the direction in which the plan goes, and of several lags in series their sum;
-///   without one:   u = (p[k-1] + p[k]) / 2, the middle of the stretch, for the same half sample.
+/// now, the plan so far being the truth. From the plan follows the command (ValveInverse).
 ///
 /// The derivative in the lead is one of the plan, which carries no sensor noise. The command stays inside the
 /// pressure range and the slew limits, and the plan is what such a command does, so it does not wind up:
@@ -84,20 +80,11 @@ class FullModelFeedforward {
   void fade_from(double displacement_mm, double speed_mm_per_s, const ReferencePoint& to,
                  double then_s) noexcept;
   [[nodiscard]] double command_toward(double wanted_kpa) noexcept;
-  [[nodiscard]] double pressure_under(double command_kpa) const noexcept;
 
   LimitSettings limits_;
   double tick_s_;
   double ceiling_kpa_;  ///< highest pressure that the model's valve lets through
-  /// The valve's lag in one direction.
-  struct Lag {
-    double time_constant_s = 0;
-    double share = 1;  ///< of the way to the command that it goes in a tick
-  };
-  [[nodiscard]] const Lag& lag_towards(double pressure_kpa) const noexcept {
-    return pressure_kpa >= inverse_.pressure_kpa() ? filling_ : venting_;
-  }
-  Lag filling_, venting_;
+  ValveInverse valve_;
   double preview_s_;
   ActuatorInverse inverse_;
   double command_kpa_ = 0;                  ///< the last one

@@ -41,7 +41,7 @@ SettledLine settled_line(const model::Model& model, const LimitSettings& limits)
 model::Model without_dead_time(const model::Model& model) {
   return model::only(model, [](const model::BlockInfo& info) {
     return info.station != model::Station::sensor && info.inverse != model::Inverse::preview &&
-           info.inverse != model::Inverse::ignored;
+           info.inverse != model::Inverse::play && info.inverse != model::Inverse::ignored;
   });
 }
 

@@ -36,6 +36,8 @@ class RunningModel {
   [[nodiscard]] double ahead_s() const noexcept { return ahead_s_; }
   /// Pressure at the actuator, ahead_s() from now [kPa].
   [[nodiscard]] double pressure_kpa() const noexcept { return pressure_kpa_; }
+  /// The valve without its dead times, ahead_s() from now.
+  [[nodiscard]] const model::Chain<double>& valve() const noexcept { return valve_; }
   /// Everything behind the valve, ahead_s() from now.
   [[nodiscard]] const model::Chain<double>& body() const noexcept { return body_; }
 

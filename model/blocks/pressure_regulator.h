@@ -8,7 +8,7 @@
 
 namespace softgrip::model {
 
-/// See RegulatedPressure. Its inverse is that of its lag: overlap and integral are left to the feedback.
+/// See RegulatedPressure.
 template <class T>
 class PressureRegulator {
  public:
@@ -38,6 +38,7 @@ class PressureRegulator {
 
   void reset(const T& input) { regulated_.reset(input); }
   [[nodiscard]] T output() const { return regulated_.output(); }
+  [[nodiscard]] const RegulatedPressure<T>& regulated() const { return regulated_; }
 
   template <class Next>
   void step(const Segment<T>& in, const Surroundings&, Next&& next) {

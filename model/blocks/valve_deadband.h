@@ -12,7 +12,7 @@ template <class T>
 class ValveDeadband {
  public:
   static constexpr BlockInfo info =
-      block_info("valve_deadband", Station::valve, Kind::pressure, Inverse::ignored, "Valve dead band",
+      block_info("valve_deadband", Station::valve, Kind::pressure, Inverse::play, "Valve dead band",
                  "The valve ignores changes of the command smaller than a band.",
                  "|u - p| <= band/2, p moves only when it must");
   static constexpr std::array parameters{parameter("band_kpa", "kPa",

@@ -38,6 +38,8 @@ std::string_view how_undone(Inverse inverse) {
       return "led by the derivative of the planned pressure";
     case Inverse::preview:
       return "met by asking for the future value of the reference";
+    case Inverse::play:
+      return "half the band is added in the direction of travel";
     case Inverse::bound:
       return "no inverse; bounds the reference";
     case Inverse::ignored:

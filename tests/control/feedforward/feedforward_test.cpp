@@ -8,7 +8,9 @@
 #include "control/feedforward/invertibility.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/leak.h"
+#include "model/blocks/pressure_regulator.h"
 #include "model/blocks/pressure_scale.h"
+#include "model/blocks/valve_deadband.h"
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
 
@@ -110,6 +112,22 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
   const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 2e-3);
   EXPECT_EQ(run.out_of_reach, 0);
+}
+
+// What the command alone shows of an electro-pneumatic regulator, and a dead band as wide as a worn
+// linkage's.
+TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
+  model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
+  model = model::with_block(model, model::block_of<model::ValveDeadband>({{"band_kpa", 1.2}}));
+  model =
+      model::with_block(model, model::block_of<model::PressureRegulator>({{"filling_time_constant_s", 0.03},
+                                                                          {"venting_time_constant_s", 0.05},
+                                                                          {"overlap_kpa", 0.5},
+                                                                          {"integral_time_s", 0.4},
+                                                                          {"full_open_kpa", 12}}));
+  ASSERT_TRUE(check_feedforward(model, {FeedforwardKind::full_model, 0}, limits, tick_s));
+  const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
+  EXPECT_LT(run.worst_mm, 0.01);
 }
 
 // What is lost on the way is asked for on top.

@@ -14,6 +14,7 @@
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/pressure_saturation.h"
+#include "model/blocks/valve_deadband.h"
 #include "model/catalogue.h"
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"
@@ -153,7 +154,7 @@ TEST(Invertibility, EveryBlockIsUndoneOrNamed) {
                             info.inverse == model::Inverse::ignored ||
                             info.inverse == model::Inverse::implicit ||
                             model::is<model::PressureSaturation, model::AsymmetricValveLag, model::ChamberLag,
-                                      model::PressureRegulator>(info);
+                                      model::PressureRegulator, model::ValveDeadband>(info);
       EXPECT_TRUE(harmless) << info.id;
     } else if (info.inverse != model::Inverse::implicit) {
       EXPECT_NE(answer.error().text.find(info.id), std::string::npos) << answer.error().text;
@@ -171,13 +172,13 @@ TEST(Invertibility, WhatFullModelCannotUndoIsNamedWhereverItStands) {
     const std::array blocks{block("new", station, inverse)};
     return not_undone(blocks) == "`new`";
   };
-  for (const model::Inverse inverse : {implicit, lead, preview, bound, ignored}) {
+  for (const model::Inverse inverse : {implicit, lead, preview, play, bound, ignored}) {
     EXPECT_FALSE(named(model::Station::sensor, inverse)) << "does not move the finger";
     for (const model::Station station : {model::Station::actuator, model::Station::load}) {
       EXPECT_EQ(named(station, inverse), inverse != implicit && inverse != ignored);
     }
-    // A lag or a bound of the valve is undone where it is known.
-    EXPECT_EQ(named(model::Station::valve, inverse), inverse == lead || inverse == bound);
+    // A lag, a dead band or a bound of the valve is undone where it is known.
+    EXPECT_EQ(named(model::Station::valve, inverse), inverse == lead || inverse == play || inverse == bound);
   }
   const std::array three{block("first", model::Station::valve, lead),
                          block("fine", model::Station::load, implicit),
