@@ -46,9 +46,9 @@ class Investigation(bench.BenchTest):
                                         "asked", "--json").stdout)["next_experiment"]
         return told and told["minutes"] < LONGEST_MINUTES
 
-    def investigated(self, *arguments, expect=6):
+    def investigated(self, *arguments, expect=6, timeout_s=170):
         done = self.softgrip("investigate", "--model", GIVEN, "--data", "log.csv", "--no-closed-loop", "--out", "found",
-                             *arguments, expect=expect, timeout_s=170)
+                             *arguments, expect=expect, timeout_s=timeout_s)
         told = json.loads((self.folder / "found/investigation.json").read_text())
         self.assertIn(told["why"], done.stdout)
         return told
@@ -75,7 +75,7 @@ class Investigation(bench.BenchTest):
                    r"the finger touched something: it stopped at 1[2-5](\.\d)? mm, .* mm short of its free motion")
 
     def test_the_same_finger_with_a_free_way_is_not_stopped(self):
-        told = self.investigated("--rig", self.simulated(""), "--rig-channel", "left", expect=None)
+        told = self.investigated("--rig", self.simulated(""), "--rig-channel", "left", expect=None, timeout_s=850)
         self.assertNotIn(told["end"], ("contact", "not_as_asked", "failed", "stopped"), told)
         self.assertEqual(told["logs"][1]["path"], "found/step_1/recording/run.csv")
 
