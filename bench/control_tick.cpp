@@ -98,6 +98,7 @@ void tick(benchmark::State& state, const control::ChannelSettings& settings) {
     ++k;
   }
 }
+
 void channel(benchmark::State& state) {
   tick(state, settings_for(static_cast<control::FeedforwardKind>(state.range(0))));
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/elements/lag_share.h"
+
 namespace softgrip::control {
 namespace {
 
@@ -79,7 +81,7 @@ ModelHealth::ModelHealth(const ModelHealthSettings& settings, double tick_s) noe
     : settings_(settings), whitener_(settings) {
   threshold_ = cusum_threshold(settings.allowance_sigma,
                                std::max(2.0, settings.false_alarm_interval_s / settings.interval_s));
-  forget_ = -std::expm1(-settings.interval_s / settings.unfit_window_s);
+  forget_ = lag_share(settings.interval_s, settings.unfit_window_s);
   ticks_per_interval_ = static_cast<std::uint32_t>(std::max(1.0, std::round(settings.interval_s / tick_s)));
 }
 

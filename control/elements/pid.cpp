@@ -2,13 +2,15 @@
 
 #include <cmath>
 
+#include "control/elements/lag_share.h"
+
 namespace softgrip::control {
 
 Pid::Pid(const PidSettings& settings, double tick_s) noexcept
     : settings_(settings),
       tick_s_(tick_s),
       filter_keep_(settings.derivative_filter_s > 0 ? std::exp(-tick_s / settings.derivative_filter_s) : 0),
-      tracking_share_(settings.tracking_time_s > 0 ? -std::expm1(-tick_s / settings.tracking_time_s) : 1) {}
+      tracking_share_(lag_share(tick_s, settings.tracking_time_s)) {}
 
 void Pid::align(double command_kpa) noexcept {
   memory_ = Memory::aligning;

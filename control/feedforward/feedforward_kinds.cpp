@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <string_view>
-#include <utility>
 
 #include "model/blocks/asymmetric_bouc_wen.h"
 #include "model/blocks/bouc_wen.h"
 #include "model/blocks/pressure_saturation.h"
-#include "model/catalogue.h"
 #include "model/dual.h"
 #include "model/named.h"
 

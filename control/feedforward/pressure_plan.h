@@ -39,7 +39,8 @@ struct SettledLine {
 };
 [[nodiscard]] SettledLine settled_line(const model::Model& model, const LimitSettings& limits);
 
-/// The model without its dead times, without what its sensor adds and without what is only noise.
+/// The model without its dead times and dead bands, without what its sensor adds and without what is only
+/// noise.
 [[nodiscard]] model::Model without_dead_time(const model::Model& model);
 
 /// How long before a change of the reference a plan should begin, so that what moves the wrong way first has

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/elements/lag_share.h"
+
 namespace softgrip::control {
 namespace {
 
 constexpr double moves_kpa_per_s = 0.2;
 /// An error beyond the overlap that is smaller shows nothing of how much a port passes.
 constexpr double shows_kpa = 0.01;
-
-double share_in(double tick_s, double time_constant_s) noexcept {
-  return time_constant_s > 0 ? -std::expm1(-tick_s / time_constant_s) : 1;
-}
 
 }  // namespace
 
@@ -23,8 +21,8 @@ double direction_of(double way_kpa, double tick_s) noexcept {
 RegulatorInverse::RegulatorInverse(const model::RegulatedPressure<double>& regulated, double tick_s)
     : regulated_(regulated),
       tick_s_(tick_s),
-      filling_share_(share_in(tick_s, regulated.numbers().filling_s)),
-      venting_share_(share_in(tick_s, regulated.numbers().venting_s)) {}
+      filling_share_(lag_share(tick_s, regulated.numbers().filling_s)),
+      venting_share_(lag_share(tick_s, regulated.numbers().venting_s)) {}
 
 void RegulatorInverse::take_over(const model::RegulatedPressure<double>& regulated) noexcept {
   regulated_ = regulated;
@@ -51,7 +49,7 @@ double RegulatorInverse::command_for(double next_kpa) const noexcept {
 
 double RegulatorInverse::advance(double command_kpa) noexcept {
   const double before_kpa = regulated_.output(), integral_kpa = regulated_.integral_kpa();
-  regulated_.step(model::Segment<double>{tick_s_, command_kpa, command_kpa, command_kpa},
+  regulated_.step(model::Segment<double>::straight(tick_s_, command_kpa, command_kpa),
                   [](const model::Segment<double>&) {});
   const double after_kpa = regulated_.output();
   const double opened_kpa = command_kpa - before_kpa + 0.5 * (integral_kpa + regulated_.integral_kpa());

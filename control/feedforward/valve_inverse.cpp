@@ -1,10 +1,10 @@
 #include "control/feedforward/valve_inverse.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
+#include "control/elements/lag_share.h"
 #include "control/feedforward/running_model.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/valve_deadband.h"
@@ -41,13 +41,13 @@ double half_band_kpa(const model::Model& valve) {
 
 }  // namespace
 
-ValveInverse::ValveInverse(const model::Model& model, double tick_s)
-    : tick_s_(tick_s), half_band_kpa_(half_band_kpa(valve_of(model))) {
+ValveInverse::ValveInverse(const model::Model& model, double tick_s) : tick_s_(tick_s) {
   const model::Model valve = valve_of(model);
+  half_band_kpa_ = half_band_kpa(valve);
   for (auto [lag, name] :
        {std::pair{&filling_, "filling_time_constant_s"}, {&venting_, "venting_time_constant_s"}}) {
     lag->time_constant_s = time_constants_s(valve, name);
-    if (lag->time_constant_s > 0) lag->share = -std::expm1(-tick_s / lag->time_constant_s);
+    lag->share = lag_share(tick_s, lag->time_constant_s);
   }
   const model::Chain<double> chain(valve, {}, tick_s);
   const auto* regulator = chain.find<model::PressureRegulator<double>>();

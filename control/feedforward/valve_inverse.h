@@ -50,7 +50,7 @@ class ValveInverse {
   double tick_s_;
   Lag filling_, venting_;
   std::optional<RegulatorInverse> regulator_;  ///< in the place of the lag
-  double half_band_kpa_;
+  double half_band_kpa_ = 0;
   double behind_band_kpa_ = 0;  ///< the command as it comes out of the dead band
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "control/elements/lag_share.h"
 #include "control/feedforward/invertibility.h"
 
 namespace softgrip::control {
@@ -41,7 +42,7 @@ ChannelController::ChannelController(const ChannelSettings& settings, double tic
     : tick_s_(tick_s),
       limits_(settings.limits),
       noise_mm_(settings.health.noise_mm),
-      need_share_(-std::expm1(-tick_s / need_filter_s)),
+      need_share_(lag_share(tick_s, need_filter_s)),
       displacement_used_(settings.displacement_used),
       running_(settings.model, tick_s, settings.feedforward.extra_latency_s, settings.plausibility.max_age_s),
       curve_(settings.model, settings.limits),
@@ -182,7 +183,7 @@ void ChannelController::follow_finger(bool wanted, double predicted_mm, ChannelO
     settled_ticks_ = 0;
   }
   const double gap_mm = difference_mm - offset_mm_;
-  offset_mm_ += -std::expm1(-tick_s_ / follow_time_s) * gap_mm;
+  offset_mm_ += lag_share(tick_s_, follow_time_s) * gap_mm;
   settled_ticks_ = std::abs(gap_mm) <= settled_sigma * noise_mm_ ? *settled_ticks_ + 1 : 0;
   channel.synchronised = static_cast<double>(*settled_ticks_) * tick_s_ >= settled_after_s;
 }

@@ -35,7 +35,7 @@ std::string_view how_undone(Inverse inverse) {
     case Inverse::implicit:
       return "solved together with the actuator";
     case Inverse::lead:
-      return "led by the derivative of the planned pressure";
+      return "led, so that the planned pressure comes out behind it";
     case Inverse::preview:
       return "met by asking for the future value of the reference";
     case Inverse::play:

@@ -116,18 +116,50 @@ TEST(FullModelFeedforward, TracksThroughLagsThatDifferByDirection) {
 
 // What the command alone shows of an electro-pneumatic regulator, and a dead band as wide as a worn
 // linkage's.
-TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
+model::Model regulated_twin() {
   model::Model model = model::without_block(model_named("bench_twin"), *model::find_block("valve_lag"));
   model = model::with_block(model, model::block_of<model::ValveDeadband>({{"band_kpa", 1.2}}));
-  model =
-      model::with_block(model, model::block_of<model::PressureRegulator>({{"filling_time_constant_s", 0.03},
-                                                                          {"venting_time_constant_s", 0.05},
-                                                                          {"overlap_kpa", 0.5},
-                                                                          {"integral_time_s", 0.4},
-                                                                          {"full_open_kpa", 12}}));
+  return model::with_block(model,
+                           model::block_of<model::PressureRegulator>({{"filling_time_constant_s", 0.03},
+                                                                      {"venting_time_constant_s", 0.05},
+                                                                      {"overlap_kpa", 0.5},
+                                                                      {"integral_time_s", 0.4},
+                                                                      {"full_open_kpa", 12}}));
+}
+
+TEST(FullModelFeedforward, TracksThroughADeadBandAndARegulator) {
+  const model::Model model = regulated_twin();
   ASSERT_TRUE(check_feedforward(model, {FeedforwardKind::full_model, 0}, limits, tick_s));
   const Outcome run = run_alone(model, {FeedforwardKind::full_model, 0}, sine_reference(0.1));
   EXPECT_LT(run.worst_mm, 0.01);
+}
+
+// The ports, their integral and the dead band are where the commands before left them.
+TEST(FullModelFeedforward, TakesOverARegulatorAndADeadBandAsTheyStand) {
+  const model::Model model = regulated_twin();
+  RunningModel running(model, tick_s, 0, 0.1);
+  model::Chain<double> finger(model, {}, tick_s);
+  const double held_kpa = 20;
+  for (double t = 0; t < 3; t += tick_s) {
+    running.advance(held_kpa);
+    finger.step(0, held_kpa);
+    finger.step(tick_s, held_kpa);
+  }
+  Reference reference;
+  reference.start(0, {finger.reading_mm()});
+  (void)reference.hold_for(0.5);
+  (void)reference.ramp_for(15, 3);
+  FeedforwardQuery query{&reference, 0, 0};
+  Feedforward feedforward(model, {FeedforwardKind::full_model, 0}, limits, tick_s);
+  feedforward.enter(running, query, held_kpa);
+  double worst_mm = 0;
+  for (; query.time_s < 3; query.time_s += tick_s) {
+    const double command_kpa = feedforward.step(query).pressure_kpa;
+    finger.step(0, command_kpa);
+    finger.step(tick_s, command_kpa);
+    worst_mm = std::max(worst_mm, std::abs(finger.reading_mm() - reference.at(query.time_s + tick_s).value));
+  }
+  EXPECT_LT(worst_mm, 0.05);
 }
 
 // What is lost on the way is asked for on top.

@@ -14,7 +14,7 @@ constexpr model::RegulatorNumbers<double> usual{0.015, 0.022, 0.4, 0.3, 15};
 
 /// The pressure after a tick of a held command.
 double held(model::RegulatedPressure<double>& regulated, double command_kpa) {
-  regulated.step(model::Segment<double>{tick_s, command_kpa, command_kpa, command_kpa},
+  regulated.step(model::Segment<double>::straight(tick_s, command_kpa, command_kpa),
                  [](const model::Segment<double>&) {});
   return regulated.output();
 }

@@ -8,7 +8,6 @@
 #include "control/feedforward/running_model.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/pressure_regulator.h"
-#include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_deadband.h"
 #include "model/blocks/valve_lag.h"
 #include "model/named.h"
