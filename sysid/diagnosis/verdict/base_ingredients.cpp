@@ -16,6 +16,7 @@
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/transport_delay.h"
 #include "model/catalogue.h"
+#include "model/registry.h"
 #include "sysid/diagnosis/causes/backlash.h"
 #include "sysid/diagnosis/causes/hysteresis_shape.h"
 #include "sysid/diagnosis/causes/sensor_lag.h"
@@ -27,6 +28,7 @@
 #include "sysid/diagnosis/causes/valve_lag.h"
 #include "sysid/diagnosis/search/slack.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/structure/published_element.h"
 
 namespace softgrip::sysid {
 namespace {
