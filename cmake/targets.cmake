@@ -185,25 +185,32 @@ function(softgrip_precompile_for_tests target)
   softgrip_compile_together(${target})
 endfunction()
 
-# softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...] [PROPERTIES ...])
+# softgrip_test(NAME FILES... [ROOMS room ...] [LINK target ...] [REALTIME test ...] [LONG test ...]
+#   [CAMPAIGN test ...] [PROPERTIES ...])
 # a GoogleTest program; its tests are discovered one by one. REALTIME: patterns of the tests that measure real time, which
 # a shared machine may disturb: they get a second attempt (scripts/ctest.sh). LONG: of those that compute for seconds,
-# which scripts/test.sh --quick leaves out and CTest begins with (COST), since one that began last would run alone. A
-# pattern stands in one of the two.
+# which scripts/test.sh --quick leaves out and CTest begins with (COST), since one that began last would run alone.
+# CAMPAIGN: of those that take long and guard what another test of the same kind guards, too, for scripts/test.sh --all; a
+# name may stand there that a pattern of LONG has.
 function(softgrip_test name)
-  cmake_parse_arguments(arg "" "" "ROOMS;LINK;REALTIME;LONG;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(arg "" "" "ROOMS;LINK;REALTIME;LONG;CAMPAIGN;PROPERTIES" ${ARGN})
   softgrip_rooms(rooms ${arg_ROOMS})
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name}
     PRIVATE softgrip_flags softgrip_test_flags ${rooms} ${arg_LINK} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE SOFTGRIP_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   softgrip_precompile_for_tests(${name})
-  string(JOIN ":" labelled ${arg_REALTIME} ${arg_LONG})
+  string(JOIN ":" labelled ${arg_REALTIME} ${arg_LONG} ${arg_CAMPAIGN})
   softgrip_discover(${name} "*:-${labelled}" "" ${arg_PROPERTIES})
   string(JOIN ":" realtime ${arg_REALTIME})
   softgrip_discover(${name} "${realtime}" realtime ${arg_PROPERTIES})
+  string(JOIN ":" campaign ${arg_CAMPAIGN})
   string(JOIN ":" long ${arg_LONG})
+  if(campaign AND long)
+    string(APPEND long ":-${campaign}")
+  endif()
   softgrip_discover(${name} "${long}" long COST 10 ${arg_PROPERTIES})
+  softgrip_discover(${name} "${campaign}" campaign COST 10 ${arg_PROPERTIES})
 endfunction()
 # Each parameter has a name of its own, so CTest's names do without its value, which may be bytes with addresses in them
 # that differ from build to build.

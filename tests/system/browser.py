@@ -11,6 +11,9 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
+# As root it has no sandbox; and it asks nothing of the network for itself, which costs processors and waits.
+QUIET = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+         "--disable-background-networking", "--disable-component-update")
 # Colours of an element and of what stands behind it, of everything with text of its own that can be seen.
 TEXTS = """
 const seen = (element) => element.checkVisibility() && element.getClientRects().length > 0;
@@ -45,9 +48,8 @@ class Browser:
     def __init__(self, width=1280, height=900):
         options = Options()
         options.binary_location = "/usr/bin/chromium"
-        # As root it has no sandbox, and a container has little shared memory.
-        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                         f"--window-size={width},{height}"):
+        # A container has little shared memory.
+        for argument in (*QUIET, "--disable-dev-shm-usage", f"--window-size={width},{height}"):
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)

@@ -3,14 +3,13 @@
 import re
 import subprocess
 
-QUIET = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
-         "--disable-background-networking", "--disable-component-update")
+import browser
 
 
 def sheets(page, folder):
     """The text of each printed page."""
     paper = folder / "printed.pdf"
-    subprocess.run(["chromium", *QUIET, f"--user-data-dir={folder / 'chromium'}", "--no-pdf-header-footer",
+    subprocess.run(["chromium", *browser.QUIET, f"--user-data-dir={folder / 'chromium'}", "--no-pdf-header-footer",
                     f"--print-to-pdf={paper}", page.resolve().as_uri()], check=True, capture_output=True, timeout=120)
     text = subprocess.run(["pdftotext", "-layout", paper, "-"], check=True, capture_output=True, text=True, timeout=60).stdout
     found = text.split("\f")[:-1]
