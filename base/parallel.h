@@ -5,18 +5,23 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include "base/thread_budget.h"
 
 namespace softgrip {
 
-/// Calls work(i) for i in [0, count), in any order, on `threads` threads (0: as many as there are cores).
-/// The first exception is passed on when all are done. Results belong into slot i of something prepared.
+/// Calls work(i) for i in [0, count), in any order, on at most `threads` threads (0: as many as there are
+/// cores), of which it takes those that the thread's budget has idle. The first exception is passed on when
+/// all are done. Results belong into slot i of something prepared.
 template <class Work>
 void parallel_for(std::size_t count, unsigned threads, Work&& work) {
-  const std::size_t cores = threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
-  const std::size_t used = std::min(cores, count);
+  ThreadBudget own(threads);
+  ThreadBudget& budget = *ThreadBudget::current();
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
   std::mutex failure_mutex;
@@ -30,11 +35,34 @@ void parallel_for(std::size_t count, unsigned threads, Work&& work) {
       }
     }
   };
-  std::vector<std::jthread> others;
-  for (std::size_t i = 1; i < used; ++i) others.emplace_back(run);
-  run();
-  others.clear();
+  const std::size_t most = threads != 0 ? threads : std::numeric_limits<std::size_t>::max();
+  const std::size_t helpers = count > 1 ? budget.take(std::min(most, count) - 1) : 0;
+  if (helpers == 0) {
+    run();
+  } else {
+    std::vector<std::jthread> others;
+    others.reserve(helpers);
+    for (std::size_t i = 0; i < helpers; ++i) {
+      others.emplace_back([&] {
+        ThreadBudget::share(budget);
+        run();
+        budget.give_back(1);
+      });
+    }
+    run();
+    // Those who still compute may have this one's place.
+    budget.give_back(1);
+    others.clear();
+    budget.go_on();
+  }
   if (failure) std::rethrow_exception(failure);
+}
+
+/// The same on those threads of the thread's budget that are idle; without a budget, on the calling one
+/// alone.
+template <class Work>
+void parallel_for_idle(std::size_t count, Work&& work) {
+  parallel_for(count, ThreadBudget::current() != nullptr ? 0 : 1, std::forward<Work>(work));
 }
 
 }  // namespace softgrip

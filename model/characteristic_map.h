@@ -11,38 +11,54 @@ namespace softgrip::model {
 /// g(z) = span expm1(a z/span) / expm1(a) on [0, span], straight beyond; smooth in a through 0, where g(z) =
 /// z.
 template <class T>
-struct CharacteristicMap {
-  T curvature;  ///< a
-  T span_mm;
+class CharacteristicMap {
+ public:
+  /// @param curvature  a.  @param span_mm  > 0.
+  CharacteristicMap(const T& curvature, const T& span_mm)
+      : curvature_(curvature),
+        span_mm_(span_mm),
+        per_mm_(curvature / span_mm),
+        phi1_(phi1(curvature)),
+        first_slope_(1.0 / phi1_),
+        last_slope_(exponential(curvature) / phi1_) {}
 
+  [[nodiscard]] const T& curvature() const { return curvature_; }
   /// g'(0) and g'(span).
-  [[nodiscard]] T first_slope() const { return 1.0 / phi1(curvature); }
-  [[nodiscard]] T last_slope() const {
-    using std::exp;
-    return exp(curvature) / phi1(curvature);
-  }
+  [[nodiscard]] const T& first_slope() const { return first_slope_; }
+  [[nodiscard]] const T& last_slope() const { return last_slope_; }
 
   template <class U>
   [[nodiscard]] U value(const U& z) const {
-    if (value_of(z) <= 0.0) return U(first_slope() * z);
-    if (value_of(z) >= value_of(span_mm)) return U(span_mm + last_slope() * (z - span_mm));
-    return U(z * (phi1(U(curvature / span_mm * z)) / phi1(curvature)));
+    if (value_of(z) <= 0.0) return U(first_slope_ * z);
+    if (value_of(z) >= value_of(span_mm_)) return U(span_mm_ + last_slope_ * (z - span_mm_));
+    return U(z * (phi1(U(per_mm_ * z)) / phi1_));
   }
   [[nodiscard]] T slope(const T& z) const {
-    using std::exp;
-    if (value_of(z) <= 0.0) return first_slope();
-    if (value_of(z) >= value_of(span_mm)) return last_slope();
-    return exp(curvature * z / span_mm) / phi1(curvature);
+    if (value_of(z) <= 0.0) return first_slope_;
+    if (value_of(z) >= value_of(span_mm_)) return last_slope_;
+    return exponential(curvature_ * z / span_mm_) / phi1_;
   }
   [[nodiscard]] T inverse(const T& y) const {
     using std::log1p;
-    if (value_of(y) <= 0.0) return y * phi1(curvature);
-    if (value_of(y) >= value_of(span_mm)) return span_mm + (y - span_mm) / last_slope();
-    const T share = y / span_mm;
+    if (value_of(y) <= 0.0) return y * phi1_;
+    if (value_of(y) >= value_of(span_mm_)) return span_mm_ + (y - span_mm_) / last_slope_;
+    const T share = y / span_mm_;
     // Below this |a| the logarithm's quotient is 0/0 and the map straight to rounding.
-    if (std::abs(value_of(curvature)) < 1e-9) return y;
-    return span_mm * (log1p(share * (curvature * phi1(curvature))) / curvature);
+    if (std::abs(value_of(curvature_)) < 1e-9) return y;
+    return span_mm_ * (log1p(share * (curvature_ * phi1_)) / curvature_);
   }
+
+ private:
+  [[nodiscard]] static T exponential(const T& x) {
+    using std::exp;
+    return exp(x);
+  }
+
+  T curvature_;
+  T span_mm_;
+  T per_mm_;  ///< a/span
+  T phi1_;    ///< of a
+  T first_slope_, last_slope_;
 };
 
 }  // namespace softgrip::model

@@ -36,7 +36,7 @@ case ${1:-} in
   "" | build)
     [ -z "${1:-}" ] || only_build=true
     sanitized asan-ubsan base_test drivers_test emulator_test
-    sanitized tsan daemon_test daemon_process_test  # the drivers have no threads of their own
+    sanitized tsan base_test daemon_test daemon_process_test  # the drivers have no threads of their own
     ;;
   all)
     sanitized asan-ubsan all

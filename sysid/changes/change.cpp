@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "base/thread_budget.h"
 #include "sysid/changes/chance.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
@@ -341,6 +342,7 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   const Prepared before = prepared(make_records(healthy, record));
   const Prepared after = prepared(make_records(later, record));
   judge_outliers(before.outliers, after.outliers, measured_noise_mm(after.records), diagnosis);
+  const ThreadBudget budget(options.threads);
   const BaseOptions base{options.given, options.seed, options.threads, options.progress};
   if (pressure) {
     Judge valve(fit_base(pressure_records(healthy, options.held), Judged::pressure, Drive::command, base),

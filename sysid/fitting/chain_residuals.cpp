@@ -1,16 +1,17 @@
 // Residuals of any chain by automatic differentiation. The only file that instantiates Chain with
-// derivatives.
+// derivatives. Each record, and each group of derivatives, by itself: on whatever threads are idle.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/named.h"
 #include "sysid/fitting/gradient.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/fitting/trajectory_walk.h"
+#include "sysid/logs/each_record.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -30,7 +31,8 @@ std::size_t group_for(std::size_t left) {
 
 class ChainResiduals final : public Residuals {
  public:
-  ChainResiduals(const std::vector<Record>& records, FitSpace space) : Residuals(records, std::move(space)) {
+  ChainResiduals(const std::vector<Record>& records, FitSpace space)
+      : Residuals(records, std::move(space)), first_row_(first_rows_of(records)) {
     for (std::size_t c = 0; c < space_.size(); ++c) {
       if (space_.free()[c].kind == FreeParameter::Kind::offset) offsets_.push_back(c);
     }
@@ -42,97 +44,125 @@ class ChainResiduals final : public Residuals {
     if (jacobian.empty()) return values(point, r);
     std::vector<double> own(r.empty() ? count_ : 0);
     const std::span<double> out = r.empty() ? std::span<double>(own) : r;
-    // Groups of model parameters and peaks; at least one, for the values.
+    const std::vector<Group> groups = groups_of_derivatives();
+    const std::size_t records = records_.size();
+    const auto walk_through = [&](std::size_t task) {
+      const Group& group = groups[task / records];
+      const Part part{task % records, group.columns, task < records};
+      if (group.size == least_group) {
+        derivatives<least_group>(point, z, part, out, jacobian);
+      } else if (group.size == small_group) {
+        derivatives<small_group>(point, z, part, out, jacobian);
+      } else {
+        derivatives<large_group>(point, z, part, out, jacobian);
+      }
+    };
+    const std::size_t tasks = groups.size() * records;
+    if (are_worth_threads(records_)) {
+      parallel_for_idle(tasks, walk_through);
+    } else {
+      for (std::size_t task = 0; task < tasks; ++task) walk_through(task);
+    }
+    for_each_record(records_, [&](std::size_t k) { start(point, z, k, out, jacobian); });
+    return std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); }) &&
+           std::all_of(jacobian.begin(), jacobian.end(), [](double v) { return std::isfinite(v); });
+  }
+
+ private:
+  /// Derivatives that are carried along together, in numbers with room for `size`.
+  struct Group {
+    std::size_t size;
+    std::vector<std::size_t> columns;
+  };
+  /// What one walk through a record computes.
+  struct Part {
+    std::size_t record;
+    const std::vector<std::size_t>& columns;
+    bool values;  ///< and the residuals, which every group comes by
+  };
+
+  /// Of model parameters and peaks; at least one, for the values.
+  [[nodiscard]] std::vector<Group> groups_of_derivatives() const {
     std::vector<std::size_t> dynamic;
     for (std::size_t i = 0; i < space_.size(); ++i) {
       const auto kind = space_.free()[i].kind;
       if (kind == FreeParameter::Kind::model || kind == FreeParameter::Kind::peak_before)
         dynamic.push_back(i);
     }
-    std::size_t first = 0;
+    std::vector<Group> groups;
+    auto next = dynamic.begin();
     do {
-      const std::size_t group = group_for(dynamic.size() - first);
-      const std::size_t last = std::min(first + group, dynamic.size());
-      const std::span<const std::size_t> columns = std::span(dynamic).subspan(first, last - first);
-      if (group == least_group) {
-        derivatives<least_group>(point, z, columns, out, jacobian);
-      } else if (group == small_group) {
-        derivatives<small_group>(point, z, columns, out, jacobian);
-      } else {
-        derivatives<large_group>(point, z, columns, out, jacobian);
-      }
-      first = last;
-    } while (first < dynamic.size());
-    starts(point, z, out, jacobian);
-    return std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); }) &&
-           std::all_of(jacobian.begin(), jacobian.end(), [](double v) { return std::isfinite(v); });
+      const auto left = static_cast<std::size_t>(dynamic.end() - next);
+      const std::size_t size = group_for(left);
+      const auto last = next + static_cast<std::ptrdiff_t>(std::min(size, left));
+      groups.push_back({size, {next, last}});
+      next = last;
+    } while (next != dynamic.end());
+    return groups;
   }
 
- private:
   [[nodiscard]] bool values(const FitPoint& point, std::span<double> r) const {
-    std::size_t row = 0;
-    for (std::size_t k = 0; k < records_.size(); ++k) {
+    std::vector<char> finite(records_.size(), 1);
+    for_each_record(records_, [&](std::size_t k) {
       const std::vector<double> prediction = predict(point.model, records_[k], point.starts[k]);
+      std::size_t row = first_row_[k];
       for (std::size_t i = 0; i < prediction.size(); ++i) {
         if (!std::isfinite(records_[k].reading_mm[i])) continue;
-        if (!std::isfinite(prediction[i])) return false;
+        if (!std::isfinite(prediction[i])) finite[k] = 0;
         r[row++] = prediction[i] - records_[k].reading_mm[i];
       }
-    }
-    return true;
+    });
+    return std::all_of(finite.begin(), finite.end(), [](char one) { return one != 0; });
   }
 
-  /// Values of the chain and derivatives by the parameters in `columns`.
+  /// Values of the chain and derivatives by the parameters of the part.
   template <std::size_t group>
-  void derivatives(const FitPoint& point, std::span<const double> z, std::span<const std::size_t> columns,
-                   std::span<double> r, std::span<double> jacobian) const {
+  void derivatives(const FitPoint& point, std::span<const double> z, const Part& part, std::span<double> r,
+                   std::span<double> jacobian) const {
     using Number = Gradient<group>;
+    const std::size_t k = part.record;
     const std::vector<double> flat = model::flat_values(point.model);
-    std::size_t row = 0;
-    for (std::size_t k = 0; k < records_.size(); ++k) {
-      std::vector<Number> values(flat.begin(), flat.end());
-      Number peak(point.starts[k].peak_before_kpa);
-      for (std::size_t c = 0; c < columns.size(); ++c) {
-        const FreeParameter& p = space_.free()[columns[c]];
-        const double slope = p.slope(z[columns[c]]);
-        if (p.kind == FreeParameter::Kind::model) values[p.flat_index].v.set(c, slope);
-        if (p.kind == FreeParameter::Kind::peak_before && p.record == k) peak.v.set(c, slope);
-      }
-      const Record& record = records_[k];
-      walk<Number>(point.model, values, record, peak, [&](std::size_t i, const Number& y) {
-        if (!std::isfinite(record.reading_mm[i])) return;
-        r[row] = y.a - record.reading_mm[i];
-        double* const line = &jacobian[row * space_.size()];
-        for (std::size_t c = 0; c < columns.size(); ++c) line[columns[c]] = y.v[c];
-        ++row;
-      });
+    std::vector<Number> values(flat.begin(), flat.end());
+    Number peak(point.starts[k].peak_before_kpa);
+    for (std::size_t c = 0; c < part.columns.size(); ++c) {
+      const FreeParameter& p = space_.free()[part.columns[c]];
+      const double slope = p.slope(z[part.columns[c]]);
+      if (p.kind == FreeParameter::Kind::model) values[p.flat_index].v.set(c, slope);
+      if (p.kind == FreeParameter::Kind::peak_before && p.record == k) peak.v.set(c, slope);
     }
+    const Record& record = records_[k];
+    std::size_t row = first_row_[k];
+    walk<Number>(point.model, values, record, peak, [&](std::size_t i, const Number& y) {
+      if (!std::isfinite(record.reading_mm[i])) return;
+      if (part.values) r[row] = y.a - record.reading_mm[i];
+      double* const line = &jacobian[row * space_.size()];
+      for (std::size_t c = 0; c < part.columns.size(); ++c) line[part.columns[c]] = y.v[c];
+      ++row;
+    });
   }
 
-  /// Adds offset and unsettled creep, and fills their columns.
-  void starts(const FitPoint& point, std::span<const double> z, std::span<double> r,
-              std::span<double> jacobian) const {
+  /// Adds the offset and the unsettled creep of a record, and fills their columns.
+  void start(const FitPoint& point, std::span<const double> z, std::size_t k, std::span<double> r,
+             std::span<double> jacobian) const {
     const std::vector<double> time_constants = branch_time_constants_s(point.model);
-    std::size_t row = 0;
-    for (std::size_t k = 0; k < records_.size(); ++k) {
-      const Record& record = records_[k];
-      const StartState& state = point.starts[k];
-      const std::vector<double> offset_line = offset_columns(z, k);
-      const std::vector<std::size_t> unsettled = unsettled_branches(state);
-      for (std::size_t i = 0; i < record.size(); ++i) {
-        if (!std::isfinite(record.reading_mm[i])) continue;
-        const double t = record.time_s[i] - record.time_s[0];
-        r[row] += state.offset_mm;
-        double* const line = &jacobian[row * space_.size()];
-        for (const std::size_t b : unsettled) {
-          const double decay = std::exp(-t / time_constants[b]);
-          r[row] += state.unsettled_mm[b] * decay;
-          creep_columns(point, z, b, state.unsettled_mm[b] * decay * t / time_constants[b], line);
-          unsettled_column(z, k, b, decay, line);
-        }
-        for (const std::size_t c : offsets_) line[c] = offset_line[c];
-        ++row;
+    const Record& record = records_[k];
+    const StartState& state = point.starts[k];
+    const std::vector<double> offset_line = offset_columns(z, k);
+    const std::vector<std::size_t> unsettled = unsettled_branches(state);
+    std::size_t row = first_row_[k];
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (!std::isfinite(record.reading_mm[i])) continue;
+      const double t = record.time_s[i] - record.time_s[0];
+      r[row] += state.offset_mm;
+      double* const line = &jacobian[row * space_.size()];
+      for (const std::size_t b : unsettled) {
+        const double decay = std::exp(-t / time_constants[b]);
+        r[row] += state.unsettled_mm[b] * decay;
+        creep_columns(point, z, b, state.unsettled_mm[b] * decay * t / time_constants[b], line);
+        unsettled_column(z, k, b, decay, line);
       }
+      for (const std::size_t c : offsets_) line[c] = offset_line[c];
+      ++row;
     }
   }
 
@@ -185,7 +215,8 @@ class ChainResiduals final : public Residuals {
     }
   }
 
-  std::vector<std::size_t> offsets_;  ///< columns of the records' offsets
+  std::vector<std::size_t> offsets_;    ///< columns of the records' offsets
+  std::vector<std::size_t> first_row_;  ///< of each record
 };
 
 }  // namespace

@@ -5,9 +5,13 @@
 #include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/separable.h"
+#include "sysid/logs/each_record.h"
 
 namespace softgrip::sysid {
 namespace {
+
+/// It walks so fast that only a longer record is worth a thread.
+constexpr std::size_t samples_worth_one = 4 * samples_worth_a_thread;
 
 /// Derivatives of a record's columns by the free parameters: rows of the Jacobian = full columns * this.
 Eigen::MatrixXd mapping(const SeparableShape& shape, const SeparableColumns& c, const FitSpace& space,
@@ -78,7 +82,7 @@ class Writer final : public SeparableRecord::Sink {
 class SeparableResiduals final : public Residuals {
  public:
   SeparableResiduals(const std::vector<Record>& records, FitSpace space, const SeparableShape& shape)
-      : Residuals(records, std::move(space)), shape_(shape) {
+      : Residuals(records, std::move(space)), shape_(shape), first_row_(first_rows_of(records)) {
     for (const Record& record : records) prepared_.emplace_back(record, shape);
   }
 
@@ -86,14 +90,14 @@ class SeparableResiduals final : public Residuals {
     const FitPoint point = space_.point(z);
     const SeparablePoint separable = to_separable(shape_, point);
     if (separable.growing_per_kpa < 0) return false;
-    std::size_t row = 0;
-    for (std::size_t k = 0; k < prepared_.size(); ++k) {
+    const auto walk = [&](std::size_t k) {
+      const std::size_t row = first_row_[k];
       const Eigen::MatrixXd map = mapping(shape_, prepared_[k].columns(), space_, point, z, k);
       Writer writer(map, r.empty() ? nullptr : &r[row],
                     jacobian.empty() ? nullptr : &jacobian[row * space_.size()]);
       prepared_[k].full(separable, k, writer);
-      row += records_[k].readings;
-    }
+    };
+    for_each_record(records_, walk, samples_worth_one);
     double sum = 0;
     for (const double value : r) sum += value;
     for (const double value : jacobian) sum += value;
@@ -103,6 +107,7 @@ class SeparableResiduals final : public Residuals {
  private:
   SeparableShape shape_;
   std::vector<SeparableRecord> prepared_;
+  std::vector<std::size_t> first_row_;  ///< of each record
 };
 
 }  // namespace

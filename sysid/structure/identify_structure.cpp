@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/numbers.h"
+#include "base/thread_budget.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
@@ -128,6 +129,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
                                                              const IdentifyOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   if (logs.empty()) return Failure("no logs to identify from");
+  const ThreadBudget budget(options.threads);
   const bool measured =
       std::all_of(logs.begin(), logs.end(), [](const Log& log) { return !log.pressure_kpa.empty(); });
   if (options.record.drive == Drive::measured && !measured) return Failure("a log has no measured pressure");

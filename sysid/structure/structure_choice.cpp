@@ -75,11 +75,11 @@ class Judge {
     trial.start_rmse_mm = whole.start_rmse_mm;
     StructureFitOptions options = with(ridge);
     options.most_iterations = iterations;
-    for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold) {
+    parallel_for_idle(HeldOutBlocks::folds, [&](std::size_t fold) {
       const std::vector<Record>& fitted = blocks_.without(fold);
       const FittedStructure fit = fit_form(fitted, trial.structure, grid_, options, &whole.numbers);
       blocks_.judge(point_of(fit, fitted, options_.drive), fold, trial.block_losses_mm2);
-    }
+    });
     trial.heldout_rmse_mm = held_out_rmse_mm(trial.block_losses_mm2);
     return trial;
   }
@@ -106,8 +106,9 @@ class Judge {
     trial.converged = found.converged;
     trial.invertible = rises_everywhere(trial.point.model);
     trial.start_rmse_mm = std::move(found.start_rmse_mm);
-    for (std::size_t fold = 0; fold < HeldOutBlocks::folds; ++fold)
+    parallel_for_idle(HeldOutBlocks::folds, [&](std::size_t fold) {
       blocks_.judge(refit_published(blocks_.without(fold), trial.point), fold, trial.block_losses_mm2);
+    });
     trial.heldout_rmse_mm = held_out_rmse_mm(trial.block_losses_mm2);
     return trial;
   }

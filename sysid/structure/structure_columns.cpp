@@ -6,6 +6,7 @@
 #include "model/exponential.h"
 #include "model/segment.h"
 #include "sysid/fitting/hysteresis_step.h"
+#include "sysid/logs/each_record.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -178,6 +179,7 @@ StructureColumns::StructureColumns(const std::vector<Record>& records, const Bas
       structure_(structure),
       grid_(grid),
       layout_(structure, grid, records),
+      first_row_(first_rows_of(records)),
       columns_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows_of(records).size()), layout_.count())) {
   write_own();
 }
@@ -188,67 +190,64 @@ const Eigen::MatrixXd& StructureColumns::at(const NonlinearNumbers& numbers) {
   same.curvature = numbers_.curvature;  // comes behind the columns
   if (driven_alike && same == numbers_) return columns_;
   numbers_ = numbers;
-  if (!driven_alike) {
-    driven_.clear();
-    for (const Record& record : records_) driven_.push_back(driven_pressure(record, structure_, numbers));
-    write_driven();
-  }
-  write_hysteresis();
+  driven_.resize(records_.size());
+  for_each_record(records_, [&](std::size_t r) {
+    if (!driven_alike) {
+      driven_[r] = driven_pressure(records_[r], structure_, numbers);
+      write_driven(r);
+    }
+    if (layout_.hysteretic() > 0) write_hysteresis(r);
+  });
   return columns_;
 }
 
 /// What follows from the pressure in the finger alone.
-void StructureColumns::write_driven() {
-  Eigen::Index row = 0;
-  for (std::size_t r = 0; r < records_.size(); ++r) {
-    const DrivenPressure& driven = driven_[r];
-    Ladder ladder(grid_.ladder_s, driven.first_kpa);
-    std::vector<Ladder> hinged;
-    for (std::size_t h = 0; h < layout_.hinges(); ++h)
-      hinged.emplace_back(grid_.hinge_ladder_s, std::max(driven.first_kpa - grid_.hinges_kpa[h], 0.0));
-    std::size_t segment = 0;
-    for (std::size_t i = 0; i < driven.until.size(); ++i) {
-      for (; segment < driven.until[i]; ++segment) {
-        const Segment& q = driven.segments[segment];
-        if (structure_.creep) ladder.step(q);
-        for (std::size_t h = 0; h < hinged.size(); ++h) hinged[h].step(above(q, grid_.hinges_kpa[h]));
-      }
-      if (!std::isfinite(records_[r].reading_mm[i])) continue;
-      columns_(row, ColumnLayout::elastic()) = driven.at_kpa(i);
-      for (std::size_t b = 0; b < layout_.branches(); ++b) columns_(row, layout_.creep(b)) = ladder.value(b);
-      for (std::size_t h = 0; h < hinged.size(); ++h) {
-        for (std::size_t b = 0; b < layout_.hinge_branches(); ++b)
-          columns_(row, layout_.hinged(h, b)) = hinged[h].value(b);
-      }
-      ++row;
+void StructureColumns::write_driven(std::size_t r) {
+  const DrivenPressure& driven = driven_[r];
+  Ladder ladder(grid_.ladder_s, driven.first_kpa);
+  std::vector<Ladder> hinged;
+  for (std::size_t h = 0; h < layout_.hinges(); ++h)
+    hinged.emplace_back(grid_.hinge_ladder_s, std::max(driven.first_kpa - grid_.hinges_kpa[h], 0.0));
+  auto row = static_cast<Eigen::Index>(first_row_[r]);
+  std::size_t segment = 0;
+  for (std::size_t i = 0; i < driven.until.size(); ++i) {
+    for (; segment < driven.until[i]; ++segment) {
+      const Segment& q = driven.segments[segment];
+      if (structure_.creep) ladder.step(q);
+      for (std::size_t h = 0; h < hinged.size(); ++h) hinged[h].step(above(q, grid_.hinges_kpa[h]));
     }
+    if (!std::isfinite(records_[r].reading_mm[i])) continue;
+    columns_(row, ColumnLayout::elastic()) = driven.at_kpa(i);
+    for (std::size_t b = 0; b < layout_.branches(); ++b) columns_(row, layout_.creep(b)) = ladder.value(b);
+    for (std::size_t h = 0; h < hinged.size(); ++h) {
+      for (std::size_t b = 0; b < layout_.hinge_branches(); ++b)
+        columns_(row, layout_.hinged(h, b)) = hinged[h].value(b);
+    }
+    ++row;
   }
 }
 
-void StructureColumns::write_hysteresis() {
-  if (layout_.hysteretic() == 0) return;
-  Eigen::Index row = 0;
-  for (std::size_t r = 0; r < records_.size(); ++r) {
-    const DrivenPressure& driven = driven_[r];
-    PressureMemory memory(structure_, grid_, numbers_, driven.first_kpa,
-                          records_[r].start_unknown ? numbers_.peak_before_kpa[r] : 0);
-    std::size_t segment = 0;
-    for (std::size_t i = 0; i < driven.until.size(); ++i) {
-      for (; segment < driven.until[i]; ++segment)
-        memory.move(driven.segments[segment].begin, driven.segments[segment].end);
-      if (!std::isfinite(records_[r].reading_mm[i])) continue;
-      memory.write(driven.at_kpa(i),
-                   [&](std::size_t k) -> double& { return columns_(row, ColumnLayout::hysteresis(k)); });
-      ++row;
-    }
+void StructureColumns::write_hysteresis(std::size_t r) {
+  const DrivenPressure& driven = driven_[r];
+  PressureMemory memory(structure_, grid_, numbers_, driven.first_kpa,
+                        records_[r].start_unknown ? numbers_.peak_before_kpa[r] : 0);
+  auto row = static_cast<Eigen::Index>(first_row_[r]);
+  std::size_t segment = 0;
+  for (std::size_t i = 0; i < driven.until.size(); ++i) {
+    for (; segment < driven.until[i]; ++segment)
+      memory.move(driven.segments[segment].begin, driven.segments[segment].end);
+    if (!std::isfinite(records_[r].reading_mm[i])) continue;
+    memory.write(driven.at_kpa(i),
+                 [&](std::size_t k) -> double& { return columns_(row, ColumnLayout::hysteresis(k)); });
+    ++row;
   }
 }
 
 /// A record's own, whatever the numbers are.
 void StructureColumns::write_own() {
-  Eigen::Index row = 0;
   for (std::size_t r = 0; r < records_.size(); ++r) {
     const Record& record = records_[r];
+    auto row = static_cast<Eigen::Index>(first_row_[r]);
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (!std::isfinite(record.reading_mm[i])) continue;
       const double since_s = record.time_s[i] - record.time_s.front();

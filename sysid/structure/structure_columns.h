@@ -76,18 +76,19 @@ class StructureColumns {
                    const StructureGrid& grid);
 
   /// `structure` says which of the numbers count. Only what differs from the last call is computed: the
-  /// delay and the lags are the dear ones. Valid until the next call.
+  /// delay and the lags are the dear ones. Each record on whatever thread is idle. Valid until the next call.
   [[nodiscard]] const Eigen::MatrixXd& at(const NonlinearNumbers& numbers);
 
  private:
-  void write_driven();
-  void write_hysteresis();
+  void write_driven(std::size_t record);
+  void write_hysteresis(std::size_t record);
   void write_own();
 
   const std::vector<Record>& records_;
   const BaseStructure& structure_;
   const StructureGrid& grid_;
   ColumnLayout layout_;
+  std::vector<std::size_t> first_row_;  ///< of every record
   Eigen::MatrixXd columns_;
   NonlinearNumbers numbers_;            ///< of columns_
   std::vector<DrivenPressure> driven_;  ///< of every record; empty: at() was not called yet

@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/parallel.h"
 #include "sysid/fitting/score.h"
 #include "sysid/structure/structure_columns.h"
 #include "sysid/structure/structure_projection.h"
@@ -305,15 +306,23 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
                          const StructureGrid& grid, const StructureFitOptions& options,
                          const NonlinearNumbers* near) {
   const std::vector<Record> few = with_fewer_readings(records, options.most_rows);
-  Search look(few, structure, grid, options);
   FittedStructure fit{structure, grid, {}, {}, 0, options.ridge, false, {}};
   double best = std::numeric_limits<double>::infinity();
-  std::vector<NonlinearNumbers> starts = near != nullptr ? std::vector{*near} : starts_for(records, grid);
-  for (NonlinearNumbers& start : starts) {
+  const std::vector<NonlinearNumbers> starts =
+      near != nullptr ? std::vector{*near} : starts_for(records, grid);
+  struct Run {
+    Search::State found;
+    bool converged = false;
+  };
+  std::vector<Run> runs(starts.size());
+  parallel_for_idle(starts.size(), [&](std::size_t i) {
+    NonlinearNumbers start = starts[i];
     if (!structure.delay) start.delay_s = 0;
     if (!structure.lag) start.filling_s = start.venting_s = 0;
-    bool converged = false;
-    Search::State found = look.run(start, converged);
+    Search look(few, structure, grid, options);
+    runs[i].found = look.run(start, runs[i].converged);
+  });
+  for (const auto& [found, converged] : runs) {
     fit.start_rmse_mm.push_back(std::sqrt(found.projection.mean_square_mm2));
     if (!(found.value < best)) continue;
     best = found.value;

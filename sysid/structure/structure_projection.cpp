@@ -32,7 +32,7 @@ class Projector {
 
   Projection run(const Eigen::VectorXd* near) {
     Eigen::VectorXd x;
-    if (map_.curvature == 0) {
+    if (map_.curvature() == 0) {
       x = solve(p_.columns, p_.readings_mm);
     } else {
       x = near != nullptr && near->size() == p_.columns.cols() ? *near : first_guess();

@@ -9,6 +9,7 @@
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
+#include "sysid/logs/each_record.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -65,11 +66,14 @@ StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<
   StructureFit fit;
   fit.causes = std::move(causes);
   fit.point = point;
+  fit.residual_mm.resize(records.size());
+  for_each_record(records, [&](std::size_t k) {
+    fit.residual_mm[k] = residual(records[k], predict(point.model, records[k], point.starts[k]));
+  });
   double sum = 0;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < records.size(); ++k) {
-    fit.residual_mm.push_back(residual(records[k], predict(point.model, records[k], point.starts[k])));
-    for (const double r : fit.residual_mm.back()) {
+  for (const std::vector<double>& residual_mm : fit.residual_mm) {
+    for (const double r : residual_mm) {
       if (std::isnan(r)) continue;
       sum += r * r;
       ++count;

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <random>
 
+#include "base/parallel.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -129,7 +131,7 @@ BlockLosses losses_of(const StructureFit& fit, const Division& division) {
 BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                             const StructureFit& fit) {
   BlockLosses losses(division.blocks.size(), 0.0);
-  for (std::size_t fold = 0; fold < division.folds; ++fold) {
+  parallel_for_idle(division.folds, [&](std::size_t fold) {
     const std::vector<Record> rest = hidden(records, division, fold);
     const StructureFit without = fit_structure(rest, fit.causes, fit.point, refit);
     const StructureFit judged = evaluate_structure(records, fit.causes, without.point);
@@ -139,7 +141,7 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
       const double span_mm = records[block.record].span_mm;
       losses[b] = std::min(loss(judged.residual_mm[block.record], block), span_mm * span_mm);
     }
-  }
+  });
   return losses;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/numbers.h"
 #include "base/statistics.h"
+#include "base/thread_budget.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
@@ -371,6 +372,7 @@ class Diagnostician {
 
 void examine(Diagnosis& d, const DiagnosisOptions& options) {
   StageClock clock(d);
+  const ThreadBudget budget(options.threads);
   d.evidence = examine_fits(d.records, d.as_given, d.recalibrated, d.extended, d.noise_mm, options.seed);
   clock.ended("evidence");
 }
@@ -378,6 +380,7 @@ void examine(Diagnosis& d, const DiagnosisOptions& options) {
 tl::expected<Diagnosis, std::string> diagnose(const std::vector<Log>& logs, const model::Model& given,
                                               const DiagnosisOptions& options) {
   if (logs.empty()) return Failure("no logs to diagnose");
+  const ThreadBudget budget(options.threads);
   return Diagnostician(logs, given, options).run();
 }
 

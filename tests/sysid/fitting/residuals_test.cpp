@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include "base/thread_budget.h"
 #include "model/catalogue.h"
 #include "sysid/fitting/jacobian.h"
+#include "sysid/logs/each_record.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::residuals_test {
@@ -147,6 +149,26 @@ TEST_P(BothWays, ValuesWithoutDerivativesAreTheSame) {
     ASSERT_TRUE(residuals->evaluate(z, r1, {}));
     ASSERT_TRUE(residuals->evaluate(z, r2, j));
     for (std::size_t i = 0; i < r1.size(); ++i) ASSERT_NEAR(r1[i], r2[i], 1e-9);
+  }
+}
+
+// Records and groups of derivatives that are walked through side by side.
+TEST_P(BothWays, AreBitForBitTheSameOnMoreThreads) {
+  const World& world = GetParam();
+  const std::vector<Record> records = records_of(world);
+  ASSERT_TRUE(are_worth_threads(records));
+  const FitSpace space(world.model, records, all_but_the_exponent(world.model));
+  for (const auto& residuals : {chain_residuals(records, space), separable_residuals(records, space)}) {
+    const std::vector<double> z = space.z({world.model, rest_starts(world.model, records)});
+    std::vector<double> r1(residuals->count()), r4(r1.size()), r(r1.size());
+    std::vector<double> j1(r1.size() * z.size()), j4(j1.size());
+    ASSERT_TRUE(residuals->evaluate(z, r1, j1));
+    const ThreadBudget budget(4);
+    ASSERT_TRUE(residuals->evaluate(z, r4, j4));
+    EXPECT_EQ(r1, r4);
+    EXPECT_EQ(j1, j4);
+    ASSERT_TRUE(residuals->evaluate(z, r, {}));
+    for (std::size_t i = 0; i < r.size(); ++i) ASSERT_NEAR(r[i], r1[i], 1e-9);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/thread_budget.h"
 #include "model/blocks/characteristic.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
@@ -77,6 +78,20 @@ TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
       EXPECT_NEAR(rms(left), std::sqrt(fit.mean_square_mm2), 2e-5) << description_of(structure);
     }
   }
+}
+
+TEST(StructureColumns, AreBitForBitTheSameOnMoreThreads) {
+  const std::vector<Record> records = make_records({simulated(play_finger(), SignalName::tp1, 50, 0.03, 3),
+                                                    simulated(play_finger(), SignalName::sp2, 50, 0.03, 4)},
+                                                   {});
+  const BaseStructure structure{.hinged_creep = true};
+  const StructureGrid grid = grid_for(records);
+  const NonlinearNumbers numbers{
+      .delay_s = 0.05, .filling_s = 0.1, .venting_s = 0.2, .peak_before_kpa = {0, 0}};
+  const Eigen::MatrixXd alone = structure_columns(records, structure, grid, numbers);
+  ASSERT_GT(alone.bottomRows(1).cwiseAbs().maxCoeff(), 0);
+  const ThreadBudget budget(3);
+  EXPECT_EQ(structure_columns(records, structure, grid, numbers), alone);
 }
 
 TEST(PublishedElement, RefittedWithoutABlockItStaysWhereItWas) {

@@ -1,0 +1,46 @@
+#pragma once
+// The same work for every record, side by side where it pays.
+
+#include <cstddef>
+#include <vector>
+
+#include "base/parallel.h"
+#include "sysid/logs/record.h"
+
+namespace softgrip::sysid {
+
+/// A record with fewer samples is walked through a chain before a thread for it would have begun.
+inline constexpr std::size_t samples_worth_a_thread = 1000;
+
+/// Whether the records have so many samples, on the average.
+[[nodiscard]] inline bool are_worth_threads(const std::vector<Record>& records,
+                                            std::size_t least_samples = samples_worth_a_thread) {
+  std::size_t samples = 0;
+  for (const Record& record : records) samples += record.size();
+  return samples >= least_samples * records.size();
+}
+
+/// Calls work(k) for every record, in any order: on the threads that are idle where it pays. Results belong
+/// into slot k of something prepared.
+template <class Work>
+void for_each_record(const std::vector<Record>& records, Work&& work,
+                     std::size_t least_samples = samples_worth_a_thread) {
+  if (are_worth_threads(records, least_samples)) {
+    parallel_for_idle(records.size(), work);
+  } else {
+    for (std::size_t k = 0; k < records.size(); ++k) work(k);
+  }
+}
+
+/// The row of each record's first reading where all readings of all records follow one another.
+[[nodiscard]] inline std::vector<std::size_t> first_rows_of(const std::vector<Record>& records) {
+  std::vector<std::size_t> rows;
+  std::size_t row = 0;
+  for (const Record& record : records) {
+    rows.push_back(row);
+    row += record.readings;
+  }
+  return rows;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,135 @@
+#include "base/parallel.h"
+
+#include <chrono>
+#include <set>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace softgrip::parallel_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How many threads have been within it at a time.
+class Crowd {
+ public:
+  void visit() {
+    const int now = ++inside_;
+    for (int most = most_; now > most && !most_.compare_exchange_weak(most, now);) {
+    }
+    std::this_thread::sleep_for(1ms);
+    --inside_;
+  }
+  [[nodiscard]] int most() const { return most_; }
+
+ private:
+  std::atomic<int> inside_{0}, most_{0};
+};
+
+TEST(ParallelFor, DoesEveryItemOnce) {
+  for (const unsigned threads : {0U, 1U, 2U, 7U}) {
+    std::vector<std::atomic<int>> done(100);
+    parallel_for(done.size(), threads, [&](std::size_t i) { ++done[i]; });
+    for (const std::atomic<int>& times : done) ASSERT_EQ(times, 1);
+  }
+}
+
+TEST(ParallelFor, ComputesOnNoMoreThreadsThanItMay) {
+  Crowd crowd;
+  parallel_for(20, 3, [&](std::size_t) { crowd.visit(); });
+  EXPECT_LE(crowd.most(), 3);
+}
+
+TEST(ParallelFor, LoopsWithinALoopShareItsThreads) {
+  Crowd crowd;
+  std::atomic<int> leaves{0};
+  {
+    const ThreadBudget budget(2);
+    parallel_for(3, 4, [&](std::size_t) {
+      parallel_for(5, 4, [&](std::size_t) {
+        crowd.visit();
+        ++leaves;
+      });
+    });
+  }
+  EXPECT_EQ(leaves, 15);
+  // One that waited for others goes on before the thread that had its place has ended.
+  EXPECT_LE(crowd.most(), 3);
+}
+
+/// Whether two items of a loop are worked on at a time.
+bool side_by_side() {
+  std::atomic<int> inside{0};
+  std::atomic<bool> met{false};
+  parallel_for_idle(2, [&](std::size_t) {
+    ++inside;
+    const auto until = std::chrono::steady_clock::now() + 50ms;
+    while (!met && std::chrono::steady_clock::now() < until) {
+      if (inside == 2) met = true;
+    }
+    --inside;
+  });
+  return met;
+}
+
+TEST(ParallelFor, ALoopWithinTheLastItemTakesTheThreadThatIsIdle) {
+  for (const bool caller_works : {true, false}) {
+    const ThreadBudget budget(2);
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<int> begun{0};
+    bool found = false;
+    parallel_for(2, 2, [&](std::size_t) {
+      ++begun;
+      while (begun < 2) std::this_thread::yield();
+      if ((std::this_thread::get_id() == caller) != caller_works) return;
+      const auto until = std::chrono::steady_clock::now() + 20s;
+      while (!found && std::chrono::steady_clock::now() < until) found = side_by_side();
+    });
+    EXPECT_TRUE(found) << (caller_works ? "a helper had ended" : "the caller waited");
+  }
+}
+
+TEST(ParallelForIdle, WithoutABudgetIsTheCallingThreadAlone) {
+  std::set<std::thread::id> threads;
+  parallel_for_idle(50, [&](std::size_t) { threads.insert(std::this_thread::get_id()); });
+  EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
+}
+
+TEST(ParallelFor, PassesAnExceptionOnWhenAllIsDone) {
+  const ThreadBudget budget(2);
+  for (int round = 0; round < 50; ++round) {
+    std::atomic<int> done{0};
+    EXPECT_THROW(parallel_for(8, 2,
+                              [&](std::size_t i) {
+                                if (i == 3) throw std::runtime_error("no");
+                                ++done;
+                              }),
+                 std::runtime_error);
+    ASSERT_EQ(done, 7);
+  }
+  // And the thread is there again.
+  EXPECT_EQ(ThreadBudget::current()->take(5), 1U);
+  ThreadBudget::current()->give_back(1);
+}
+
+TEST(ThreadBudget, EndsWithItsScopeAndDoesNotGrowWithinIt) {
+  EXPECT_EQ(ThreadBudget::current(), nullptr);
+  {
+    const ThreadBudget outer(4);
+    const ThreadBudget* const had = ThreadBudget::current();
+    {
+      const ThreadBudget inner(16);
+      EXPECT_EQ(ThreadBudget::current(), had);
+    }
+    EXPECT_EQ(ThreadBudget::current(), had);
+    EXPECT_EQ(ThreadBudget::current()->take(2), 2U);
+    EXPECT_EQ(ThreadBudget::current()->take(5), 1U);
+    EXPECT_EQ(ThreadBudget::current()->take(1), 0U);
+    ThreadBudget::current()->give_back(3);
+  }
+  EXPECT_EQ(ThreadBudget::current(), nullptr);
+}
+
+}  // namespace
+}  // namespace softgrip::parallel_test
