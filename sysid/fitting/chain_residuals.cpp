@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/named.h"
 #include "sysid/fitting/gradient.h"
@@ -46,7 +45,7 @@ class ChainResiduals final : public Residuals {
     const std::span<double> out = r.empty() ? std::span<double>(own) : r;
     const std::vector<Group> groups = groups_of_derivatives();
     const std::size_t records = records_.size();
-    const auto walk_through = [&](std::size_t task) {
+    for_each_walk(records_, groups.size() * records, [&](std::size_t task) {
       const Group& group = groups[task / records];
       const Part part{task % records, group.columns, task < records};
       if (group.size == least_group) {
@@ -56,13 +55,7 @@ class ChainResiduals final : public Residuals {
       } else {
         derivatives<large_group>(point, z, part, out, jacobian);
       }
-    };
-    const std::size_t tasks = groups.size() * records;
-    if (are_worth_threads(records_)) {
-      parallel_for_idle(tasks, walk_through);
-    } else {
-      for (std::size_t task = 0; task < tasks; ++task) walk_through(task);
-    }
+    });
     for_each_record(records_, [&](std::size_t k) { start(point, z, k, out, jacobian); });
     return std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); }) &&
            std::all_of(jacobian.begin(), jacobian.end(), [](double v) { return std::isfinite(v); });

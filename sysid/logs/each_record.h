@@ -20,16 +20,23 @@ inline constexpr std::size_t samples_worth_a_thread = 1000;
   return samples >= least_samples * records.size();
 }
 
+/// Calls work(i) for `count` walks through records, in any order: on the threads that are idle where it pays.
+template <class Work>
+void for_each_walk(const std::vector<Record>& records, std::size_t count, Work&& work,
+                   std::size_t least_samples = samples_worth_a_thread) {
+  if (are_worth_threads(records, least_samples)) {
+    parallel_for_idle(count, work);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+  }
+}
+
 /// Calls work(k) for every record, in any order: on the threads that are idle where it pays. Results belong
 /// into slot k of something prepared.
 template <class Work>
 void for_each_record(const std::vector<Record>& records, Work&& work,
                      std::size_t least_samples = samples_worth_a_thread) {
-  if (are_worth_threads(records, least_samples)) {
-    parallel_for_idle(records.size(), work);
-  } else {
-    for (std::size_t k = 0; k < records.size(); ++k) work(k);
-  }
+  for_each_walk(records, records.size(), work, least_samples);
 }
 
 /// The row of each record's first reading where all readings of all records follow one another.
