@@ -306,12 +306,18 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
 }
 
 FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
-  if (trial.structure.published) return refit_published(records, trial.point);
-  StructureFitOptions options;
-  options.ridge = trial.ridge;
   // A regulator is dear to search for, and stays where it is whatever the finger does.
-  const NonlinearNumbers* const near = trial.structure.regulator ? &trial.numbers : nullptr;
-  return point_of(fit_form(records, trial.structure, grid_for(records), options, near), records, drive);
+  if (trial.structure.regulator) return fit_nearby(trial, records, drive);
+  if (trial.structure.published) return refit_published(records, trial.point);
+  return point_of(fit_form(records, trial.structure, grid_for(records), {.ridge = trial.ridge}), records,
+                  drive);
+}
+
+FitPoint fit_nearby(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
+  if (trial.structure.published) return refit_published(records, trial.point);
+  const StructureFitOptions options{.ridge = trial.ridge};
+  return point_of(fit_form(records, trial.structure, grid_for(records), options, &trial.numbers), records,
+                  drive);
 }
 
 }  // namespace softgrip::sysid

@@ -102,5 +102,8 @@ struct WithoutIngredient {
 /// The same structure with the same ridge fitted to other readings of the same records.
 [[nodiscard]] FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records,
                                  Drive drive);
+/// From the trial's own numbers alone, where what has changed of the readings is little.
+[[nodiscard]] FitPoint fit_nearby(const StructureTrial& trial, const std::vector<Record>& records,
+                                  Drive drive);
 
 }  // namespace softgrip::sysid

@@ -206,7 +206,7 @@ void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQue
   base.ridge = std::min(base.ridge, most_ridge);
   free_the_base(found, base, data, question);
   options.base_again = [base, drive = question.drive](const std::vector<Record>& readings) {
-    return fit_again(base, readings, drive);
+    return fit_nearby(base, readings, drive);
   };
   const Selection selection = select_among_thinned(found.fit.point, data, question, options);
   if (selection.chosen.empty()) return;
