@@ -17,6 +17,8 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::array ridges{1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
+/// With this one the nonlinear numbers are searched from every start; with the others they are near.
+constexpr std::size_t first_ridge = 2;
 /// In a fold the nonlinear numbers are not far from those of all readings.
 constexpr int fold_iterations = 5;
 
@@ -43,8 +45,9 @@ class Judge {
 
   [[nodiscard]] std::size_t blocks() const { return blocks_.count(); }
 
-  [[nodiscard]] FittedStructure fit(const BaseStructure& structure, double ridge) const {
-    return fit_form(records_, structure, grid_, with(ridge));
+  [[nodiscard]] FittedStructure fit(const BaseStructure& structure, double ridge,
+                                    const NonlinearNumbers* near = nullptr) const {
+    return fit_form(records_, structure, grid_, with(ridge), near);
   }
 
   /// From the numbers of a similar one on.
@@ -254,8 +257,9 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   std::vector<FittedStructure> fitted_with(ridges.size());
   std::vector<StructureTrial> by_ridge(ridges.size());
   say("choosing the ridge");
+  fitted_with[first_ridge] = judge.fit(richest, ridges[first_ridge]);
   parallel_for(ridges.size(), options.threads, [&](std::size_t i) {
-    fitted_with[i] = judge.fit(richest, ridges[i]);
+    if (i != first_ridge) fitted_with[i] = judge.fit(richest, ridges[i], &fitted_with[first_ridge].numbers);
     by_ridge[i] = judge.judge(fitted_with[i], ridges[i], 0);
   });
   const std::size_t best_ridge = best_of(by_ridge);

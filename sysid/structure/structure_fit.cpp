@@ -101,7 +101,7 @@ class Search {
       for (int attempt = 0; attempt < 8; ++attempt) {
         State trial = at(moved(best.numbers, step(normal, best.numbers, damping)), &best.projection.weights);
         if (trial.value < best.value) {
-          converged = best.value - trial.value < 1e-6;
+          converged = best.value - trial.value < 1e-5;
           best = std::move(trial);
           damping = std::max(damping / 5, 1e-7);
           improved = true;

@@ -18,6 +18,8 @@ namespace {
 /// still be seen. A ringing above half this rate is seen as well: the prediction is thinned as the readings
 /// are.
 constexpr double look_interval_s = 0.02;
+/// Which of the causes may be the best shows on fewer samples.
+constexpr double glance_interval_s = 0.04;
 /// A first look at every start, then a longer one at those that may become the best or a rival.
 constexpr FitEffort glance{.most_iterations = 8, .tolerance = 1e-5};
 constexpr FitEffort look{.most_iterations = 12, .tolerance = 1e-5};
@@ -48,9 +50,9 @@ void sort_and_keep(std::vector<StructureFit>& fits, std::size_t count) {
 /// Where searches on top of `current` may start from.
 std::vector<Scan> places(const SearchData& data, const StructureFit& current) {
   std::vector<Scan> scans;
-  scans.emplace_back(data.thinned, current.causes, current.point);
+  scans.emplace_back(data.glimpsed, current.causes, current.point);
   // Recalibration may have walked far from the truth to swallow the effect.
-  if (current.causes.empty()) scans.emplace_back(data.thinned, current.causes, data.given);
+  if (current.causes.empty()) scans.emplace_back(data.glimpsed, current.causes, data.given);
   return scans;
 }
 
@@ -61,7 +63,7 @@ std::vector<StructureFit> glances(const SearchData& data, const StructureFit& cu
   causes.push_back(cause);
   std::vector<StructureFit> fits;
   for (const FitPoint& start : best_starts(scans, cause, data.scales, fewest_looks)) {
-    fits.push_back(fit_structure(data.thinned, causes, start, glance));
+    fits.push_back(fit_structure(data.glimpsed, causes, start, glance));
   }
   sort_and_keep(fits, fits.size());
   return fits;
@@ -207,7 +209,10 @@ SearchData make_search_data(std::vector<Record> records, const model::Model& giv
   data.records = std::move(records);
   data.given = {given, rest_starts(given, data.records)};
   data.scales = scales_of(data.records);
-  for (const Record& record : data.records) data.thinned.push_back(thinned_to(record, look_interval_s));
+  for (const Record& record : data.records) {
+    data.thinned.push_back(thinned_to(record, look_interval_s));
+    data.glimpsed.push_back(thinned_to(record, glance_interval_s));
+  }
   return data;
 }
 

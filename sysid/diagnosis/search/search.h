@@ -14,7 +14,8 @@ namespace softgrip::sysid {
 /// A campaign as the search sees it.
 struct SearchData {
   std::vector<Record> records;
-  std::vector<Record> thinned;  ///< until a candidate is finished
+  std::vector<Record> thinned;   ///< until a candidate is finished
+  std::vector<Record> glimpsed;  ///< further, for a first look
   Scales scales;
   unsigned threads = 0;  ///< 0: as many as there are cores
   FitPoint given;        ///< the model as it was given: a second place to start from

@@ -20,7 +20,9 @@ constexpr std::size_t finalists = 4;
 constexpr double small_share = 0.01;
 constexpr double left_by_a_small_one = 0.1;
 /// How much more than another explanation the best of one more cause may leave for the others to be followed.
-constexpr double near_the_other = 2;
+constexpr double near_the_other = 1.25;
+/// So many times the noise, as mean squares, is explained.
+constexpr double near_the_noise = 2;
 
 class Selector {
  public:
@@ -90,7 +92,7 @@ class Selector {
   /// Whether another explanation leaves far less than the best of one more cause; none leaves less than
   /// the noise.
   bool is_far_behind(double best_mm2) {
-    if (best_mm2 <= near_the_other * square(noise_)) return false;
+    if (best_mm2 <= near_the_noise * square(noise_)) return false;
     if (!to_beat_mm2_) to_beat_mm2_ = options_.to_beat_mm2();
     return best_mm2 > near_the_other * *to_beat_mm2_;
   }

@@ -136,6 +136,7 @@ Selection select_among_thinned(const FitPoint& base, const SearchData& data, con
                                const SelectionOptions& options) {
   SearchData thinned = data;
   thinned.records = data.thinned;
+  thinned.thinned = data.glimpsed;
   const Division division = thinned_like(question.division, data.records, data.thinned);
   return select_causes_upon(thinned, evaluate_structure(thinned.records, {}, base), question.noise_mm,
                             division, options);
