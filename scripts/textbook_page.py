@@ -158,8 +158,8 @@ identify --structure auto` makes of another campaign of the same finger before a
 among the alternatives of a name, whatever the verdict; a name finds one cause at most. Wrong: named although neither
 it nor any of its alternatives is there. The held-out error is that of `softgrip identify --structure auto` on
 interleaved blocks: from the measured pressure where it is recorded, else from the command; beside it stands what the
-diagnosis' own model leaves on its held-out blocks. Where the pressure is recorded the logs are diagnosed twice:
-with `--drive measured` for the finger and its sensor, from the command for the valve."""
+diagnosis' own model leaves on its held-out blocks. Where the pressure is recorded it drives the finger
+(`--drive measured`), and the valve is judged by it."""
 
 
 def write(path, results, planned, command):

@@ -9,11 +9,9 @@ namespace textbook {
 namespace {
 
 constexpr double pi = 3.14159265358979;
-constexpr double rate_hz = 100;
-
 using Points = std::vector<std::pair<double, double>>;  // time, pressure
 
-std::vector<double> joined(const Points& points) {
+std::vector<double> joined(const Points& points, double rate_hz) {
   std::vector<double> out;
   std::size_t i = 0;
   const auto count = static_cast<std::size_t>(points.back().first * rate_hz);
@@ -28,7 +26,7 @@ std::vector<double> joined(const Points& points) {
 }
 
 // Triangles of many amplitudes and rates, with minor loops on the larger ones.
-std::vector<double> triangles(std::mt19937_64& random) {
+std::vector<double> triangles(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> peak(20, 60), half(1.2, 5);
   Points points{{0, 0}, {1, 0}};
   const auto to = [&points](double after, double p) { points.emplace_back(points.back().first + after, p); };
@@ -43,25 +41,25 @@ std::vector<double> triangles(std::mt19937_64& random) {
   }
   to(points.back().second > 0 ? 1 : 0.5, 0);
   to(3, 0);
-  return joined(points);
+  return joined(points, rate_hz);
 }
 
-std::vector<double> stairs(std::mt19937_64& random) {
+std::vector<double> stairs(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> hold(3, 8);
   Points points{{0, 0}, {1, 0}};
   for (const double p : {15.0, 32.0, 60.0, 40.0, 18.0, 50.0, 0.0}) {
     points.emplace_back(points.back().first + 0.05, p);
     points.emplace_back(points.back().first + hold(random), p);
   }
-  return joined(points);
+  return joined(points, rate_hz);
 }
 
 // Sines on sines: rates from 0.05 to 0.6 Hz, never below zero.
-std::vector<double> sines(std::mt19937_64& random) {
+std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
   std::uniform_real_distribution<double> slow(0.05, 0.12), fast(0.25, 0.6);
   const double f = slow(random), g = fast(random);
   std::vector<double> out;
-  for (std::size_t k = 0; k < 5000; ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(50 * rate_hz); ++k) {
     const double t = static_cast<double>(k) / rate_hz,
                  edge = std::clamp(std::min(t - 0.5, 48 - t) / 4, 0.0, 1.0);
     out.push_back(edge * (22 * (1 - std::cos(2 * pi * f * t)) + 7.5 * (1 - std::cos(2 * pi * g * t))));
@@ -71,12 +69,12 @@ std::vector<double> sines(std::mt19937_64& random) {
 
 }  // namespace
 
-std::vector<Log> draw_campaign(std::uint64_t seed, bool poor) {
+std::vector<Log> draw_campaign(std::uint64_t seed, bool poor, double rate_hz) {
   std::mt19937_64 random(seed * 1299709 + 41);
-  std::vector<std::vector<double>> commands{triangles(random)};
+  std::vector<std::vector<double>> commands{triangles(random, rate_hz)};
   if (!poor) {
-    commands.push_back(stairs(random));
-    commands.push_back(sines(random));
+    commands.push_back(stairs(random, rate_hz));
+    commands.push_back(sines(random, rate_hz));
   }
   std::vector<Log> logs;
   double start_s = 0;

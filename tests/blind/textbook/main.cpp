@@ -34,9 +34,17 @@ constexpr double visible_mm = noise_mm / 4;
 struct Arguments {
   std::uint64_t seed = 1, campaign = 0;
   std::string out, truth, make, cause, probe;
-  double strength = 8, zero_mm = 0, warmer_c = 0;
+  double strength = 8, zero_mm = 0, warmer_c = 0, rate_hz = 100;
   bool poor = false, pressure = false, temperature = true, supply = true, list = false, makes = false;
 };
+
+// The valve's step goes into a sample a whole number of times.
+double rate(const std::string& value) {
+  const double rate_hz = std::stod(value);
+  if (rate_hz != 50 && rate_hz != 100 && rate_hz != 200 && rate_hz != 400)
+    throw std::invalid_argument("--rate-hz is one of 50, 100, 200, 400");
+  return rate_hz;
+}
 
 Arguments arguments(int argc, char** argv) {
   Arguments a;
@@ -78,6 +86,8 @@ Arguments arguments(int argc, char** argv) {
       a.zero_mm = std::stod(value);
     else if (key == "--warmer-c")
       a.warmer_c = std::stod(value);
+    else if (key == "--rate-hz")
+      a.rate_hz = rate(value);
     else if (key == "--probe")
       a.probe = value;
     else
@@ -162,7 +172,7 @@ int run(const Arguments& a) {
   const textbook::World world =
       textbook::draw_world(a.make.empty() ? makes[a.seed % makes.size()] : a.make, a.seed);
   const std::uint64_t drive_seed = a.seed + 1000003 * a.campaign;
-  const auto whole = textbook::draw_campaign(drive_seed, false);
+  const auto whole = textbook::draw_campaign(drive_seed, false, a.rate_hz);
   std::map<std::string, textbook::Scaled> hidden;
   textbook::Effects effects;
   if (!a.cause.empty()) {
@@ -173,7 +183,7 @@ int run(const Arguments& a) {
       effects[id] = hidden[id].numbers;
     }
   }
-  auto logs = textbook::draw_campaign(drive_seed, a.poor);
+  auto logs = textbook::draw_campaign(drive_seed, a.poor, a.rate_hz);
   for (textbook::Log& log : logs)
     for (double& t : log.temperature_c) t += a.warmer_c;
   const auto answers = textbook::simulate(world, effects, logs, a.seed);

@@ -138,6 +138,13 @@ class Campaign(unittest.TestCase):
         self.assertNotEqual(logs, others)
         self.assertEqual((truth["make"], truth["span_mm"]), (other["make"], other["span_mm"]))
 
+    def test_read_twice_as_often_it_is_the_same_finger(self):
+        usual, often = (displacements(world(*rate)[0][:1]) for rate in ((), ("--rate-hz", "200")))
+        change = [a - b for a, b in zip(usual, often[::2])]
+        self.assertIn(len(often), range(2 * len(usual) - 2, 2 * len(usual) + 1))
+        # Two readings of 0.04 mm of noise each, and what a rarer look at the same valve makes of the command.
+        self.assertLess(math.sqrt(sum(c * c for c in change) / len(change)), 0.07)
+
     def test_columns_can_be_left_out(self):
         logs, _ = world("--no-temperature", "--no-supply")
         self.assertEqual(logs[0].splitlines()[0], b"time_s,pressure_command_kpa,displacement_mm")

@@ -21,10 +21,6 @@ NOISE_MM = 0.04  # of the readings that textbook-world writes
 HELD_OUT_AT_MOST = {"pressure": 1.6, "command": 5}
 
 
-# What stands between the command and the measured pressure.
-OF_THE_VALVE = {"transport_delay", "valve_lag", "valve_deadband", "pressure_saturation", "supply_sag"}
-
-
 def program(build):
     return pathlib.Path(build).resolve() / "tests/blind/textbook/textbook-world"
 
@@ -107,23 +103,9 @@ def named_in(diagnosis, judged):
 
 
 def diagnosed(build, model, logs, work, world, threads):
-    """Where the pressure is recorded: the finger and its sensor from there, the valve from the command."""
-    threads = ("--threads", str(threads))
-    if world["columns"] != "pressure":
-        return judging.diagnose(build, model, logs, work / "out", *threads)
-    diagnosis, message = judging.diagnose(build, model, logs, work / "out", *threads, "--drive", "measured")
-    if diagnosis is None:
-        return diagnosis, message
-    valve, message = judging.diagnose(build, model, logs, work / "valve", *threads)
-    if valve is None:
-        return valve, message
-    named = {cause["id"] for cause in diagnosis["causes"]}
-    for cause, rivals in zip(valve["causes"], valve["alternatives"]):
-        if cause["id"] in OF_THE_VALVE - named:
-            diagnosis["causes"].append(cause)
-            diagnosis["alternatives"].append(rivals)
-    diagnosis["wall_s"] += valve["wall_s"]
-    return diagnosis, message
+    """Where the pressure is recorded it drives the finger, and the valve is judged by it."""
+    drive = ("--drive", "measured") if world["columns"] == "pressure" else ()
+    return judging.diagnose(build, model, logs, work / "out", "--threads", str(threads), *drive)
 
 
 def run_world(build, folder, world, threads=1):

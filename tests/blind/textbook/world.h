@@ -30,7 +30,7 @@ struct World {
 };
 
 World draw_world(const std::string& make, std::uint64_t seed);
-std::vector<Log> draw_campaign(std::uint64_t seed, bool poor);
+std::vector<Log> draw_campaign(std::uint64_t seed, bool poor, double rate_hz);
 double duration_s(const std::vector<Log>& logs);
 
 /// Every log starts at rest; age, drift and the largest load run on. The valve is stepped at 0.25 ms.

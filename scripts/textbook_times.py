@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""How long `softgrip diagnose` takes on three logs of about 12,000 samples each.
+
+    scripts/textbook_times.py [--build build/release] [--worlds 24] [--threads 2] [--first-seed 1000] [--page PAGE.md]
+
+The worlds are the first of a campaign of scripts/textbook_campaign.py, read at 200 Hz: every make, the pressure recorded in
+half of them (`--drive measured`), without an effect, with one, two and three. One after the other, everything that a user
+gets: recalibration, search, held-out logs, intervals, the closed loop and the report. Nothing else should run meanwhile.
+"""
+import argparse
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+for folder in ("tests/blind", "tests/blind/textbook", "scripts"):
+    sys.path.insert(0, str(ROOT / folder))
+
+import judging  # noqa: E402
+import textbook_campaign  # noqa: E402
+import trial  # noqa: E402
+from textbook_page import table  # noqa: E402
+
+WANTED = {"median": 10, "longest": 30}
+
+
+def planned(args):
+    campaign = argparse.Namespace(columns=["pressure", "command"], given=["plain"], clean=10, seeds=1, pairs=10, triples=4,
+                                  strengths=[8, 2], causes=None, first_seed=args.first_seed)
+    ids, makes = trial.listed(args.build, "--list"), trial.listed(args.build, "--makes")
+    return textbook_campaign.worlds(campaign, ids, makes)[:args.worlds]
+
+
+def processor_s():
+    times = os.times()
+    return times.children_user + times.children_system
+
+
+def timed(build, threads, world):
+    """The world with wall_s, processor_s, samples and the seconds of the stages."""
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        hiding = ["--cause", ",".join(world["causes"]), "--strength", str(world["strength"])] if world["causes"] else []
+        logs, _ = trial.make_logs(build, work, world, "--rate-hz", "200", *hiding)
+        began_s, used_s = time.monotonic(), processor_s()
+        diagnosis, message = trial.diagnosed(build, trial.GIVEN, logs, work, world, threads)
+        took_s, used_s = time.monotonic() - began_s, processor_s() - used_s
+        if diagnosis is None:
+            sys.exit(f"{world}: {message}")
+        samples = sum(len(log.read_text().splitlines()) - 1 for log in logs)
+        return {**world, "wall_s": took_s, "processor_s": used_s, "samples": samples, "stages_s": diagnosis["stages_s"],
+                "verdict": diagnosis["verdict"]}
+
+
+def summary(rows):
+    lines = []
+    for name, among in (("all", rows), ("pressure measured", [r for r in rows if r["columns"] == "pressure"]),
+                        ("command alone", [r for r in rows if r["columns"] == "command"])):
+        if among:
+            wall = [r["wall_s"] for r in among]
+            lines.append((name, len(among), f"{statistics.median(wall):.1f}", f"{max(wall):.1f}",
+                          f"{statistics.median(r['processor_s'] for r in among):.1f}"))
+    return lines
+
+
+def shares(rows):
+    """What the stages take of all the time."""
+    stages = {stage for row in rows for stage in row["stages_s"]}
+    total = sum(r["wall_s"] for r in rows)
+    took = {stage: sum(r["stages_s"].get(stage, 0) for r in rows) for stage in stages}
+    named = sorted(took.items(), key=lambda item: -item[1])
+    return [(stage, f"{100 * s / total:.0f} %") for stage, s in [*named, ("everything else", total - sum(took.values()))]]
+
+
+def page(args, rows):
+    options = "".join(f" --{name} {value}" for name, value, usual in (
+        ("worlds", args.worlds, 24), ("threads", args.threads, 2), ("first-seed", args.first_seed, 1000)) if value != usual)
+    median, longest = statistics.median(r["wall_s"] for r in rows), max(r["wall_s"] for r in rows)
+    slowest = sorted(rows, key=lambda r: -r["wall_s"])[:5]
+    return "\n".join([
+        "# How long a diagnosis takes", "",
+        f"Written by `scripts/textbook_times.py{options} --page {args.page}`: {len(rows)} worlds of textbook physics, three "
+        f"logs each, {statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} "
+        f"threads of {os.cpu_count()} processors, closed loop and report included.", "",
+        f"Wanted: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
+        f"{longest:.1f} s.", "",
+        *table(("", "worlds", "median [s]", "longest [s]", "processor time, median [s]"), summary(rows)),
+        *table(("stage", "share of the time"), shares(rows)),
+        "The five that took longest:", "",
+        *table(("hidden", "strength", "make", "columns", "seed", "verdict", "took [s]"), [
+            (" + ".join(r["causes"]) or "nothing", f"{r['strength']:g}", r["make"], r["columns"], r["seed"], r["verdict"],
+             f"{r['wall_s']:.1f}") for r in slowest])])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    parser.add_argument("--worlds", type=int, default=24)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--first-seed", type=int, default=1000)
+    parser.add_argument("--page", type=pathlib.Path)
+    args = parser.parse_args()
+    args.build = args.build.resolve()
+    rows = []
+    for world in planned(args):
+        rows.append(timed(args.build, args.threads, world))
+        row = rows[-1]
+        print(f"{len(rows)}/{args.worlds} {'+'.join(row['causes']) or 'clean'} {row['strength']:g} {row['make']} "
+              f"{row['columns']} seed {row['seed']}: {row['wall_s']:.1f} s, {row['processor_s']:.1f} s of processor time, "
+              f"{row['verdict']}", flush=True)
+    text = page(args, rows)
+    args.page.write_text(text) if args.page else print(text, end="")
+
+
+if __name__ == "__main__":
+    main()
