@@ -37,21 +37,22 @@ std::optional<std::string> AnotherBase::ask(const Selection& selection, const St
   if (auto strangers = strangers_among(data_.records, recalibrated, selection.extended.mean_square_mm2))
     return strangers;
   if (question_.progress) question_.progress("looks for another base");
-  found_ = find_base(data_, selection, question_);
+  found_ = find_base({data_, selection, question_});
   return std::nullopt;
 }
 
 void AnotherBase::go_on(const Selection& selection) {
   if (!found_) return;
+  const BaseSearch search{data_, selection, question_};
   const Structure left = structure_of(found_->fit.residual_mm, question_.noise_mm);
   if (leaves_too_much(left, selection.base_structure, question_.noise_mm)) {
-    find_causes_upon(*found_, data_, question_, upon_much_left);
+    find_causes_upon(*found_, search, upon_much_left);
   } else if (left.present && left.excess_mm > worth_asking * question_.noise_mm) {
     const bool measured = question_.drive == Drive::measured;
-    find_causes_upon(*found_, data_, question_, measured ? upon_little_left_measured : upon_little_left);
+    find_causes_upon(*found_, search, measured ? upon_little_left_measured : upon_little_left);
   }
   const bool plain_explains = !leaves_too_much(selection.left, selection.base_structure, question_.noise_mm);
-  if (!outdoes(*found_, selection, plain_explains)) found_.reset();
+  if (!outdoes(*found_, selection, question_.noise_mm, plain_explains)) found_.reset();
 }
 
 double AnotherBase::mean_square_mm2() const {

@@ -35,11 +35,16 @@ struct BaseQuestion {
   std::function<void(const std::string&)> progress;
 };
 
+/// Where a base is looked for, and what was selected on the given one.
+struct BaseSearch {
+  const SearchData& data;
+  const Selection& plain;
+  const BaseQuestion& question;
+};
+
 /// Nothing where no richer base foretells clearly better than the given one what comes after the readings
 /// that both were fitted to.
-/// @param plain  what was selected on the given base.
-[[nodiscard]] std::optional<BaseFindings> find_base(const SearchData& data, const Selection& plain,
-                                                    const BaseQuestion& question);
+[[nodiscard]] std::optional<BaseFindings> find_base(const BaseSearch& search);
 
 /// What may stand upon a richer base. No base is a finger's own, and what makes up for that takes a part.
 struct CausesUpon {
@@ -53,12 +58,13 @@ inline constexpr CausesUpon upon_little_left{1, 0.65, false};
 inline constexpr CausesUpon upon_little_left_measured{1, 0.35, false};
 
 /// Goes on with the search for causes upon a richer base, and adds what it finds.
-void find_causes_upon(BaseFindings& found, const SearchData& data, const BaseQuestion& question,
-                      const CausesUpon& allowed);
+void find_causes_upon(BaseFindings& found, const BaseSearch& search, const CausesUpon& allowed);
 
 /// Whether a richer base, with what stands upon it, leaves clearly less held out than what was selected on
-/// the given one; or as little, where that is unphysical.
+/// the given one; or as little, where that is unphysical; or not much more with some of the same causes,
+/// where that leaves more than the noise.
 /// @param plain_explains  whether the selection on the given base leaves little enough to be named.
-[[nodiscard]] bool outdoes(const BaseFindings& found, const Selection& plain, bool plain_explains);
+[[nodiscard]] bool outdoes(const BaseFindings& found, const Selection& plain, double noise_mm,
+                           bool plain_explains);
 
 }  // namespace softgrip::sysid

@@ -13,13 +13,6 @@ namespace softgrip::sysid {
 /// What is to be taken away for name_ingredients().
 [[nodiscard]] std::vector<Ingredient> named_ingredients();
 
-/// Where a base was found, and what was reached on the given one.
-struct BaseSearch {
-  const SearchData& data;
-  const Selection& plain;
-  const BaseQuestion& question;
-};
-
 /// Adds the ingredients of `found.chosen` that bring enough, as named or, where they may bring nothing, as
 /// possible. `found.fit` is that base fitted to all readings.
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,

@@ -71,7 +71,8 @@ class Diagnostician {
     data_.scales.residual_lines = spectrum_peaks(data_.records, base->residual_mm);
     clock.ended("recalibration");
     if (options_.progress) options_.progress("looks at the measured pressure");
-    d_.in_valve = find_in_valve(logs_, {given_, options_.record.held, d_.noise_mm, options_.seed});
+    d_.in_valve =
+        find_in_valve(logs_, {given_, options_.record.held, d_.noise_mm, options_.seed, options_.threads});
     if (d_.in_valve) {
       if (!d_.in_valve->advice.empty()) d_.warnings.push_back(d_.in_valve->advice);
       clock.ended("valve");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/numbers.h"
+#include "base/parallel.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/leak.h"
 #include "model/blocks/pressure_saturation.h"
@@ -38,7 +39,7 @@ constexpr double least_part = 0.2;
 /// The same for a second time constant, which is a detail of a lag and no name of its own.
 constexpr double least_detail = 0.02;
 /// Of all logs together, of more every second, third, ... is taken: a valve's numbers are few.
-constexpr std::size_t most_samples = 60'000;
+constexpr std::size_t most_samples = 30'000;
 
 /// A stage's number, as the named cause gives it.
 struct Number {
@@ -161,15 +162,17 @@ class Search {
     narrow.band_kpa = 0.01 * pressures_kpa;
     wide.band_kpa = 0.05 * pressures_kpa;
     whole_ = {all, valve_.fit(all, {narrow, wide}), {}};
-    for (std::size_t i = 0; i < valve_part_count; ++i) {
-      if (!all.test(i)) continue;
+    parallel_for(valve_part_count, question.threads, [&](std::size_t i) {
+      if (!all.test(i)) return;
       const ValveParts parts = without(all, static_cast<ValvePart>(i));
-      Trial& trial = ablation_[i].emplace(Trial{parts, valve_.fit(parts, {whole_.stage}), {}});
-      whole_.stage = valve_.better_fit(all, whole_.stage, trial.stage);
+      ablation_[i].emplace(Trial{parts, valve_.fit(parts, {whole_.stage}), {}});
+    });
+    for (const auto& trial : ablation_) {
+      if (trial) whole_.stage = valve_.better_fit(all, whole_.stage, trial->stage);
     }
     whole_.losses_kpa2 = valve_.held_out_losses(all, whole_.stage);
-    for (std::size_t i = 0; i < valve_part_count; ++i) {
-      if (!ablation_[i]) continue;
+    parallel_for(valve_part_count, question.threads, [&](std::size_t i) {
+      if (!ablation_[i]) return;
       Trial& trial = *ablation_[i];
       // What takes next to nothing where it was fitted takes nothing held out.
       const double fitted_share = 1 - std::pow(whole_.stage.rmse_kpa / trial.stage.rmse_kpa, 2);
@@ -178,7 +181,7 @@ class Search {
       } else {
         ablation_[i].reset();
       }
-    }
+    });
   }
 
   [[nodiscard]] PartEvidence evidence(ValvePart part) const {

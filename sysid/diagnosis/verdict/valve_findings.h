@@ -29,6 +29,7 @@ struct ValveQuestion {
   bool held = false;
   double noise_mm = 0;  ///< of the finger's readings: what moves it by less is not named
   std::uint64_t seed = 1;
+  unsigned threads = 0;  ///< 0: as many as there are cores
 };
 
 /// Nothing where a log has no measured pressure.
