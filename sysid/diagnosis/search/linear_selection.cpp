@@ -136,28 +136,35 @@ class SelectorUpon {
   }
 
  private:
-  /// Every cause that the structure lacks, with the best of its looks; best first.
+  /// Every cause that the structure lacks, with the best of its looks by a law and by a free form; best
+  /// first.
   std::vector<std::pair<Cause, Look>> looks(const Scan& scan) {
     const StructureFit& current = result_.extended;
-    std::vector<std::pair<Cause, Look>> list;
-    if (!scan.usable()) return list;
+    if (!scan.usable()) return {};
+    std::vector<Cause> causes;
     for (const Cause& cause : all_causes()) {
       if (cause.found_by_fitting && !position_of(current.point.model, cause) &&
           unanswerable(cause, scales_).empty())
-        list.emplace_back(cause, Look{});
+        causes.push_back(cause);
     }
+    std::vector<std::array<Look, 2>> best(causes.size());  // by a law, by a free form
     std::atomic<std::size_t> tried{0};
-    parallel_for(list.size(), data_.threads, [&](std::size_t i) {
-      auto& [cause, best] = list[i];
-      for (const FitPoint& start : best_starts({&scan, 1}, cause, scales_, fewest_looks)) {
-        Look look = look_from(data_.thinned, scan, cause, start);
-        if (look.mean_square_mm2 < best.mean_square_mm2) best = std::move(look);
+    parallel_for(causes.size(), data_.threads, [&](std::size_t i) {
+      for (const FitPoint& start : best_starts({&scan, 1}, causes[i], scales_, fewest_looks)) {
+        Look look = look_from(data_.thinned, scan, causes[i], start);
+        Look& of_its_kind = best[i][has_free_form(start.model, causes[i]) ? 1 : 0];
+        if (look.mean_square_mm2 < of_its_kind.mean_square_mm2) of_its_kind = std::move(look);
       }
       if (options_.progress)
         options_.progress("upon another base: tried " + std::to_string(++tried) + " of " +
-                          std::to_string(list.size()));
+                          std::to_string(causes.size()));
     });
-    std::erase_if(list, [](const auto& one) { return !std::isfinite(one.second.mean_square_mm2); });
+    std::vector<std::pair<Cause, Look>> list;
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      for (Look& look : best[i]) {
+        if (std::isfinite(look.mean_square_mm2)) list.emplace_back(causes[i], std::move(look));
+      }
+    }
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) {
       return a.second.mean_square_mm2 < b.second.mean_square_mm2;
     });
@@ -206,14 +213,16 @@ class SelectorUpon {
     const auto worse = std::find_if(found.begin(), found.end(), [&](const auto& one) {
       return one.second.mean_square_mm2 > hopeless_ratio * found.front().second.mean_square_mm2;
     });
-    std::vector<ScoredCandidate> scored(
+    std::vector<ScoredCandidate> followed(
         std::min(most_finalists, static_cast<std::size_t>(worse - found.begin())));
-    parallel_for(scored.size(), data_.threads, [&](std::size_t i) {
+    parallel_for(followed.size(), data_.threads, [&](std::size_t i) {
       const auto& [cause, look] = found[i];
       std::vector<Cause> causes = result_.extended.causes;
       causes.push_back(cause);
-      scored[i] = finished(best_answer(data_.thinned, scan, cause, look), causes);
+      followed[i] = finished(best_answer(data_.thinned, scan, cause, look), causes);
     });
+    std::vector<ScoredCandidate> scored;
+    for (ScoredCandidate& one : followed) put_if_better(std::move(one), scored);
     if (auto slack = slack_as_backlash()) put_if_better(std::move(*slack), scored);
     std::stable_sort(scored.begin(), scored.end(), [](const ScoredCandidate& a, const ScoredCandidate& b) {
       return rmse_mm(a.losses) < rmse_mm(b.losses);

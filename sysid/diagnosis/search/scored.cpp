@@ -17,8 +17,11 @@ constexpr double rival_share = 0.05;
 }  // namespace
 
 bool is_free_form(const ScoredCandidate& scored) {
-  const model::Model& model = scored.candidate.fit->point.model;
-  return form_of(scored.candidate.cause, model.blocks[*position_of(model, scored.candidate.cause)]).free_form;
+  return has_free_form(scored.candidate.fit->point.model, scored.candidate.cause);
+}
+
+bool has_free_form(const model::Model& model, const Cause& cause) {
+  return form_of(cause, model.blocks[*position_of(model, cause)]).free_form;
 }
 
 ChosenCause weigh(const Cause& cause, const ChosenBetween& between,

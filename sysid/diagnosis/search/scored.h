@@ -23,6 +23,8 @@ struct ScoredCandidate {
 /// A form that can follow anything slow is named only where no law explains nearly as much, and is no rival
 /// of one that does.
 [[nodiscard]] bool is_free_form(const ScoredCandidate& scored);
+/// The same of a cause that the model has.
+[[nodiscard]] bool has_free_form(const model::Model& model, const Cause& cause);
 
 /// The structures with and without a chosen cause.
 struct ChosenBetween {

@@ -212,10 +212,10 @@ std::optional<BaseFindings> find_base(const BaseSearch& search) {
     views.emplace_back([&](const Readings& all) {
       return without_effects(all, plain.extended.point, plain.extended.causes);
     });
-    views.emplace_back([&](const Readings& all) {
-      return without_wandering(all, {.delay = question.drive == Drive::command}, {});
-    });
   }
+  views.emplace_back([&](const Readings& all) {
+    return without_wandering(all, {.delay = question.drive == Drive::command}, {});
+  });
   std::optional<BetterStructure> better;
   auto view = views.begin();
   for (; view != views.end(); ++view) {
