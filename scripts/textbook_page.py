@@ -1,5 +1,6 @@
 """The textbook campaign's page: found, wrong and left over, by make, cause, strength and columns; two pictures beside it."""
 import collections
+import json
 import math
 import pathlib
 import statistics
@@ -167,6 +168,8 @@ def write(path, results, planned, command):
     path.parent.mkdir(parents=True, exist_ok=True)
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
     rows = [r for r in results if r["outcome"] != "failed"]
+    rows_path = path.with_suffix(".jsonl")
+    rows_path.write_text("".join(json.dumps(r) + "\n" for r in sorted(results, key=lambda r: json.dumps(r))))
     bars_path.write_text(blind_page.bars(rows))
     # In the picture of names own physics is left out: it is nearly always named, and rightly.
     plain = [{**r, "named": [], "rivals": []} for r in rows]
@@ -176,7 +179,9 @@ def write(path, results, planned, command):
                 r["named"].append(name)
                 r["rivals"].append(rivals)
     confusion_path.write_text(blind_page.confusion(plain))
-    lines = ["# Textbook campaign", "", made(results, planned, command), "", *INTRODUCTION.splitlines(), "",
+    lines = ["# Textbook campaign", "", made(results, planned, command), "",
+             f"Every outcome is a line of [{rows_path.name}]({rows_path.name}): as `DIR/textbook.jsonl` the command goes on from it.",
+             "", *INTRODUCTION.splitlines(), "",
              *table(("measure", "wanted", "measured (95 % interval)", "worlds"), summary(rows)),
              "## Without an effect", "", *clean_table(rows), "## By cause, hidden alone", "", *cause_table(rows),
              f"![Outcomes by hidden cause]({bars_path.name})", "",
