@@ -196,7 +196,9 @@ Selection select_among_thinned(const FitPoint& base, const SearchData& data, con
 }  // namespace
 
 std::optional<BaseFindings> find_base(const BaseSearch& search) {
-  const auto& [data, plain, question] = search;
+  const SearchData& data = search.data;
+  const Selection& plain = search.plain;
+  const BaseQuestion& question = search.question;
   StructureChoiceOptions options;
   options.drive = question.drive;
   options.slow_from_s = slow_from_s(data, plain.base.point.model);
