@@ -16,6 +16,9 @@
 namespace softgrip::sysid {
 namespace {
 
+/// The rate of a dashpot without a spring, which never settles and so begins at zero.
+constexpr double without_spring_hz = 1e-30;
+
 constexpr std::size_t most_branches = 8;
 
 /// How a branch answers a stretch of one duration, with the derivatives by its rate.
@@ -120,6 +123,7 @@ class Walker {
     if (released) step(hysteresis_, kpa_ - peak, 0, -1, rates_);
     for (std::size_t b = 0; b < c_.branches; ++b) {
       const double rate = point_.rate_hz[b];
+      if (!(rate > without_spring_hz)) continue;
       branches_[b].w = kpa_ / rate;
       branches_[b].by_rate = -kpa_ / (rate * rate);
     }
@@ -293,8 +297,7 @@ SeparablePoint to_separable(const SeparableShape& shape, const FitPoint& point) 
   p.instantaneous = bw[0] + 1 / kv[0];
   p.beta = bw[1];
   for (std::size_t b = 0; b < shape.branches; ++b) {
-    // A dashpot without a spring never settles: a rate that no log can tell from none.
-    p.rate_hz.push_back(std::max(kv[1 + 2 * b] / kv[2 + 2 * b], 1e-9));
+    p.rate_hz.push_back(std::max(kv[1 + 2 * b] / kv[2 + 2 * b], without_spring_hz));
     p.amplitude.push_back(1 / kv[2 + 2 * b]);
   }
   p.starts = point.starts;

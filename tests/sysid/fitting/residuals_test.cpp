@@ -8,6 +8,7 @@
 #include "base/thread_budget.h"
 #include "model/catalogue.h"
 #include "sysid/fitting/jacobian.h"
+#include "sysid/fitting/trajectory.h"
 #include "sysid/logs/each_record.h"
 #include "tests/sysid/simulated.h"
 
@@ -205,6 +206,35 @@ TEST(ChainResiduals, DerivativesAreThoseOfTheModel) {
       largest = std::max(largest, std::abs(by_difference));
     }
     EXPECT_LT(difference, 2e-3 * largest) << space.free()[c].name;
+  }
+}
+
+/// A measured pressure begins a little beside zero, and a soft spring has settled far away there.
+TEST(SeparableResiduals, AgreeWithTheModelWhereABranchHasNextToNoSpring) {
+  for (const double stiffness : {1e-3, 1e-9, 1e-14, 0.0}) {
+    Model model = loaded("zhang2025");
+    model.blocks.back().values[1] = stiffness;
+    model.blocks.back().values[2] = 1e8;
+    std::vector<Record> records = records_of({"", loaded("zhang2025")});
+    for (Record& record : records) {
+      for (double& kpa : record.drive_kpa) kpa -= 0.03;
+    }
+    const FitSpace space(model, records, all_but_the_exponent(model));
+    const FitPoint point{model, rest_starts(model, records)};
+    const auto closed = residuals_for(records, space);
+    std::vector<double> r(closed->count());
+    const std::vector<double> z = space.z(point);
+    ASSERT_TRUE(closed->evaluate(z, r, {}));
+    std::size_t row = 0;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+      const FitPoint at = space.point(z);
+      for (const double expected : residual(records[k], predict(at.model, records[k], at.starts[k]))) {
+        if (std::isnan(expected)) continue;
+        EXPECT_NEAR(r[row++], -expected, 1e-6 * (1 + std::abs(expected))) << stiffness;
+        if (HasFailure()) return;
+      }
+    }
+    EXPECT_EQ(row, r.size());
   }
 }
 
