@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How long `softgrip diagnose` takes on three logs of about 12,000 samples each.
+"""How long `softgrip diagnose` takes on three logs of 8,000 to 13,000 samples each.
 
     scripts/textbook_times.py [--build build/release] [--worlds 24] [--threads 2] [--first-seed 1000] [--page PAGE.md]
 
