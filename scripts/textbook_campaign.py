@@ -60,9 +60,13 @@ def worlds(args, ids, makes):
     return planned
 
 
-def told(world, result):
+def called(world):
     return (f"{'+'.join(world['causes']) or 'clean'} {world['strength']:g} {world['make']} {world['columns']} "
-            f"{world['given']} seed {world['seed']}: {result['outcome']}, named {', '.join(result.get('named', [])) or 'nothing'}"
+            f"{world['given']} seed {world['seed']}")
+
+
+def told(world, result):
+    return (f"{called(world)}: {result['outcome']}, named {', '.join(result.get('named', [])) or 'nothing'}"
             f"{', wrong ' + ', '.join(result['wrong']) if result.get('wrong') else ''}")
 
 

@@ -169,7 +169,7 @@ def write(path, results, planned, command):
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
     rows = [r for r in results if r["outcome"] != "failed"]
     rows_path = path.with_suffix(".jsonl")
-    rows_path.write_text("".join(json.dumps(r) + "\n" for r in sorted(results, key=lambda r: json.dumps(r))))
+    rows_path.write_text("".join(sorted(json.dumps(r) + "\n" for r in results)))
     bars_path.write_text(blind_page.bars(rows))
     # In the picture of names own physics is left out: it is nearly always named, and rightly.
     plain = [{**r, "named": [], "rivals": []} for r in rows]

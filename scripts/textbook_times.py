@@ -11,7 +11,6 @@ import argparse
 import os
 import pathlib
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
@@ -20,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 for folder in ("tests/blind", "tests/blind/textbook", "scripts"):
     sys.path.insert(0, str(ROOT / folder))
 
-import judging  # noqa: E402
+import campaign  # noqa: E402
 import textbook_campaign  # noqa: E402
 import trial  # noqa: E402
 from textbook_page import table  # noqa: E402
@@ -29,10 +28,10 @@ WANTED = {"median": 10, "longest": 30}
 
 
 def planned(args):
-    campaign = argparse.Namespace(columns=["pressure", "command"], given=["plain"], clean=10, seeds=1, pairs=10, triples=4,
-                                  strengths=[8, 2], causes=None, first_seed=args.first_seed)
+    plan = argparse.Namespace(columns=["pressure", "command"], given=["plain"], clean=10, seeds=1, pairs=10, triples=4,
+                              strengths=[8, 2], causes=None, first_seed=args.first_seed)
     ids, makes = trial.listed(args.build, "--list"), trial.listed(args.build, "--makes")
-    return textbook_campaign.worlds(campaign, ids, makes)[:args.worlds]
+    return textbook_campaign.worlds(plan, ids, makes)[:args.worlds]
 
 
 def processor_s():
@@ -44,8 +43,7 @@ def timed(build, threads, world):
     """The world with wall_s, processor_s, samples and the seconds of the stages."""
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        hiding = ["--cause", ",".join(world["causes"]), "--strength", str(world["strength"])] if world["causes"] else []
-        logs, _ = trial.make_logs(build, work, world, "--rate-hz", "200", *hiding)
+        logs, _ = trial.make_logs(build, work, world, "--rate-hz", "200", *trial.hiding(world))
         began_s, used_s = time.monotonic(), processor_s()
         diagnosis, message = trial.diagnosed(build, trial.GIVEN, logs, work, world, threads)
         took_s, used_s = time.monotonic() - began_s, processor_s() - used_s
@@ -76,14 +74,12 @@ def shares(rows):
     return [(stage, f"{100 * s / total:.0f} %") for stage, s in [*named, ("everything else", total - sum(took.values()))]]
 
 
-def page(args, rows):
-    options = "".join(f" --{name} {value}" for name, value, usual in (
-        ("worlds", args.worlds, 24), ("threads", args.threads, 2), ("first-seed", args.first_seed, 1000)) if value != usual)
+def page(args, rows, command):
     median, longest = statistics.median(r["wall_s"] for r in rows), max(r["wall_s"] for r in rows)
     slowest = sorted(rows, key=lambda r: -r["wall_s"])[:5]
     return "\n".join([
         "# How long a diagnosis takes", "",
-        f"Written by `scripts/textbook_times.py{options} --page {args.page}`: {len(rows)} worlds of textbook physics, three "
+        f"Written by `{command}`: {len(rows)} worlds of textbook physics, three "
         f"logs each, {statistics.median(r['samples'] for r in rows) / 3:.0f} samples in a log (median), {args.threads} "
         f"threads of {os.cpu_count()} processors, closed loop and report included.", "",
         f"Wanted: median at most {WANTED['median']} s, longest at most {WANTED['longest']} s. Measured: {median:.1f} s and "
@@ -109,10 +105,10 @@ def main():
     for world in planned(args):
         rows.append(timed(args.build, args.threads, world))
         row = rows[-1]
-        print(f"{len(rows)}/{args.worlds} {'+'.join(row['causes']) or 'clean'} {row['strength']:g} {row['make']} "
-              f"{row['columns']} seed {row['seed']}: {row['wall_s']:.1f} s, {row['processor_s']:.1f} s of processor time, "
-              f"{row['verdict']}", flush=True)
-    text = page(args, rows)
+        print(f"{len(rows)}/{args.worlds} {textbook_campaign.called(row)}: {row['wall_s']:.1f} s, "
+              f"{row['processor_s']:.1f} s of processor time, {row['verdict']}", flush=True)
+    command = campaign.command("scripts/textbook_times.py", parser, args, ("worlds", "threads", "first_seed"))
+    text = page(args, rows, command)
     args.page.write_text(text) if args.page else print(text, end="")
 
 

@@ -53,7 +53,7 @@ class Judge {
   /// From the numbers of a similar one on.
   [[nodiscard]] StructureTrial judge_near(const BaseStructure& structure, double ridge,
                                           const NonlinearNumbers& numbers) const {
-    return judge(fit_form(records_, structure, grid_, with(ridge), &numbers), ridge, fold_iterations);
+    return judge(fit(structure, ridge, &numbers), ridge, fold_iterations);
   }
 
   /// With a regulator in the place of the lag, from the numbers of a trial with the lag on.
@@ -227,6 +227,14 @@ void try_regulators(const Judge& judge, unsigned threads, StructureChoice& choic
   choice.trials.push_back(std::move(simplest));
 }
 
+/// @param near  where the nonlinear numbers begin; nullptr: at every start.
+FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
+                  const std::vector<Record>& records, Drive drive) {
+  if (trial.structure.published) return refit_published(records, trial.point);
+  const StructureFitOptions options{.ridge = trial.ridge};
+  return point_of(fit_form(records, trial.structure, grid_for(records), options, near), records, drive);
+}
+
 }  // namespace
 
 std::string_view name_of(Ingredient ingredient) {
@@ -311,17 +319,11 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
 
 FitPoint fit_again(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
   // A regulator is dear to search for, and stays where it is whatever the finger does.
-  if (trial.structure.regulator) return fit_nearby(trial, records, drive);
-  if (trial.structure.published) return refit_published(records, trial.point);
-  return point_of(fit_form(records, trial.structure, grid_for(records), {.ridge = trial.ridge}), records,
-                  drive);
+  return fit_from(trial.structure.regulator ? &trial.numbers : nullptr, trial, records, drive);
 }
 
 FitPoint fit_nearby(const StructureTrial& trial, const std::vector<Record>& records, Drive drive) {
-  if (trial.structure.published) return refit_published(records, trial.point);
-  const StructureFitOptions options{.ridge = trial.ridge};
-  return point_of(fit_form(records, trial.structure, grid_for(records), options, &trial.numbers), records,
-                  drive);
+  return fit_from(&trial.numbers, trial, records, drive);
 }
 
 }  // namespace softgrip::sysid

@@ -58,8 +58,8 @@ def run(ledger, planned, judge, args, told):
 
 
 def command(script, parser, args, options):
-    """The command line with those of `options` that are not the defaults, and the page."""
-    line = f"{script} --work DIR"
+    """The command line with those of `options` that are not the defaults, the folder of one that needs it, and the page."""
+    line = f"{script} --work DIR" if hasattr(args, "work") else script
     for option in options:
         value = getattr(args, option)
         if value != parser.get_default(option):

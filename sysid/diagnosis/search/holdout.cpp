@@ -153,6 +153,11 @@ Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std:
   });
 }
 
+bool is_missed(const BlockLosses& without, const BlockLosses& with, double least_mm2, std::uint64_t seed) {
+  const Spread missed = mean_difference(without, with, seed);
+  return missed.lower > 0 && missed.value > least_mm2;
+}
+
 Spread mean_log_ratio(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed) {
   return bootstrap(worse.size(), seed, [&](const std::vector<std::size_t>& indices) {
     double sum = 0;

@@ -57,6 +57,9 @@ struct Spread {
 /// Mean over blocks of worse minus better, with the spread of a bootstrap that draws whole blocks, so that
 /// correlation within a block does not matter.
 [[nodiscard]] Spread mean_difference(const BlockLosses& worse, const BlockLosses& better, std::uint64_t seed);
+/// Whether what makes the difference is missed: no draw of blocks doubts it, and it is worth `least_mm2`.
+[[nodiscard]] bool is_missed(const BlockLosses& without, const BlockLosses& with, double least_mm2,
+                             std::uint64_t seed);
 /// Mean over blocks of log(worse / better) by the same bootstrap: each block counts by how many times less it
 /// loses, so that one in which a fit without it went astray does not outweigh all others. A block without
 /// loss counts as a tie.

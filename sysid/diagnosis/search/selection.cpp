@@ -191,8 +191,7 @@ class Selector {
   bool add_confounded() {
     result_.undecided = fit_confounded(data_, result_.extended, division_);
     for (Confounded& one : result_.undecided) {
-      const Spread gain = mean_difference(result_.extended_losses, one.losses, options_.seed);
-      if (!(gain.lower > 0 && gain.value > 0.01 * noise_ * noise_)) continue;
+      if (!is_missed(result_.extended_losses, one.losses, 0.01 * square(noise_), options_.seed)) continue;
       stand(std::move(one.fit), std::move(one.losses));
       return true;
     }

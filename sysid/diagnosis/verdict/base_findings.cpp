@@ -89,8 +89,7 @@ void take_back_confounded(BaseFindings& found, const SearchData& data, const Bas
     rest.model = model::without_block(std::move(rest.model), finding.block_type);
     StructureFit fit = fit_structure(data.records, found.fit.causes, rest, finishing_effort);
     BlockLosses losses = linear_held_out_losses(data.records, question.division, fit);
-    const Spread gain = mean_difference(losses, found.losses, question.seed);
-    if (gain.lower > 0 && gain.value > 0.01 * question.noise_mm * question.noise_mm) return false;
+    if (is_missed(losses, found.losses, 0.01 * square(question.noise_mm), question.seed)) return false;
     found.fit = std::move(fit);
     found.losses = std::move(losses);
     return true;
@@ -135,6 +134,7 @@ void free_the_base(BaseFindings& found, const StructureTrial& as_beside_causes, 
   found.losses = std::move(losses);
   found.description = description_of(as_beside_causes.structure);
   const bool was_straight = !found.chosen.structure.characteristic;
+  found.off_grid = true;
   found.chosen = as_beside_causes;
   found.chosen.point = found.fit.point;
   found.chosen.block_losses_mm2 = found.losses;
@@ -157,20 +157,17 @@ void take_back_rivals(BaseFindings& found) {
 
 /// The base was fitted again beside the causes, and may leave less by itself than it did: a cause is there
 /// only if it is missed once the base has answered to its absence with all its numbers.
-void drop_what_is_not_missed(StructureFit& with, std::vector<ChosenCause>& chosen, const SearchData& data,
-                             const BaseQuestion& question) {
-  for (auto one = chosen.begin(); one != chosen.end();) {
-    StructureFit rest = fit_without_cause(data.records, with, one->cause);
-    const BlockLosses without = linear_held_out_losses(data.records, question.division, rest);
-    const BlockLosses losses = linear_held_out_losses(data.records, question.division, with);
-    const Spread missed = mean_difference(without, losses, question.seed);
-    if (missed.lower > 0 && missed.value > least_missed * square(question.noise_mm)) {
-      ++one;
-      continue;
-    }
+/// @param losses  of `with`.
+void drop_what_is_not_missed(StructureFit& with, BlockLosses& losses, std::vector<ChosenCause>& chosen,
+                             const SearchData& data, const BaseQuestion& question) {
+  std::erase_if(chosen, [&](const ChosenCause& one) {
+    StructureFit rest = fit_without_cause(data.records, with, one.cause);
+    BlockLosses without = linear_held_out_losses(data.records, question.division, rest);
+    if (is_missed(without, losses, least_missed * square(question.noise_mm), question.seed)) return false;
     with = std::move(rest);
-    one = chosen.erase(one);
-  }
+    losses = std::move(without);
+    return true;
+  });
 }
 
 /// Whether the causes upon the base are some, and not all, of those that were selected on the given one.
@@ -267,7 +264,8 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
   if (selection.chosen.empty()) return;
   StructureFit with =
       fit_structure(data.records, selection.extended.causes, selection.extended.point, finishing_effort);
-  drop_what_is_not_missed(with, selection.chosen, data, question);
+  BlockLosses losses = linear_held_out_losses(data.records, question.division, with);
+  drop_what_is_not_missed(with, losses, selection.chosen, data, question);
   const double before = selection.base_structure.excess_mm, after = selection.left.excess_mm;
   const bool clear = after * after < (1 - allowed.least_share) * before * before;
   if (!clear && !allowed.parts) return;
@@ -278,7 +276,7 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
   if (!clear) return;
   found.description = description_of(base.structure);
   found.fit = std::move(with);
-  found.losses = linear_held_out_losses(data.records, question.division, found.fit);
+  found.losses = std::move(losses);
   take_back_confounded(found, data, question);
   take_back_rivals(found);
   renumber(found, data);

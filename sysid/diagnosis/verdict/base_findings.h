@@ -18,7 +18,7 @@ namespace softgrip::sysid {
 
 struct BaseFindings {
   StructureFit fit;       ///< the richer base, with the causes that were found on it
-  StructureTrial chosen;  ///< the richer base as it was found
+  StructureTrial chosen;  ///< the richer base, as it was found or as it is beside causes
   bool off_grid = false;  ///< `fit` is of the readings as they are, its time constants where they are best
   std::string description;
   BlockLosses losses;                ///< held out, on the division that was asked for

@@ -57,6 +57,11 @@ def judge(hidden, own, diagnosis):
     return {"found": found, "alone": alone, "wrong": wrong, "outcome": outcome}
 
 
+def hiding(world):
+    """Options of make_logs() that hide the world's causes."""
+    return ["--cause", ",".join(world["causes"]), "--strength", str(world["strength"])] if world["causes"] else []
+
+
 def make_logs(build, work, world, *options):
     """(paths of the logs, truth)"""
     command = [program(build), "--seed", str(world["seed"]), "--make", world["make"], "--out", work / "logs", "--truth",
@@ -113,8 +118,7 @@ def run_world(build, folder, world, threads=1):
     build = pathlib.Path(build).resolve()
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:
-        hiding = ["--cause", ",".join(world["causes"]), "--strength", str(world["strength"])] if world["causes"] else []
-        logs, truth = make_logs(build, work, world, *hiding)
+        logs, truth = make_logs(build, work, world, *hiding(world))
         model = given_model(build, work, world, threads)
         if model is None:
             return {**world, "outcome": "failed", "message": "no model could be identified from the healthy logs"}
