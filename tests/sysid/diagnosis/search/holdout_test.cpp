@@ -64,6 +64,16 @@ TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
     EXPECT_DOUBLE_EQ(cut[b], std::min(losses[b], 0.25 * most)) << b;
 }
 
+TEST(IsMissed, WhereEveryDrawOfBlocksSaysSoAndItIsWorthSomething) {
+  const BlockLosses with(12, 1.0), without(12, 1.5);
+  EXPECT_TRUE(is_missed(without, with, 0.4, 1));
+  EXPECT_FALSE(is_missed(without, with, 0.6, 1)) << "worth less";
+  EXPECT_FALSE(is_missed(with, without, 0.4, 1)) << "better without";
+  BlockLosses by_one_block = with;
+  by_one_block.front() = 13;
+  EXPECT_FALSE(is_missed(by_one_block, with, 0.4, 1)) << "a mean of 1, of one block alone";
+}
+
 TEST(MeanLogRatio, OneBlockThatWentAstrayDoesNotOutweighTheOthers) {
   BlockLosses worse(12, 2.0), better(12, 1.0);
   better.front() = 15;
