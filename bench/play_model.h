@@ -18,7 +18,7 @@ namespace softgrip::bench {
 /// that fills faster than it vents. Example values, not measured; it reaches 20 mm below 60 kPa.
 inline model::Model play_model() {
   constexpr int plays = 12, branches = 7;
-  std::vector<double> hysteresis{0, 0, 0.15}, creep{1e9};
+  std::vector<double> hysteresis{0, 0, 0, 0, 0, 0.15}, creep{1e9};
   for (int i = 1; i < plays; ++i) {
     const double threshold_kpa = 57 * std::pow(static_cast<double>(i) / plays, 1.5);
     hysteresis.insert(hysteresis.end(), {threshold_kpa, 0.03});

@@ -7,24 +7,34 @@
 #include <vector>
 
 #include "model/block.h"
+#include "model/envelope_map.h"
 #include "model/play.h"
+#include "model/static_map.h"
 
 namespace softgrip::model {
 
 /// y += w1 play_r1(p) + w2 play_r2(p) + ..., a play with threshold 0 being the elastic gain. Rate
 /// independent. With weights that are not negative it rises with the pressure, and so has an inverse. A
 /// finger that had been loaded before begins with operators that were dragged along then, and its first
-/// loading is no steeper than later ones; y is 0 where that left it.
+/// loading is no steeper than later ones; y is 0 where that left it. With bent envelopes (see EnvelopeMap)
+/// the plays are generalised ones: loops are wider where the envelopes are steeper.
 template <class T>
 class PrandtlIshlinskii {
  public:
   static constexpr BlockInfo info =
       block_info("prandtl_ishlinskii", Station::actuator, Kind::element, Inverse::implicit,
                  "Prandtl-Ishlinskii hysteresis", "Rate-independent hysteresis as a sum of play operators.",
-                 "y += w1 o1 + w2 o2 + ..., |p - o| <= r in every operator, o moves only when it must");
+                 "y += w1 o1 + w2 o2 + ..., |b(p) - o| <= r in every operator, o moves only when it must; "
+                 "b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))), x = p / envelope_kpa, straight beyond");
   static constexpr std::array parameters{
       parameter("trained_kpa", "kPa", "largest load before the start; 0: a finger that was never loaded",
-                Typical{15.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0})};
+                Typical{15.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0}),
+      parameter("envelope_bend", "", "above 0 the envelopes are steeper at high pressures", Typical{0.0},
+                Within{-0.6, 0.6}, Scale{0.1}, IfLeftOut{0.0}),
+      parameter("envelope_skew", "", "above 0 the envelopes are less steep in the middle", Typical{0.0},
+                Within{-0.35, 0.35}, Scale{0.1}, IfLeftOut{0.0}),
+      parameter("envelope_kpa", "kPa", "where the bend of the envelopes ends; 0: they are straight",
+                Typical{0.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0})};
   static constexpr std::array repeated{
       parameter("r#_kpa", "kPa", "threshold of operator #, above that of the one before; 0: elastic",
                 Typical{2.0}, Within{0.0, 1e4}, Scale{2.0}, Placed{}),
@@ -32,13 +42,16 @@ class PrandtlIshlinskii {
                 Neutral{0.0})};
   static constexpr std::size_t max_parts = 24;
 
-  PrandtlIshlinskii(std::span<const T> values, const Preparation&) : trained_kpa_(values[0]) {
-    for (std::size_t i = 1; i + 1 < values.size(); i += 2)
+  PrandtlIshlinskii(std::span<const T> values, const Preparation&)
+      : trained_kpa_(values[0]), envelopes_(values[1], values[2], values[3]) {
+    for (std::size_t i = parameters.size(); i + 1 < values.size(); i += 2)
       operators_.push_back({Play<T>(values[i]), values[i + 1]});
   }
 
   static std::string_view objection(std::span<const double> values) {
-    for (std::size_t i = 3; i < values.size(); i += 2) {
+    if ((values[1] != 0 || values[2] != 0) && !(values[3] > 0))
+      return "bent envelopes need envelope_kpa above 0, where the bend ends";
+    for (std::size_t i = parameters.size() + 2; i < values.size(); i += 2) {
       if (values[i] <= values[i - 2]) return "the thresholds must rise from operator to operator";
     }
     return {};
@@ -47,10 +60,10 @@ class PrandtlIshlinskii {
   void reset(const T& input) {
     untouched_ = output_ = T(0.0);
     for (Operator& each : operators_) {
-      each.play.reset(trained_kpa_);
+      each.play.reset(envelopes_.value(trained_kpa_));
       each.play.settle(T(0.0));
       untouched_ += each.weight * each.play.output();
-      each.play.settle(input);
+      each.play.settle(envelopes_.value(input));
       output_ += each.weight * each.play.output();
     }
     output_ -= untouched_;
@@ -58,6 +71,27 @@ class PrandtlIshlinskii {
   [[nodiscard]] T output() const { return output_; }
 
   Segment<T> step(const Segment<T>& in, const Surroundings&) {
+    if (!envelopes_.bends()) return moved(in);
+    return moved(mapped(
+        in, [this](const T& p) { return envelopes_.value(p); }, envelopes_.value(in.begin)));
+  }
+
+  template <class U>
+  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
+    const U end = envelopes_.value(end_kpa);
+    U sum(0.0);
+    for (const Operator& each : operators_) sum = sum + each.weight * each.play.peek(end);
+    return sum - untouched_;
+  }
+
+ private:
+  struct Operator {
+    Play<T> play;
+    T weight;
+  };
+
+  /// @param in  as the operators see it.
+  Segment<T> moved(const Segment<T>& in) {
     const T begin = output_;
     T end = -untouched_, mean = -untouched_;
     const bool lasts = !is_zero(in.duration_s);
@@ -71,20 +105,8 @@ class PrandtlIshlinskii {
     return {in.duration_s, begin, end, lasts ? mean : T((begin + end) * 0.5)};
   }
 
-  template <class U>
-  [[nodiscard]] U peek(const T&, const U& end_kpa, const Surroundings&) const {
-    U sum(0.0);
-    for (const Operator& each : operators_) sum = sum + each.weight * each.play.peek(end_kpa);
-    return sum - untouched_;
-  }
-
- private:
-  struct Operator {
-    Play<T> play;
-    T weight;
-  };
-
   T trained_kpa_;
+  EnvelopeMap<T> envelopes_;
   std::vector<Operator> operators_;
   T untouched_{0.0};  ///< the sum at no pressure, as the finger's past left it
   T output_{0.0};

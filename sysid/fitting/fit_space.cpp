@@ -33,12 +33,19 @@ FreeParameter model_parameter(const model::Model& model, std::size_t flat_index)
   return p;
 }
 
+/// Straight ones have no numbers: they would be two more of every model with play operators.
+bool has_envelopes(const model::BlockSpec& plays) {
+  return plays.values[model::parameter_index<model::PrandtlIshlinskii>("envelope_kpa")] > 0;
+}
+
 }  // namespace
 
 bool is_movable(const model::Model& model, std::size_t flat_index) {
   const model::ParameterSpec& spec = model::parameter_spec(model, flat_index);
   if (spec.whole || spec.placed) return false;
   const model::ParameterPlace place = model::place_of(model, flat_index);
+  if (spec.name == "envelope_bend" || spec.name == "envelope_skew")
+    return has_envelopes(model.blocks[place.block]);
   const bool is_k0 = model::is<model::KelvinVoigt>(model.blocks[place.block]) && place.value == 0;
   return !is_k0 ||
          !(model::position_of<model::BoucWen>(model) || model::position_of<model::PrandtlIshlinskii>(model));

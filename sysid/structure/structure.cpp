@@ -16,6 +16,7 @@ std::string description_of(const BaseStructure& s) {
                  : "Bouc-Wen, two Kelvin-Voigt branches";
   }
   std::string text = !s.hysteretic                          ? "elastic gain"
+                     : s.envelopes                          ? "generalised play operators"
                      : s.hysteresis == HysteresisForm::play ? "play operators"
                                                             : "Bouc-Wen";
   if (s.creep) text += s.slow_creep ? ", creep ladder" : ", creep ladder without its slow end";

@@ -1,8 +1,9 @@
 #pragma once
 // The structures that a finger's base may have. With q the driving pressure behind dead time and lag:
 //
-//   z = hysteresis(q) + sum_j c_j creep_j(q),   tau_j creep_j' = q - creep_j,   y = g(z) + offset
+//   z = hysteresis(b(q)) + sum_j c_j creep_j(q),   tau_j creep_j' = q - creep_j,   y = g(z) + offset
 //
+// b: the envelopes of model::EnvelopeMap, of generalised plays, or b(q) = q.
 // hysteresis: play operators, sum_i w_i play_(r_i)(q) (Prandtl-Ishlinskii; Kuhnen, European Journal of
 // Control 9, 2003), or Bouc-Wen's element with exponent 1. Weights are not negative, so that every fitted
 // model is monotone in its newest pressure and has an inverse. g is the block `characteristic`.
@@ -27,6 +28,7 @@ struct BaseStructure {
   bool two_way = true;         ///< filling and venting have a time constant each
   bool regulator = false;      ///< the lag is that of a regulator with an overlap, see RegulatedPressure
   bool characteristic = true;  ///< a bent, monotone map behind the sum
+  bool envelopes = false;      ///< the plays are generalised ones: their envelopes are bent
   bool hinged_creep = false;   ///< creep that depends on the pressure: a short ladder behind every hinge
   bool wandering = false;      ///< beside it every record's zero wanders as it likes; no part of the finger
   /// The published element: Bouc-Wen and two Kelvin-Voigt branches whose time constants are searched too, one
@@ -61,10 +63,12 @@ struct NonlinearNumbers {
   double overlap_kpa = 0;     ///< regulator: as in RegulatorNumbers, like the next two
   double integral_s = 0;
   double full_open_kpa = 0;
-  double curvature = 0;                 ///< of the characteristic
-  double growing_per_kpa = 0;           ///< Bouc-Wen: gamma + eta
-  double narrowing = 0.5;               ///< Bouc-Wen: eta / (gamma + eta), in (0, 1]
-  double trained_kpa = 0;               ///< plays: the largest load before the logs
+  double curvature = 0;        ///< of the characteristic
+  double growing_per_kpa = 0;  ///< Bouc-Wen: gamma + eta
+  double narrowing = 0.5;      ///< Bouc-Wen: eta / (gamma + eta), in (0, 1]
+  double trained_kpa = 0;      ///< plays: the largest load before the logs
+  double envelope_bend = 0;    ///< as in model::EnvelopeMap, like the next one
+  double envelope_skew = 0;
   std::vector<double> peak_before_kpa;  ///< by record, see StartState; of records that start from rest 0
 
   bool operator==(const NonlinearNumbers&) const = default;

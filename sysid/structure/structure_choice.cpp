@@ -141,6 +141,8 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
   }
   if (options.question != StructureQuestion::bouc_wen) {
     for (const bool bent : {false, true}) list.push_back(ladder(HysteresisForm::play, bent, false));
+    list.push_back(ladder(HysteresisForm::play, true, false));
+    list.back().envelopes = true;
     list.push_back(ladder(HysteresisForm::play, true, true));
   }
   return list;
@@ -150,10 +152,11 @@ std::vector<BaseStructure> candidates(const StructureChoiceOptions& options) {
 BaseStructure without(BaseStructure s, Ingredient ingredient) {
   switch (ingredient) {
     case Ingredient::hysteresis:
-      s.hysteretic = false;
+      s.hysteretic = s.envelopes = false;
       break;
     case Ingredient::play_operators:
       s.hysteresis = HysteresisForm::bouc_wen;
+      s.envelopes = false;
       break;
     case Ingredient::creep:
       s.creep = s.hinged_creep = false;
@@ -180,7 +183,10 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
       s.two_way = false;
       break;
     case Ingredient::characteristic:
-      s.characteristic = false;
+      s.characteristic = s.envelopes = false;
+      break;
+    case Ingredient::envelopes:
+      s.envelopes = false;
       break;
   }
   return s;
@@ -249,7 +255,8 @@ std::string_view name_of(Ingredient ingredient) {
       "delay and lag",
       "a regulator's overlap (a lag instead)",
       "a time constant of its own for venting",
-      "bent characteristic"};
+      "bent characteristic and envelopes",
+      "bent envelopes"};
   return names[static_cast<std::size_t>(ingredient)];
 }
 

@@ -40,10 +40,11 @@ enum class Ingredient {
   pressure_dependent_creep,
   delay,
   lag,
-  latency,      ///< delay and lag: each makes up for most of the other
-  regulator,    ///< instead of it a lag
-  venting_lag,  ///< one time constant for both directions
-  characteristic
+  latency,         ///< delay and lag: each makes up for most of the other
+  regulator,       ///< instead of it a lag
+  venting_lag,     ///< one time constant for both directions
+  characteristic,  ///< and the bend of the envelopes: each makes up for most of the other
+  envelopes        ///< plays instead of generalised ones
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::play_operators,
@@ -55,7 +56,8 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::latency,
                                             Ingredient::regulator,
                                             Ingredient::venting_lag,
-                                            Ingredient::characteristic};
+                                            Ingredient::characteristic,
+                                            Ingredient::envelopes};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
 
 /// One structure, fitted to everything and, fold by fold, without the blocks on which it is then judged.

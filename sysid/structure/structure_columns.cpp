@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/envelope_map.h"
 #include "model/exponential.h"
 #include "model/segment.h"
 #include "sysid/fitting/hysteresis_step.h"
@@ -90,6 +91,8 @@ class PressureMemory {
   PressureMemory(const BaseStructure& structure, const StructureGrid& grid, const NonlinearNumbers& numbers,
                  double first_kpa, double peak_kpa)
       : grid_(grid),
+        envelopes_(structure.envelopes ? numbers.envelope_bend : 0,
+                   structure.envelopes ? numbers.envelope_skew : 0, grid.largest_kpa),
         bouc_wen_(structure.hysteresis == HysteresisForm::bouc_wen),
         rates_{numbers.growing_per_kpa, numbers.growing_per_kpa * (1 - 2 * numbers.narrowing)},
         steepest_(steepest_state(numbers)) {
@@ -109,10 +112,14 @@ class PressureMemory {
       if (to != from) g_ = stepped(g_, to - from, rates_);
       return;
     }
+    const double seen = envelopes_.value(to);
     for (std::size_t i = 0; i < plays_.size(); ++i) {
-      plays_[i] = std::clamp(plays_[i], to - grid_.thresholds_kpa[i], to + grid_.thresholds_kpa[i]);
+      plays_[i] = std::clamp(plays_[i], seen - grid_.thresholds_kpa[i], seen + grid_.thresholds_kpa[i]);
     }
   }
+
+  /// The pressure as the operators see it.
+  [[nodiscard]] double seen_kpa(double kpa) const { return envelopes_.value(kpa); }
 
   template <class Row>
   void write(double kpa, Row&& row) const {
@@ -122,6 +129,7 @@ class PressureMemory {
 
  private:
   const StructureGrid& grid_;
+  model::EnvelopeMap<double> envelopes_;
   bool bouc_wen_;
   HysteresisRates rates_;
   std::vector<double> plays_, untouched_;  ///< now, and where the finger's past left them
@@ -237,6 +245,7 @@ void StructureColumns::write_hysteresis(std::size_t r) {
     for (; segment < driven.until[i]; ++segment)
       memory.move(driven.segments[segment].begin, driven.segments[segment].end);
     if (!std::isfinite(records_[r].reading_mm[i])) continue;
+    if (structure_.envelopes) columns_(row, ColumnLayout::elastic()) = memory.seen_kpa(driven.at_kpa(i));
     memory.write(driven.at_kpa(i),
                  [&](std::size_t k) -> double& { return columns_(row, ColumnLayout::hysteresis(k)); });
     ++row;

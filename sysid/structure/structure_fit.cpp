@@ -151,6 +151,10 @@ class Search {
       add_driving(logarithmic(&N::full_open_kpa, 1.5, 15, 1, 1000));
     }
     if (structure_.characteristic) coordinates_.push_back(straight(&N::curvature, 1, 0, -4, 4));
+    if (structure_.envelopes) {
+      coordinates_.push_back(straight(&N::envelope_bend, 0.05, 0, -0.6, 0.6));
+      coordinates_.push_back(straight(&N::envelope_skew, 0.05, 0, -0.35, 0.35));
+    }
     if (structure_.hysteretic && structure_.hysteresis == HysteresisForm::bouc_wen) {
       const double growing = 3 / grid_.largest_kpa;
       coordinates_.push_back(logarithmic(&N::growing_per_kpa, 1.5, growing, growing / 300, growing * 300));

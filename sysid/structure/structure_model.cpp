@@ -23,6 +23,8 @@ namespace {
 constexpr double rigid_kpa_per_mm = 1e9;
 /// A branch that is only there for its time constant [mm/kPa].
 constexpr double next_to_no_creep = 1e-7;
+/// Of such a branch; the block has an upper bound.
+constexpr double largest_dashpot_kpa_s_per_mm = 1e8;
 
 class Builder {
  public:
@@ -68,7 +70,13 @@ class Builder {
           {elastic + steepest_state(fit_.numbers) * beta, beta, fit_.numbers.growing_per_kpa - eta, eta, 1});
       return;
     }
-    std::vector<double> parts{fit_.numbers.trained_kpa, 0, elastic};
+    const bool bent = fit_.structure.envelopes;
+    std::vector<double> parts{fit_.numbers.trained_kpa,
+                              bent ? fit_.numbers.envelope_bend : 0,
+                              bent ? fit_.numbers.envelope_skew : 0,
+                              bent ? fit_.grid.largest_kpa : 0,
+                              0,
+                              elastic};
     for (std::size_t i = 0; i < layout_.hysteretic(); ++i) {
       if (const double w = weight(ColumnLayout::hysteresis(i)); w > 0)
         parts.insert(parts.end(), {fit_.grid.thresholds_kpa[i], w});
@@ -83,7 +91,8 @@ class Builder {
     for (std::size_t b = 0; b < layout_.branches(); ++b) {
       const double w = weight(layout_.creep(b));
       if (w <= 0 && !needed) continue;
-      const double k = 1 / std::max(w, next_to_no_creep);
+      const double k =
+          1 / std::max({w, next_to_no_creep, fit_.grid.ladder_s[b] / largest_dashpot_kpa_s_per_mm});
       values.insert(values.end(), {k, k * fit_.grid.ladder_s[b]});
     }
     if (values.size() > 1) add<model::KelvinVoigt>(std::move(values));

@@ -267,7 +267,7 @@ valve:
   - chamber_lag: {filling_time_constant_s: 0.01, venting_time_constant_s: 0.02}
 actuator:
   - bouc_wen: {alpha_mm_per_kpa: 0.2, beta_mm_per_kpa: 0.1, gamma_per_kpa: 0.02, eta_per_kpa: 0.03, exponent: 1}
-  - prandtl_ishlinskii: {trained_kpa: 18, r1_kpa: 0, w1_mm_per_kpa: 0.05, r2_kpa: 4.5, w2_mm_per_kpa: 0.07, r3_kpa: 11, w3_mm_per_kpa: 0.03}
+  - prandtl_ishlinskii: {trained_kpa: 18, envelope_bend: 0.2, envelope_skew: -0.1, envelope_kpa: 40, r1_kpa: 0, w1_mm_per_kpa: 0.05, r2_kpa: 4.5, w2_mm_per_kpa: 0.07, r3_kpa: 11, w3_mm_per_kpa: 0.03}
   - kelvin_voigt: {k0_kpa_per_mm: 300, k1_kpa_per_mm: 20, c1_kpa_s_per_mm: 100, k2_kpa_per_mm: 0, c2_kpa_s_per_mm: 900}
   - pressure_dependent_creep: {hinge1_kpa: 15, compliance1_mm_per_kpa: 0.04, time_constant1_s: 2}
   - characteristic: {curvature: 0.6, span_mm: 25}

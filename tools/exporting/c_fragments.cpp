@@ -124,7 +124,8 @@ static segment bouc_wen_step(bouc_wen *b, const double *v, segment in) {
 )";
 
 const std::string_view prandtl_ishlinskii = R"(
-/* A sum of play operators; the values are the largest load before the start, then threshold and weight in turn. */
+/* A sum of play operators; the values are the largest load before the start, bend, skew and end of their envelopes,
+   then threshold and weight in turn. */
 typedef struct { double output, zero; int dragging, upwards; } play;
 
 static double play_dragged(double input, double from, double reach) {
@@ -158,15 +159,33 @@ static double play_step(play *o, double reach, segment in) {
   return (begin * (in.duration_s - moving.duration_s) + (moving.mean + side) * moving.duration_s) / in.duration_s;
 }
 
+/* The pressure as the operators see it. */
+static double enveloped(const double *v, double p) {
+  const double left = 1.0 - p / v[3];
+  if (p <= 0.0) return p * (1.0 - v[1] + v[2]);
+  if (p >= v[3]) return v[3] + (p - v[3]) * (1.0 + v[1] + v[2]);
+  return p * (1.0 - left * (v[1] + v[2] - 2.0 * v[2] * left));
+}
+
+static segment enveloped_segment(const double *v, segment in) {
+  const double begin = enveloped(v, in.begin);
+  const double end = enveloped(v, in.end);
+  const double middle = enveloped(v, (in.begin + in.end) * 0.5 + bend_of(in) * 0.25);
+  return bent(in.duration_s, begin, end, (begin + end + middle * 4.0) * (1.0 / 6.0));
+}
+
 static double prandtl_ishlinskii_reset(play *o, const double *v, int count, double input) {
+  const int bends = v[1] != 0.0 || v[2] != 0.0;
+  const double load = bends ? enveloped(v, v[0]) : v[0];
+  const double seen = bends ? enveloped(v, input) : input;
   double sum = 0.0;
   int i;
   for (i = 0; i < count; ++i) {
-    o[i].zero = play_dragged(0.0, play_dragged(v[0], 0.0, v[1 + 2 * i]), v[1 + 2 * i]);
-    o[i].output = play_dragged(input, o[i].zero, v[1 + 2 * i]);
+    o[i].zero = play_dragged(0.0, play_dragged(load, 0.0, v[4 + 2 * i]), v[4 + 2 * i]);
+    o[i].output = play_dragged(seen, o[i].zero, v[4 + 2 * i]);
     o[i].dragging = 0;
     o[i].upwards = 0;
-    sum += v[2 + 2 * i] * (o[i].output - o[i].zero);
+    sum += v[5 + 2 * i] * (o[i].output - o[i].zero);
   }
   return sum;
 }
@@ -174,10 +193,11 @@ static double prandtl_ishlinskii_reset(play *o, const double *v, int count, doub
 static segment prandtl_ishlinskii_step(play *o, const double *v, int count, segment in) {
   double begin = 0.0, end = 0.0, mean = 0.0;
   int i;
+  if (v[1] != 0.0 || v[2] != 0.0) in = enveloped_segment(v, in);
   for (i = 0; i < count; ++i) {
-    begin += v[2 + 2 * i] * (o[i].output - o[i].zero);
-    mean += v[2 + 2 * i] * (play_step(&o[i], v[1 + 2 * i], in) - o[i].zero);
-    end += v[2 + 2 * i] * (o[i].output - o[i].zero);
+    begin += v[5 + 2 * i] * (o[i].output - o[i].zero);
+    mean += v[5 + 2 * i] * (play_step(&o[i], v[4 + 2 * i], in) - o[i].zero);
+    end += v[5 + 2 * i] * (o[i].output - o[i].zero);
   }
   return bent(in.duration_s, begin, end, mean);
 }

@@ -28,10 +28,10 @@ double wanted_mm(double t) {
   return rise * (12 - 4 * std::cos(0.7 * t) - 2 * std::cos(2.3 * t + 0.4) + 0.6 * std::sin(9 * t));
 }
 
-/// Twelve plays, seven branches of creep, creep that depends on the pressure and a bend.
+/// Twelve generalised plays, seven branches of creep, creep that depends on the pressure and a bend.
 model::Model play_body() {
   model::Model m;
-  std::vector<double> plays{0, 0, 0.15}, ladder{1e9};
+  std::vector<double> plays{0, 0.2, -0.1, 50, 0, 0.15}, ladder{1e9};
   for (int i = 1; i < 12; ++i) plays.insert(plays.end(), {57 * std::pow(i / 12.0, 1.5), 0.03});
   for (int i = 0; i < 7; ++i) ladder.insert(ladder.end(), {40, 40 * 0.05 * std::pow(3.0, i)});
   m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(), plays});

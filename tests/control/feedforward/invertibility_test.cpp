@@ -76,7 +76,7 @@ TEST(Invertibility, PlaysWithoutAnElasticPartAreRefused) {
       model::with_block({}, {model::block_type<model::KelvinVoigt>(), {1e9, 40, 20, 40, 200}});
   const auto with_plays = [&](double threshold_kpa) {
     return model::with_block(
-        creep, {model::block_type<model::PrandtlIshlinskii>(), {0, threshold_kpa, 0.1, 10, 0.1}});
+        creep, {model::block_type<model::PrandtlIshlinskii>(), {0, 0, 0, 0, threshold_kpa, 0.1, 10, 0.1}});
   };
   for (const model::Model& dead : {creep, with_plays(5)}) {
     const auto refused = check(dead, FeedforwardKind::full_model);

@@ -15,7 +15,7 @@ namespace {
 
 using Block = PrandtlIshlinskii<double>;
 
-const std::vector<double> operators{0, 0, 0.2, 2, 0.1, 5, 0.07, 20, 0.05};
+const std::vector<double> operators{0, 0, 0, 0, 0, 0.2, 2, 0.1, 5, 0.07, 20, 0.05};
 
 Block fresh() {
   return {std::span<const double>(operators), Preparation{}};
@@ -115,8 +115,10 @@ TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
   // Around a closed loop the work of the pressure on the displacement is never negative.
   std::mt19937_64 random(13);
   std::uniform_real_distribution<double> pressure(0, 60);
+  std::vector<double> bent = operators;
+  bent[1] = 0.4, bent[2] = 0.2, bent[3] = 50;
   for (int loop = 0; loop < 50; ++loop) {
-    Block block = fresh();
+    Block block = loop % 2 == 0 ? fresh() : Block(std::span<const double>(bent), Preparation{});
     const double low = pressure(random), high = pressure(random);
     double at = 0, work = 0;
     const auto go = [&](double to, bool counts) {
@@ -134,10 +136,55 @@ TEST(PrandtlIshlinskii, GivesNoEnergyAway) {
   }
 }
 
+/// What generalised plays are: plays of what their envelopes make of the pressure, and one curve without.
+TEST(PrandtlIshlinskii, BentEnvelopesAreAPressureOfTheirOwn) {
+  const double bend = 0.3, skew = -0.15, end_kpa = 50;
+  const auto seen_kpa = [&](double p) {
+    const double x = std::clamp(p / end_kpa, 0.0, 1.0);
+    if (p > end_kpa) return end_kpa + (p - end_kpa) * (1 + bend + skew);
+    return p * (1 - (1 - x) * (bend - skew * (1 - 2 * x)));
+  };
+  std::vector<double> values = operators;
+  values[0] = 70, values[1] = bend, values[2] = skew, values[3] = end_kpa;
+  Block bent(std::span<const double>(values), Preparation{});
+  values[0] = seen_kpa(70), values[1] = values[2] = values[3] = 0;
+  Block straight_ones(std::span<const double>(values), Preparation{});
+  bent.reset(0), straight_ones.reset(0);
+  std::mt19937_64 random(14);
+  std::uniform_real_distribution<double> pressure(0, 60);
+  double at = 0, loudest = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double to = pressure(random);
+    EXPECT_NEAR(bent.peek(0.01, to, {}), straight_ones.peek(0.01, seen_kpa(to), {}), 1e-12);
+    bent.step(straight(at, to), {});
+    straight_ones.step(straight(seen_kpa(at), seen_kpa(to)), {});
+    EXPECT_NEAR(bent.output(), straight_ones.output(), 1e-12) << "seed 14, turn " << i;
+    loudest = std::max(loudest, std::abs(seen_kpa(to) - to));
+    at = to;
+  }
+  EXPECT_GT(loudest, 2);
+}
+
+TEST(PrandtlIshlinskii, BentEnvelopesRiseEverywhereWithinTheirBounds) {
+  for (const double bend : {-0.6, 0.0, 0.6}) {
+    for (const double skew : {-0.35, 0.0, 0.35}) {
+      const EnvelopeMap<double> map(bend, skew, 40);
+      for (double p = -10; p < 60; p += 0.01)
+        EXPECT_GT(map.value(p + 0.01), map.value(p)) << bend << skew << p;
+    }
+  }
+}
+
+TEST(PrandtlIshlinskii, BentEnvelopesSayWhereTheBendEnds) {
+  EXPECT_FALSE(Block::objection(std::vector<double>{0, 0.1, 0, 0, 0, 0.2}).empty());
+  EXPECT_FALSE(Block::objection(std::vector<double>{0, 0, 0.1, 0, 0, 0.2}).empty());
+  EXPECT_TRUE(Block::objection(std::vector<double>{0, 0.1, 0.1, 40, 0, 0.2}).empty());
+}
+
 TEST(PrandtlIshlinskii, ThresholdsRise) {
   EXPECT_TRUE(Block::objection(operators).empty());
-  EXPECT_FALSE(Block::objection(std::vector<double>{0, 2, 0.1, 2, 0.2}).empty());
-  EXPECT_FALSE(Block::objection(std::vector<double>{0, 5, 0.1, 2, 0.2}).empty());
+  EXPECT_FALSE(Block::objection(std::vector<double>{0, 0, 0, 0, 2, 0.1, 2, 0.2}).empty());
+  EXPECT_FALSE(Block::objection(std::vector<double>{0, 0, 0, 0, 5, 0.1, 2, 0.2}).empty());
 }
 
 }  // namespace

@@ -39,10 +39,20 @@ model::Model play_finger() {
   m = model::with_block(std::move(m), {model::block_type<model::TransportDelay>(), {0.06}});
   m = model::with_block(std::move(m), {*model::find_block("asymmetric_valve_lag"), {0.08, 0.2}});
   m = model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
-                                       {0, 0, 0.2, 1.3, 0.06, 4.1, 0.05, 9.7, 0.04, 17, 0.03}});
+                                       {0, 0, 0, 0, 0, 0.2, 1.3, 0.06, 4.1, 0.05, 9.7, 0.04, 17, 0.03}});
   m = model::with_block(std::move(m),
                         {model::block_type<model::KelvinVoigt>(), {1e9, 25, 7.5, 30, 75, 40, 1100}});
   return model::with_block(std::move(m), {model::block_type<model::Characteristic>(), {0.6, 25}});
+}
+
+/// The same with generalised plays.
+model::Model bent_play_finger() {
+  model::Model m = play_finger();
+  std::vector<double>& values = m.blocks[*model::position_of<model::PrandtlIshlinskii>(m)].values;
+  values[model::parameter_index<model::PrandtlIshlinskii>("envelope_bend")] = -0.2;
+  values[model::parameter_index<model::PrandtlIshlinskii>("envelope_skew")] = 0.25;
+  values[model::parameter_index<model::PrandtlIshlinskii>("envelope_kpa")] = 50;
+  return m;
 }
 
 Log scaled(Log log, double mm) {
@@ -62,14 +72,15 @@ double continuation_rmse_mm(const model::Model& truth, const model::Model& found
 }
 
 TEST(StructureColumns, AreWhatTheBlocksOfTheModelDo) {
-  const std::vector<Log> logs{simulated(play_finger(), SignalName::tp1, 97, 0.03, 4)};
+  const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 97, 0.03, 4)};
   for (const Start start : {Start::rest, Start::unknown}) {
     RecordOptions options;
     options.start = start;
     const std::vector<Record> records = make_records(logs, options);
     const StructureGrid grid = grid_for(records);
-    for (const BaseStructure& structure : {BaseStructure{}, BaseStructure{.hinged_creep = true},
-                                           BaseStructure{.hysteresis = HysteresisForm::bouc_wen}}) {
+    for (const BaseStructure& structure :
+         {BaseStructure{}, BaseStructure{.hinged_creep = true}, BaseStructure{.envelopes = true},
+          BaseStructure{.hysteresis = HysteresisForm::bouc_wen}}) {
       const FittedStructure fit = fit_form(records, structure, grid, {});
       const FitPoint point = point_of(fit, records, Drive::command);
       ASSERT_TRUE(model::validate(point.model).empty()) << model::validate(point.model).front();
@@ -189,6 +200,23 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
     if (without.without != "hysteresis" && without.without != "creep") continue;
     EXPECT_GT(without.heldout_rmse_mm, 1.5 * chosen->heldout_rmse_mm) << without.without;
   }
+}
+
+/// What a bend behind the operators and creep that depends on the pressure do not make up for.
+TEST(IdentifyStructure, FindsTheBentEnvelopesOfGeneralisedPlays) {
+  const std::vector<Log> logs{simulated(bent_play_finger(), SignalName::tp1, 100, 0.03, 5),
+                              simulated(bent_play_finger(), SignalName::sp2, 100, 0.03, 6)};
+  const auto found = identify_structure(logs, StructureQuestion::automatic);
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "thresholds and envelopes stand on no grid of the fit";
+  EXPECT_LT(continuation_rmse_mm(bent_play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03);
+  const auto chosen = std::find_if(found->structure->candidates.begin(), found->structure->candidates.end(),
+                                   [](const auto& c) { return c.chosen; });
+  EXPECT_EQ(chosen->description.find("generalised play operators"), 0U) << chosen->description;
+  const auto straight = std::find_if(found->structure->ablation.begin(), found->structure->ablation.end(),
+                                     [](const auto& without) { return without.without == "bent envelopes"; });
+  ASSERT_NE(straight, found->structure->ablation.end());
+  EXPECT_GT(straight->heldout_rmse_mm, 1.3 * chosen->heldout_rmse_mm);
 }
 
 TEST(IdentifyStructure, FindsThatAFingerWasLoadedBefore) {

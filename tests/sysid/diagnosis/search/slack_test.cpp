@@ -18,14 +18,14 @@ model::Model plays(std::vector<double> values) {
 }
 
 TEST(Slack, TheElasticShareIsThatOfTheOperatorWithoutAThreshold) {
-  EXPECT_DOUBLE_EQ(elastic_share(plays({0, 0, 0.1, 4, 0.3})), 0.25);
-  EXPECT_DOUBLE_EQ(elastic_share(plays({0, 2, 0.1, 4, 0.3})), 0);
+  EXPECT_DOUBLE_EQ(elastic_share(plays({0, 0, 0, 0, 0, 0.1, 4, 0.3})), 0.25);
+  EXPECT_DOUBLE_EQ(elastic_share(plays({0, 0, 0, 0, 2, 0.1, 4, 0.3})), 0);
   EXPECT_DOUBLE_EQ(elastic_share(model::Model{}), 1);
 }
 
 /// One operator with a threshold is a spring with a backlash behind it: on every way they move alike.
 TEST(Slack, OfOneOperatorTheBacklashIsTheSame) {
-  const model::Model slack = plays({0, 3, 0.2});
+  const model::Model slack = plays({0, 0, 0, 0, 3, 0.2});
   const auto with_backlash = with_slack_as_backlash(slack);
   ASSERT_TRUE(with_backlash);
   EXPECT_EQ(model::find_block<model::Backlash>(*with_backlash)->values.front(), 2 * 3 * 0.2);
@@ -39,10 +39,10 @@ TEST(Slack, OfOneOperatorTheBacklashIsTheSame) {
 }
 
 TEST(Slack, WithoutAnOperatorThatStandsStillThereIsNone) {
-  EXPECT_FALSE(with_slack_as_backlash(plays({0, 0, 0.2})));
+  EXPECT_FALSE(with_slack_as_backlash(plays({0, 0, 0, 0, 0, 0.2})));
   EXPECT_FALSE(with_slack_as_backlash(model::Model{}));
   EXPECT_FALSE(with_slack_as_backlash(
-      model::with_block(plays({0, 3, 0.2}), model::block_of<model::Backlash>({{"gap_mm", 1}}))));
+      model::with_block(plays({0, 0, 0, 0, 3, 0.2}), model::block_of<model::Backlash>({{"gap_mm", 1}}))));
 }
 
 }  // namespace

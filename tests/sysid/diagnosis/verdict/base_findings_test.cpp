@@ -37,7 +37,7 @@ model::Model published() {
 model::Model plays() {
   model::Model m = model::without_block(published(), model::block_type<model::BoucWen>());
   return model::with_block(std::move(m), {model::block_type<model::PrandtlIshlinskii>(),
-                                          {0, 0, 0.1, 1, 0.1, 6, 0.02, 15, 0.08, 25, 0.06}});
+                                          {0, 0, 0, 0, 0, 0.1, 1, 0.1, 6, 0.02, 15, 0.08, 25, 0.06}});
 }
 
 struct Found {

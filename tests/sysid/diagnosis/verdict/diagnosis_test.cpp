@@ -62,7 +62,7 @@ TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   const model::Model given = without_valve();
   model::Model plays = model::without_block(given, model::block_type<model::BoucWen>());
   plays = model::with_block(std::move(plays), {model::block_type<model::PrandtlIshlinskii>(),
-                                               {0, 0, 0.1, 1, 0.1, 6, 0.02, 15, 0.08, 25, 0.06}});
+                                               {0, 0, 0, 0, 0, 0.1, 1, 0.1, 6, 0.02, 15, 0.08, 25, 0.06}});
   std::vector<Log> logs;
   std::size_t wrong = 0;
   for (const model::SignalName signal : {model::SignalName::tp1, model::SignalName::sp2}) {

@@ -1,0 +1,37 @@
+#pragma once
+// The pressure as the envelopes of generalised plays see it.
+
+#include "model/number.h"
+
+namespace softgrip::model {
+
+/// b(p) = p (1 - (1 - x)(bend - skew (1 - 2 x))), x = p/P, on [0, P], straight beyond: the cubic through (0,
+/// 0) and (P, P). A generalised play (Krasnosel'skii and Pokrovskii, Systems with Hysteresis, 1989,
+/// section 1.2) whose two envelopes are one curve apart is a play of b(p). Rises everywhere while |bend| +
+/// |skew| < 1.
+template <class T>
+class EnvelopeMap {
+ public:
+  /// @param bend  b'(P) is above b'(0) by twice as much.  @param skew  above 0 the middle is less steep.
+  /// @param end_kpa  P, > 0; any where bend and skew are 0.
+  EnvelopeMap(const T& bend, const T& skew, const T& end_kpa)
+      : bend_(bend), skew_(skew), end_kpa_(end_kpa), bends_(!(is_zero(bend) && is_zero(skew))) {}
+
+  /// false: b(p) = p.
+  [[nodiscard]] bool bends() const { return bends_; }
+
+  template <class U>
+  [[nodiscard]] U value(const U& p) const {
+    if (!bends_) return p;
+    if (value_of(p) <= 0.0) return U(p * (1.0 - bend_ + skew_));
+    if (value_of(p) >= value_of(end_kpa_)) return U(end_kpa_ + (p - end_kpa_) * (1.0 + bend_ + skew_));
+    const U left = 1.0 - p / end_kpa_;
+    return U(p * (1.0 - left * (bend_ + skew_ - 2.0 * skew_ * left)));
+  }
+
+ private:
+  T bend_, skew_, end_kpa_;
+  bool bends_;
+};
+
+}  // namespace softgrip::model
