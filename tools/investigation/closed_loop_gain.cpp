@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <future>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/numbers.h"
 #include "base/random.h"
 #include "control/feedforward/invertibility.h"
+#include "control/feedforward/invertible_part.h"
 #include "control/tuning/gain_search.h"
 #include "control/tuning/tracking_run.h"
 #include "model/blocks/outliers.h"
@@ -71,6 +73,16 @@ class Rigs {
     return scheme;
   }
 
+  /// With the inverse of what of the model has one; nothing where no part of it has.
+  [[nodiscard]] std::optional<ClosedLoopScheme> with_invertible_part(const model::Model& believed) const {
+    const auto part = control::invertible_part(body_of(believed), limits(), 1 / rate_hz);
+    if (!part) return std::nullopt;
+    ClosedLoopScheme scheme = measured(part->model, FeedforwardKind::full_model);
+    scheme.believed = part->model;
+    scheme.left_out = part->left_out;
+    return scheme;
+  }
+
   [[nodiscard]] ClosedLoopScheme measured(const model::Model& believed, FeedforwardKind kind) const {
     ClosedLoopScheme scheme;
     control::TrackingRun run = run_of(body_of(believed), kind);
@@ -78,6 +90,7 @@ class Rigs {
                                                          run.settings.limits, 1 / rate_hz);
         !accepted) {
       scheme.refused = accepted.error().text;
+      scheme.rmse_mm = std::numeric_limits<double>::infinity();
       return scheme;
     }
     scheme.feedforward = kind;
@@ -100,6 +113,10 @@ class Rigs {
   }
 
  private:
+  [[nodiscard]] control::LimitSettings limits() const {
+    return {0, question_.pressure_max_kpa, 400, 400, -1e3, 1e3, 1};
+  }
+
   [[nodiscard]] control::TrackingRun run_of(const model::Model& believed, FeedforwardKind kind) const {
     control::TrackingRun run;
     run.rate_hz = rate_hz;
@@ -110,7 +127,7 @@ class Rigs {
     run.noise_mm = question_.noise_mm;
     run.settings.model = believed;
     run.settings.feedforward = {kind, 0};
-    run.settings.limits = {0, question_.pressure_max_kpa, 400, 400, -1e3, 1e3, 1};
+    run.settings.limits = limits();
     run.settings.plausibility.max_speed_mm_per_s = 1e6;
     return run;
   }
@@ -140,10 +157,12 @@ class Rigs {
 };
 
 Json scheme_json(const ClosedLoopScheme& scheme) {
-  return {{"kp_kpa_per_mm", scheme.pid.kp_kpa_per_mm},
-          {"ki_kpa_per_mm_s", scheme.pid.ki_kpa_per_mm_s},
-          {"kd_kpa_s_per_mm", scheme.pid.kd_kpa_s_per_mm},
-          {"feedforward", control::name_of(scheme.feedforward)}};
+  Json json{{"kp_kpa_per_mm", scheme.pid.kp_kpa_per_mm},
+            {"ki_kpa_per_mm_s", scheme.pid.ki_kpa_per_mm_s},
+            {"kd_kpa_s_per_mm", scheme.pid.kd_kpa_s_per_mm},
+            {"feedforward", control::name_of(scheme.feedforward)}};
+  if (!scheme.left_out.empty()) json["feedforward_without"] = scheme.left_out;
+  return json;
 }
 
 }  // namespace
@@ -156,11 +175,15 @@ std::string ClosedLoopGain::reference() const {
 std::vector<std::string> ClosedLoopGain::notes() const {
   std::vector<std::string> notes;
   const auto refused = [&](const char* which, const ClosedLoopScheme& scheme) {
-    if (scheme.feedforward == FeedforwardKind::full_model) return;
+    if (scheme.feedforward == FeedforwardKind::full_model && scheme.left_out.empty()) return;
     const bool planned = scheme.feedforward == FeedforwardKind::planned;
+    std::string left_out;
+    for (const std::string& id : scheme.left_out) left_out += (left_out.empty() ? "" : ", ") + id;
     notes.push_back(std::string("the ") + which +
                     (planned ? " model is not undone tick by tick, its feedforward is a plan made ahead: "
-                             : " model gives no feedforward, so its number is the PID alone: ") +
+                     : left_out.empty()
+                         ? " model gives no feedforward, so its number is the PID alone: "
+                         : " model is not undone as a whole, its feedforward is without " + left_out + ": ") +
                     scheme.refused);
   };
   refused("recalibrated", recalibrated);
@@ -184,13 +207,13 @@ ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question) {
   gain.extended = rigs.with_model(question.extended);
   gain.pid_alone = rigs.measured(question.extended, FeedforwardKind::none);
   gain.recalibrated = recalibrated.get();
-  for (ClosedLoopScheme* scheme : {&gain.recalibrated, &gain.extended}) {
-    const bool stands =
-        scheme->feedforward == FeedforwardKind::full_model ||
-        (scheme->feedforward == FeedforwardKind::planned && scheme->rmse_mm < gain.pid_alone.rmse_mm);
-    if (stands) continue;
+  for (const auto& [scheme, model] : {std::pair{&gain.recalibrated, &question.recalibrated},
+                                      std::pair{&gain.extended, &question.extended}}) {
+    if (scheme->feedforward == FeedforwardKind::full_model) continue;
     std::string refused = std::move(scheme->refused);
-    *scheme = gain.pid_alone;
+    if (auto part = rigs.with_invertible_part(*model); part && part->rmse_mm < scheme->rmse_mm)
+      *scheme = std::move(*part);
+    if (!(scheme->rmse_mm < gain.pid_alone.rmse_mm)) *scheme = gain.pid_alone;
     scheme->refused = std::move(refused);
   }
   gain.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

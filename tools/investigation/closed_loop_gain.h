@@ -3,6 +3,7 @@
 // recalibrated and with the extended model in the feedforward, gains from the same search for each.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,14 @@ struct ClosedLoopQuestion {
 struct ClosedLoopScheme {
   double rmse_mm = 0;  ///< median over rigs
   control::PidSettings pid;
-  /// full_model; where the model cannot be undone tick by tick, planned; where that serves no better than the
-  /// PID alone, none: then the numbers are the PID's.
+  /// full_model; where the model cannot be undone tick by tick, planned, or full_model of what of it can be
+  /// undone, whichever tracks better; where neither serves better than the PID alone, none: then the numbers
+  /// are the PID's.
   control::FeedforwardKind feedforward = control::FeedforwardKind::none;
-  std::string refused;           ///< why it is not full_model
+  std::string refused;                ///< why it is not full_model, or not of the whole model
+  std::vector<std::string> left_out;  ///< blocks that the feedforward's model is without
+  /// In the feedforward, where something is left out.
+  std::optional<model::Model> believed;
   control::TrackingTrace trace;  ///< on the rig of that median
 };
 

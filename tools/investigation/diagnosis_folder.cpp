@@ -20,6 +20,8 @@ namespace softgrip::tools {
 namespace {
 
 constexpr const char* experiment_file = "next_experiment.yaml";
+/// Where the extended model is not undone as a whole: what of it is.
+constexpr const char* feedforward_file = "feedforward_model.yaml";
 
 std::string listed(const std::vector<std::string>& ids) {
   std::string text;
@@ -77,6 +79,11 @@ tl::expected<std::string, std::string> write_diagnosis_folder(const std::string&
     files.emplace_back(experiment_file, sysid::sequence_yaml(consequences.experiment, channel));
   } else {
     std::filesystem::remove(out / experiment_file, ignored);
+  }
+  if (consequences.closed_loop && consequences.closed_loop->extended.believed) {
+    files.emplace_back(feedforward_file, model::to_yaml(*consequences.closed_loop->extended.believed));
+  } else {
+    std::filesystem::remove(out / feedforward_file, ignored);
   }
   // One that stands there may have been filled in by now: never overwritten, never removed.
   if (const auto& check = consequences.experiment.gauge_check;

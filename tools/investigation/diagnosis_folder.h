@@ -35,8 +35,8 @@ struct DiagnosisSource {
   std::vector<std::string> call;  ///< the command and what it was given; empty: by no command of its own
 };
 
-/// Writes the files into `folder` and returns what diagnosis.json says; a next_experiment.yaml of an earlier
-/// diagnosis goes where there is none.
+/// Writes the files into `folder` and returns what diagnosis.json says; a next_experiment.yaml or a
+/// feedforward_model.yaml of an earlier diagnosis goes where there is none.
 /// @param channel  for which the experiment is written; "": all of the rig.
 [[nodiscard]] tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                                             const sysid::Diagnosis& diagnosis,

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "model/blocks/kelvin_voigt.h"
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/blocks/relaxing_friction.h"
 #include "model/file/model_file.h"
 #include "model/named.h"
 
@@ -52,6 +55,31 @@ TEST(ClosedLoopGain, AModelWithoutAnInverseIsPlannedForInstead) {
   add_closed_loop(json, gain);
   EXPECT_EQ(json["closed_loop"]["gains"]["extended"]["feedforward"], "planned");
   EXPECT_NE(json["closed_loop"]["notes"].dump().find("a plan made ahead"), std::string::npos);
+}
+
+/// A friction that relaxes within a few ticks has no inverse, and a plan is too coarse for it: the rest of
+/// the model still knows most.
+TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
+  model::Model finger = model::with_block({}, {model::block_type<model::PrandtlIshlinskii>(),
+                                               {0, 0, 0, 0, 0, 0.06, 4, 0.084, 7.3, 0.105, 11.2, 0.108}});
+  finger = model::with_block(std::move(finger),
+                             {model::block_type<model::KelvinVoigt>(), {1e9, 78, 55, 102, 71, 1.02, 8470}});
+  finger = model::with_block(std::move(finger),
+                             {model::block_type<model::RelaxingFriction>(), {0.79, 0.61, 0.05}});
+  ClosedLoopQuestion question;
+  question.recalibrated = question.extended = finger;
+  question.span_mm = 15;
+  const ClosedLoopGain gain = measure_closed_loop(question);
+  EXPECT_EQ(gain.extended.feedforward, control::FeedforwardKind::full_model);
+  EXPECT_LT(gain.extended.rmse_mm, 0.5 * gain.pid_alone.rmse_mm);
+  EXPECT_EQ(gain.extended.left_out, std::vector<std::string>{"relaxing_friction"});
+  ASSERT_TRUE(gain.extended.believed);
+  EXPECT_FALSE(model::position_of<model::RelaxingFriction>(*gain.extended.believed));
+  EXPECT_FALSE(gain.extended.refused.empty());
+  nlohmann::ordered_json json;
+  add_closed_loop(json, gain);
+  EXPECT_EQ(json["closed_loop"]["gains"]["extended"]["feedforward_without"][0], "relaxing_friction");
+  EXPECT_NE(json["closed_loop"]["notes"].dump().find("without relaxing_friction"), std::string::npos);
 }
 
 TEST(ClosedLoopGain, AModelThatMovesNothingIsLeftToThePid) {

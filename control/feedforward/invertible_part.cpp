@@ -1,0 +1,76 @@
+#include "control/feedforward/invertible_part.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "control/feedforward/invertibility.h"
+#include "model/catalogue.h"
+#include "model/chain.h"
+
+namespace softgrip::control {
+namespace {
+
+/// Readings on the way.
+std::vector<double> along_the_way(const model::Model& model, double pressure_max_kpa) {
+  constexpr int steps = 100;
+  constexpr double step_s = 0.05;
+  model::Chain<double> chain(model, {}, step_s);
+  chain.reset(0);
+  std::vector<double> reading_mm;
+  for (const double end : {1.0, 0.0, 1.0, 0.0}) {
+    for (int i = 1; i <= steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      chain.step(step_s, pressure_max_kpa * (end > 0 ? share : 1 - share));
+      reading_mm.push_back(chain.reading_mm());
+    }
+  }
+  return reading_mm;
+}
+
+double square_sum(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+void leave_out(InvertiblePart& part, std::size_t type) {
+  part.model = model::without_block(std::move(part.model), type);
+  part.left_out.emplace_back(model::catalogue()[type].info.id);
+}
+
+}  // namespace
+
+std::optional<InvertiblePart> invertible_part(const model::Model& model, const LimitSettings& limits,
+                                              double tick_s) {
+  const auto is_accepted = [&](const model::Model& one) {
+    return check_feedforward(one, {FeedforwardKind::full_model, 0}, limits, tick_s).has_value();
+  };
+  InvertiblePart part{model, {}};
+  for (const model::BlockSpec& block : model.blocks) {
+    if (!not_undone(std::array{model::catalogue()[block.type].info}).empty() &&
+        model::position_of(part.model, block.type))
+      leave_out(part, block.type);
+  }
+  if (is_accepted(part.model)) {
+    if (part.left_out.empty()) return std::nullopt;
+    return part;
+  }
+  const std::vector<double> whole = along_the_way(part.model, limits.pressure_max_kpa);
+  std::optional<std::size_t> least_missed;
+  double least = 0;
+  for (const model::BlockSpec& block : part.model.blocks) {
+    const model::Model without = model::without_block(part.model, block.type);
+    if (!is_accepted(without)) continue;
+    const double missed = square_sum(whole, along_the_way(without, limits.pressure_max_kpa));
+    if (least_missed && !(missed < least)) continue;
+    least_missed = block.type;
+    least = missed;
+  }
+  if (!least_missed) return std::nullopt;
+  leave_out(part, *least_missed);
+  return part;
+}
+
+}  // namespace softgrip::control

@@ -1,0 +1,42 @@
+#include "tools/investigation/diagnosis_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/scratch_folder.h"
+#include "model/file/model_file.h"
+
+namespace softgrip::tools::diagnosis_folder_test {
+namespace {
+
+model::Model loaded(const std::string& path) {
+  document::Problems problems;
+  return model::load_model(path, problems).value();
+}
+
+/// A stale one would be taken for a part of the model that is there now.
+TEST(DiagnosisFolder, HoldsTheModelOfTheFeedforwardWhereThatIsNotTheWholeOne) {
+  const ScratchFolder scratch;
+  const std::filesystem::path file = std::filesystem::path(scratch.path()) / "feedforward_model.yaml";
+  sysid::Diagnosis diagnosis;
+  diagnosis.extended_model = loaded(SOFTGRIP_SOURCE_DIR "/config/models/zhang2025.yaml");
+  const model::Model part = loaded(SOFTGRIP_SOURCE_DIR "/config/models/bench_twin.yaml");
+  const std::vector<sysid::Log> logs;
+  const DiagnosisSource source{logs, part, {}};
+  Consequences consequences;
+  consequences.closed_loop.emplace();
+  for (const bool is_part : {true, false}) {
+    auto& believed = consequences.closed_loop->extended.believed;
+    believed = is_part ? std::optional(part) : std::nullopt;
+    const auto written = write_diagnosis_folder(scratch.path(), diagnosis, source, consequences, "finger");
+    ASSERT_TRUE(written) << written.error();
+    ASSERT_EQ(std::filesystem::exists(file), is_part);
+    if (is_part) {
+      EXPECT_EQ(loaded(file.string()).blocks, part.blocks);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::tools::diagnosis_folder_test
