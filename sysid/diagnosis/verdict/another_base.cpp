@@ -1,9 +1,13 @@
 #include "sysid/diagnosis/verdict/another_base.h"
 
+#include <algorithm>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "base/statistics.h"
+#include "sysid/diagnosis/causes/asymmetric_hysteresis.h"
+#include "sysid/diagnosis/causes/hysteresis_shape.h"
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/search/coherence.h"
@@ -18,6 +22,13 @@ constexpr double left_by_its_own_cause = 0.03;
 /// Above so many times the noise what another base leaves may be a small effect: a finger's own form leaves
 /// between a half and one (textbook worlds without an effect).
 constexpr double worth_asking = 0.5;
+
+/// Of what is left held out, by a base that is not kept.
+constexpr double about_as_well = 1.1;
+
+bool has(const std::vector<NamedCause>& named, std::string_view id) {
+  return std::any_of(named.begin(), named.end(), [&](const NamedCause& one) { return one.cause.id == id; });
+}
 
 }  // namespace
 
@@ -52,7 +63,21 @@ void AnotherBase::go_on(const Selection& selection) {
     find_causes_upon(*found_, search, measured ? upon_little_left_measured : upon_little_left);
   }
   const bool plain_explains = !leaves_too_much(selection.left, selection.base_structure, question_.noise_mm);
-  if (!outdoes(*found_, selection, question_.noise_mm, plain_explains)) found_.reset();
+  if (outdoes(*found_, selection, question_.noise_mm, plain_explains)) return;
+  another_shape_will_do_ = rmse_mm(found_->losses) < about_as_well * rmse_mm(selection.extended_losses) &&
+                           has(found_->named, causes::HysteresisShape::id) &&
+                           !has(found_->named, causes::AsymmetricHysteresis::id);
+  found_.reset();
+}
+
+void AnotherBase::add_rivals(std::vector<NamedCause>& named) const {
+  if (!another_shape_will_do_) return;
+  for (NamedCause& one : named) {
+    if (one.cause.id != causes::AsymmetricHysteresis::id) continue;
+    const Cause shape = *find_cause(causes::HysteresisShape::id);
+    if (std::find(one.rivals.begin(), one.rivals.end(), shape) == one.rivals.end())
+      one.rivals.push_back(shape);
+  }
 }
 
 double AnotherBase::mean_square_mm2() const {

@@ -29,6 +29,9 @@ class AnotherBase {
   /// Goes on upon what was found, and keeps it where it then explains more than the selection does.
   void go_on(const Selection& selection);
   void drop() { found_.reset(); }
+  /// Where a base that was not kept does about as well without it, hysteresis of another shape is a rival of
+  /// what an asymmetric loop is taken for upon the given one.
+  void add_rivals(std::vector<NamedCause>& named) const;
 
   [[nodiscard]] bool is_found() const { return found_.has_value(); }
   /// Of one that is found.
@@ -43,6 +46,7 @@ class AnotherBase {
   BaseQuestion question_;
   bool asked_ = false;
   std::optional<BaseFindings> found_;
+  bool another_shape_will_do_ = false;
 };
 
 }  // namespace softgrip::sysid

@@ -108,6 +108,7 @@ class Diagnostician {
     if (options_.null_campaigns > 0 && !selection.chosen.empty()) calibrate(division);
     if (d_.null_calibration) clock.ended("nulls");
     name(selection);
+    another.add_rivals(causes_);
     conclude(selection);
     clock.ended("held-out logs and intervals");
     if (options_.gauge && options_.null_campaigns == 0 && d_.verdict == Verdict::unexplained) {
