@@ -92,8 +92,9 @@ MultiStart multistart_of(const StructureTrial& trial) {
 
 void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Identification& result) {
   const ValveStage stage = fit_valve_stage(logs, options.fit_share, options.record.held);
-  StructureEvidence::Valve valve{stage.delay_s,      stage.filling_s,         stage.venting_s, stage.rmse_kpa,
-                                 stage.rmse_percent, stage.held_out_rmse_kpa, stage.noise_kpa, {}};
+  StructureEvidence::Valve valve{
+      stage.delay_s,      stage.filling_s,         stage.venting_s,          stage.rmse_kpa,
+      stage.rmse_percent, stage.held_out_rmse_kpa, pressure_noise_kpa(logs), {}};
   // Both in a row, from the measured pressure at which each log begins.
   std::vector<Log> driven = logs;
   for (Log& log : driven) log.pressure_kpa = predicted_pressure_kpa(stage, log, options.record.held);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/parallel.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/leak.h"
 #include "model/blocks/pressure_saturation.h"
@@ -33,7 +34,6 @@ double first_finite(const std::vector<double>& values) {
 struct Scene {
   double lowest_kpa = std::numeric_limits<double>::infinity();
   double highest_kpa = -lowest_kpa;
-  double noise_kpa = 0;
   double highest_supply_kpa = 0;
 };
 
@@ -48,7 +48,6 @@ Scene scene_of(const std::vector<Log>& logs) {
     for (const double s : log.supply_kpa) {
       if (std::isfinite(s)) scene.highest_supply_kpa = std::max(scene.highest_supply_kpa, s);
     }
-    scene.noise_kpa = std::max(scene.noise_kpa, white_noise_of(log.time_s, log.pressure_kpa));
   }
   return scene;
 }
@@ -98,93 +97,15 @@ class Coordinates {
   const Scene& scene_;
 };
 
-/// Prediction minus measurement of every log, as one row; a missing or unfitted measurement counts nothing.
-class Errors {
- public:
-  Errors(const std::vector<Log>& logs, const ValveFit& fit) : logs_(logs), fit_(fit) {
-    for (const Log& log : logs) count_ += log.size();
-  }
-
-  [[nodiscard]] std::size_t count() const { return count_; }
-
-  /// Leaves gain and zero of the gauge in the stage.
-  void evaluate(ValveStage& stage, std::span<double> out) const {
-    std::vector<std::vector<double>> predicted;
-    for (const Log& log : logs_) predicted.push_back(predicted_pressure_kpa(stage, log, fit_.held));
-    if (fit_.sensor != PressureSensorFit::nothing) read_gauge(predicted, stage);
-    std::size_t at = 0;
-    for (std::size_t k = 0; k < logs_.size(); ++k) {
-      for (std::size_t i = 0; i < logs_[k].size(); ++i) {
-        const double error =
-            stage.gauge_gain * predicted[k][i] + stage.gauge_zero_kpa - logs_[k].pressure_kpa[i];
-        out[at++] = counts(k, i) && std::isfinite(error) ? error : 0;
-      }
-    }
-  }
-
-  /// Root mean square of the samples that are fitted, or of the others [kPa].
-  [[nodiscard]] double rmse_kpa(const ValveStage& stage, bool fitted) const {
-    double sum = 0;
-    std::size_t used = 0;
-    for (std::size_t k = 0; k < logs_.size(); ++k) {
-      const std::vector<double> p = predicted_pressure_kpa(stage, logs_[k], fit_.held);
-      for (std::size_t i = 0; i < p.size(); ++i) {
-        const double error = p[i] - logs_[k].pressure_kpa[i];
-        if (counts(k, i) != fitted || !std::isfinite(error)) continue;
-        sum += error * error;
-        ++used;
-      }
-    }
-    return used == 0 ? 0 : std::sqrt(sum / static_cast<double>(used));
-  }
-
- private:
-  [[nodiscard]] bool counts(std::size_t log, std::size_t sample) const {
-    return !fit_.is_fitted || fit_.is_fitted(log, sample);
-  }
-
-  /// The straight line from prediction to measurement, or the one of slope one.
-  void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (std::size_t k = 0; k < logs_.size(); ++k) {
-      for (std::size_t i = 0; i < predicted[k].size(); ++i) {
-        const double from = predicted[k][i], to = logs_[k].pressure_kpa[i];
-        if (!counts(k, i) || !std::isfinite(to)) continue;
-        n += 1, x += from, y += to, xx += from * from, xy += from * to;
-      }
-    }
-    const double spread = n * xx - x * x;
-    if (!(spread > 0)) return;
-    if (fit_.sensor == PressureSensorFit::gain_and_zero) stage.gauge_gain = (n * xy - x * y) / spread;
-    stage.gauge_zero_kpa = (y - stage.gauge_gain * x) / n;
-  }
-
-  const std::vector<Log>& logs_;
-  const ValveFit& fit_;
-  std::size_t count_ = 0;
-};
-
-/// Where the search begins.
-std::vector<ValveStage> starts_of(const ValveFit& fit) {
-  if (!fit.from.empty()) return fit.from;
-  std::vector<ValveStage> starts;
-  for (const auto& [delay_s, filling_s, venting_s] :
-       {std::array{0.02, 0.1, 0.2}, std::array{0.1, 0.05, 0.1}, std::array{0.02, 0.5, 1.5}}) {
-    ValveStage& start = starts.emplace_back();
-    start.delay_s = delay_s;
-    start.filling_s = filling_s;
-    start.venting_s = venting_s;
-  }
-  return starts;
+/// 0: samples are irregular.
+double sample_time_s_of(const Log& log) {
+  const Sampling sampling = sampling_of(log);
+  return sampling.regular ? sampling.median_interval_s : 0;
 }
 
-}  // namespace
-
-std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& log, bool held) {
+std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held, double sample_time_s) {
   const std::vector<double>& u = log.pressure_command_kpa;
-  const Sampling sampling = sampling_of(log);
-  model::TransportDelay<double> delay(std::array{stage.delay_s},
-                                      {.sample_time_s = sampling.regular ? sampling.median_interval_s : 0});
+  model::TransportDelay<double> delay(std::array{stage.delay_s}, {.sample_time_s = sample_time_s});
   model::Play<double> dead_band(stage.band_kpa / 2);
   model::TwoWayLag<double> lag(stage.filling_s, stage.venting_s, 0),
       second(stage.second_s, stage.second_s, 0);
@@ -231,6 +152,108 @@ std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& l
   return p;
 }
 
+/// Prediction minus measurement of every log, as one row; a missing or unfitted measurement counts nothing.
+class Errors {
+ public:
+  Errors(const std::vector<Log>& logs, const ValveFit& fit) : logs_(logs), fit_(fit) {
+    for (const Log& log : logs) {
+      count_ += log.size();
+      sample_time_s_.push_back(sample_time_s_of(log));
+    }
+  }
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+  /// Leaves gain and zero of the gauge in the stage.
+  void evaluate(ValveStage& stage, std::span<double> out) const {
+    const std::vector<std::vector<double>> p = predicted_by(stage);
+    if (fit_.sensor != PressureSensorFit::nothing) read_gauge(p, stage);
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < logs_.size(); ++k) {
+      for (std::size_t i = 0; i < logs_[k].size(); ++i) {
+        const double error = stage.gauge_gain * p[k][i] + stage.gauge_zero_kpa - logs_[k].pressure_kpa[i];
+        out[at++] = counts(k, i) && std::isfinite(error) ? error : 0;
+      }
+    }
+  }
+
+  /// Root mean square of the samples that are fitted, or of the others [kPa].
+  [[nodiscard]] double rmse_kpa(const ValveStage& stage, bool fitted) const {
+    double sum = 0;
+    std::size_t used = 0;
+    const std::vector<std::vector<double>> p = predicted_by(stage);
+    for (std::size_t k = 0; k < logs_.size(); ++k) {
+      for (std::size_t i = 0; i < p[k].size(); ++i) {
+        const double error = p[k][i] - logs_[k].pressure_kpa[i];
+        if (counts(k, i) != fitted || !std::isfinite(error)) continue;
+        sum += error * error;
+        ++used;
+      }
+    }
+    return used == 0 ? 0 : std::sqrt(sum / static_cast<double>(used));
+  }
+
+ private:
+  /// Of every log.
+  [[nodiscard]] std::vector<std::vector<double>> predicted_by(const ValveStage& stage) const {
+    std::vector<std::vector<double>> p;
+    for (std::size_t k = 0; k < logs_.size(); ++k)
+      p.push_back(predicted(stage, logs_[k], fit_.held, sample_time_s_[k]));
+    return p;
+  }
+
+  [[nodiscard]] bool counts(std::size_t log, std::size_t sample) const {
+    return !fit_.is_fitted || fit_.is_fitted(log, sample);
+  }
+
+  /// The straight line from prediction to measurement, or the one of slope one.
+  void read_gauge(const std::vector<std::vector<double>>& predicted, ValveStage& stage) const {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (std::size_t k = 0; k < logs_.size(); ++k) {
+      for (std::size_t i = 0; i < predicted[k].size(); ++i) {
+        const double from = predicted[k][i], to = logs_[k].pressure_kpa[i];
+        if (!counts(k, i) || !std::isfinite(to)) continue;
+        n += 1, x += from, y += to, xx += from * from, xy += from * to;
+      }
+    }
+    const double spread = n * xx - x * x;
+    if (!(spread > 0)) return;
+    if (fit_.sensor == PressureSensorFit::gain_and_zero) stage.gauge_gain = (n * xy - x * y) / spread;
+    stage.gauge_zero_kpa = (y - stage.gauge_gain * x) / n;
+  }
+
+  const std::vector<Log>& logs_;
+  const ValveFit& fit_;
+  std::size_t count_ = 0;
+  std::vector<double> sample_time_s_;  ///< of every log
+};
+
+/// Where the search begins.
+std::vector<ValveStage> starts_of(const ValveFit& fit) {
+  if (!fit.from.empty()) return fit.from;
+  std::vector<ValveStage> starts;
+  for (const auto& [delay_s, filling_s, venting_s] :
+       {std::array{0.02, 0.1, 0.2}, std::array{0.1, 0.05, 0.1}, std::array{0.02, 0.5, 1.5}}) {
+    ValveStage& start = starts.emplace_back();
+    start.delay_s = delay_s;
+    start.filling_s = filling_s;
+    start.venting_s = venting_s;
+  }
+  return starts;
+}
+
+}  // namespace
+
+double pressure_noise_kpa(const std::vector<Log>& logs) {
+  double noise_kpa = 0;
+  for (const Log& log : logs) noise_kpa = std::max(noise_kpa, white_noise_of(log.time_s, log.pressure_kpa));
+  return noise_kpa;
+}
+
+std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& log, bool held) {
+  return predicted(stage, log, held, sample_time_s_of(log));
+}
+
 ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit) {
   const Scene scene = scene_of(logs);
   const Coordinates coordinates(fit.parts, scene);
@@ -239,12 +262,15 @@ ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit) {
     ValveStage stage = coordinates.stage_at(t);
     errors.evaluate(stage, r);
   };
+  const std::vector<ValveStage> starts = starts_of(fit);
+  std::vector<PlainMinimum> minima(starts.size());
+  parallel_for_idle(starts.size(), [&](std::size_t i) {
+    minima[i] = minimise_plain(residuals, errors.count(), coordinates.at(starts[i]), fit.tolerance);
+  });
   ValveStage best;
   double lowest = std::numeric_limits<double>::infinity();
   std::vector<double> r(errors.count());
-  for (const ValveStage& start : starts_of(fit)) {
-    const PlainMinimum minimum =
-        minimise_plain(residuals, errors.count(), coordinates.at(start), fit.tolerance);
+  for (const PlainMinimum& minimum : minima) {
     if (!(minimum.sum_of_squares < lowest)) continue;
     lowest = minimum.sum_of_squares;
     best = coordinates.stage_at(minimum.p);
@@ -255,7 +281,6 @@ ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit) {
   best.held_out_rmse_kpa = errors.rmse_kpa(best, false);
   const double range_kpa = scene.highest_kpa - scene.lowest_kpa;
   best.rmse_percent = range_kpa > 0 ? 100 * best.rmse_kpa / range_kpa : 0;
-  best.noise_kpa = scene.noise_kpa;
   return best;
 }
 

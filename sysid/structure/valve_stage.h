@@ -53,7 +53,6 @@ struct ValveStage {
   double rmse_kpa = 0;           ///< of the fitted samples
   double rmse_percent = 0;       ///< of the measured pressure's range
   double held_out_rmse_kpa = 0;  ///< of the others; 0 where everything was fitted
-  double noise_kpa = 0;          ///< of the measured pressure, sample to sample
   bool converged = false;
 
   /// It leaves more than a twentieth of the range: the valve is another thing than these parts.
@@ -79,6 +78,9 @@ struct ValveFit {
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit);
 /// The usual parts, fitted to the first `share` of every log.
 [[nodiscard]] ValveStage fit_valve_stage(const std::vector<Log>& logs, double share, bool held);
+
+/// Of the measured pressure, from sample to sample: the largest of the logs' [kPa].
+[[nodiscard]] double pressure_noise_kpa(const std::vector<Log>& logs);
 
 /// The measured pressure that the stage predicts for a log [kPa].
 [[nodiscard]] std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& log, bool held);

@@ -47,7 +47,7 @@ Json valve_json(const ValveFindings& in_valve) {
           {"filling_time_constant_s", stage.filling_s},
           {"venting_time_constant_s", stage.venting_s},
           {"heldout_rmse_kpa", in_valve.heldout_rmse_kpa},
-          {"noise_kpa", stage.noise_kpa}};
+          {"noise_kpa", in_valve.noise_kpa}};
 }
 
 /// Where the misfit goes, in mean squares of held-out readings.

@@ -40,7 +40,7 @@ void add_valve_section(Page& page, const ValveFindings& in_valve) {
       " s while filling and " + significant(stage.venting_s, 2) + " s while venting" +
       (in_valve.named.empty() ? "" : ", with what the table names,") + " leave " +
       significant(in_valve.heldout_rmse_kpa, 2) + " kPa on held-out blocks; the pressure's noise is " +
-      significant(stage.noise_kpa, 2) + " kPa." +
+      significant(in_valve.noise_kpa, 2) + " kPa." +
       (stage.is_far_off()
            ? " That is more than a twentieth of its range: this valve is another thing, and nothing is "
              "named in it."

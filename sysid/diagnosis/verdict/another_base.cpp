@@ -39,6 +39,19 @@ bool may_lack_a_base(const Selection& one_cause, double noise_mm) {
          square(left_mm) > left_by_its_own_cause * square(one_cause.base_structure.excess_mm);
 }
 
+bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected) {
+  return rmse_mm(base.losses) < about_as_well * rmse_mm(selected) &&
+         has(base.named, causes::HysteresisShape::id) && !has(base.named, causes::AsymmetricHysteresis::id);
+}
+
+void add_another_shape(std::vector<NamedCause>& named) {
+  const Cause shape = *find_cause(causes::HysteresisShape::id);
+  for (NamedCause& one : named) {
+    const bool is_there = std::find(one.rivals.begin(), one.rivals.end(), shape) != one.rivals.end();
+    if (one.cause.id == causes::AsymmetricHysteresis::id && !is_there) one.rivals.push_back(shape);
+  }
+}
+
 AnotherBase::AnotherBase(const SearchData& data, BaseQuestion question)
     : data_(data), question_(std::move(question)) {}
 
@@ -64,20 +77,12 @@ void AnotherBase::go_on(const Selection& selection) {
   }
   const bool plain_explains = !leaves_too_much(selection.left, selection.base_structure, question_.noise_mm);
   if (outdoes(*found_, selection, question_.noise_mm, plain_explains)) return;
-  another_shape_will_do_ = rmse_mm(found_->losses) < about_as_well * rmse_mm(selection.extended_losses) &&
-                           has(found_->named, causes::HysteresisShape::id) &&
-                           !has(found_->named, causes::AsymmetricHysteresis::id);
+  another_shape_will_do_ = another_shape_will_do(*found_, selection.extended_losses);
   found_.reset();
 }
 
 void AnotherBase::add_rivals(std::vector<NamedCause>& named) const {
-  if (!another_shape_will_do_) return;
-  for (NamedCause& one : named) {
-    if (one.cause.id != causes::AsymmetricHysteresis::id) continue;
-    const Cause shape = *find_cause(causes::HysteresisShape::id);
-    if (std::find(one.rivals.begin(), one.rivals.end(), shape) == one.rivals.end())
-      one.rivals.push_back(shape);
-  }
+  if (another_shape_will_do_) add_another_shape(named);
 }
 
 double AnotherBase::mean_square_mm2() const {

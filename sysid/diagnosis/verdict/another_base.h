@@ -18,6 +18,13 @@ inline constexpr double left_by_what_was_missing = 0.25;
 /// @param one_cause  the best selection of one cause on the given base.
 [[nodiscard]] bool may_lack_a_base(const Selection& one_cause, double noise_mm);
 
+/// Whether a base that is not kept does about as well as what was selected upon the given one, with
+/// hysteresis of another shape and without an asymmetric loop.
+/// @param selected  held-out losses of the selection.
+[[nodiscard]] bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected);
+/// Makes hysteresis of another shape a rival of an asymmetric loop, where one is named.
+void add_another_shape(std::vector<NamedCause>& named);
+
 /// A base that is asked for at most once. Refers to its data, which outlive it.
 class AnotherBase {
  public:
@@ -29,8 +36,7 @@ class AnotherBase {
   /// Goes on upon what was found, and keeps it where it then explains more than the selection does.
   void go_on(const Selection& selection);
   void drop() { found_.reset(); }
-  /// Where a base that was not kept does about as well without it, hysteresis of another shape is a rival of
-  /// what an asymmetric loop is taken for upon the given one.
+  /// What the base that was not kept has to say of the names upon the given one: another_shape_will_do().
   void add_rivals(std::vector<NamedCause>& named) const;
 
   [[nodiscard]] bool is_found() const { return found_.has_value(); }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "base/parallel.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -39,7 +41,8 @@ BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& w
                                            PressureSensorFit sensor) const {
   BlockLosses losses(blocks_end_.back(), 0);
   std::vector<double> counts(losses.size(), 0);
-  for (std::size_t fold = 0; fold < 2; ++fold) {
+  // No block is of both folds.
+  parallel_for_idle(2, [&](std::size_t fold) {
     ValveFit fit = fit_of(parts, {whole}, sensor);
     fit.is_fitted = [&](std::size_t log, std::size_t sample) { return block(log, sample) % 2 != fold; };
     const ValveStage stage = fit_valve_stage(logs_, fit);
@@ -52,7 +55,7 @@ BlockLosses MeasuredValve::held_out_losses(ValveParts parts, const ValveStage& w
         ++counts[block(k, i)];
       }
     }
-  }
+  });
   BlockLosses means;
   for (std::size_t b = 0; b < losses.size(); ++b) {
     if (counts[b] > 0) means.push_back(losses[b] / counts[b]);

@@ -202,6 +202,7 @@ class Search {
       kept.set(index_of(name.part));
       there.emplace_back(std::move(name), of);
     }
+    found.noise_kpa = pressure_noise_kpa(logs_);
     found.stage = valve_.fit(kept, {whole_.stage}, 1e-12);
     found.heldout_rmse_kpa = rmse_mm(valve_.held_out_losses(kept, found.stage));
     if (found.stage.is_far_off()) return found;
@@ -329,6 +330,7 @@ std::optional<ValveFindings> find_in_valve(const std::vector<Log>& logs, const V
     measured.push_back(strided(log, stride));
     if (!log.supply_kpa.empty()) (void)smooth_input(measured.back().time_s, measured.back().supply_kpa);
   }
+  const ThreadBudget budget(question.threads);
   return Search(measured, question).findings();
 }
 

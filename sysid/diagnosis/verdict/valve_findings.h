@@ -22,6 +22,7 @@ struct ValveFindings {
   std::string advice;  ///< what tells a leak that is named from a scale; empty: none is
   ValveStage stage;    ///< dead time, lag and what is named
   double heldout_rmse_kpa = 0;
+  double noise_kpa = 0;  ///< of the measured pressure, sample to sample
 };
 
 struct ValveQuestion {

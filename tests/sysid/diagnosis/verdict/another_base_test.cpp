@@ -35,6 +35,36 @@ TEST(MayLackABase, WhereMoreThanTheNoiseIsLeftHoweverMuchThereWas) {
   EXPECT_TRUE(may_lack_a_base(left_of(1.1 * noise_mm, 1000 * noise_mm), noise_mm));
 }
 
+NamedCause named(std::string_view id) {
+  NamedCause one;
+  one.cause = *find_cause(id);
+  return one;
+}
+
+TEST(AnotherShape, WillDoWhereItsBaseLeavesAboutAsLittleWithoutAnAsymmetricLoop) {
+  const BlockLosses selected(10, 0.04);
+  BaseFindings base;
+  base.named = {named("hysteresis_shape"), named("slow_creep")};
+  base.losses.assign(10, 1.15 * 0.04);
+  EXPECT_TRUE(another_shape_will_do(base, selected));
+  base.losses.assign(10, 1.3 * 0.04);
+  EXPECT_FALSE(another_shape_will_do(base, selected)) << "it leaves clearly more";
+  base.losses = selected;
+  base.named.push_back(named("asymmetric_hysteresis"));
+  EXPECT_FALSE(another_shape_will_do(base, selected)) << "it needs the loop as well";
+  base.named = {named("slow_creep")};
+  EXPECT_FALSE(another_shape_will_do(base, selected)) << "its loops are the given one's";
+}
+
+TEST(AnotherShape, IsARivalOfTheAsymmetricLoopAloneAndOnce) {
+  std::vector<NamedCause> names{named("asymmetric_hysteresis"), named("contact")};
+  add_another_shape(names);
+  add_another_shape(names);
+  ASSERT_EQ(names[0].rivals.size(), 1U);
+  EXPECT_EQ(names[0].rivals[0].id, "hysteresis_shape");
+  EXPECT_TRUE(names[1].rivals.empty());
+}
+
 TEST(AnotherBase, ThatIsNotFoundSettlesNothing) {
   const SearchData data;
   AnotherBase another(data, {});
