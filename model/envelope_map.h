@@ -12,6 +12,9 @@ namespace softgrip::model {
 template <class T>
 class EnvelopeMap {
  public:
+  /// Of either sign; both at once still rise.
+  static constexpr double most_bend = 0.6, most_skew = 0.35;
+
   /// @param bend  b'(P) is above b'(0) by twice as much.  @param skew  above 0 the middle is less steep.
   /// @param end_kpa  P, > 0; any where bend and skew are 0.
   EnvelopeMap(const T& bend, const T& skew, const T& end_kpa)

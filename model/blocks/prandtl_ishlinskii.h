@@ -30,9 +30,11 @@ class PrandtlIshlinskii {
       parameter("trained_kpa", "kPa", "largest load before the start; 0: a finger that was never loaded",
                 Typical{15.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0}),
       parameter("envelope_bend", "", "above 0 the envelopes are steeper at high pressures", Typical{0.0},
-                Within{-0.6, 0.6}, Scale{0.1}, IfLeftOut{0.0}),
+                Within{-EnvelopeMap<double>::most_bend, EnvelopeMap<double>::most_bend}, Scale{0.1},
+                IfLeftOut{0.0}),
       parameter("envelope_skew", "", "above 0 the envelopes are less steep in the middle", Typical{0.0},
-                Within{-0.35, 0.35}, Scale{0.1}, IfLeftOut{0.0}),
+                Within{-EnvelopeMap<double>::most_skew, EnvelopeMap<double>::most_skew}, Scale{0.1},
+                IfLeftOut{0.0}),
       parameter("envelope_kpa", "kPa", "where the bend of the envelopes ends; 0: they are straight",
                 Typical{0.0}, Within{0.0, 1e4}, Scale{10.0}, Placed{}, IfLeftOut{0.0})};
   static constexpr std::array repeated{

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "base/parallel.h"
+#include "model/envelope_map.h"
 #include "sysid/fitting/score.h"
 #include "sysid/structure/structure_columns.h"
 #include "sysid/structure/structure_projection.h"
@@ -21,6 +23,9 @@ constexpr double prior = 0.05;
 constexpr double least_elastic_share = 0.01;
 /// Share of the largest pressure that a regulator's dead band has at most; data sheets say 0.005 to 0.02.
 constexpr double widest_of_a_regulator = 0.03;
+/// Of envelopes: with a width of twice as much they imitate a sensor that saturates, and hide it (textbook
+/// worlds).
+constexpr double usual_bend = 0.05;
 /// From one time constant of the ladder to the next.
 constexpr double ladder_ratio = 3;
 
@@ -152,8 +157,10 @@ class Search {
     }
     if (structure_.characteristic) coordinates_.push_back(straight(&N::curvature, 1, 0, -4, 4));
     if (structure_.envelopes) {
-      coordinates_.push_back(straight(&N::envelope_bend, 0.05, 0, -0.6, 0.6));
-      coordinates_.push_back(straight(&N::envelope_skew, 0.05, 0, -0.35, 0.35));
+      using Envelope = model::EnvelopeMap<double>;
+      for (const auto& [number, most] : {std::pair{&N::envelope_bend, Envelope::most_bend},
+                                         std::pair{&N::envelope_skew, Envelope::most_skew}})
+        coordinates_.push_back(straight(number, usual_bend, 0, -most, most));
     }
     if (structure_.hysteretic && structure_.hysteresis == HysteresisForm::bouc_wen) {
       const double growing = 3 / grid_.largest_kpa;
