@@ -1,10 +1,10 @@
 #include "control/feedforward/invertible_part.h"
 
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
+#include "base/statistics.h"
 #include "control/feedforward/invertibility.h"
 #include "model/catalogue.h"
 #include "model/chain.h"
@@ -31,7 +31,7 @@ std::vector<double> along_the_way(const model::Model& model, double pressure_max
 
 double square_sum(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  for (std::size_t i = 0; i < a.size(); ++i) sum += square(a[i] - b[i]);
   return sum;
 }
 

@@ -38,6 +38,9 @@ struct Sampling {
   double longest_interval_s = 0;
   double jitter_s = 0;   ///< mean absolute deviation of the intervals from their median
   bool regular = false;  ///< all intervals within one per mille of the median
+
+  /// 0 where they are not regular.
+  [[nodiscard]] double sample_time_s() const { return regular ? median_interval_s : 0; }
 };
 
 /// One channel's recorded run. All columns have as many values as time_s; the optional ones may be empty.

@@ -97,12 +97,7 @@ class Coordinates {
   const Scene& scene_;
 };
 
-/// 0: samples are irregular.
-double sample_time_s_of(const Log& log) {
-  const Sampling sampling = sampling_of(log);
-  return sampling.regular ? sampling.median_interval_s : 0;
-}
-
+/// @param sample_time_s  of the log; 0: irregular.
 std::vector<double> predicted(const ValveStage& stage, const Log& log, bool held, double sample_time_s) {
   const std::vector<double>& u = log.pressure_command_kpa;
   model::TransportDelay<double> delay(std::array{stage.delay_s}, {.sample_time_s = sample_time_s});
@@ -158,7 +153,7 @@ class Errors {
   Errors(const std::vector<Log>& logs, const ValveFit& fit) : logs_(logs), fit_(fit) {
     for (const Log& log : logs) {
       count_ += log.size();
-      sample_time_s_.push_back(sample_time_s_of(log));
+      sample_time_s_.push_back(sampling_of(log).sample_time_s());
     }
   }
 
@@ -251,7 +246,7 @@ double pressure_noise_kpa(const std::vector<Log>& logs) {
 }
 
 std::vector<double> predicted_pressure_kpa(const ValveStage& stage, const Log& log, bool held) {
-  return predicted(stage, log, held, sample_time_s_of(log));
+  return predicted(stage, log, held, sampling_of(log).sample_time_s());
 }
 
 ValveStage fit_valve_stage(const std::vector<Log>& logs, const ValveFit& fit) {

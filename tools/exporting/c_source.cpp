@@ -163,10 +163,12 @@ class Generator {
       text_ +=
           "/* " + std::string(id(i)) + " */\nstatic const double values_" + number + "[] = {" + list + "};\n";
       const model::BlockSpec& spec = model_.blocks[i];
-      const std::size_t parts = model::is<model::KelvinVoigt>(spec)              ? (values.size() - 1) / 2
-                                : model::is<model::PrandtlIshlinskii>(spec)      ? (values.size() - 4) / 2
-                                : model::is<model::PressureDependentCreep>(spec) ? values.size() / 3
-                                                                                 : 0;
+      const std::size_t parts =
+          model::is<model::KelvinVoigt>(spec) ? (values.size() - 1) / 2
+          : model::is<model::PrandtlIshlinskii>(spec)
+              ? (values.size() - model::PrandtlIshlinskii<double>::parameters.size()) / 2
+          : model::is<model::PressureDependentCreep>(spec) ? values.size() / 3
+                                                           : 0;
       if (parts > 0) text_ += "#define PARTS_" + number + " " + std::to_string(parts) + "\n";
     }
   }

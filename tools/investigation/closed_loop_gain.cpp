@@ -12,7 +12,6 @@
 #include "base/numbers.h"
 #include "base/random.h"
 #include "control/feedforward/invertibility.h"
-#include "control/feedforward/invertible_part.h"
 #include "control/tuning/gain_search.h"
 #include "control/tuning/tracking_run.h"
 #include "model/blocks/outliers.h"
@@ -61,26 +60,21 @@ class Rigs {
   [[nodiscard]] double mean() const { return mean_mm_; }
   [[nodiscard]] double amplitude() const { return amplitude_mm_; }
 
-  /// With the inverse of the whole model; without one, with a plan by it.
+  /// With the inverse of the whole model; without one, with a plan by it or the inverse of what of it has
+  /// one, whichever tracks better. An infinite error where there is none of them.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
-    ClosedLoopScheme scheme = measured(believed, FeedforwardKind::full_model);
-    if (scheme.refused.empty()) return scheme;
-    ClosedLoopScheme planned = measured(believed, FeedforwardKind::planned);
-    if (planned.refused.empty()) {
-      planned.refused = scheme.refused;
-      return planned;
+    const ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
+    if (whole.refused.empty()) return whole;
+    ClosedLoopScheme best = measured(believed, FeedforwardKind::planned);
+    if (auto part = control::invertible_part(body_of(believed), limits(), 1 / rate_hz)) {
+      ClosedLoopScheme by_part = measured(part->model, FeedforwardKind::full_model);
+      if (by_part.rmse_mm < best.rmse_mm) {
+        best = std::move(by_part);
+        best.part = std::move(part);
+      }
     }
-    return scheme;
-  }
-
-  /// With the inverse of what of the model has one; nothing where no part of it has.
-  [[nodiscard]] std::optional<ClosedLoopScheme> with_invertible_part(const model::Model& believed) const {
-    const auto part = control::invertible_part(body_of(believed), limits(), 1 / rate_hz);
-    if (!part) return std::nullopt;
-    ClosedLoopScheme scheme = measured(part->model, FeedforwardKind::full_model);
-    scheme.believed = part->model;
-    scheme.left_out = part->left_out;
-    return scheme;
+    best.refused = whole.refused;
+    return best;
   }
 
   [[nodiscard]] ClosedLoopScheme measured(const model::Model& believed, FeedforwardKind kind) const {
@@ -156,12 +150,16 @@ class Rigs {
   double amplitude_mm_ = amplitude_mm;
 };
 
+bool is_of_the_whole_model(const ClosedLoopScheme& scheme) {
+  return scheme.feedforward == FeedforwardKind::full_model && !scheme.part;
+}
+
 Json scheme_json(const ClosedLoopScheme& scheme) {
   Json json{{"kp_kpa_per_mm", scheme.pid.kp_kpa_per_mm},
             {"ki_kpa_per_mm_s", scheme.pid.ki_kpa_per_mm_s},
             {"kd_kpa_s_per_mm", scheme.pid.kd_kpa_s_per_mm},
             {"feedforward", control::name_of(scheme.feedforward)}};
-  if (!scheme.left_out.empty()) json["feedforward_without"] = scheme.left_out;
+  if (scheme.part) json["feedforward_without"] = scheme.part->left_out;
   return json;
 }
 
@@ -175,10 +173,11 @@ std::string ClosedLoopGain::reference() const {
 std::vector<std::string> ClosedLoopGain::notes() const {
   std::vector<std::string> notes;
   const auto refused = [&](const char* which, const ClosedLoopScheme& scheme) {
-    if (scheme.feedforward == FeedforwardKind::full_model && scheme.left_out.empty()) return;
+    if (is_of_the_whole_model(scheme)) return;
     const bool planned = scheme.feedforward == FeedforwardKind::planned;
     std::string left_out;
-    for (const std::string& id : scheme.left_out) left_out += (left_out.empty() ? "" : ", ") + id;
+    if (scheme.part)
+      for (const std::string& id : scheme.part->left_out) left_out += (left_out.empty() ? "" : ", ") + id;
     notes.push_back(std::string("the ") + which +
                     (planned ? " model is not undone tick by tick, its feedforward is a plan made ahead: "
                      : left_out.empty()
@@ -207,13 +206,10 @@ ClosedLoopGain measure_closed_loop(const ClosedLoopQuestion& question) {
   gain.extended = rigs.with_model(question.extended);
   gain.pid_alone = rigs.measured(question.extended, FeedforwardKind::none);
   gain.recalibrated = recalibrated.get();
-  for (const auto& [scheme, model] : {std::pair{&gain.recalibrated, &question.recalibrated},
-                                      std::pair{&gain.extended, &question.extended}}) {
-    if (scheme->feedforward == FeedforwardKind::full_model) continue;
+  for (ClosedLoopScheme* scheme : {&gain.recalibrated, &gain.extended}) {
+    if (is_of_the_whole_model(*scheme) || scheme->rmse_mm < gain.pid_alone.rmse_mm) continue;
     std::string refused = std::move(scheme->refused);
-    if (auto part = rigs.with_invertible_part(*model); part && part->rmse_mm < scheme->rmse_mm)
-      *scheme = std::move(*part);
-    if (!(scheme->rmse_mm < gain.pid_alone.rmse_mm)) *scheme = gain.pid_alone;
+    *scheme = gain.pid_alone;
     scheme->refused = std::move(refused);
   }
   gain.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -11,6 +11,7 @@
 
 #include "control/elements/feedforward.h"
 #include "control/elements/pid.h"
+#include "control/feedforward/invertible_part.h"
 #include "control/tuning/tracking_run.h"
 #include "model/model.h"
 
@@ -36,11 +37,9 @@ struct ClosedLoopScheme {
   /// undone, whichever tracks better; where neither serves better than the PID alone, none: then the numbers
   /// are the PID's.
   control::FeedforwardKind feedforward = control::FeedforwardKind::none;
-  std::string refused;                ///< why it is not full_model, or not of the whole model
-  std::vector<std::string> left_out;  ///< blocks that the feedforward's model is without
-  /// In the feedforward, where something is left out.
-  std::optional<model::Model> believed;
-  control::TrackingTrace trace;  ///< on the rig of that median
+  std::string refused;                          ///< why it is not full_model, or not of the whole model
+  std::optional<control::InvertiblePart> part;  ///< what the feedforward is of, where not of the whole model
+  control::TrackingTrace trace;                 ///< on the rig of that median
 };
 
 struct ClosedLoopGain {

@@ -80,8 +80,8 @@ tl::expected<std::string, std::string> write_diagnosis_folder(const std::string&
   } else {
     std::filesystem::remove(out / experiment_file, ignored);
   }
-  if (consequences.closed_loop && consequences.closed_loop->extended.believed) {
-    files.emplace_back(feedforward_file, model::to_yaml(*consequences.closed_loop->extended.believed));
+  if (consequences.closed_loop && consequences.closed_loop->extended.part) {
+    files.emplace_back(feedforward_file, model::to_yaml(consequences.closed_loop->extended.part->model));
   } else {
     std::filesystem::remove(out / feedforward_file, ignored);
   }

@@ -30,7 +30,7 @@ std::string tracking_yaml(const ClosedLoopGain& gain, const std::string& channel
 tl::expected<ExperimentRig, NotPlayed> with_scheme(ExperimentRig rig, const model::Model& model,
                                                    const ClosedLoopScheme& scheme) {
   control::ChannelSettings& channel = rig.rig.settings.channels[rig.channel];
-  channel.model = scheme.believed.value_or(model);
+  channel.model = scheme.part ? scheme.part->model : model;
   channel.pid = scheme.pid;
   channel.feedforward.kind = scheme.feedforward;
   const auto accepted = control::check_feedforward(channel.model, channel.feedforward, channel.limits,

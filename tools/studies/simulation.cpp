@@ -13,9 +13,7 @@ constexpr std::uint64_t added_noise = 1;
 
 /// The interval of a regular log, 0 of an irregular one.
 double sample_time_of(const sysid::Log& log) {
-  if (log.size() < 2) return 0;
-  const sysid::Sampling sampling = sysid::sampling_of(log);
-  return sampling.regular ? sampling.median_interval_s : 0;
+  return log.size() < 2 ? 0 : sysid::sampling_of(log).sample_time_s();
 }
 
 model::Surroundings surroundings_at(const sysid::Log& log, std::size_t i) {

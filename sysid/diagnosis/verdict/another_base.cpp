@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "base/statistics.h"
@@ -11,6 +10,7 @@
 #include "sysid/diagnosis/residual/leftover.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/search/coherence.h"
+#include "sysid/diagnosis/verdict/naming.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -26,10 +26,6 @@ constexpr double worth_asking = 0.5;
 /// Of what is left held out, by a base that is not kept.
 constexpr double about_as_well = 1.1;
 
-bool has(const std::vector<NamedCause>& named, std::string_view id) {
-  return std::any_of(named.begin(), named.end(), [&](const NamedCause& one) { return one.cause.id == id; });
-}
-
 }  // namespace
 
 bool may_lack_a_base(const Selection& one_cause, double noise_mm) {
@@ -41,7 +37,8 @@ bool may_lack_a_base(const Selection& one_cause, double noise_mm) {
 
 bool another_shape_will_do(const BaseFindings& base, const BlockLosses& selected) {
   return rmse_mm(base.losses) < about_as_well * rmse_mm(selected) &&
-         has(base.named, causes::HysteresisShape::id) && !has(base.named, causes::AsymmetricHysteresis::id);
+         is_among(base.named, *find_cause(causes::HysteresisShape::id)) &&
+         !is_among(base.named, *find_cause(causes::AsymmetricHysteresis::id));
 }
 
 void add_another_shape(std::vector<NamedCause>& named) {

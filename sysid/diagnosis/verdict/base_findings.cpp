@@ -270,7 +270,7 @@ void find_causes_upon(BaseFindings& found, const BaseSearch& search, const Cause
   const bool clear = after * after < (1 - allowed.least_share) * before * before;
   if (!clear && !allowed.parts) return;
   for (NamedCause& cause : name_chosen(data.records, with, selection.chosen)) {
-    if (clear || !is_among(found.possible, cause))
+    if (clear || !is_among(found.possible, cause.cause))
       (clear ? found.named : found.possible).push_back(std::move(cause));
   }
   if (!clear) return;

@@ -136,7 +136,7 @@ std::optional<NamedCause> latency_of(const std::vector<WithoutIngredient>& ablat
   for (const FindingName& finding : names) {
     if (finding.ingredient != Ingredient::delay && finding.ingredient != Ingredient::lag) continue;
     const NamedCause one = namer.name(finding, *trial_without(ablation, finding.ingredient));
-    if (is_among(found.named, one)) return std::nullopt;
+    if (is_among(found.named, one.cause)) return std::nullopt;
     late.push_back(one.cause);
     if (missed_more == nullptr || one.gain_mm2.value > missed_mm2) {
       missed_more = &finding;
@@ -157,11 +157,6 @@ std::vector<Ingredient> named_ingredients() {
   return list;
 }
 
-bool is_among(const std::vector<NamedCause>& causes, const NamedCause& one) {
-  return std::any_of(causes.begin(), causes.end(),
-                     [&](const NamedCause& other) { return other.cause == one.cause; });
-}
-
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search) {
   const double least_mm2 = least_share * left_by_the_given_mm2(search);
@@ -171,7 +166,7 @@ void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>&
     if (without == nullptr) continue;
     NamedCause named = namer.name(finding, *without);
     if (named.gain_mm2.value < least_mm2) continue;
-    if (is_among(found.named, named) || is_among(found.possible, named)) continue;
+    if (is_among(found.named, named.cause) || is_among(found.possible, named.cause)) continue;
     (named.inclusion >= full_inclusion ? found.named : found.possible).push_back(std::move(named));
   }
   auto latency = latency_of(ablation, namer, found);

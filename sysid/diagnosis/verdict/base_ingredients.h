@@ -18,7 +18,4 @@ namespace softgrip::sysid {
 void name_ingredients(BaseFindings& found, const std::vector<WithoutIngredient>& ablation,
                       const BaseSearch& search);
 
-/// Whether this cause is among those that are named.
-[[nodiscard]] bool is_among(const std::vector<NamedCause>& causes, const NamedCause& one);
-
 }  // namespace softgrip::sysid

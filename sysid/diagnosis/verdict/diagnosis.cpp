@@ -121,7 +121,7 @@ class Diagnostician {
 
   /// What the displacement has shown already.
   void take_out_named(ValveFindings& in_valve) {
-    std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one); });
+    std::erase_if(in_valve.named, [&](const NamedCause& one) { return is_among(d_.causes, one.cause); });
   }
 
   tl::expected<void, std::string> prepare() {

@@ -96,9 +96,11 @@ std::string title_within(const Cause& cause) {
 }
 
 std::string rival_title(const Cause& rival, const std::vector<NamedCause>& named) {
-  const bool again =
-      std::any_of(named.begin(), named.end(), [&](const NamedCause& c) { return c.cause == rival; });
-  return (again ? "a further " : "") + title_within(rival);
+  return (is_among(named, rival) ? "a further " : "") + title_within(rival);
+}
+
+bool is_among(const std::vector<NamedCause>& named, const Cause& cause) {
+  return std::any_of(named.begin(), named.end(), [&](const NamedCause& one) { return one.cause == cause; });
 }
 
 bool any_rivals(const std::vector<NamedCause>& causes) {

@@ -38,6 +38,9 @@ struct UncertainPoint {
 /// A rival beside what is named: "a further valve lag" where one is named already.
 [[nodiscard]] std::string rival_title(const Cause& rival, const std::vector<NamedCause>& named);
 
+/// Whether the cause is among those that are named.
+[[nodiscard]] bool is_among(const std::vector<NamedCause>& named, const Cause& cause);
+
 /// Whether any of them has a rival.
 [[nodiscard]] bool any_rivals(const std::vector<NamedCause>& causes);
 

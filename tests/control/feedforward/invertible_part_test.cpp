@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "control/feedforward/invertibility.h"
-#include "model/blocks/bouc_wen.h"
 #include "model/blocks/relaxing_friction.h"
 #include "model/named.h"
 #include "tests/control/simulated_finger.h"

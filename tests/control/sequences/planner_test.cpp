@@ -23,13 +23,21 @@ using sim::tick_s;
 
 constexpr LimitSettings limits{0, 60, 400, 400, 0, 30, 1};
 
-Reference sine_reference(double frequency_hz, double cycles) {
+/// From 0 to where a sine begins, and a second later that sine.
+struct Motion {
+  double begins_mm = 6;
+  double after_s = 3;
+  double mean_mm = 13;
+  double amplitude_mm = 7;
+};
+
+Reference sine_reference(double frequency_hz, double cycles, const Motion& motion = {}) {
   Reference reference;
   reference.start(0, 0);
   (void)reference.hold_for(plan_lead_s);
-  (void)reference.ramp_for(6, 3);
+  (void)reference.ramp_for(motion.begins_mm, motion.after_s);
   (void)reference.hold_for(1);
-  (void)reference.sine(13, 7, frequency_hz, cycles);
+  (void)reference.sine(motion.mean_mm, motion.amplitude_mm, frequency_hz, cycles);
   return reference;
 }
 
@@ -105,12 +113,7 @@ TEST(Planner, IsNotMisledByTheGainOfCreepThatTakesHours) {
                                                  {1e9, 145, 31, 192, 133, 160, 627, 600, 3690, 2.05, 14250}});
   finger =
       model::with_block(std::move(finger), {*model::find_block("relaxing_friction"), {0.209, 0.98, 0.0834}});
-  Reference reference;
-  reference.start(0, 0);
-  (void)reference.hold_for(plan_lead_s);
-  (void)reference.ramp_for(4, 3);
-  (void)reference.hold_for(1);
-  (void)reference.sine(8.7, 4.7, 0.2, 2);
+  const Reference reference = sine_reference(0.2, 2, {4, 3, 8.7, 4.7});
   const PressurePlan plan = Planner(finger, limits, tick_s).plan(reference, 0, reference.end_s());
   EXPECT_LT(plan.rmse_mm, 0.02);
 }
@@ -155,12 +158,7 @@ TEST(Planner, UsesItsForesightWhereTheSlewIsShort) {
 // search.
 TEST(Planner, BesideItsLowerBoundItIsBetterThanTheSettledLine) {
   const model::Model twin = model_named("bench_twin");
-  Reference reference;
-  reference.start(0, 0);
-  (void)reference.hold_for(plan_lead_s);
-  (void)reference.ramp_for(15, 2);
-  (void)reference.hold_for(1);
-  (void)reference.sine(8, 8, 0.5, 4);
+  const Reference reference = sine_reference(0.5, 4, {15, 2, 8, 8});
   const PressurePlan plan = Planner(twin, limits, tick_s).plan(reference, 0, reference.end_s());
 
   const SettledLine line = settled_line(twin, limits);

@@ -72,9 +72,9 @@ TEST(ClosedLoopGain, WhatOfAModelCanBeUndoneIsItsFeedforward) {
   const ClosedLoopGain gain = measure_closed_loop(question);
   EXPECT_EQ(gain.extended.feedforward, control::FeedforwardKind::full_model);
   EXPECT_LT(gain.extended.rmse_mm, 0.5 * gain.pid_alone.rmse_mm);
-  EXPECT_EQ(gain.extended.left_out, std::vector<std::string>{"relaxing_friction"});
-  ASSERT_TRUE(gain.extended.believed);
-  EXPECT_FALSE(model::position_of<model::RelaxingFriction>(*gain.extended.believed));
+  ASSERT_TRUE(gain.extended.part);
+  EXPECT_EQ(gain.extended.part->left_out, std::vector<std::string>{"relaxing_friction"});
+  EXPECT_FALSE(model::position_of<model::RelaxingFriction>(gain.extended.part->model));
   EXPECT_FALSE(gain.extended.refused.empty());
   nlohmann::ordered_json json;
   add_closed_loop(json, gain);

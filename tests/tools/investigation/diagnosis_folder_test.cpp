@@ -27,8 +27,8 @@ TEST(DiagnosisFolder, HoldsTheModelOfTheFeedforwardWhereThatIsNotTheWholeOne) {
   Consequences consequences;
   consequences.closed_loop.emplace();
   for (const bool is_part : {true, false}) {
-    auto& believed = consequences.closed_loop->extended.believed;
-    believed = is_part ? std::optional(part) : std::nullopt;
+    consequences.closed_loop->extended.part =
+        is_part ? std::optional(control::InvertiblePart{part, {"bouc_wen"}}) : std::nullopt;
     const auto written = write_diagnosis_folder(scratch.path(), diagnosis, source, consequences, "finger");
     ASSERT_TRUE(written) << written.error();
     ASSERT_EQ(std::filesystem::exists(file), is_part);

@@ -1,0 +1,30 @@
+#include "sysid/fitting/fit_space.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "model/blocks/prandtl_ishlinskii.h"
+#include "model/named.h"
+
+namespace softgrip::sysid::fit_space_test {
+namespace {
+
+/// Straight envelopes have no numbers; bent ones answer to a cause that is fitted beside them.
+TEST(IsMovable, OfTheEnvelopesWhereTheyAreBentAlone) {
+  for (const double end_kpa : {0.0, 50.0}) {
+    const model::Model plays = model::with_block(
+        {}, {model::block_type<model::PrandtlIshlinskii>(), {10, 0, 0, end_kpa, 0, 0.2, 5, 0.1}});
+    const auto moves = [&](const char* name) {
+      return is_movable(plays, model::find_path(plays, std::string("prandtl_ishlinskii.") + name).value());
+    };
+    EXPECT_EQ(moves("envelope_bend"), end_kpa > 0);
+    EXPECT_EQ(moves("envelope_skew"), end_kpa > 0);
+    EXPECT_TRUE(moves("w2_mm_per_kpa"));
+    for (const char* placed : {"trained_kpa", "envelope_kpa", "r2_kpa"})
+      EXPECT_FALSE(moves(placed)) << placed;
+  }
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::fit_space_test
