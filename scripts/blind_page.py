@@ -1,5 +1,6 @@
 """The blind campaign's page: what was found where, as tables and two pictures (SVG) beside it."""
 import collections
+import fractions
 import html
 import math
 import pathlib
@@ -10,7 +11,7 @@ from judging import is_outside
 
 OUTCOMES = [("right", "#2e7d4f"), ("ambiguous_right", "#8fbf9a"), ("partly", "#c9b458"), ("missed", "#b9bec6"),
             ("unexplained", "#8a93a3"), ("wrong", "#b3372e"), ("failed", "#000000")]
-WORDS = {"ambiguous_right": "ambiguous, truth listed", "partly": "one of two"}
+WORDS = {"ambiguous_right": "ambiguous, truth listed", "partly": "some of them"}
 
 
 def group_of(result):
@@ -129,7 +130,7 @@ def confusion(results):
             continue
         for cause, rivals in zip(r["named"], r["rivals"]):
             for one in [cause, *rivals]:
-                row[one] += 1 / len(r["named"]) / (1 + len(rivals))
+                row[one] += fractions.Fraction(1, len(r["named"]) * (1 + len(rivals)))  # whatever the order of rows
     size, left, top = 21, 190, 175
     svg = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + size * len(named) + 45} '
            f'{top + size * len(hidden) + 20}" font-family="sans-serif" font-size="11">'
@@ -143,7 +144,7 @@ def confusion(results):
         svg.append(f'<text x="{left - 6}" y="{y + 14}" text-anchor="end">{row}</text>')
         count = sum(table[row].values())
         for j, name in enumerate(named):
-            part = table[row][name] / count if count else 0
+            part = float(table[row][name] / count) if count else 0
             x = left + size * j
             right = name == row or (is_outside(row) and name == "unexplained")
             colour = "46,125,79" if right else "70,80,100"
