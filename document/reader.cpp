@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/characters.h"
 #include "document/key_hint.h"
@@ -46,12 +47,7 @@ std::string not_a_map_hint(const Node& node) {
 }
 
 std::string listed(const std::vector<std::string>& choices) {
-  std::string out;
-  for (std::size_t i = 0; i < choices.size(); ++i) {
-    if (i > 0) out += i + 1 == choices.size() ? " or " : ", ";
-    out += in_backticks(choices[i]);
-  }
-  return out;
+  return enumerated(choices, " or ", in_backticks);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/enumerated.h"
 #include "document/reader.h"
 #include "drivers/modbus/modbus_request.h"
 #include "rig/electrical_suffix.h"
@@ -81,9 +82,8 @@ class BoardReader {
   std::uint8_t function(MapReader& in, const std::vector<int>& allowed, const std::string& meaning) {
     const std::int64_t code = in.integer("function", 1, 23);
     if (std::find(allowed.begin(), allowed.end(), code) == allowed.end()) {
-      std::string list;
-      for (const int one : allowed) list += (list.empty() ? "" : ", ") + std::to_string(one);
-      in.report("function", "`function` is " + std::to_string(code) + ", " + meaning + ": " + list);
+      in.report("function", "`function` is " + std::to_string(code) + ", " + meaning + ": " +
+                                with_commas(allowed, [](int one) { return std::to_string(one); }));
     }
     return static_cast<std::uint8_t>(code);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/number.h"
 #include "drivers/modbus/serial_port.h"
@@ -153,9 +154,8 @@ drivers::SerialLine read_line(MapReader& reader) {
   }
   line.baud = static_cast<std::uint32_t>(reader.integer("baud", baud_rates.front(), baud_rates.back()));
   if (reader.good("baud") && std::find(baud_rates.begin(), baud_rates.end(), line.baud) == baud_rates.end()) {
-    std::string list;
-    for (const std::uint32_t rate : baud_rates) list += (list.empty() ? "" : ", ") + std::to_string(rate);
-    reader.report("baud", "`baud` is none of the usual rates", list);
+    reader.report("baud", "`baud` is none of the usual rates",
+                  with_commas(baud_rates, [](std::uint32_t rate) { return std::to_string(rate); }));
   }
   read_format(reader, line);
   line.silence_s = reader.optional_number("silence_s", {1e-5, 1});

@@ -1,5 +1,6 @@
 #include "sysid/changes/change_page.h"
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "sysid/changes/next_steps.h"
 #include "sysid/pages/provenance.h"
@@ -23,11 +24,10 @@ void add_causes(Page& page, const ChangeDiagnosis& d) {
       {false, false, false, false, true, false},
       {}};
   for (const ChangeCause& cause : d.causes) {
-    std::string rivals;
-    for (const std::string& rival : cause.rivals) rivals += (rivals.empty() ? "" : ", ") + rival;
     table.rows.push_back({cause.id, size_text(cause), interval_text(cause),
                           significant(cause.full_pressure_mm, 2) + " " + unit_of(cause.judged),
-                          fixed(cause.share_percent, 0), rivals.empty() ? "-" : rivals});
+                          fixed(cause.share_percent, 0),
+                          cause.rivals.empty() ? "-" : with_commas(cause.rivals)});
   }
   page.table(table);
   for (const ChangeCause& cause : d.causes) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/samples.h"
@@ -94,8 +95,7 @@ class Converter {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < table_.columns.size(); ++i) names.push_back(word_of(table_, i));
     const std::string near = document::nearest(word, names);
-    std::string all;
-    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + document::shown(name);
+    const std::string all = with_commas(names, [](const std::string& name) { return document::shown(name); });
     refuse(std::string(spec.word) + ": " + (same > 1 ? "more than one column '" : "no column '") +
                document::shown(word) + "'",
            same > 1       ? "give its number, counted from 1"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/enumerated.h"
 #include "base/files.h"
 #include "base/numbers.h"
 #include "document/node.h"
@@ -28,9 +29,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string list_of(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + in_quotes(word);
-  return "[" + list + "]";
+  return "[" + with_commas(words, in_quotes) + "]";
 }
 
 std::string column_yaml(const ColumnMapping& column) {

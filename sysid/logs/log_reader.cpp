@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "base/sha256.h"
 #include "sysid/logs/csv_text.h"
@@ -116,9 +117,7 @@ class RowReader {
 };
 
 std::string listed(const std::vector<std::string>& words) {
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "'" : ", '") + word + "'";
-  return list;
+  return with_commas(words, [](const std::string& word) { return "'" + word + "'"; });
 }
 
 /// A log with several channels needs a choice, and the choice must exist.

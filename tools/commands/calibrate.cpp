@@ -14,6 +14,7 @@
 #include <tl/expected.hpp>
 
 #include "base/clock.h"
+#include "base/enumerated.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
@@ -71,9 +72,7 @@ std::optional<std::size_t> channel_of(const rig::RigFile& rig, const std::string
 }
 
 std::string names_of(const rig::RigFile& rig) {
-  std::string names;
-  for (const auto& channel : rig.settings.channels) names += (names.empty() ? "" : ", ") + channel.name;
-  return names;
+  return with_commas(rig.settings.channels, &control::ChannelSettings::name);
 }
 
 /// Pressures of the two places: as given, or a sixth and two thirds of what the limits allow.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/enumerated.h"
 #include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
@@ -81,9 +82,8 @@ tl::expected<model::Model, ExitCode> start_model(const IdentifyOptions& options,
 }
 
 std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const model::Model& start) {
-  std::string source = "identified by " + sysid::software_and_version() + " from ";
-  for (std::size_t i = 0; i < logs.size(); ++i) source += (i == 0 ? "" : ", ") + logs[i].name;
-  return source + " (RMSE " + significant(rmse_mm, 3) + " mm), starting from " + start.name;
+  return "identified by " + sysid::software_and_version() + " from " + with_commas(logs, &sysid::Log::name) +
+         " (RMSE " + significant(rmse_mm, 3) + " mm), starting from " + start.name;
 }
 
 void print_estimates(const std::vector<sysid::Estimate>& list) {

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/problem.h"
 #include "model/file/model_file.h"
@@ -46,15 +47,9 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 /// What there is to choose from; nothing where nothing is there.
 std::string in_brackets(const std::vector<std::string>& names) {
-  return names.empty() ? "" : " (" + listed(names) + ")";
+  return names.empty() ? "" : " (" + with_commas(names) + ")";
 }
 
 /// A path, or a name in a folder of the configuration; empty if it is neither.
@@ -68,7 +63,7 @@ std::string path_of(const std::string& word, const std::string& folder) {
 std::string unknown_name(const std::string& word, const std::string& folder) {
   const std::vector<std::string> names = names_in(folder);
   const std::string near = document::nearest(word, names);
-  const std::string all = names.empty() ? "nothing is there" : "there are " + listed(names);
+  const std::string all = names.empty() ? "nothing is there" : "there are " + with_commas(names);
   const std::string hint = near.empty() ? all : "did you mean " + near + "?";
   return document::in_backticks(word) + " is no file, nor a name in " + configuration_path(folder) + ": " +
          hint;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/number.h"
 #include "rig/rig_file.h"
@@ -26,13 +27,11 @@ std::string scaling(const drivers::TwoPoints& points, const std::string& electri
 std::string error_codes(const drivers::InputWiring& wiring) {
   if (wiring.error_codes.empty()) return {};
   const std::string electrical = suffix_of(wiring.unit);
-  std::string text = ", error_codes: [";
-  for (std::size_t i = 0; i < wiring.error_codes.size(); ++i) {
-    text += fmt::format("{}{{at_{}: {}, tolerance_{}: {}}}", i == 0 ? "" : ", ", electrical,
-                        written(wiring.error_codes[i].electrical), electrical,
-                        written(wiring.error_codes[i].tolerance));
-  }
-  return text + "]";
+  const auto text_of = [&](const auto& code) {
+    return fmt::format("{{at_{}: {}, tolerance_{}: {}}}", electrical, written(code.electrical), electrical,
+                       written(code.tolerance));
+  };
+  return ", error_codes: [" + with_commas(wiring.error_codes, text_of) + "]";
 }
 
 /// Which module of a board that has several.
@@ -51,9 +50,8 @@ std::string input(const rig::RigFile& rig, const std::string& key, const drivers
 }
 
 std::string findings(const std::string& what, const Line& line, const std::string& unit) {
-  std::string residuals;
-  for (const double residual : line.residuals)
-    residuals += (residuals.empty() ? "" : ", ") + rounded(residual, 4);
+  const std::string residuals =
+      with_commas(line.residuals, [](double residual) { return rounded(residual, 4); });
   return fmt::format(
       "# {}: error {} {} between the points besides the reference's own, noise of a reading {} {},\n"
       "#   residuals [{}] {}, repeat spread {}\n",

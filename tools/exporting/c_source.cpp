@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "control/elements/feedforward.h"
 #include "control/elements/limits.h"
@@ -158,10 +159,8 @@ class Generator {
     for (std::size_t i = 0; i < model_.blocks.size(); ++i) {
       const std::vector<double>& values = model_.blocks[i].values;
       const std::string number = std::to_string(i);
-      std::string list;
-      for (const double value : values) list += (list.empty() ? "" : ", ") + shortest(value);
-      text_ +=
-          "/* " + std::string(id(i)) + " */\nstatic const double values_" + number + "[] = {" + list + "};\n";
+      text_ += "/* " + std::string(id(i)) + " */\nstatic const double values_" + number + "[] = {" +
+               with_commas(values, shortest) + "};\n";
       const model::BlockSpec& spec = model_.blocks[i];
       const std::size_t parts =
           model::is<model::KelvinVoigt>(spec) ? (values.size() - 1) / 2

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "tools/health/number_watch.h"
 
@@ -45,15 +46,7 @@ FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs
   return std::move(judge_rig(std::move(alone), notes, options).fingers.front());
 }
 
-namespace {
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::string change_text(sysid::HealthNumber number, double change) {
   const sysid::HealthNumberInfo& info = sysid::info_of(number);
@@ -63,7 +56,8 @@ std::string change_text(sysid::HealthNumber number, double change) {
 
 std::string unclear_sentence(const FingerHealth& health, const HealthAlarm& unclear) {
   return "Since " + health.points[unclear.since].label + " " + health.finger + " differs from " +
-         listed(unclear.beside) + " otherwise than before: " + change_text(unclear.number, unclear.change) +
+         with_commas(unclear.beside) +
+         " otherwise than before: " + change_text(unclear.number, unclear.change) +
          ". Whose change it is, their own numbers do not tell yet.";
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "base/random.h"
 #include "control/feedforward/invertibility.h"
@@ -175,9 +176,7 @@ std::vector<std::string> ClosedLoopGain::notes() const {
   const auto refused = [&](const char* which, const ClosedLoopScheme& scheme) {
     if (is_of_the_whole_model(scheme)) return;
     const bool planned = scheme.feedforward == FeedforwardKind::planned;
-    std::string left_out;
-    if (scheme.part)
-      for (const std::string& id : scheme.part->left_out) left_out += (left_out.empty() ? "" : ", ") + id;
+    const std::string left_out = scheme.part ? with_commas(scheme.part->left_out) : "";
     notes.push_back(std::string("the ") + which +
                     (planned ? " model is not undone tick by tick, its feedforward is a plan made ahead: "
                      : left_out.empty()

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/enumerated.h"
 #include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
@@ -22,12 +23,6 @@ namespace {
 constexpr const char* experiment_file = "next_experiment.yaml";
 /// Where the extended model is not undone as a whole: what of it is.
 constexpr const char* feedforward_file = "feedforward_model.yaml";
-
-std::string listed(const std::vector<std::string>& ids) {
-  std::string text;
-  for (const std::string& id : ids) text += (text.empty() ? "" : ", ") + id;
-  return text;
-}
 
 std::string complete_json(const sysid::Diagnosis& diagnosis, const DiagnosisSource& source,
                           const Consequences& consequences) {
@@ -102,7 +97,7 @@ std::string text_of(const Consequences& consequences, const std::string& folder)
   const sysid::NextExperiment& next = consequences.experiment;
   if (next.best) {
     text += "next experiment: " + next.best->waveform.name + ", " + significant(next.best->minutes, 2) +
-            " minutes, tells " + listed(next.separates) + " apart by " +
+            " minutes, tells " + with_commas(next.separates) + " apart by " +
             significant(next.predicted_separation_sigma, 3) +
             " standard deviations: " + (std::filesystem::path(folder) / experiment_file).string() + "\n";
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "tools/studies/control_study.h"
 #include "tools/studies/models.h"
@@ -24,12 +25,10 @@ double gain_of(const ControlStudy& study, const std::string& worse, const std::s
 
 std::string gains_in_words(const ControlStudy& study, const std::string& worse, const std::string& better,
                            double mismatch) {
-  std::string text;
-  for (const double frequency : study.options.frequencies_hz) {
-    text += (text.empty() ? "" : ", ") + significant(gain_of(study, worse, better, frequency, mismatch), 3) +
-            " at " + significant(frequency) + " Hz";
-  }
-  return text;
+  return with_commas(study.options.frequencies_hz, [&](double frequency) {
+    return significant(gain_of(study, worse, better, frequency, mismatch), 3) + " at " +
+           significant(frequency) + " Hz";
+  });
 }
 
 std::string verdict(const ControlStudy& study) {

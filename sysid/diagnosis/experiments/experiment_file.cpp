@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "sysid/diagnosis/experiments/experiment.h"
 
@@ -8,22 +9,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string list_of(const std::vector<std::string>& ids) {
-  std::string text;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    if (i > 0) text += i + 1 == ids.size() ? " and " : ", ";
-    text += ids[i];
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string sequence_yaml(const NextExperiment& experiment, const std::string& channel) {
   const JudgedWaveform& best = experiment.best.value();
-  return "# Proposed by softgrip diagnose: tells " + list_of(experiment.separates) + " apart, by " +
-         significant(experiment.predicted_separation_sigma, 3) + " standard deviations as predicted, in " +
-         significant(best.minutes, 3) + " minutes on the rig.\n" + sequence_yaml(best.waveform, channel);
+  return "# Proposed by softgrip diagnose: tells " + enumerated(experiment.separates, " and ") +
+         " apart, by " + significant(experiment.predicted_separation_sigma, 3) +
+         " standard deviations as predicted, in " + significant(best.minutes, 3) + " minutes on the rig.\n" +
+         sequence_yaml(best.waveform, channel);
 }
 
 std::string sequence_yaml(const Waveform& waveform, const std::string& channel) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "sysid/diagnosis/report/report_appendix.h"
 #include "sysid/diagnosis/report/report_budget.h"
@@ -58,10 +59,8 @@ void add_next(Page& page, const DiagnosisReport& report) {
   page.list(report.advice);
   if (!report.next_experiment) return;
   const ProposedExperiment& next = *report.next_experiment;
-  std::string ids;
-  for (const std::string& id : next.separates) ids += (ids.empty() ? "" : ", ") + id;
   page.paragraph("The next experiment: " + (next.waveform.empty() ? "" : next.waveform + ". ") +
-                 "It separates " + ids + ": on it they differ by " +
+                 "It separates " + with_commas(next.separates) + ": on it they differ by " +
                  significant(next.predicted_separation_sigma, 3) +
                  " standard deviations of the noise, each refitted to the other. " +
                  significant(next.rig_minutes, 2) + " minutes of rig time; run it with " + next.file + ".");

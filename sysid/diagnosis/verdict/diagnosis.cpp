@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
@@ -299,9 +300,8 @@ class Diagnostician {
     if (options_.record.drive == Drive::measured && d_.in_valve)
       model = with_valve(std::move(model), d_.in_valve->stage);
     model.name = given_.name + '_' + how.substr(0, how.find(' '));
-    std::string files;
-    for (const Log& log : logs_) files += (files.empty() ? "" : ", ") + log.name;
-    model.source = how + " by softgrip diagnose from " + files + "; before: " + given_.source;
+    model.source =
+        how + " by softgrip diagnose from " + with_commas(logs_, &Log::name) + "; before: " + given_.source;
     return model;
   }
 

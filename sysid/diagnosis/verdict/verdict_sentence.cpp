@@ -1,5 +1,6 @@
 #include <string>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
@@ -9,12 +10,11 @@ namespace softgrip::sysid {
 namespace {
 
 std::string listed(const std::vector<NamedCause>& causes) {
-  std::string text;
-  for (std::size_t i = 0; i < causes.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == causes.size() ? " and " : ", ") + title_within(causes[i].cause);
-    for (const Cause& rival : causes[i].rivals) text += " or " + rival_title(rival, causes);
-  }
-  return text;
+  return enumerated(causes, " and ", [&causes](const NamedCause& named) {
+    std::string text = title_within(named.cause);
+    for (const Cause& rival : named.rivals) text += " or " + rival_title(rival, causes);
+    return text;
+  });
 }
 
 /// Nothing but wrong samples was found.
