@@ -64,7 +64,7 @@ class Rigs {
   /// With the inverse of the whole model; without one, with a plan by it or the inverse of what of it has
   /// one, whichever tracks better. An infinite error where there is none of them.
   [[nodiscard]] ClosedLoopScheme with_model(const model::Model& believed) const {
-    const ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
+    ClosedLoopScheme whole = measured(believed, FeedforwardKind::full_model);
     if (whole.refused.empty()) return whole;
     ClosedLoopScheme best = measured(believed, FeedforwardKind::planned);
     if (auto part = control::invertible_part(body_of(believed), limits(), 1 / rate_hz)) {
@@ -74,7 +74,7 @@ class Rigs {
         best.part = std::move(part);
       }
     }
-    best.refused = whole.refused;
+    best.refused = std::move(whole.refused);
     return best;
   }
 
