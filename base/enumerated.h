@@ -14,11 +14,11 @@ namespace softgrip {
 template <typename Items, typename TextOf = std::identity>
 [[nodiscard]] std::string enumerated(const Items& items, std::string_view before_last, TextOf text_of = {}) {
   std::string text;
-  std::size_t left = std::size(items);
+  const std::size_t count = std::size(items);
+  std::size_t place = 0;
   for (const auto& item : items) {
-    if (!text.empty()) text += left == 1 ? before_last : ", ";
+    if (++place > 1) text += place == count ? before_last : ", ";
     text += std::invoke(text_of, item);
-    --left;
   }
   return text;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
 #include "document/key_hint.h"
 #include "document/reader.h"
@@ -35,18 +36,15 @@ const Node::Entry* entry_of(const Node& map, std::string_view key) {
 std::string hint_of(const std::string& name, const std::vector<Parameter>& parameters) {
   if (parameters.empty()) return "this sequence has no `parameters`";
   std::vector<std::string> names;
-  std::string all;
-  for (const Parameter& parameter : parameters) {
-    names.push_back(parameter.name);
-    all += (all.empty() ? "" : ", ") + document::in_backticks(parameter.name);
-  }
+  names.reserve(parameters.size());
+  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
   const std::string near = document::nearest(name, names);
   if (!near.empty()) return "did you mean " + document::in_backticks(near) + "?";
   for (const Parameter& parameter : parameters) {
     if (parameter.name.starts_with(name + "_"))
       return "did you mean " + document::in_backticks(parameter.name) + "?";
   }
-  return "there are " + all;
+  return "there are " + with_commas(names, document::in_backticks);
 }
 
 bool is_name(std::string_view name) {

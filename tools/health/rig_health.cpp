@@ -46,8 +46,6 @@ FingerHealth judge_finger(const std::string& finger, std::vector<ScoredRun> runs
   return std::move(judge_rig(std::move(alone), notes, options).fingers.front());
 }
 
-namespace {}  // namespace
-
 std::string change_text(sysid::HealthNumber number, double change) {
   const sysid::HealthNumberInfo& info = sysid::info_of(number);
   return std::string(info.title) + (change > 0 ? " +" : " -") + significant(std::abs(change), 2) + " " +

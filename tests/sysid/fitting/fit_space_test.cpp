@@ -1,8 +1,8 @@
 #include "sysid/fitting/fit_space.h"
 
-#include <gtest/gtest.h>
+#include <string>
 
-#include <vector>
+#include <gtest/gtest.h>
 
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/named.h"
