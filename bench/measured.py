@@ -18,12 +18,13 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "bench/measured"))
+sys.path[:0] = [str(ROOT / "bench/measured"), str(ROOT / "bench/foreign")]
 
 import measured_page  # noqa: E402
 from log_reading import Spoiled, read_log  # noqa: E402
 from log_table import Unusable, read_table  # noqa: E402
-from measured_runs import Runs, checksum, output_of, write_whole  # noqa: E402
+from measured_runs import Runs  # noqa: E402
+from outcomes import checksum, output_of, write_whole  # noqa: E402
 
 
 def parsed(words):

@@ -16,7 +16,7 @@ the first part of a log and simulated on through the rest, nothing re-seeded; th
 blocks**: what is scored lies between parts that were fitted. Where the pressure is measured, it drives the finger.
 *published element* is `softgrip identify` as it is called without `--structure`; the next three are what stands behind
 `--structure`; *scipy* is Bouc-Wen with two Kelvin-Voigt branches fitted by `least_squares`, which shares nothing with
-softgrip (`bench/measured/scipy_bouc_wen.py`). *fitted part unloads*: how far the pressure that drives comes down there,
+softgrip (`bench/foreign/scipy_bouc_wen.py`). *fitted part unloads*: how far the pressure that drives comes down there,
 of how far it goes; what unloading does cannot be learnt where there is none."""
 
 

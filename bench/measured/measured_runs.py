@@ -1,49 +1,17 @@
 """What is run on one measured log: identifications, a fit by scipy, diagnoses. Each outcome is kept in a file, with a
 checksum of all that it depends on, so that what was done is not done again."""
-import hashlib
 import json
-import os
 import pathlib
 import re
-import resource
-import subprocess
 import sys
-import time
 
-HERE = pathlib.Path(__file__).resolve().parent
-SCIPY = HERE / "scipy_bouc_wen.py"
-SIMULATOR = HERE.parent / "sysid_peer_simulator.c"
+from outcomes import Failed, checksum, outcome_in, output_of
+
+BENCH = pathlib.Path(__file__).resolve().parent.parent
+SCIPY = BENCH / "foreign/scipy_bouc_wen.py"
+SIMULATOR = BENCH / "sysid_peer_simulator.c"
 STRUCTURES = ("auto", "bouc_wen", "prandtl_ishlinskii")
-REFUSED, NOT_CONVERGED = 3, 6
-
-
-class Failed(Exception):
-    """A program said no; the message is what it said."""
-
-    def __init__(self, said, code=None):
-        super().__init__(said)
-        self.code = code
-
-
-def checksum(*parts):
-    whole = hashlib.sha256()
-    for part in parts:
-        data = part.read_bytes() if isinstance(part, pathlib.Path) else str(part).encode()
-        whole.update(hashlib.sha256(data).digest())
-    return whole.hexdigest()
-
-
-def output_of(command, at_most_s):
-    try:
-        run = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=at_most_s)
-    except subprocess.TimeoutExpired as error:
-        raise Failed(f"stopped after {at_most_s:g} s") from error
-    except OSError as error:
-        raise Failed(f"{command[0]}: {error.strerror}") from error
-    if run.returncode in (0, NOT_CONVERGED):
-        return run.stdout
-    said = run.stderr.strip() or f"{command[0]}: exit code {run.returncode}"
-    raise Failed(said.splitlines()[-1] if said.startswith("Traceback") else said, run.returncode)
+REFUSED = 3
 
 
 class Runs:
@@ -126,42 +94,8 @@ class Runs:
     def outcome(self, step):
         """(outcome, whether it was there before) of one of steps(): {"wall_s", "processor_s", "result" or "error"}."""
         name, function, depends = step
-        kept = self.folder / name / "outcome.json"
         of = checksum(self.file, self.entry.begin, *depends)
-        known = read_json(kept)
-        if known and known.get("of") == of and "result" in known:
-            return known, True
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        (kept.parent / "model.yaml").unlink(missing_ok=True)  # of an earlier run
-        began, processor = time.monotonic(), processor_s()
-        outcome = {"of": of}
-        try:
-            outcome["result"] = function(kept.parent)
-        except (Failed, ValueError, KeyError) as error:
-            outcome["error"] = self.in_the_users_words(error)
-        outcome.update(wall_s=time.monotonic() - began, processor_s=processor_s() - processor)
-        write_whole(kept, json.dumps(outcome, indent=1) + "\n")
-        return outcome, False
-
-
-def processor_s():
-    """Of all programs that have been run and have ended."""
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime
-
-
-def read_json(path):
-    try:
-        return json.loads(path.read_text())
-    except (OSError, ValueError):
-        return None
-
-
-def write_whole(path, text):
-    """All of it or nothing, whenever the run is interrupted."""
-    part = path.with_suffix(".part")
-    part.write_text(text)
-    os.replace(part, path)
+        return outcome_in(self.folder / name, of, function, self.in_the_users_words)
 
 
 def only(scores):

@@ -7,7 +7,7 @@ import textwrap
 import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
-sys.path[:0] = [str(BENCH), str(BENCH / "measured")]
+sys.path[:0] = [str(BENCH), str(BENCH / "measured"), str(BENCH / "foreign")]
 
 import log_reading  # noqa: E402
 import log_table  # noqa: E402

@@ -1,4 +1,4 @@
-"""bench/measured/log_reading.py: logs as others write them, sound and broken."""
+"""bench/foreign/log_reading.py: logs as others write them, sound and broken."""
 import math
 
 from measured_case import SAMPLES, MeasuredCase, kpa, log_text, mm

@@ -1,4 +1,4 @@
-"""bench/measured/scipy_bouc_wen.py on a log whose answer is known; needs scipy."""
+"""bench/foreign/scipy_bouc_wen.py on a log whose answer is known; needs scipy."""
 import importlib.util
 import json
 import math
@@ -30,7 +30,7 @@ class Scipy(MeasuredCase):
         log.write_text("\n".join(["time_s,pressure_command_kpa,displacement_mm", *rows]) + "\n")
         subprocess.run(["cc", "-O2", "-shared", "-fPIC", "-o", library, BENCH / "sysid_peer_simulator.c", "-lm"],
                        check=True)
-        run = subprocess.run([sys.executable, BENCH / "measured/scipy_bouc_wen.py", log, "0.5", library],
+        run = subprocess.run([sys.executable, BENCH / "foreign/scipy_bouc_wen.py", log, "0.5", library],
                              check=True, capture_output=True, text=True)
         answer = json.loads(run.stdout)
         self.assertLess(answer["fitted_mm"], 0.01)

@@ -1,4 +1,4 @@
-"""bench/measured/log_table.py: what the table says, and what is said of its mistakes."""
+"""bench/foreign/log_table.py: what the table says, and what is said of its mistakes."""
 from measured_case import BENCH, MeasuredCase
 
 import log_table
