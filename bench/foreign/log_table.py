@@ -219,12 +219,12 @@ def values_of(path):
         raise Unusable(f"{path}:{mark.line + 1 if mark else 1}: {getattr(error, 'problem', error)}") from error
 
 
-def refuse_what_says_nothing(path, values):
+def refuse_what_says_nothing(path, values, known):
     if not isinstance(values, Map) or not isinstance(values.get("logs"), list) or not values["logs"]:
         raise Unusable(f"{path}:1: no list `logs`: one entry per log, with its file and columns")
     for key in values:
-        if key not in TABLE_KEYS:
-            raise Unusable(f"{path}:{values.line_of[key]}: '{key}' is no key here: {meant(key, TABLE_KEYS)}")
+        if key not in known:
+            raise Unusable(f"{path}:{values.line_of[key]}: '{key}' is no key here: {meant(key, known)}")
     if not isinstance(values.get("same") or Map(1), Map):
         raise Unusable(f"{path}:{values.line_of['same']}: `same` holds keys that all logs share")
     for number, given in enumerate(values["logs"], 1):
@@ -232,11 +232,11 @@ def refuse_what_says_nothing(path, values):
             raise Unusable(f"{path}:{values.line_of['logs']}: log {number} is {given!r}, not keys with values")
 
 
-def read_table(path, data):
-    """The table at `path` of logs in the folder `data`."""
+def read_table(path, data, more_keys=()):
+    """The table at `path` of logs in the folder `data`; `more_keys`: of the whole table, which the caller reads."""
     path, data = pathlib.Path(path), pathlib.Path(data)
     values = values_of(path)
-    refuse_what_says_nothing(path, values)
+    refuse_what_says_nothing(path, values, (*TABLE_KEYS, *more_keys))
     logs, names = [], set()
     for number, given in enumerate(values["logs"], 1):
         merged = with_defaults(given, values.get("same") or Map(1))

@@ -1,0 +1,132 @@
+"""The page of bench/foreign.py: required and reached values, then the cases of each judge."""
+import math
+import pathlib
+
+
+def table(head, rows):
+    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head),
+            *("| " + " | ".join(str(cell).replace("|", "\\|").replace("\n", "<br>") for cell in row) + " |" for row in rows)]
+
+
+def number(value, digits=3):
+    """Significant digits; `-` for nothing."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    return f"{value:.{digits}g}"
+
+
+def of(count, total):
+    return f"{count} of {total}"
+
+
+def names_of(case):
+    """The named causes with their alternatives and sizes."""
+    parts = []
+    for name, rivals, size in zip(case["named"], case["alternatives"], case["sizes"]):
+        text = " or ".join([name, *rivals])
+        if isinstance(size, dict) and isinstance(size.get("value"), (int, float)):
+            text += f" ({number(size['value'])} {size.get('unit', '')})".replace(" )", ")")
+        parts.append(text)
+    return "; ".join(parts) or "-"
+
+
+def requirements(values):
+    """(sentence, required, reached) of each judge that ran."""
+    summary = values.get("summary", {})
+    rows = []
+    for group, part in summary.get("repeats", {}).items():
+        rows.append((f"{group}, nothing changed: reported as changed", "at most 1 of 12" if group == "runs" else "-",
+                     of(part["changed"], part["cases"])))
+        rows.append((f"{group}, nothing changed: `sensor_drift` named", "-", of(part["sensor_drift"], part["cases"])))
+    if "changes" in summary:
+        part = summary["changes"]
+        rows += [("labelled changes beyond the run-to-run spread: detected", "80 %",
+                  of(part["detected"], part["beyond_spread"])),
+                 ("of the detected: labelled cause named or listed", "50 %", of(part["named_or_listed"], part["detected"])),
+                 ("labelled changes: only a wrong cause named", "at most 10 %", of(part["wrong_alone"], part["cases"])),
+                 ("labelled changes within the spread: reported as unchanged", "all",
+                  of(part["within_reported_unchanged"], part["within_spread"]))]
+    return rows
+
+
+def required_table(values, reference):
+    now = requirements(values)
+    if not reference:
+        return table(["judge", "required", "reached"], now)
+    before = {row[0]: row[2] for row in requirements(reference)}
+    return table(["judge", "required", f"reference: {reference['softgrip']['version']}", "reached"],
+                 [(sentence, required, before.get(sentence, "-"), reached) for sentence, required, reached in now])
+
+
+def plain_cells(case):
+    plain = case["plain"]
+    return [number(plain["fitted_mm"]), number(max(plain["left_out_mm"], default=math.nan)),
+            number(plain["healthy_bound_mm"]), number(plain["later_mm"]),
+            number(plain["over_bound"] or plain["over_fitted"])]
+
+
+PLAIN_HEAD = ["fitted [mm]", "left out [mm]", "bound [mm]", "later [mm]", "ratio"]
+
+
+def pair_tables(values, judge, more_head, more_cells):
+    cases = [case for case in values["cases"] if case["judge"] == judge and "error" not in case]
+    head = ["set", "pair", "baseline runs", *PLAIN_HEAD, "verdict", "named", *more_head, "time [s]"]
+    return table(head, [[case["set"], case["case"], case["baseline_runs"], *plain_cells(case), case["verdict"],
+                         names_of(case), *more_cells(case), number(case["wall_s"])] for case in cases])
+
+
+PLAIN_TEXT = [
+    "*fitted*, *left out* and *later* are RMSE values of the plain identified model (`softgrip identify` without",
+    "`--structure`): on the baseline, the largest on a baseline run that was left out of the fit, and on the later run.",
+    "*bound* is the one-sided 95 % prediction bound (Student's t) for the error on 1 more healthy run, from the errors on",
+    "the runs left out.",
+    "*ratio* is *later* over *bound*. With 1 baseline run there is no bound, and *ratio* is *later* over *fitted*."]
+
+
+def repeats_section(values):
+    return ["## Repeated runs, nothing changed", "", *PLAIN_TEXT, "", *pair_tables(values, "repeats", [], lambda case: [])]
+
+
+def changes_section(values):
+    def cells(case):
+        return [case["label"], ", ".join(case["causes"]),
+                "-" if case["exceeds_spread"] is None else "yes" if case["exceeds_spread"] else "no",
+                "named" if case["named_correctly"] else "listed" if case["listed"] else
+                "wrong alone" if case["wrong_alone"] else "not named"]
+    return ["## Labelled changes", "", "A change exceeds the run-to-run spread if *later* exceeds *bound*.", "",
+            *pair_tables(values, "changes", ["label", "admissible causes", "exceeds spread", "answer"], cells)]
+
+
+SECTIONS = {"repeats": repeats_section, "changes": changes_section}
+
+
+def sets_section(values):
+    used = {case["set"] for case in values["cases"]}
+    rows = [[name, s["title"], s["source"], s["licence"], s["about"].replace("\n", " ")]
+            for name, s in values["sets"].items() if name in used]
+    return ["## Data sets", "", *table(["set", "title", "source", "licence", "content"], rows)]
+
+
+def failures_section(values):
+    rows = [[case["judge"], case["set"], case["case"], case["error"]] for case in values["cases"] if "error" in case]
+    return ["## Failed cases", "", *table(["judge", "set", "case", "reason"], rows)] if rows else []
+
+
+def written_by(values):
+    machine = values["machine"]
+    loads = [case["load_1min"] for case in values["cases"] if case["load_1min"] is not None]
+    load = f"{number(min(loads))} to {number(max(loads))}" if loads else "-"
+    return [f"Written by `bench/foreign.py --page` with {values['softgrip']['version']}, "
+            f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}. "
+            "Times are of all calls of a case; cases that share an identification both count it."]
+
+
+def write(path, values, reference=None):
+    sections = [written_by(values), required_table(values, reference)]
+    judges = {case["judge"] for case in values["cases"]}
+    sections += [section(values) for judge, section in SECTIONS.items() if judge in judges]
+    sections += [failures_section(values), sets_section(values)]
+    text = "\n\n".join("\n".join(lines) for lines in sections if lines)
+    path = pathlib.Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"# Data of other laboratories\n\n{text}\n")
