@@ -4,8 +4,9 @@
     bench/foreign.py --out DIR [--data DIR ...] [--only JUDGE ...] [--cases PATTERN ...] [--softgrip PROGRAM]
                      [--threads 1] [--at-most-s 3600] [--reference FILE] [--page [PAGE]]
 
-Judges: repeats (nothing changed between the runs), changes (labelled by the laboratory). Each folder below --data
-is a data set; bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the folder, describes it (docs/how-to/measure.md).
+Judges: repeats (nothing changed between the runs), changes (labelled by the laboratory), stiction (loops with labelled
+valves). Each folder below --data is a data set; bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the folder, describes it
+(docs/how-to/measure.md).
 DIR/results.json gets the cases and their summary. Calls are kept in DIR: a repeated run only does what has changed. A case
 that fails costs only itself. Exit codes: 0 all cases were judged, 1 some failed, 2 usage, 4 no such data or program.
 """
@@ -23,6 +24,7 @@ sys.path.insert(0, str(HERE))
 
 import foreign_page  # noqa: E402
 import judge_changes  # noqa: E402
+import judge_stiction  # noqa: E402
 import set_table  # noqa: E402
 from outcomes import UNREADABLE, Failed, described, read_json, write_whole  # noqa: E402
 from runner import Runner  # noqa: E402
@@ -45,6 +47,8 @@ JUDGES = {
     "changes": Judge(lambda data_set: data_set.changes,
                      lambda runner, data_set, pair: judge_changes.judge_pair(runner, data_set, pair, "changes"),
                      judge_changes.said, judge_changes.summary_of_changes),
+    "stiction": Judge(lambda data_set: data_set.loops, judge_stiction.judge_loop, judge_stiction.said,
+                      judge_stiction.summary),
 }
 
 

@@ -46,6 +46,15 @@ def requirements(values):
                  ("labelled changes: only a wrong cause named", "at most 10 %", of(part["wrong_alone"], part["cases"])),
                  ("labelled changes within the spread: reported as unchanged", "all",
                   of(part["within_reported_unchanged"], part["within_spread"]))]
+    if "stiction" in summary:
+        sticking, others = summary["stiction"]["sticking"], summary["stiction"]["others"]
+        rows += [("loops with a sticking valve: `valve_deadband` named", "9 of 13",
+                  of(sticking["stiction_named"], sticking["cases"])),
+                 ("other loops: `valve_deadband` named", "at most 1 of 16", of(others["stiction_named"], others["cases"])),
+                 ("all loops: `sensor_drift` named alone", "none",
+                  of(sticking["drift_alone"] + others["drift_alone"], sticking["cases"] + others["cases"])),
+                 ("loops with a sticking valve, Horch's phase test", "-", of(sticking["horch"], sticking["cases"])),
+                 ("other loops, Horch's phase test", "-", of(others["horch"], others["cases"]))]
     return rows
 
 
@@ -97,7 +106,20 @@ def changes_section(values):
             *pair_tables(values, "changes", ["label", "admissible causes", "exceeds spread", "answer"], cells)]
 
 
-SECTIONS = {"repeats": repeats_section, "changes": changes_section}
+STICTION_TEXT = [
+    "*phase ratio* is the statistic of Horch's test (A. Horch, Control Engineering Practice 7, 1999, 1221-1231), which",
+    "`bench/foreign/horch.py` computes without softgrip: above 2/3 the valve sticks, below 1/3 it is free."]
+
+
+def stiction_section(values):
+    cases = [case for case in values["cases"] if case["judge"] == "stiction" and "error" not in case]
+    head = ["loop", "labelled", "verdict", "named", "phase ratio", "Horch", "time [s]"]
+    rows = [[case["case"], "sticks" if case["sticks"] else "free", case["verdict"], names_of(case),
+             number(case["phase_ratio"]), case["horch"], number(case["wall_s"])] for case in cases]
+    return ["## Stiction", "", *STICTION_TEXT, "", *table(head, rows)]
+
+
+SECTIONS = {"repeats": repeats_section, "changes": changes_section, "stiction": stiction_section}
 
 
 def sets_section(values):

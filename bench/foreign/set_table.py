@@ -40,6 +40,10 @@ class Loop:
     sticks: bool
     problems: list = dataclasses.field(default_factory=list)
 
+    @property
+    def name(self):
+        return self.log
+
 
 @dataclasses.dataclass
 class Fit:
@@ -48,6 +52,10 @@ class Fit:
     test: str = ""
     order: int = 0  # of the linear model; 0: the default
     problems: list = dataclasses.field(default_factory=list)
+
+    @property
+    def name(self):
+        return f"{self.log} -> {self.test}" if self.test else self.log
 
 
 @dataclasses.dataclass

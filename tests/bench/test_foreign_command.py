@@ -105,6 +105,13 @@ class Command(MeasuredCase):
             self.assertIn(text, page)
         self.assertIn("[3/3] changes data: a + b -> c ... changed: sensor_drift (listed)", printed)
 
+    def test_loops_are_diagnosed_and_judged_by_their_phase(self):
+        code, printed = self.run_it("--only", "stiction", table=TABLE + "stiction: [{logs: a, sticks: true}]\n")
+        self.assertEqual(code, 0, printed)
+        self.assertEqual(self.calls(), ["identify a", "diagnose a"])
+        self.assertEqual(self.results()["summary"]["stiction"]["sticking"]["stiction_named"], 0)
+        self.assertIn("| a | sticks | cause_found | sensor_drift or backlash (1.25 mm) |", self.page.read_text())
+
     def test_the_reference_is_shown_beside(self):
         self.run_it("--only", "repeats")
         (self.folder / "reference.json").write_text((self.out / "results.json").read_text())

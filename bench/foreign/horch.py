@@ -1,0 +1,49 @@
+"""Horch's phase test for stiction in a control loop, written from its publication and independent of softgrip.
+
+A. Horch, "A simple method for detection of stiction in control valves", Control Engineering Practice 7 (1999) 1221-1231:
+if a loop oscillates because its valve sticks, the cross-correlation of controller output and reading is odd (a phase
+shift of 90 degrees). If a disturbance or a tight controller causes the oscillation, it is even (180 degrees). The zero
+crossings to the left and to the right of lag 0 measure the symmetry: for a sinusoid, the ratio
+|left - right| / (left + right) is the distance of the phase shift from 180 degrees, divided by 90 degrees.
+The ratio decides above 2/3 (60 degrees, sticks) and below 1/3 (30 degrees, free). The test holds for self-regulating
+processes.
+"""
+import numpy as np
+
+STICKS_ABOVE, FREE_BELOW = 2 / 3, 1 / 3
+
+
+def cross_correlation(u, y):
+    """The correlation of 2 equally long series without their means, at lags -(n-1) to n-1."""
+    u, y = (np.asarray(values, float) - np.mean(values) for values in (u, y))
+    scale = np.sqrt(np.sum(u * u) * np.sum(y * y))
+    if scale == 0:
+        raise ValueError("a series is constant")
+    return np.correlate(y, u, "full") / scale
+
+
+def first_crossing(values):
+    """Place (in samples, between two of them) of the first change of sign; None if there is none."""
+    changes = np.flatnonzero(values[:-1] * values[1:] <= 0)
+    if not len(changes):
+        return None
+    k = changes[0]
+    step = values[k] - values[k + 1]
+    return k + (values[k] / step if step else 0.0)
+
+
+def phase_ratio(u, y):
+    """1 for an odd correlation, 0 for an even one; None if it does not cross zero on both sides of lag 0."""
+    correlation, middle = cross_correlation(u, y), len(u) - 1
+    right, left = first_crossing(correlation[middle:]), first_crossing(correlation[middle::-1])
+    if right is None or left is None or right + left == 0:
+        return None
+    return float(abs(left - right) / (left + right))
+
+
+def verdict(u, y):
+    """(`sticks`, `free` or `undecided`, phase ratio)"""
+    ratio = phase_ratio(u, y)
+    if ratio is None or FREE_BELOW <= ratio <= STICKS_ABOVE:
+        return "undecided", ratio
+    return ("sticks" if ratio > STICKS_ABOVE else "free"), ratio

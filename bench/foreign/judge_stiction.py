@@ -1,0 +1,57 @@
+"""Judge 3: control loops whose valves engineers labelled as sticking or not.
+
+Each loop is identified and diagnosed as a user does it: `softgrip identify`, then `softgrip diagnose` with that model.
+Horch's phase test (horch.py) judges the same signals.
+"""
+import csv
+
+import horch
+from outcomes import Failed
+from runner import names_in, result_of, slug
+
+STICTION, DRIFT = {"valve_deadband"}, "sensor_drift"
+
+
+def signals(path):
+    """(command, reading) of the samples that have both."""
+    with path.open(newline="") as file:
+        rows = [(row["pressure_command_kpa"], row["displacement_mm"]) for row in csv.DictReader(file)]
+    known = [(float(u), float(y)) for u, y in rows if u and y]
+    return [u for u, _ in known], [y for _, y in known]
+
+
+def judged_names(names):
+    """The worth of an answer: the keys of a case."""
+    alternatives = {rival for rivals in names["alternatives"] for rival in rivals}
+    named, drift = bool(STICTION & set(names["named"])), DRIFT in names["named"]
+    return {"stiction_named": named, "stiction_listed": named or bool(STICTION & (alternatives | set(names["partial"]))),
+            "drift_named": drift, "drift_alone": names["named"] == [DRIFT] and names["alternatives"] == [[]]}
+
+
+def judge_loop(runner, data_set, loop):
+    if loop.problems:
+        raise Failed("\n".join(loop.problems))
+    log = runner.log(data_set, loop.log)
+    by_phase, ratio = horch.verdict(*signals(log.path))
+    case = {"sticks": loop.sticks, "horch": by_phase, "phase_ratio": ratio}
+    folder, outcome = runner.identify(data_set, [log])
+    result_of(outcome)
+    diagnosis = result_of(runner.diagnose(runner.out / data_set.name / "stiction" / slug(loop.log),
+                                          folder / "model.yaml", [log]))
+    names = names_in(diagnosis)
+    return {**case, **names, **judged_names(names), "diagnosis_s": diagnosis["wall_s"]}
+
+
+def said(case):
+    return f"{case['verdict']}: {', '.join(case['named']) or 'nothing named'}; Horch: {case['horch']}"
+
+
+def summary(cases):
+    found = {}
+    for label, sticks in (("sticking", True), ("others", False)):
+        good = [case for case in cases if "error" not in case and case["sticks"] is sticks]
+        found[label] = {"cases": len(good), **{key: sum(case[key] for case in good) for key in (
+            "stiction_named", "stiction_listed", "drift_named", "drift_alone")},
+            "horch": sum(case["horch"] == "sticks" for case in good)}
+    found["failed"] = sum("error" in case for case in cases)
+    return found
