@@ -1,30 +1,96 @@
 #include "base/files.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
 
-#include <unistd.h>
+#include "base/errno_text.h"
 
 namespace softgrip {
 
-tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return tl::unexpected(path + " is a folder");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return tl::unexpected("cannot open " + path + ": " + std::strerror(errno));
+namespace {
+
+using Failure = tl::unexpected<std::string>;
+
+Failure reason(int error) {
+  return Failure(text_of_errno(error));
+}
+
+Failure not_regular(mode_t mode) {
+  if (S_ISDIR(mode)) return reason(EISDIR);
+  const char* const kind = S_ISFIFO(mode)   ? "a pipe"
+                           : S_ISSOCK(mode) ? "a socket"
+                           : S_ISLNK(mode)  ? "a symbolic link"
+                                            : "a device";
+  return Failure(std::string("it is ") + kind + ", not a regular file");
+}
+
+/// `folder` may be AT_FDCWD.
+tl::expected<RegularFile, std::string> open_at(int folder, const std::string& name, bool through_links) {
+  struct ::stat about {};
+  // Look before opening: the opening alone starts some devices, such as a watchdog timer.
+  if (::fstatat(folder, name.c_str(), &about, through_links ? 0 : AT_SYMLINK_NOFOLLOW) != 0)
+    return reason(errno);
+  if (!S_ISREG(about.st_mode)) return not_regular(about.st_mode);
+  const int links = through_links ? 0 : O_NOFOLLOW;
+  RegularFile file{
+      Descriptor(::openat(folder, name.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | links)), 0};
+  if (!file.descriptor || ::fstat(file.descriptor.get(), &about) != 0) return reason(errno);
+  // Another process may have replaced it in between.
+  if (!S_ISREG(about.st_mode)) return not_regular(about.st_mode);
+  file.size = static_cast<std::size_t>(about.st_size);
+  return file;
+}
+
+/// The number of bytes, 0 at the end; -1: errno says why.
+ssize_t read_some(int descriptor, char* bytes, std::size_t size) {
+  ssize_t count = 0;
+  do {
+    count = ::read(descriptor, bytes, size);
+  } while (count < 0 && errno == EINTR);
+  return count;
+}
+
+}  // namespace
+
+tl::expected<RegularFile, std::string> open_regular(const std::string& path) {
+  return open_at(AT_FDCWD, path, true);
+}
+
+tl::expected<RegularFile, std::string> open_regular_in(const Descriptor& folder, const std::string& name) {
+  return open_at(folder.get(), name, false);
+}
+
+tl::expected<std::string, std::string> read_start(const RegularFile& file, std::size_t most) {
+  // The size is only a hint: a file can grow meanwhile, and those of /proc have size 0.
   std::string contents;
+  contents.reserve(std::min(file.size, most));
   std::string chunk(std::size_t{1} << 16, '\0');
-  while (file) {
-    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
-    contents.append(chunk, 0, static_cast<std::size_t>(file.gcount()));
-    if (contents.size() > bound) {
-      return tl::unexpected(path + " is larger than " + std::to_string(bound) + " bytes");
-    }
+  while (contents.size() < most) {
+    const std::size_t wanted = std::min(chunk.size(), most - contents.size());
+    const ssize_t count = read_some(file.descriptor.get(), chunk.data(), wanted);
+    if (count < 0) return reason(errno);
+    if (count == 0) break;
+    contents.append(chunk, 0, static_cast<std::size_t>(count));
   }
-  if (file.bad()) return tl::unexpected("cannot read " + path + ": " + std::strerror(errno));
+  return contents;
+}
+
+tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound) {
+  const auto file = open_regular(path);
+  if (!file) return Failure("cannot open " + path + ": " + file.error());
+  const Failure too_large(path + " is larger than " + std::to_string(bound) + " bytes");
+  if (file->size > bound) return too_large;
+  auto contents = read_start(*file, bound + 1);
+  if (!contents) return Failure("cannot read " + path + ": " + contents.error());
+  if (contents->size() > bound) return too_large;
   return contents;
 }
 

@@ -3,14 +3,11 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <map>
-#include <memory>
 #include <sstream>
 #include <utility>
 
+#include "base/files.h"
 #include "document/node.h"
 #include "document/syntax.h"
 #include "document/text_check.h"
@@ -281,17 +278,6 @@ void parse_into(Document& document, Problems& problems, const Bounds& bounds) {
   builder.fold();
 }
 
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-Problem unreadable(const std::string& path, int error) {
-  Problem problem;
-  problem.file = path;
-  problem.message = std::string("the file cannot be read: ") + std::strerror(error);
-  return problem;
-}
-
 }  // namespace
 
 Problem Document::problem(Location at, std::string message, std::string hint) const {
@@ -311,19 +297,14 @@ Document parse_file(const std::string& path, Problems& problems, const Bounds& b
   Document document;
   document.file = path;
   document.complete = false;
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rbe"));
-  if (!file) {
-    problems.add(unreadable(path, errno));
+  const auto file = open_regular(path);
+  // One byte more than allowed: the check of the text refuses it then, without reading all of it.
+  auto text = file ? read_start(*file, bounds.bytes + 1) : tl::unexpected(file.error());
+  if (!text) {
+    problems.add({path, {}, {}, "the file cannot be read: " + text.error(), {}});
     return document;
   }
-  // One byte more than allowed tells a file that is too large without reading all of it.
-  std::string text(bounds.bytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get()) != 0) {
-    problems.add(unreadable(path, errno));
-    return document;
-  }
-  return parse(path, std::move(text), problems, bounds);
+  return parse(path, std::move(*text), problems, bounds);
 }
 
 }  // namespace softgrip::document

@@ -69,10 +69,6 @@ SequenceLoader::Result SequenceLoader::load_named(const std::string& name, Argum
   if (!std::filesystem::exists(path, ignored)) {
     return refused(path, fmt::format("there is no sequence '{}'", name), hint_of(name, directory_, names()));
   }
-  // A pipe would be waited for.
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    return refused(path, "this is no regular file", "a YAML file");
-  }
   return load_file(path, arguments, stop);
 }
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import errno
 import json
 import os
 import pathlib
+import stat
 from collections.abc import Mapping
 from typing import Any, Union
 
@@ -15,6 +17,25 @@ import numpy.typing as npt
 
 Path = Union[str, os.PathLike[str]]
 Array = npt.NDArray[Any]
+
+
+LARGEST_CSV = 512 << 20  # bytes, as the softgrip commands have it
+LARGEST_JSON = 64 << 20
+
+
+def _check(about: os.stat_result, path: Path, largest: int) -> None:
+    if not stat.S_ISREG(about.st_mode):
+        raise OSError(errno.EINVAL, "not a regular file", os.fspath(path))
+    if about.st_size > largest:
+        raise OSError(errno.EFBIG, f"larger than {largest} bytes", os.fspath(path))
+
+
+def _text(path: Path, largest: int) -> str:
+    """The text of a regular file. A device, a larger file, and a pipe, which would be waited for, are an OSError."""
+    _check(os.stat(path), path, largest)  # first: the opening alone starts some devices
+    with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC), "rb") as file:
+        _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced it
+        return file.read(largest).decode()
 
 
 def _column(cells: list[str]) -> Array:
@@ -28,8 +49,7 @@ def _column(cells: list[str]) -> Array:
 def read_columns(path: Path) -> dict[str, Array]:
     """A CSV with a header (run.csv, a log, a series.csv): an array per column. A last line that is not whole, as a run
     that was killed leaves it, is left out; any other that does not fit is a ValueError with its number."""
-    with open(path, newline="") as file:
-        text = file.read()
+    text = _text(path, LARGEST_CSV)
     whole = text[:text.rfind("\n") + 1]
     rows = list(csv.reader(whole.splitlines()))
     if not rows:
@@ -44,8 +64,7 @@ def read_columns(path: Path) -> dict[str, Array]:
 
 def read_report(path: Path) -> Mapping[str, Any]:
     """identify.json, diagnosis.json or run.json; lists of numbers are arrays."""
-    with open(path) as file:
-        return _with_arrays(json.load(file))  # type: ignore[no-any-return]
+    return _with_arrays(json.loads(_text(path, LARGEST_JSON)))  # type: ignore[no-any-return]
 
 
 def _with_arrays(value: Any) -> Any:
@@ -69,8 +88,7 @@ class Recording:
     def read(cls, folder: Path) -> Recording:
         folder = pathlib.Path(folder)
         columns = read_columns(folder / "run.csv")
-        with open(folder / "run.json") as file:
-            about = json.load(file)
+        about = json.loads(_text(folder / "run.json", LARGEST_JSON))
         if "channel" not in columns:
             return cls(about, {str(about["channels"][0]): columns})
         of = columns.pop("channel")

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "base/scratch_folder.h"
 #include "tests/document/problems_of.h"
 
 namespace softgrip::document::parse_test {
@@ -245,10 +247,25 @@ TEST(ParseFile, SaysWhyAFileCannotBeRead) {
 }
 
 TEST(ParseFile, StopsReadingAtTheBound) {
+  const ScratchFolder scratch;
+  const std::string path = scratch.path() + "/large.yaml";
+  std::ofstream(path) << "a: 1\n";
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);  // sparse: more than any memory holds
   Problems problems;
-  static_cast<void>(parse_file("/dev/zero", problems));
+  static_cast<void>(parse_file(path, problems));
   EXPECT_EQ(lines_of(problems),
             (Lines{"1:1: the file is larger than 262144 bytes, the most that a configuration may have"}));
+}
+
+TEST(ParseFile, RefusesADeviceAndAPipeWithoutWaiting) {
+  const ScratchFolder scratch;
+  const std::string pipe = scratch.path() + "/rig.yaml";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  Problems problems;
+  static_cast<void>(parse_file("/dev/zero", problems));
+  static_cast<void>(parse_file(pipe, problems));
+  EXPECT_EQ(lines_of(problems), (Lines{"1:1: the file cannot be read: it is a device, not a regular file",
+                                       "1:1: the file cannot be read: it is a pipe, not a regular file"}));
 }
 
 TEST(ParseFile, ReadsWhatWasWritten) {

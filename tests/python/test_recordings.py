@@ -3,10 +3,12 @@
 import contextlib
 import io
 import json
+import os
 import pathlib
 import runpy
 import sys
 import tempfile
+import threading
 import unittest
 
 import numpy as np
@@ -71,6 +73,30 @@ class Recordings(unittest.TestCase):
         np.testing.assert_array_equal(read["a"], [1, 2.5])
         np.testing.assert_array_equal(read["b"][0], [1])
         self.assertEqual((read["b"][1], read["c"], read["e"]), (["x"], {"d": []}, [True]))
+
+    def test_a_pipe_is_refused_and_not_waited_for(self):
+        self.write(RUN)
+        for name, read in (("run.csv", read_columns), ("run.json", read_report)):
+            (self.folder / name).unlink()
+            os.mkfifo(self.folder / name)
+            for call in (lambda: read(self.folder / name), lambda: Recording.read(self.folder)):
+                # A reader that waits would wait for ever, so a writer comes after 5 s.
+                writer = threading.Timer(5, lambda: os.close(os.open(self.folder / name, os.O_RDWR)))
+                writer.daemon = True
+                writer.start()
+                with self.assertRaisesRegex(OSError, f"not a regular file.*{name}"):
+                    call()
+                writer.cancel()
+            (self.folder / name).unlink()
+            self.write(RUN)
+
+    def test_a_file_that_never_ends_is_refused(self):
+        with self.assertRaisesRegex(OSError, "not a regular file"):
+            read_columns("/dev/zero")
+        with open(self.folder / "run.csv", "w") as file:
+            file.truncate(1 << 40)
+        with self.assertRaisesRegex(OSError, "larger than"):
+            read_columns(self.folder / "run.csv")
 
     def test_the_example_reads_it(self):
         self.write(RUN)

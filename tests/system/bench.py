@@ -298,8 +298,8 @@ class BenchTest(unittest.TestCase):
         self.addCleanup(process.control.close)
         return process
 
-    def daemon(self, rig):
-        process = Daemon(self.folder, rig)
+    def daemon(self, rig, environment=None):
+        process = Daemon(self.folder, rig, environment=environment)
         self.processes.append(process)
         self.addCleanup(process.lines.close)
         return process

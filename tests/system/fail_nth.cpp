@@ -6,6 +6,9 @@
 // fopen). FAIL_FROM=1 fails every call from the Nth on, as a full disk does. When a call was failed,
 // FAIL_TOLD is created; as long as that file appears, there is an Nth call, and a test goes on with N+1 until
 // it does not, as SQLite's do.
+//
+// FAIL_HANG=NAME never returns from opening a file whose path ends in NAME, as a mount without its server
+// does.
 
 #undef _FORTIFY_SOURCE  // its wrappers of recv and others would be second definitions
 
@@ -36,6 +39,7 @@ struct Order {
   const char* told = std::getenv("FAIL_TOLD");
   long nth = std::getenv("FAIL_NTH") != nullptr ? std::atol(std::getenv("FAIL_NTH")) : 0;
   bool from = std::getenv("FAIL_FROM") != nullptr;
+  const char* hang = std::getenv("FAIL_HANG");
 };
 
 const Order& order() noexcept {
@@ -80,6 +84,15 @@ bool fails(const char* call, int error) noexcept {
   return true;
 }
 
+/// Does not return if the file of this path is to hang.
+void hang_at(const char* path) noexcept {
+  if (order().hang == nullptr) return;
+  const std::size_t end = std::strlen(order().hang);
+  const std::size_t size = std::strlen(path);
+  if (size < end || std::strcmp(path + size - end, order().hang) != 0) return;
+  while (true) ::pause();
+}
+
 }  // namespace
 
 // Allocations of C++ code, of all threads, from main() on: before, nobody could say anything, nor has
@@ -120,6 +133,7 @@ int open(const char* path, int flags, ...) {
   va_start(more, flags);
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
+  hang_at(path);
   if (fails("open", EMFILE)) return -1;
   static const auto next = real<int (*)(const char*, int, ...)>("open");
   return next(path, flags, mode);
@@ -130,6 +144,7 @@ int open64(const char* path, int flags, ...) {
   va_start(more, flags);
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
+  hang_at(path);
   if (fails("open", EMFILE)) return -1;
   static const auto next = real<int (*)(const char*, int, ...)>("open64");
   return next(path, flags, mode);
@@ -140,18 +155,21 @@ int openat(int folder, const char* path, int flags, ...) {
   va_start(more, flags);
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
+  hang_at(path);
   if (fails("open", EMFILE)) return -1;
   static const auto next = real<int (*)(int, const char*, int, ...)>("openat");
   return next(folder, path, flags, mode);
 }
 
 FILE* fopen(const char* path, const char* mode) {
+  hang_at(path);
   if (fails("open", EMFILE)) return nullptr;
   static const auto next = real<FILE* (*)(const char*, const char*)>("fopen");
   return next(path, mode);
 }
 
 FILE* fopen64(const char* path, const char* mode) {
+  hang_at(path);
   if (fails("open", EMFILE)) return nullptr;
   static const auto next = real<FILE* (*)(const char*, const char*)>("fopen64");
   return next(path, mode);

@@ -4,8 +4,10 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
+#include <filesystem>
 
+#include "base/errno_text.h"
+#include "base/files.h"
 #include "document/problem.h"
 
 namespace softgrip::tools {
@@ -23,8 +25,16 @@ ExitCode refuse(const document::Problems& problems) {
 }
 
 std::optional<ExitCode> unreadable(const std::string& path) {
-  if (::access(path.c_str(), R_OK) == 0) return std::nullopt;
-  return fail(ExitCode::io, "cannot read " + path + ": " + std::strerror(errno));
+  const auto cannot_read = [&](const std::string& reason) {
+    return fail(ExitCode::io, "cannot read " + path + ": " + reason);
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    if (::access(path.c_str(), R_OK) == 0) return std::nullopt;
+    return cannot_read(text_of_errno(errno));
+  }
+  const auto file = open_regular(path);
+  return file ? std::nullopt : std::optional(cannot_read(file.error()));
 }
 
 }  // namespace softgrip::tools

@@ -31,7 +31,8 @@ ExitCode fail(ExitCode code, std::string_view message);
 /// Returns ExitCode::input_refused.
 ExitCode refuse(const document::Problems& problems);
 
-/// ExitCode::io, and a sentence on the standard error, if a file that is to be read cannot be opened.
+/// ExitCode::io, and a sentence on the standard error, if `path` is neither a folder nor a regular file that
+/// can be opened for reading.
 [[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);
 
 }  // namespace softgrip::tools

@@ -1,7 +1,6 @@
 #include "tools/web/recordings.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/descriptor.h"
+#include "base/files.h"
 
 namespace softgrip::web {
 
@@ -45,11 +45,6 @@ std::vector<std::string> names_in(const fs::path& folder) {
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-Descriptor open_in(const Descriptor& folder, std::string_view name, int flags) {
-  return Descriptor{
-      ::openat(folder.get(), std::string(name).c_str(), flags | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK)};
 }
 
 }  // namespace
@@ -94,23 +89,14 @@ std::optional<std::string> Recordings::read(std::string_view recording, std::str
     return std::nullopt;
   const Descriptor top{::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (!top) return std::nullopt;
-  const Descriptor folder = open_in(top, recording, O_RDONLY | O_DIRECTORY);
+  const Descriptor folder{
+      ::openat(top.get(), std::string(recording).c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)};
   if (!folder) return std::nullopt;
-  const Descriptor opened = open_in(folder, file, O_RDONLY);
-  struct stat about {};
-  if (!opened || ::fstat(opened.get(), &about) != 0 || !S_ISREG(about.st_mode) || about.st_size < 0 ||
-      static_cast<std::size_t>(about.st_size) > largest_file) {
-    return std::nullopt;
-  }
-  std::string bytes(static_cast<std::size_t>(about.st_size), '\0');
-  std::size_t got = 0;
-  while (got < bytes.size()) {
-    const ssize_t count = ::read(opened.get(), bytes.data() + got, bytes.size() - got);
-    if (count <= 0) break;
-    got += static_cast<std::size_t>(count);
-  }
-  bytes.resize(got);
-  return bytes;
+  const auto opened = open_regular_in(folder, std::string(file));
+  if (!opened || opened->size > largest_file) return std::nullopt;
+  auto bytes = read_start(*opened, opened->size);
+  if (!bytes) return std::nullopt;
+  return std::move(*bytes);
 }
 
 }  // namespace softgrip::web

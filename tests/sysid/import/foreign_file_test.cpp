@@ -1,10 +1,12 @@
 #include "sysid/import/foreign_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
 #include "base/files.h"
+#include "base/scratch_folder.h"
 #include "sysid/import/array_table.h"
 #include "sysid/import/hdf5_table.h"
 #include "sysid/import/mat_table.h"
@@ -64,6 +66,17 @@ TEST(ForeignFile, BrokenBinariesAreRefusedAndMissingOnesUnreadable) {
   document::Problems problems;
   bool unreadable = false;
   EXPECT_FALSE(read_foreign_file((folder / "file").string(), {}, problems, unreadable));
+  EXPECT_TRUE(unreadable);
+}
+
+/// On a reader that waits for a writer this test does not end.
+TEST(ForeignFile, APipeIsUnreadableAndNotWaitedFor) {
+  const ScratchFolder scratch;
+  const std::string pipe = scratch.path() + "/log.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  document::Problems problems;
+  bool unreadable = false;
+  EXPECT_FALSE(read_foreign_file(pipe, {}, problems, unreadable));
   EXPECT_TRUE(unreadable);
 }
 

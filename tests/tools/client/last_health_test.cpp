@@ -1,6 +1,7 @@
 #include "tools/client/last_health.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -81,6 +82,13 @@ TEST_F(LastHealth, IsNothingWhereThereIsNoResult) {
        {"", "{", "[]", "{}", R"({"made_unix_s": "x", "fingers": []})", R"({"made_unix_s": 1, "fingers": 2})"})
     EXPECT_TRUE(read(text).is_null()) << text;
   EXPECT_TRUE(health_lines(nullptr).empty());
+}
+
+/// On a reader that waits for a writer this test does not end.
+TEST_F(LastHealth, IsNothingWhereThePathIsAPipe) {
+  std::filesystem::create_directories(recordings / "health");
+  ASSERT_EQ(::mkfifo((recordings / "health/health.json").c_str(), 0600), 0);
+  EXPECT_TRUE(last_health(recordings.string()).is_null());
 }
 
 }  // namespace

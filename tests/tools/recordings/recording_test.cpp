@@ -1,6 +1,7 @@
 #include "tools/recordings/recording.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -136,6 +137,18 @@ TEST_F(RecordingTest, WhatIsNoRecordingIsRefused) {
   EXPECT_EQ(read().error(), ExitCode::io) << "no run.csv";
   write("run.csv", "hello\n");
   EXPECT_EQ(read().error(), ExitCode::input_refused);
+}
+
+/// On a reader that waits for a writer this test does not end.
+TEST_F(RecordingTest, APipeInsteadOfAFileIsNotWaitedFor) {
+  write("run.csv", csv);
+  ASSERT_EQ(::mkfifo((folder / "run.json").c_str(), 0600), 0);
+  EXPECT_TRUE(read()) << "a recording without run.json is still a recording";
+  std::filesystem::remove(folder / "run.csv");
+  ASSERT_EQ(::mkfifo((folder / "run.csv").c_str(), 0600), 0);
+  const auto recording = read();
+  ASSERT_FALSE(recording);
+  EXPECT_EQ(recording.error(), ExitCode::io);
 }
 
 }  // namespace

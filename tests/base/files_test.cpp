@@ -1,0 +1,93 @@
+#include "base/files.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "base/scratch_folder.h"
+
+namespace softgrip::files_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FilesTest : public testing::Test {
+ protected:
+  [[nodiscard]] std::string at(const std::string& name) const { return scratch_.path() + "/" + name; }
+  /// The path of a new file with this text.
+  [[nodiscard]] std::string file(const std::string& name, const std::string& text) const {
+    std::ofstream(at(name)) << text;
+    return at(name);
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(FilesTest, AFileUpToTheBoundIsRead) {
+  EXPECT_EQ(*read_file(file("file", "12345"), 5), "12345");
+  const auto larger = read_file(at("file"), 4);
+  ASSERT_FALSE(larger);
+  EXPECT_EQ(larger.error(), at("file") + " is larger than 4 bytes");
+  EXPECT_EQ(*read_file(file("empty", ""), 0), "");
+  EXPECT_FALSE(read_file(at("absent"), 5));
+}
+
+TEST_F(FilesTest, AFileThatGivesNoSizeIsReadToItsEndAndWithinTheBound) {
+  EXPECT_GT(read_file("/proc/self/status", 100'000)->size(), 100U);
+  EXPECT_FALSE(read_file("/proc/self/status", 100));
+}
+
+/// On a reader that waits for a writer this test does not end.
+TEST_F(FilesTest, APipeIsRefusedWithoutWaiting) {
+  ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
+  const auto text = read_file(at("pipe"), 100);
+  ASSERT_FALSE(text);
+  EXPECT_EQ(text.error(), "cannot open " + at("pipe") + ": it is a pipe, not a regular file");
+  fs::create_symlink("pipe", at("link"));
+  EXPECT_FALSE(open_regular(at("link")));
+}
+
+TEST_F(FilesTest, DevicesSocketsAndFoldersAreRefused) {
+  const Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
+  ::sockaddr_un address{AF_UNIX, {}};
+  at("socket").copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(socket.get(), reinterpret_cast<const ::sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(open_regular(at("socket")).error(), "it is a socket, not a regular file");
+  EXPECT_EQ(open_regular("/dev/zero").error(), "it is a device, not a regular file");
+  EXPECT_EQ(open_regular(scratch_.path()).error(), "Is a directory");
+}
+
+/// What a process with a lease on the file makes of every open() that waits.
+TEST_F(FilesTest, AFileThatAnotherProcessHasLeasedIsRefusedWithoutWaiting) {
+  const std::string path = file("leased", "text");
+  auto* const before = std::signal(SIGIO, SIG_IGN);
+  const Descriptor holder(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  if (::fcntl(holder.get(), F_SETLEASE, F_WRLCK) != 0) GTEST_SKIP() << "this file system gives no leases";
+  EXPECT_FALSE(open_regular(path));
+  ::fcntl(holder.get(), F_SETLEASE, F_UNLCK);
+  std::signal(SIGIO, before);
+  EXPECT_TRUE(open_regular(path));
+}
+
+TEST_F(FilesTest, InAFolderNoLinkIsFollowed) {
+  (void)file("file", "text");
+  fs::create_symlink("file", at("link"));
+  const Descriptor folder(::open(scratch_.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const auto opened = open_regular_in(folder, "file");
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(opened->size, 4U);
+  EXPECT_EQ(*read_start(*opened, 3), "tex");
+  EXPECT_EQ(*read_start(*opened, 3), "t") << "it goes on where it ended";
+  EXPECT_EQ(open_regular_in(folder, "link").error(), "it is a symbolic link, not a regular file");
+  EXPECT_TRUE(open_regular(at("link")));
+}
+
+}  // namespace
+}  // namespace softgrip::files_test
