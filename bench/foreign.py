@@ -5,7 +5,7 @@
                      [--threads 1] [--at-most-s 3600] [--reference FILE] [--page [PAGE]]
 
 Judges: repeats (nothing changed between the runs), changes (labelled by the laboratory), stiction (loops with labelled
-valves). Each folder below --data is a data set; bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the folder, describes it
+valves), identification (next to a linear output-error model and a Bouc-Wen fit by SciPy). Each folder below --data is a data set; bench/foreign/sets/FOLDER.yaml, or foreign.yaml in the folder, describes it
 (docs/how-to/measure.md).
 DIR/results.json gets the cases and their summary. Calls are kept in DIR: a repeated run only does what has changed. A case
 that fails costs only itself. Exit codes: 0 all cases were judged, 1 some failed, 2 usage, 4 no such data or program.
@@ -24,6 +24,7 @@ sys.path.insert(0, str(HERE))
 
 import foreign_page  # noqa: E402
 import judge_changes  # noqa: E402
+import judge_identification  # noqa: E402
 import judge_stiction  # noqa: E402
 import set_table  # noqa: E402
 from outcomes import UNREADABLE, Failed, described, read_json, write_whole  # noqa: E402
@@ -49,6 +50,8 @@ JUDGES = {
                      judge_changes.said, judge_changes.summary_of_changes),
     "stiction": Judge(lambda data_set: data_set.loops, judge_stiction.judge_loop, judge_stiction.said,
                       judge_stiction.summary),
+    "identification": Judge(lambda data_set: data_set.fits, judge_identification.judge_fit, judge_identification.said,
+                            judge_identification.summary),
 }
 
 
@@ -86,6 +89,10 @@ def case_of(runner, name, data_set, item):
     except (Failed, *UNREADABLE) as error:
         case["error"] = described(error)
     return {**case, **runner.cost()}
+
+
+def has_failed(case):
+    return "error" in case or any(row["errors"] for row in case.get("rows", []))
 
 
 def summaries(cases):
@@ -155,7 +162,7 @@ def main(words=None):
     if options.page:
         foreign_page.write(options.page, values, read_json(options.reference))
         print(f"page: {options.page}")
-    failed = [case for case in values["cases"] if "error" in case]
+    failed = [case for case in values["cases"] if has_failed(case)]
     return 1 if failed or problems else 0
 
 

@@ -2,6 +2,8 @@
 import math
 import pathlib
 
+from judge_identification import METHODS, held_out_percent, linear_is_better
+
 
 def table(head, rows):
     return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head),
@@ -55,6 +57,13 @@ def requirements(values):
                   of(sticking["drift_alone"] + others["drift_alone"], sticking["cases"] + others["cases"])),
                  ("loops with a sticking valve, Horch's phase test", "-", of(sticking["horch"], sticking["cases"])),
                  ("other loops, Horch's phase test", "-", of(others["horch"], others["cases"]))]
+    if "identification" in summary:
+        part = summary["identification"]
+        rows += [("identification, `auto`: a linear model of order 3 is better by more than 10 %", "none",
+                  of(part["linear_better"]["auto"], part["rows"])),
+                 ("identification, `plain`: the same", "-", of(part["linear_better"]["plain"], part["rows"])),
+                 ("identification: `auto` or `plain` has the smallest error", "-",
+                  of(part["first"]["auto"] + part["first"]["plain"], part["rows"]))]
     return rows
 
 
@@ -119,7 +128,36 @@ def stiction_section(values):
     return ["## Stiction", "", *STICTION_TEXT, "", *table(head, rows)]
 
 
-SECTIONS = {"repeats": repeats_section, "changes": changes_section, "stiction": stiction_section}
+IDENTIFICATION_TEXT = [
+    "Held-out RMSE in % of the span of the log. A log alone: the first half is fitted, the second half is predicted from the",
+    "start of the log. `A -> B`: A is fitted, B is predicted. *plain* is `softgrip identify`, *auto* is `softgrip identify",
+    "--structure auto`. *output error* is a linear output-error model of order 3 (`bench/foreign/output_error.py`): the",
+    "published element also has 3 states. *SciPy* is Bouc-Wen with 2 Kelvin-Voigt branches, fitted by `least_squares`",
+    "(`bench/foreign/scipy_bouc_wen.py`). For B, the last 2 estimate only the offset, from the first 5 % (at least 2 s).",
+    "With the drive *command* the measured pressure is withheld from every method; with *measured* it drives every model.",
+    "The smallest error is bold. *linear better*: the linear model is better than *auto* by more than 10 %."]
+
+
+def identification_row(case, row):
+    values = [held_out_percent(row, method) for method in METHODS]
+    known = [value for value in values if value is not None]
+    cells = ["failed" if value is None else f"**{number(value)}**" if value == min(known) else number(value)
+             for value in values]
+    structure = (row["methods"].get("auto") or {}).get("structure") or "-"
+    return [case["set"], case["case"], row["drive"], *cells, "yes" if linear_is_better(row, "auto") else "no", structure]
+
+
+def identification_section(values):
+    cases = [case for case in values["cases"] if case["judge"] == "identification" and "error" not in case]
+    head = ["set", "log", "drive", "plain [%]", "auto [%]", "output error [%]", "SciPy [%]", "linear better",
+            "structure of auto", "time [s]"]
+    rows = [[*identification_row(case, row), number(case["wall_s"]) if k == 0 else ""]
+            for case in cases for k, row in enumerate(case["rows"])]
+    return ["## Identification", "", *IDENTIFICATION_TEXT, "", *table(head, rows)]
+
+
+SECTIONS = {"repeats": repeats_section, "changes": changes_section, "stiction": stiction_section,
+            "identification": identification_section}
 
 
 def sets_section(values):
@@ -131,6 +169,8 @@ def sets_section(values):
 
 def failures_section(values):
     rows = [[case["judge"], case["set"], case["case"], case["error"]] for case in values["cases"] if "error" in case]
+    rows += [[case["judge"], case["set"], f"{case['case']}, {row['drive']}, {method}", text] for case in values["cases"]
+             for row in case.get("rows", []) for method, text in row["errors"].items()]
     return ["## Failed cases", "", *table(["judge", "set", "case", "reason"], rows)] if rows else []
 
 
@@ -140,7 +180,8 @@ def written_by(values):
     load = f"{number(min(loads))} to {number(max(loads))}" if loads else "-"
     return [f"Written by `bench/foreign.py --page` with {values['softgrip']['version']}, "
             f"{machine['processors']} processors, {machine['threads']} thread per call, 1-minute load {load}. "
-            "Times are of all calls of a case; cases that share an identification both count it."]
+            "Times are of all calls of a case; cases that share an identification both count it. "
+            "[How to run the judges](../how-to/measure.md#data-of-other-laboratories)."]
 
 
 def write(path, values, reference=None):

@@ -12,7 +12,7 @@ import yaml
 
 from units import QUANTITIES, units_of
 
-KEYS = ("name", "file", "set", "separator", "missing", "from_s", "to_s", "split", "begin", "time", "command",
+KEYS = ("name", "file", "separator", "missing", "from_s", "to_s", "split", "begin", "time", "command",
         "pressure", "displacement", "temperature", "supply")
 TABLE_KEYS = ("title", "about", "same", "logs")
 COLUMN_KEYS = ("column", "columns", "unit", "scale", "zero", "span_mm")
@@ -50,7 +50,6 @@ class LogEntry:
     file: str
     line: int
     columns: dict = dataclasses.field(default_factory=dict)
-    set: str = ""
     separator: str = ""
     missing: tuple = ()
     from_s: float = 0.0
@@ -173,7 +172,6 @@ class EntryReader:
                            + (", or `time: {rate_hz: 100}`" if key == "time" else ""))
         if "command" not in values and "pressure" not in values:
             self.wrong("neither 'command' nor 'pressure': one of them drives the finger")
-        entry.set = str(values.get("set", ""))
         entry.separator = self.separator()
         missing = values.get("missing", [])
         entry.missing = tuple(str(m).lower() for m in (missing if isinstance(missing, list) else [missing]))

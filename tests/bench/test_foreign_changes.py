@@ -3,7 +3,7 @@ import importlib.util
 import random
 import unittest
 
-from measured_case import MeasuredCase  # noqa: F401  (sets the path)
+from foreign_case import ForeignCase  # noqa: F401  (sets the path)
 
 SCIPY = importlib.util.find_spec("scipy") is not None
 if SCIPY:

@@ -6,7 +6,7 @@ import json
 import stat
 import unittest
 
-from measured_case import MeasuredCase
+from foreign_case import ForeignCase
 
 if importlib.util.find_spec("scipy"):
     import foreign
@@ -34,7 +34,9 @@ out = pathlib.Path(words[words.index("--out") + 1])
 (out / "model.yaml").write_text("model")
 if words[0] == "identify":
     held = {{"rmse_mm": {{name: 0.9 if name == "c" else 0.3 for name in of("--validate")}}}}
-    print(json.dumps({{"rmse_mm": {{name: 0.1 for name in of("--data")}}, "validation": held}}))
+    print(json.dumps({{"rmse_mm": {{name: 0.1 for name in of("--data")}}, "validation": held,
+                      "held_out": {{"rmse_mm": {{name: 0.001 for name in of("--data")}}}},
+                      "structure": {{"description": "play operators"}}}}))
 else:
     print((folder / "diagnose.json").read_text())
 """
@@ -55,7 +57,7 @@ changes:
 
 
 @unittest.skipUnless(importlib.util.find_spec("scipy"), "python3-scipy is not installed")
-class Command(MeasuredCase):
+class Command(ForeignCase):
     def setUp(self):
         super().setUp()
         self.program = self.folder / "softgrip"
@@ -111,6 +113,30 @@ class Command(MeasuredCase):
         self.assertEqual(self.calls(), ["identify a", "diagnose a"])
         self.assertEqual(self.results()["summary"]["stiction"]["sticking"]["stiction_named"], 0)
         self.assertIn("| a | sticks | cause_found | sensor_drift or backlash (1.25 mm) |", self.page.read_text())
+
+    def test_identification_is_compared_with_programs_that_know_nothing_of_softgrip(self):
+        fits = "identification: [{log: a}, {log: a, test: c}]\n"
+        code, printed = self.run_it("--only", "identification", table=TABLE + fits)
+        self.assertEqual(code, 0, printed)
+        self.assertEqual(self.calls(), ["identify a"] * 4)
+        first, second = (case["rows"][0]["methods"] for case in self.results()["cases"])
+        self.assertEqual((first["auto"]["held_out_mm"], second["plain"]["held_out_mm"]), (0.001, 0.9))
+        for methods in (first, second):
+            # The readings are 0.25 mm/kPa and a sawtooth of 0.01 mm.
+            self.assertLess(methods["output_error"]["held_out_mm"], 0.02)
+            self.assertLess(methods["scipy"]["held_out_mm"], 0.05)
+        self.assertEqual(self.results()["summary"]["identification"]["linear_better"], {"plain": 1, "auto": 1})
+        self.assertIn("| yes | play operators |", self.page.read_text())
+
+    def test_a_method_that_fails_costs_its_own_cell(self):
+        self.put_plain("d.csv", line50="4.8,1,2")
+        (self.folder / "refuse").write_text("d")
+        table = TABLE.replace("{file: c.csv}", "{file: c.csv}, {file: d.csv}") + "identification: [{log: d}]\n"
+        code, printed = self.run_it("--only", "identification", table=table)
+        self.assertEqual(code, 1, printed)
+        row = self.results()["cases"][0]["rows"][0]
+        self.assertEqual((sorted(row["errors"]), sorted(row["methods"])), (["auto", "plain"], ["output_error", "scipy"]))
+        self.assertIn("d.csv:40: too few samples", self.page.read_text())
 
     def test_the_reference_is_shown_beside(self):
         self.run_it("--only", "repeats")

@@ -1,7 +1,7 @@
 """bench/foreign/set_table.py: data sets, and the messages about mistakes in their tables."""
 import pathlib
 
-from measured_case import BENCH, MeasuredCase
+from foreign_case import BENCH, ForeignCase
 
 import set_table
 from log_table import Unusable
@@ -12,7 +12,7 @@ logs: [{file: a.csv}, {file: b.csv}, {file: c.csv}]
 """
 
 
-class Sets(MeasuredCase):
+class Sets(ForeignCase):
     def read_set(self, text):
         return set_table.read_set(self.table_path(LOGS + text), self.data)
 
@@ -77,7 +77,7 @@ class Sets(MeasuredCase):
             self.assertTrue((BENCH / "foreign/data" / found.name / "LICENSE").is_file())
 
 
-class Folders(MeasuredCase):
+class Folders(ForeignCase):
     def find(self):
         sets, problems = set_table.find_sets([self.data], self.folder / "tables", self.folder / "scratch")
         return {s.name: s for s in sets}, problems

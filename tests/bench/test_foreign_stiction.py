@@ -4,7 +4,7 @@ import math
 import random
 import unittest
 
-from measured_case import MeasuredCase  # noqa: F401  (sets the path)
+from foreign_case import ForeignCase  # noqa: F401  (sets the path)
 
 NUMPY = importlib.util.find_spec("numpy") is not None
 if NUMPY:

@@ -1,12 +1,12 @@
 """bench/foreign/log_reading.py: logs as others write them, sound and broken."""
 import math
 
-from measured_case import SAMPLES, MeasuredCase, kpa, log_text, mm
+from foreign_case import SAMPLES, ForeignCase, kpa, log_text, mm
 
 PLAIN = "time: t_s\ncommand: u_kpa\ndisplacement: y_mm\n"
 
 
-class Forms(MeasuredCase):
+class Forms(ForeignCase):
     def test_units_in_the_names_of_columns(self):
         self.put_plain()
         self.assert_log(self.read(PLAIN))
@@ -94,7 +94,7 @@ class Forms(MeasuredCase):
         self.assertEqual(len(lines), SAMPLES + 1)
 
 
-class Gaps(MeasuredCase):
+class Gaps(ForeignCase):
     def test_missing_values(self):
         self.put_plain(line7="0.5,,", line8="0.6,-999,-999.0", line9=f"0.7,{kpa(7)},#N/A")
         log = self.read(PLAIN + "missing: [-999]\n")
@@ -137,7 +137,7 @@ class Gaps(MeasuredCase):
         self.assertIn("cut off", log.notes[0])
 
 
-class Broken(MeasuredCase):
+class Broken(ForeignCase):
     def assert_says(self, keys, *words):
         said = self.spoiled(keys)
         for word in words:

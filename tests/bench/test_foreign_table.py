@@ -1,10 +1,10 @@
 """bench/foreign/log_table.py: what the table says, and what is said of its mistakes."""
-from measured_case import BENCH, MeasuredCase
+from foreign_case import BENCH, ForeignCase
 
 import log_table
 
 
-class Tables(MeasuredCase):
+class Tables(ForeignCase):
     def problems(self, text):
         return "\n".join(self.table(text).logs[0].problems).replace(f"{self.folder}/", "")
 
@@ -30,12 +30,6 @@ class Tables(MeasuredCase):
             self.put_plain(name)
         logs = self.table("logs: [{file: 'x*.csv', time: t_s, command: u_kpa, displacement: y_mm}]").logs
         self.assertEqual([log.name for log in logs], ["x1", "x2"])
-
-    def test_the_table_of_the_soft_arm(self):
-        table = log_table.read_table(BENCH / "measured/asu_softarm.yaml", self.data)
-        self.assertEqual(len(table.logs), 10)
-        self.assertEqual([log.problems for log in table.logs], [[]] * 10)
-        self.assertEqual(len([log for log in table.logs if log.set]), 5)
 
     def test_the_table_of_the_how_to(self):
         page = (BENCH.parent / "docs/how-to/measure.md").read_text()

@@ -1,4 +1,4 @@
-"""A folder with a table and logs, for the tests of bench/measured.py."""
+"""A folder with a table and logs, for the tests of bench/foreign.py."""
 import math
 import pathlib
 import sys
@@ -7,7 +7,7 @@ import textwrap
 import unittest
 
 BENCH = pathlib.Path(__file__).resolve().parents[2] / "bench"
-sys.path[:0] = [str(BENCH), str(BENCH / "measured"), str(BENCH / "foreign")]
+sys.path[:0] = [str(BENCH), str(BENCH / "foreign")]
 
 import log_reading  # noqa: E402
 import log_table  # noqa: E402
@@ -28,7 +28,7 @@ def log_text(head, row, samples=SAMPLES):
     return "\n".join([head, *(row(i) for i in range(samples))]) + "\n"
 
 
-class MeasuredCase(unittest.TestCase):
+class ForeignCase(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
