@@ -1,7 +1,7 @@
 // blind-world: writes the logs of one world, and its truth elsewhere.
 //
 //   blind-world --seed N --out DIR --truth FILE [--cause ID[,ID]] [--strength X] [--poor] [--pressure]
-//               [--campaign N] [--zero-mm Z] [--warmer-c D]
+//               [--campaign N] [--zero-mm Z] [--warmer-c D] [--runs N] [--variation X] [--closed-loop]
 //               [--command CSV ... --log FILE] [--gauge CSV --log FILE]
 //
 // DIR gets log_1.csv ... in the project's log format and nothing else. With --command the same world answers
@@ -9,6 +9,9 @@
 // With --campaign the same finger is driven by other waveforms, with other noise; Z is added to every
 // reading, D to every temperature. With --gauge somebody then holds the sensor's target at the positions of
 // that file (first column, mm), and what the sensor shows is written beside them.
+// --runs is the number of logs [3; 1 with --poor]. --variation is the strength of the run-to-run variation
+// (variation.h) [0]; --list-runs prints the runs that it draws. With --closed-loop a controller plays the
+// commands of all logs.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -22,6 +25,7 @@
 #include <stdexcept>
 
 #include "strength.h"
+#include "variation.h"
 #include "waveforms.h"
 #include "world.h"
 
@@ -31,8 +35,9 @@ struct Arguments {
   std::uint64_t seed = 1, campaign = 0;
   std::string out, truth, cause, log, gauge;
   std::vector<std::string> commands;
-  double strength = 8, zero_mm = 0, warmer_c = 0;
-  bool poor = false, pressure = false, list = false;
+  double strength = 8, zero_mm = 0, warmer_c = 0, variation = 0;
+  std::size_t runs = 3;
+  bool pressure = false, list = false, list_runs = false, closed_loop = false;
 };
 
 Arguments arguments(int argc, char** argv) {
@@ -40,11 +45,19 @@ Arguments arguments(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string key = argv[i];
     if (key == "--poor") {
-      a.poor = true;
+      a.runs = 1;
+      continue;
+    }
+    if (key == "--closed-loop") {
+      a.closed_loop = true;
       continue;
     }
     if (key == "--pressure") {
       a.pressure = true;
+      continue;
+    }
+    if (key == "--list-runs") {
+      a.list_runs = true;
       continue;
     }
     if (key == "--list") {
@@ -65,6 +78,10 @@ Arguments arguments(int argc, char** argv) {
       a.strength = std::stod(value);
     else if (key == "--campaign")
       a.campaign = std::stoull(value);
+    else if (key == "--runs")
+      a.runs = std::stoull(value);
+    else if (key == "--variation")
+      a.variation = std::stod(value);
     else if (key == "--zero-mm")
       a.zero_mm = std::stod(value);
     else if (key == "--warmer-c")
@@ -91,6 +108,14 @@ blind::Base scattered(std::uint64_t seed) {
   return base;
 }
 
+// The commands become the references of a controller, which sees the zero of the sensor.
+void close_loop(blind::LogInput& log, const blind::Sensor& sensor, double mm_per_kpa, double zero_mm,
+                std::uint64_t seed) {
+  log.offset_mm += zero_mm;
+  log.noise_mm = blind::noise(log.command_kpa.size() - log.unrecorded, sensor.noise_mm, seed);
+  for (const double u : log.command_kpa) log.reference_mm.push_back(mm_per_kpa * u);
+}
+
 void write_log(const std::string& path, const blind::LogInput& in, const blind::LogOutput& out,
                const blind::Sensor& sensor, bool with_pressure, std::uint64_t seed) {
   const auto y = blind::measured(out.displacement_mm, sensor.noise_mm, sensor.step_mm, seed);
@@ -100,7 +125,7 @@ void write_log(const std::string& path, const blind::LogInput& in, const blind::
        << ",temperature_c,supply_kpa\n";
   char row[256];
   for (std::size_t k = 0; k < y.size(); ++k) {
-    std::snprintf(row, sizeof row, "%.6f,%.6f,%.4f", static_cast<double>(k) / in.rate_hz, in.command_kpa[k],
+    std::snprintf(row, sizeof row, "%.6f,%.6f,%.4f", static_cast<double>(k) / in.rate_hz, out.command_kpa[k],
                   y[k]);
     file << row;
     if (with_pressure) {
@@ -195,17 +220,23 @@ int run(const Arguments& a) {
     for (const auto& id : blind::outside_ids()) std::cout << id << "\n";
     return 0;
   }
+  const std::uint64_t drive_seed = a.seed + 1000003 * a.campaign;
+  if (a.list_runs) {
+    variation::list_runs(std::cout, a.variation, drive_seed, a.runs);
+    return 0;
+  }
   if (a.commands.empty() && a.gauge.empty() && (a.out.empty() || a.truth.empty()))
     throw std::invalid_argument("--out and --truth are needed");
   const blind::Base base = scattered(a.seed);
   const blind::Sensor sensor;
-  const std::uint64_t drive_seed = a.seed + 1000003 * a.campaign;
-  std::vector<blind::LogInput> logs = blind::draw_campaign(drive_seed, a.poor);
+  constexpr double working_kpa = 60;
+  const double span_mm = blind::span_mm(base, working_kpa);
+  std::vector<blind::LogInput> logs = blind::draw_campaign({drive_seed, a.runs, a.variation, span_mm});
   blind::Effects effects;
   std::map<std::string, blind::Scaled> scaled;
   std::stringstream ids(a.cause);
   for (std::string id; std::getline(ids, id, ',');) {
-    const auto rich = blind::draw_campaign(drive_seed, false);
+    const auto rich = blind::draw_campaign({drive_seed});
     scaled[id] = blind::scale_to(id, a.strength * sensor.noise_mm, base, rich, a.seed);
     effects[id] = scaled[id].effect;
   }
@@ -226,14 +257,19 @@ int run(const Arguments& a) {
     return 0;
   }
   std::filesystem::create_directories(a.out);
-  for (blind::LogInput& log : logs)
-    for (double& t : log.temperature_c) t += a.warmer_c;
+  const auto noise_seed = [&](std::size_t i) { return drive_seed * 31 + i * 2; };
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    for (double& t : logs[i].temperature_c) t += a.warmer_c;
+    if (a.closed_loop) close_loop(logs[i], sensor, span_mm / working_kpa, a.zero_mm, noise_seed(i));
+  }
   auto outputs = blind::simulate(base, effects, logs, a.seed);
-  for (blind::LogOutput& output : outputs)
-    for (double& y : output.displacement_mm) y += a.zero_mm;
-  for (std::size_t i = 0; i < logs.size(); ++i)
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    if (!a.closed_loop)
+      for (double& y : outputs[i].displacement_mm) y += a.zero_mm;
+    blind::drop_unrecorded(logs[i], outputs[i]);
     write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], outputs[i], sensor, a.pressure,
-              drive_seed * 31 + i * 2);
+              noise_seed(i));
+  }
   write_truth(a.truth, a, effects, scaled, sensor);
   return 0;
 }

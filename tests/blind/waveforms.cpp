@@ -4,11 +4,14 @@
 #include <numbers>
 #include <random>
 
+#include "variation.h"
+
 namespace blind {
 namespace {
 
 constexpr double rate_hz = 100;
 constexpr double log_s = 80;
+constexpr double working_kpa = 58;
 constexpr double pi = std::numbers::pi;
 
 // Appends samples until the command says stop.
@@ -122,17 +125,40 @@ LogInput surrounded(std::vector<double> command_kpa, double rate, double campaig
   return log;
 }
 
-std::vector<LogInput> draw_campaign(std::uint64_t seed, bool poor) {
-  std::mt19937_64 random(seed * 7919 + 5);
-  std::vector<std::vector<double>> commands;
-  commands.push_back(triangles(random));
-  if (!poor) {
-    commands.push_back(staircase(random));
-    commands.push_back(sines_and_steps(random));
-  }
+namespace {
+
+// A run's log: the command at the run's rate, after the unrecorded pulse.
+LogInput varied(std::vector<double> command, const variation::Run& run, double start_s,
+                const Campaign& campaign) {
+  const double rate = run.rate_hz > 0 ? run.rate_hz : rate_hz;
+  for (double& u : command) u *= run.amplitude;
+  std::vector<double> all = variation::pulse(run, working_kpa, rate);
+  const std::size_t unrecorded = all.size();
+  command = variation::resampled(command, rate_hz, rate);
+  all.insert(all.end(), command.begin(), command.end());
+  LogInput log = surrounded(std::move(all), rate, start_s, campaign.seed);
+  log.unrecorded = unrecorded;
+  log.gain = run.gain;
+  log.offset_mm = run.offset_share * campaign.span_mm;
+  for (double& t : log.temperature_c) t += run.warmer_c;
+  for (double& s : log.supply_kpa) s *= run.supply;
+  return log;
+}
+
+}  // namespace
+
+std::vector<LogInput> draw_campaign(const Campaign& campaign) {
+  using Draw = std::vector<double> (*)(std::mt19937_64&);
+  constexpr Draw kinds[] = {triangles, staircase, sines_and_steps};
+  std::mt19937_64 random(campaign.seed * 7919 + 5);
+  const std::size_t first = variation::first_kind(campaign.variation, campaign.seed, std::size(kinds));
   std::vector<LogInput> logs;
-  for (std::size_t i = 0; i < commands.size(); ++i)
-    logs.push_back(surrounded(commands[i], rate_hz, static_cast<double>(i) * log_s, seed));
+  double start_s = 0;
+  for (std::size_t i = 0; i < campaign.runs; ++i) {
+    const variation::Run run = variation::draw_run(campaign.variation, campaign.seed, i);
+    logs.push_back(varied(kinds[(first + i) % std::size(kinds)](random), run, start_s, campaign));
+    start_s += static_cast<double>(logs.back().command_kpa.size()) / logs.back().rate_hz;
+  }
   return logs;
 }
 

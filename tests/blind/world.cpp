@@ -4,14 +4,18 @@
 #include <cmath>
 #include <deque>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <stdexcept>
+
+#include "variation.h"
 
 namespace blind {
 namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double largest_pressure_step_kpa = 0.25;
+constexpr double largest_command_kpa = 60;
 
 double number(const Effects& effects, const std::string& id, const std::string& name, double otherwise) {
   const auto effect = effects.find(id);
@@ -87,8 +91,9 @@ double relax(double x, double from, double to, double tau, double dt) {
 
 class Rig {
  public:
-  Rig(const Base& base, const Numbers& n, Memory& memory, std::uint64_t seed)
-      : base_(base), n_(n), memory_(memory), random_(seed) {}
+  Rig(const Base& base, const Numbers& n, Memory& memory, std::uint64_t seed, double gain = 1,
+      double offset_mm = 0)
+      : base_(base), n_(n), memory_(memory), gain_(gain), offset_mm_(offset_mm), random_(seed) {}
 
   // One fine step: the command goes linearly from `from` to `to`.
   void step(double from, double to, double temperature, double supply, double dt) {
@@ -121,7 +126,7 @@ class Rig {
     y += n_.crosstalk_mm * std::sin(2 * pi * 0.11 * t + 3 * std::sin(2 * pi * 0.017 * t));
     if (n_.bumps_mm > 0) y += bumps();
     if (uniform_(random_) < n_.outlier_share) y += n_.outlier_mm * (uniform_(random_) < 0.5 ? -1 : 1);
-    return std::min(y, n_.sensor_limit_mm);
+    return std::min(y + offset_mm_, n_.sensor_limit_mm);
   }
 
  private:
@@ -186,7 +191,7 @@ class Rig {
     y *= 1 + n_.ageing * memory_.campaign_s;
     y *= 1 + n_.modulation * std::sin(2 * pi * n_.modulation_hz * memory_.campaign_s);
     y *= 1 - n_.recovery * std::exp(-rest_s_ / 6);
-    return y / (1 + n_.stiffening * std::abs(y));
+    return gain_ * y / (1 + n_.stiffening * std::abs(y));
   }
 
   void load(double dt) {
@@ -229,6 +234,7 @@ class Rig {
   const Base& base_;
   const Numbers& n_;
   Memory& memory_;
+  double gain_, offset_mm_;
   std::mt19937_64 random_;
   std::uniform_real_distribution<double> uniform_{0, 1};
   std::deque<double> line_;
@@ -238,7 +244,50 @@ class Rig {
          mode_v_ = 0, mode_target_ = 0, played_ = 0, bump_ = 0, next_bump_s_ = 3;
 };
 
+// Follows a log's reference; without one the commands stay as they are.
+class Follower {
+ public:
+  Follower(const Base& base, const LogInput& log) : log_(log) {
+    if (!log.reference_mm.empty())
+      controller_.emplace(span_mm(base, largest_command_kpa) / largest_command_kpa, largest_command_kpa,
+                          log.rate_hz);
+  }
+  // The command of the sample after `k`, whose clean reading is `y`.
+  void decide(std::size_t k, double y, std::vector<double>& command) {
+    if (!controller_ || k < log_.unrecorded || k + 1 >= command.size()) return;
+    const double seen = quantised(y + log_.noise_mm[k - log_.unrecorded], Sensor{}.step_mm);
+    command[k + 1] = controller_->step(log_.reference_mm[k + 1], seen);
+  }
+
+ private:
+  const LogInput& log_;
+  std::optional<variation::Controller> controller_;
+};
+
+template <class Values>
+void drop_first(Values& values, std::size_t count) {
+  if (!values.empty()) values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
 }  // namespace
+
+void drop_unrecorded(LogInput& in, LogOutput& out) {
+  for (std::vector<double>* values : {&in.command_kpa, &in.temperature_c, &in.supply_kpa, &in.reference_mm,
+                                      &out.command_kpa, &out.pressure_kpa, &out.displacement_mm})
+    drop_first(*values, in.unrecorded);
+  in.unrecorded = 0;
+}
+
+double span_mm(const Base& base, double pressure_kpa) {
+  constexpr std::size_t half = 500;
+  LogInput log;
+  for (std::size_t k = 0; k <= 2 * half; ++k)
+    log.command_kpa.push_back(pressure_kpa * static_cast<double>(std::min(k, 2 * half - k)) / half);
+  log.temperature_c.assign(log.command_kpa.size(), 20);
+  log.supply_kpa.assign(log.command_kpa.size(), 500);
+  const std::vector<LogOutput> out = simulate(base, {}, {log}, 0, 0.0025);
+  return *std::max_element(out.front().displacement_mm.begin(), out.front().displacement_mm.end());
+}
 
 std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const std::vector<LogInput>& logs,
                                 std::uint64_t seed, double step_s) {
@@ -246,18 +295,21 @@ std::vector<LogOutput> simulate(const Base& base, const Effects& effects, const 
   Memory memory;
   std::vector<LogOutput> outputs;
   for (const LogInput& log : logs) {
-    Rig rig(base, numbers, memory, seed + outputs.size());
+    Rig rig(base, numbers, memory, seed + outputs.size(), log.gain, log.offset_mm);
+    Follower follower(base, log);
     LogOutput out;
+    out.command_kpa = log.command_kpa;
     const double period = 1 / log.rate_hz;
     const int parts = static_cast<int>(std::lround(period / step_s));
     for (std::size_t k = 0; k < log.command_kpa.size(); ++k) {
-      const double before = k == 0 ? 0.0 : log.command_kpa[k - 1];
-      const double change = log.command_kpa[k] - before;
+      const double before = k == 0 ? 0.0 : out.command_kpa[k - 1];
+      const double change = out.command_kpa[k] - before;
       for (int i = 0; k > 0 && i < parts; ++i)
         rig.step(before + change * i / parts, before + change * (i + 1) / parts, log.temperature_c[k],
                  log.supply_kpa[k], period / parts);
       out.pressure_kpa.push_back(rig.pressure());
       out.displacement_mm.push_back(rig.reading());
+      follower.decide(k, out.displacement_mm.back(), out.command_kpa);
     }
     outputs.push_back(std::move(out));
   }
@@ -286,15 +338,21 @@ std::vector<std::vector<double>> held_at(const Effects& effects, const std::vect
   return series;
 }
 
-std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed) {
+std::vector<double> noise(std::size_t samples, double rms, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0, rms);
-  std::vector<double> out;
-  out.reserve(clean.size());
-  for (const double value : clean) {
-    const double noisy = value + normal(random);
-    out.push_back(step > 0 ? step * std::round(noisy / step) : noisy);
-  }
+  std::vector<double> out(samples);
+  for (double& value : out) value = normal(random);
+  return out;
+}
+
+double quantised(double value, double step) {
+  return step > 0 ? step * std::round(value / step) : value;
+}
+
+std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed) {
+  std::vector<double> out = noise(clean.size(), rms, seed);
+  for (std::size_t k = 0; k < clean.size(); ++k) out[k] = quantised(clean[k] + out[k], step);
   return out;
 }
 

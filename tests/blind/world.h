@@ -36,9 +36,16 @@ struct LogInput {
   std::vector<double> command_kpa;  // linear between samples
   std::vector<double> temperature_c;
   std::vector<double> supply_kpa;
+  // Run-to-run variation (variation.h).
+  double gain = 1, offset_mm = 0;
+  std::size_t unrecorded = 0;  // first samples, before the recording begins
+  // Closed loop: a controller follows the reference from the first recorded sample on. Its sensor adds
+  // `noise_mm`, one value per recorded sample.
+  std::vector<double> reference_mm, noise_mm;
 };
 
 struct LogOutput {
+  std::vector<double> command_kpa;      // as played
   std::vector<double> pressure_kpa;     // true pressure at the actuator
   std::vector<double> displacement_mm;  // before noise and quantisation
 };
@@ -60,6 +67,17 @@ struct GaugeWork {
 /// drift, disturbances and wrong samples go on.
 std::vector<std::vector<double>> held_at(const Effects& effects, const std::vector<double>& positions_mm,
                                          double start_s, std::uint64_t seed, const GaugeWork& work);
+
+/// Removes the unrecorded samples of a log.
+void drop_unrecorded(LogInput& in, LogOutput& out);
+
+/// The largest displacement of the actuator without effects, when the pressure rises to `pressure_kpa` and
+/// falls again.
+double span_mm(const Base& base, double pressure_kpa);
+
+/// White noise; deterministic in the seed.
+std::vector<double> noise(std::size_t samples, double rms, std::uint64_t seed);
+double quantised(double value, double step);
 
 /// Noise, then quantisation; deterministic in the seed.
 std::vector<double> measured(const std::vector<double>& clean, double rms, double step, std::uint64_t seed);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "variation.h"
 #include "world.h"
 
 namespace textbook {
@@ -67,31 +68,61 @@ std::vector<double> sines(std::mt19937_64& random, double rate_hz) {
   return out;
 }
 
+using Draw = std::vector<double> (*)(std::mt19937_64&, double);
+constexpr Draw kinds[] = {triangles, stairs, sines};
+
+// One drawn run: its input signal, and how it differs from the others.
+struct Drawn {
+  variation::Run run;
+  double rate_hz;
+  std::vector<double> command;
+};
+
+Log surrounded(const Drawn& drawn, double start_s, double phase, double span_mm) {
+  Log log;
+  log.rate_hz = drawn.rate_hz;
+  log.command_kpa = variation::pulse(drawn.run, working_kpa, drawn.rate_hz);
+  log.unrecorded = log.command_kpa.size();
+  for (const double u : drawn.command) log.command_kpa.push_back(drawn.run.amplitude * u);
+  for (std::size_t k = 0; k < log.command_kpa.size(); ++k) {
+    const double t = start_s + static_cast<double>(k) / drawn.rate_hz;
+    log.temperature_c.push_back(22 + 3 * std::sin(2 * pi * t / 140 + phase) + drawn.run.warmer_c);
+    // a compressor's cycle
+    log.supply_kpa.push_back(drawn.run.supply * (200 - 25 * std::abs(std::sin(pi * t / 23 + phase))));
+  }
+  log.gain = drawn.run.gain;
+  log.offset_mm = drawn.run.offset_share * span_mm;
+  return log;
+}
+
 }  // namespace
 
-std::vector<Log> draw_campaign(std::uint64_t seed, bool poor, double rate_hz) {
-  std::mt19937_64 random(seed * 1299709 + 41);
-  std::vector<std::vector<double>> commands{triangles(random, rate_hz)};
-  if (!poor) {
-    commands.push_back(stairs(random, rate_hz));
-    commands.push_back(sines(random, rate_hz));
+std::vector<Log> draw_campaign(const Campaign& campaign) {
+  std::mt19937_64 random(campaign.seed * 1299709 + 41);
+  const std::size_t first = variation::first_kind(campaign.variation, campaign.seed, std::size(kinds));
+  std::vector<Drawn> runs;
+  for (std::size_t i = 0; i < campaign.runs; ++i) {
+    const variation::Run run = variation::draw_run(campaign.variation, campaign.seed, i);
+    const double rate_hz = run.rate_hz > 0 ? run.rate_hz : campaign.rate_hz;
+    runs.push_back({run, rate_hz, kinds[(first + i) % std::size(kinds)](random, rate_hz)});
   }
   std::vector<Log> logs;
   double start_s = 0;
   const double phase = std::uniform_real_distribution<double>(0, 2 * pi)(random);
-  for (auto& command : commands) {
-    Log log;
-    log.rate_hz = rate_hz;
-    for (std::size_t k = 0; k < command.size(); ++k) {
-      const double t = start_s + static_cast<double>(k) / rate_hz;
-      log.temperature_c.push_back(22 + 3 * std::sin(2 * pi * t / 140 + phase));
-      log.supply_kpa.push_back(200 - 25 * std::abs(std::sin(pi * t / 23 + phase)));  // a compressor's cycle
-    }
-    start_s += static_cast<double>(command.size()) / rate_hz;
-    log.command_kpa = std::move(command);
-    logs.push_back(std::move(log));
+  for (const Drawn& drawn : runs) {
+    logs.push_back(surrounded(drawn, start_s, phase, campaign.span_mm));
+    start_s += static_cast<double>(logs.back().command_kpa.size()) / drawn.rate_hz;
   }
   return logs;
+}
+
+void drop_unrecorded(Log& log, Answer& answer) {
+  for (std::vector<double>* values :
+       {&log.command_kpa, &log.temperature_c, &log.supply_kpa, &log.reference_mm, &answer.command_kpa,
+        &answer.pressure_kpa, &answer.displacement_mm})
+    if (!values->empty())
+      values->erase(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(log.unrecorded));
+  log.unrecorded = 0;
 }
 
 double duration_s(const std::vector<Log>& logs) {

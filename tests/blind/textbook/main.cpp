@@ -2,11 +2,14 @@
 //
 //   textbook-world --seed N --out DIR --truth FILE [--make NAME] [--cause ID[,ID...]] [--strength X] [--poor]
 //                  [--campaign N] [--pressure] [--no-temperature] [--no-supply] [--zero-mm Z] [--warmer-c D]
+//                  [--runs N] [--variation X] [--closed-loop] [--rate-hz R]
 //   textbook-world --list | --makes | --probe flow|rest|hold|loops|relays|span|creep
 //
 // Without --make the seed chooses. A strength is the excess error (strength.h) over the noise of 0.04 mm, per
 // cause. With --campaign the same finger and valve are driven by other waveforms, with other noise. Z is
-// added to every reading, D to every temperature.
+// added to every reading, D to every temperature. --runs is the number of logs [3; 1 with --poor].
+// --variation is the strength of the run-to-run variation (variation.h) [0]; it also draws the rate. With
+// --closed-loop a controller plays the commands of all logs.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -34,8 +37,9 @@ constexpr double visible_mm = noise_mm / 4;
 struct Arguments {
   std::uint64_t seed = 1, campaign = 0;
   std::string out, truth, make, cause, probe;
-  double strength = 8, zero_mm = 0, warmer_c = 0, rate_hz = 100;
-  bool poor = false, pressure = false, temperature = true, supply = true, list = false, makes = false;
+  double strength = 8, zero_mm = 0, warmer_c = 0, rate_hz = 100, variation = 0;
+  std::size_t runs = 3;
+  bool pressure = false, temperature = true, supply = true, list = false, makes = false, closed_loop = false;
 };
 
 // The valve's step goes into a sample a whole number of times.
@@ -52,7 +56,9 @@ Arguments arguments(int argc, char** argv) {
     const std::string key = argv[i];
     bool flag = true;
     if (key == "--poor")
-      a.poor = true;
+      a.runs = 1;
+    else if (key == "--closed-loop")
+      a.closed_loop = true;
     else if (key == "--pressure")
       a.pressure = true;
     else if (key == "--no-temperature")
@@ -82,6 +88,10 @@ Arguments arguments(int argc, char** argv) {
       a.cause = value;
     else if (key == "--strength")
       a.strength = std::stod(value);
+    else if (key == "--runs")
+      a.runs = std::stoull(value);
+    else if (key == "--variation")
+      a.variation = std::stod(value);
     else if (key == "--zero-mm")
       a.zero_mm = std::stod(value);
     else if (key == "--warmer-c")
@@ -96,10 +106,36 @@ Arguments arguments(int argc, char** argv) {
   return a;
 }
 
+// Draws the noise of the sensors, one sample after another.
+class Noise {
+ public:
+  explicit Noise(std::uint64_t seed) : random_(seed) {}
+  struct Sample {
+    double displacement_mm, pressure_kpa, temperature_c, supply_kpa;
+  };
+  Sample next() {
+    const double y = noise_mm * normal_(random_), p = pressure_noise_kpa * normal_(random_);
+    const double t = temperature_noise_c * normal_(random_), s = supply_noise_kpa * normal_(random_);
+    return {y, p, t, s};
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_{0, 1};
+};
+
+// The commands become the references of a controller, which sees the readings that are written.
+void close_loop(textbook::Log& log, const textbook::World& world, double zero_mm, std::uint64_t seed) {
+  Noise noise(seed);
+  for (std::size_t k = log.unrecorded; k < log.command_kpa.size(); ++k)
+    log.noise_mm.push_back(zero_mm + noise.next().displacement_mm);
+  for (const double u : log.command_kpa)
+    log.reference_mm.push_back(world.finger.span_mm / textbook::working_kpa * u);
+}
+
 void write_log(const std::string& path, const textbook::Log& log, const textbook::Answer& answer,
                const Arguments& a, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal(0, 1);
+  Noise noise(seed);
   std::ofstream file(path);
   file << "time_s,pressure_command_kpa,displacement_mm" << (a.pressure ? ",pressure_kpa" : "")
        << (a.temperature ? ",temperature_c" : "") << (a.supply ? ",supply_kpa" : "") << "\n";
@@ -109,12 +145,13 @@ void write_log(const std::string& path, const textbook::Log& log, const textbook
     file << cell;
   };
   for (std::size_t k = 0; k < log.command_kpa.size(); ++k) {
-    const double y = answer.displacement_mm[k] + a.zero_mm + noise_mm * normal(random);
-    const double p = answer.pressure_kpa[k] + pressure_noise_kpa * normal(random);
-    const double t = log.temperature_c[k] + temperature_noise_c * normal(random);
-    const double s = log.supply_kpa[k] + supply_noise_kpa * normal(random);
+    const Noise::Sample added = noise.next();
+    const double y = answer.displacement_mm[k] + a.zero_mm + added.displacement_mm;
+    const double p = answer.pressure_kpa[k] + added.pressure_kpa;
+    const double t = log.temperature_c[k] + added.temperature_c;
+    const double s = log.supply_kpa[k] + added.supply_kpa;
     put("%.6f", static_cast<double>(k) / log.rate_hz);
-    put(",%.6f", log.command_kpa[k]);
+    put(",%.6f", answer.command_kpa[k]);
     put(",%.4f", step_mm * std::round(y / step_mm));
     if (a.pressure) put(",%.4f", p);
     if (a.temperature) put(",%.4f", t);
@@ -172,7 +209,7 @@ int run(const Arguments& a) {
   const textbook::World world =
       textbook::draw_world(a.make.empty() ? makes[a.seed % makes.size()] : a.make, a.seed);
   const std::uint64_t drive_seed = a.seed + 1000003 * a.campaign;
-  const auto whole = textbook::draw_campaign(drive_seed, false, a.rate_hz);
+  const auto whole = textbook::draw_campaign({drive_seed, 3, a.rate_hz});
   std::map<std::string, textbook::Scaled> hidden;
   textbook::Effects effects;
   if (!a.cause.empty()) {
@@ -183,13 +220,17 @@ int run(const Arguments& a) {
       effects[id] = hidden[id].numbers;
     }
   }
-  auto logs = textbook::draw_campaign(drive_seed, a.poor, a.rate_hz);
-  for (textbook::Log& log : logs)
-    for (double& t : log.temperature_c) t += a.warmer_c;
-  const auto answers = textbook::simulate(world, effects, logs, a.seed);
+  auto logs = textbook::draw_campaign({drive_seed, a.runs, a.rate_hz, a.variation, world.finger.span_mm});
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    for (double& t : logs[i].temperature_c) t += a.warmer_c;
+    if (a.closed_loop) close_loop(logs[i], world, a.zero_mm, drive_seed * 37 + i);
+  }
+  auto answers = textbook::simulate(world, effects, logs, a.seed);
   std::filesystem::create_directories(a.out);
-  for (std::size_t i = 0; i < logs.size(); ++i)
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    textbook::drop_unrecorded(logs[i], answers[i]);
     write_log(a.out + "/log_" + std::to_string(i + 1) + ".csv", logs[i], answers[i], a, drive_seed * 37 + i);
+  }
   write_truth(a, world, textbook::own_physics(world, whole, a.seed, visible_mm), hidden);
   return 0;
 }

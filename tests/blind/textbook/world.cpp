@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
+
+#include "variation.h"
 
 namespace textbook {
 namespace {
@@ -72,53 +75,96 @@ struct Age {
   double time_s = 0, largest_kpa = 0;
 };
 
-std::vector<double> asked(const Hidden& hidden, const Log& log) {
-  std::vector<double> out(log.command_kpa.size());
-  const double delay = hidden.transport_delay_delay_s * log.rate_hz;
-  const double tau = hidden.valve_lag_time_constant_s;
-  const double band = hidden.valve_deadband_band_kpa;
-  double held = 0, lagged = 0;
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const double place = std::max(0.0, static_cast<double>(k) - delay);
+// Computes the setpoint of the regulator, sample by sample.
+class Asked {
+ public:
+  Asked(const Hidden& hidden, const Log& log) : h_(hidden), log_(log) {}
+  // At sample `k`, in the order of the samples; uses no later command.
+  double at(std::size_t k, const std::vector<double>& command) {
+    const double place = std::max(0.0, static_cast<double>(k) - h_.transport_delay_delay_s * log_.rate_hz);
     const auto low = static_cast<std::size_t>(place);
-    const std::size_t high = std::min(low + 1, out.size() - 1);
+    const std::size_t high = std::min(low + 1, command.size() - 1);
     const double part = place - static_cast<double>(low);
-    double u = (1 - part) * log.command_kpa[low] + part * log.command_kpa[high];
-    if (std::abs(u - held) > band) held = u;
-    u = held;
-    if (hidden.has_pressure_saturation) u = std::min(u, hidden.pressure_saturation_limit_kpa);
-    u *= 1 + hidden.supply_sag_per_supply * (log.supply_kpa[k] / supply_kpa - 1);
-    lagged = tau > 0 ? lagged + (u - lagged) * -std::expm1(-1 / (log.rate_hz * tau)) : u;
-    out[k] = std::max(0.0, lagged);
+    double u = (1 - part) * command[low] + part * command[high];
+    if (std::abs(u - held_) > h_.valve_deadband_band_kpa) held_ = u;
+    u = held_;
+    if (h_.has_pressure_saturation) u = std::min(u, h_.pressure_saturation_limit_kpa);
+    u *= 1 + h_.supply_sag_per_supply * (log_.supply_kpa[k] / supply_kpa - 1);
+    const double tau = h_.valve_lag_time_constant_s;
+    lagged_ = tau > 0 ? lagged_ + (u - lagged_) * -std::expm1(-1 / (log_.rate_hz * tau)) : u;
+    return std::max(0.0, lagged_);
   }
-  return out;
-}
 
-std::vector<double> pressure(const World& world, const Hidden& hidden, const Log& log) {
-  const auto command = asked(hidden, log);
-  if (world.perfect_valve) return command;
+ private:
+  const Hidden& h_;
+  const Log& log_;
+  double held_ = 0, lagged_ = 0;
+};
+
+ValveNumbers numbers_of(const World& world, const Hidden& hidden) {
   ValveNumbers numbers = world.valve;
   numbers.leak_conductance = hidden.leak_conductance;
   numbers.tube_conductance *= 1 - hidden.blocked_line_share;
-  Valve valve(numbers);
-  const int steps = static_cast<int>(std::lround(1 / (log.rate_hz * valve_step_s)));
-  std::vector<double> out(command.size());
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    out[k] = valve.gauge_kpa();
-    const double next = command[std::min(k + 1, out.size() - 1)];
+  return numbers;
+}
+
+// From the command to the pressure at the finger.
+class Line {
+ public:
+  Line(const World& world, const Hidden& hidden, const Log& log, const std::vector<double>& command)
+      : log_(log),
+        perfect_(world.perfect_valve),
+        valve_(numbers_of(world, hidden)),
+        asked_(hidden, log),
+        now_(asked_.at(0, command)) {}
+  double gauge_kpa() const { return perfect_ ? now_ : valve_.gauge_kpa(); }
+  // From sample `k` to the one after it, or on from the last.
+  void advance(std::size_t k, const std::vector<double>& command) {
+    const double next = k + 1 < command.size() ? asked_.at(k + 1, command) : now_;
+    const int steps = perfect_ ? 0 : static_cast<int>(std::lround(1 / (log_.rate_hz * valve_step_s)));
     for (int i = 0; i < steps; ++i) {
       const double part = (i + 0.5) / steps;
-      valve.step((1 - part) * command[k] + part * next, log.supply_kpa[k], valve_step_s);
+      valve_.step((1 - part) * now_ + part * next, log_.supply_kpa[k], valve_step_s);
     }
+    now_ = next;
+  }
+
+ private:
+  const Log& log_;
+  bool perfect_;
+  Valve valve_;
+  Asked asked_;
+  double now_;
+};
+
+std::vector<double> pressure(const World& world, const Hidden& hidden, const Log& log) {
+  Line line(world, hidden, log, log.command_kpa);
+  std::vector<double> out(log.command_kpa.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k] = line.gauge_kpa();
+    line.advance(k, log.command_kpa);
   }
   return out;
 }
 
 class Body {
  public:
-  Body(const World& world, const Hidden& hidden, Age& age)
-      : h_(hidden), age_(age), finger_(world.finger), span_(world.finger.span_mm) {}
+  Body(const World& world, const Hidden& hidden, Age& age, const Log& log)
+      : h_(hidden), age_(age), log_(log), finger_(world.finger), span_(world.finger.span_mm) {}
 
+  // The displacement at sample `k`, to which the pressure has gone linearly.
+  double sample(std::size_t k, double pressure_kpa) {
+    double y = 0;
+    for (int i = 1; i <= finger_steps; ++i) {
+      const double part = static_cast<double>(i) / finger_steps;
+      y = step(before_ + part * (pressure_kpa - before_), log_.temperature_c[k],
+               1 / (log_.rate_hz * finger_steps));
+    }
+    before_ = pressure_kpa;
+    return y;
+  }
+
+ private:
   double step(double p, double temperature_c, double dt) {
     const double rate = (p - last_) / dt;
     last_ = p;
@@ -135,10 +181,8 @@ class Body {
       y += h_.slow_creep_gain_mm_per_kpa * slow_;
     }
     y = bent(y, p) * (1 + h_.thermal_gain_per_c * (temperature_c - 22)) * (1 + h_.ageing_per_s * age_.time_s);
-    return shown(loaded(y, dt), dt);
+    return shown(loaded(log_.gain * y, dt), dt);
   }
-
- private:
   double bent(double y, double p) {
     const double x = p / working_kpa;
     if (h_.has_asymmetric_hysteresis) {
@@ -186,15 +230,50 @@ class Body {
     if (h_.has_periodic_disturbance)
       y += h_.periodic_disturbance_mm *
            std::sin(2 * 3.14159265358979 * h_.periodic_disturbance_frequency_hz * t);
+    y += log_.offset_mm;
     if (h_.has_sensor_saturation) y = std::min(y, h_.sensor_saturation_limit_mm);
     return y;
   }
 
   const Hidden& h_;
   Age& age_;
+  const Log& log_;
   Finger finger_;
-  double span_;
+  double span_, before_ = 0;
   double last_ = 0, friction_ = 0, slow_ = 0, crescent_ = 0, speed_ = 0, moved_ = 0, carried_ = 0, seen_ = 0;
+};
+
+// Single wrong samples of the sensor.
+class WrongSamples {
+ public:
+  WrongSamples(const Hidden& hidden, std::uint64_t seed) : h_(hidden), random_(seed * 2147483647 + 11) {}
+  double added_to(double y) {
+    const double sign = chance_(random_) < 0.5 ? -1 : 1;
+    return chance_(random_) < h_.outliers_share ? y + sign * h_.outliers_size_mm : y;
+  }
+
+ private:
+  const Hidden& h_;
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> chance_{0, 1};
+};
+
+// Follows a log's reference; without one the commands stay as they are.
+class Follower {
+ public:
+  Follower(const World& world, const Log& log) : log_(log) {
+    if (!log.reference_mm.empty())
+      controller_.emplace(world.finger.span_mm / working_kpa, working_kpa, log.rate_hz);
+  }
+  // The command of the sample after `k`, whose clean reading is `y`.
+  void decide(std::size_t k, double y, std::vector<double>& command) {
+    if (!controller_ || k < log_.unrecorded || k + 1 >= command.size()) return;
+    command[k + 1] = controller_->step(log_.reference_mm[k + 1], y + log_.noise_mm[k - log_.unrecorded]);
+  }
+
+ private:
+  const Log& log_;
+  std::optional<variation::Controller> controller_;
 };
 
 }  // namespace
@@ -233,14 +312,23 @@ bool acts_on_pressure(const Effects& effects) {
 
 std::vector<Answer> simulate(const World& world, const Effects& effects, const std::vector<Log>& logs,
                              std::uint64_t seed) {
-  Pressures pressures = simulate_pressures(world, effects, logs);
-  const std::vector<double> moved = displacements(world, effects, logs, seed, pressures);
+  const Hidden hidden{effects};
+  Age age;
+  WrongSamples wrong(hidden, seed);
   std::vector<Answer> answers;
-  auto from = moved.begin();
-  for (std::vector<double>& pressure_kpa : pressures) {
-    const auto to = from + static_cast<std::ptrdiff_t>(pressure_kpa.size());
-    answers.push_back({std::move(pressure_kpa), {from, to}});
-    from = to;
+  for (const Log& log : logs) {
+    Answer answer;
+    answer.command_kpa = log.command_kpa;
+    Line line(world, hidden, log, answer.command_kpa);
+    Body body(world, hidden, age, log);
+    Follower follower(world, log);
+    for (std::size_t k = 0; k < answer.command_kpa.size(); ++k) {
+      answer.pressure_kpa.push_back(line.gauge_kpa());
+      answer.displacement_mm.push_back(wrong.added_to(body.sample(k, answer.pressure_kpa.back())));
+      follower.decide(k, answer.displacement_mm.back(), answer.command_kpa);
+      line.advance(k, answer.command_kpa);
+    }
+    answers.push_back(std::move(answer));
   }
   return answers;
 }
@@ -249,25 +337,12 @@ std::vector<double> displacements(const World& world, const Effects& effects, co
                                   std::uint64_t seed, const Pressures& pressures) {
   const Hidden hidden{effects};
   Age age;
+  WrongSamples wrong(hidden, seed);
   std::vector<double> all;
-  std::mt19937_64 random(seed * 2147483647 + 11);
-  std::uniform_real_distribution<double> chance(0, 1);
   for (std::size_t i = 0; i < logs.size(); ++i) {
-    const Log& log = logs[i];
-    Body body(world, hidden, age);
-    double before = 0;
-    for (std::size_t k = 0; k < pressures[i].size(); ++k) {
-      double y = 0;
-      for (int step = 1; step <= finger_steps; ++step) {
-        const double part = static_cast<double>(step) / finger_steps;
-        y = body.step(before + part * (pressures[i][k] - before), log.temperature_c[k],
-                      1 / (log.rate_hz * finger_steps));
-      }
-      before = pressures[i][k];
-      const double sign = chance(random) < 0.5 ? -1 : 1;
-      if (chance(random) < hidden.outliers_share) y += sign * hidden.outliers_size_mm;
-      all.push_back(y);
-    }
+    Body body(world, hidden, age, logs[i]);
+    for (std::size_t k = 0; k < pressures[i].size(); ++k)
+      all.push_back(wrong.added_to(body.sample(k, pressures[i][k])));
   }
   return all;
 }

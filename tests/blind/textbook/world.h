@@ -17,10 +17,16 @@ using Effects = std::map<std::string, Numbers>;
 struct Log {
   double rate_hz = 100;
   std::vector<double> command_kpa, temperature_c, supply_kpa;  // one value per sample, gauge
+  // Run-to-run variation (variation.h).
+  double gain = 1, offset_mm = 0;
+  std::size_t unrecorded = 0;  // first samples, before the recording begins
+  // Closed loop: a controller follows the reference from the first recorded sample on. Its sensor adds
+  // `noise_mm`, one value per recorded sample.
+  std::vector<double> reference_mm, noise_mm;
 };
 
 struct Answer {
-  std::vector<double> pressure_kpa, displacement_mm;  // at the finger; before noise
+  std::vector<double> command_kpa, pressure_kpa, displacement_mm;  // as played; at the finger; before noise
 };
 
 struct World {
@@ -30,7 +36,18 @@ struct World {
 };
 
 World draw_world(const std::string& make, std::uint64_t seed);
-std::vector<Log> draw_campaign(std::uint64_t seed, bool poor, double rate_hz);
+struct Campaign {
+  std::uint64_t seed = 1;
+  std::size_t runs = 3;
+  double rate_hz = 100;
+  double variation = 0;  // strength of the run-to-run variation (variation.h)
+  double span_mm = 0;    // of the finger; needed with a variation
+};
+
+/// Logs of three kinds in turn: triangles, stairs, sines on sines.
+std::vector<Log> draw_campaign(const Campaign& campaign);
+/// Removes the unrecorded samples of a log.
+void drop_unrecorded(Log& log, Answer& answer);
 double duration_s(const std::vector<Log>& logs);
 
 /// Every log starts at rest; age, drift and the largest load run on. The valve is stepped at 0.25 ms.

@@ -1,0 +1,171 @@
+#!/usr/bin/python3
+"""Run-to-run variation of the simulated fingers: test_variation.py BLIND_WORLD TEXTBOOK_WORLD [unittest option ...]
+
+Without variation the programs write the bytes that they wrote before they had it.
+"""
+import csv
+import hashlib
+import io
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BLIND, TEXTBOOK = sys.argv.pop(1), sys.argv.pop(1)
+PROGRAMS = {"blind": BLIND, "textbook": TEXTBOOK}
+
+# SHA-256 of all logs of a call, of the programs before the variation.
+GOLDEN = {
+    ("--seed", "1"): ("e20640d7e0299022", "db8a9764eacf24ad"),
+    ("--seed", "7", "--poor", "--pressure"): ("1d9d11191617df3b", "d956ade25f225e8d"),
+    ("--seed", "5", "--cause", "backlash,outliers", "--strength", "2"): ("0b1d4a53012e5ed4", "6c8c088558258d8d"),
+    ("--seed", "3", "--campaign", "1", "--zero-mm", "0.3", "--warmer-c", "4", "--cause", "thermal_gain"):
+        ("9ada7ffaba2f80ed", "8b6eabbb1831eb93"),
+}
+RUNS = 400
+
+
+def logs(program, *options):
+    """The bytes of each log, in order."""
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        subprocess.run([program, *options, "--out", work / "logs", "--truth", work / "truth.json"], check=True)
+        return [(work / "logs" / f"log_{i + 1}.csv").read_bytes() for i in range(len(list((work / "logs").iterdir())))]
+
+
+def columns(log):
+    """{name: values}"""
+    rows = list(csv.DictReader(io.StringIO(log.decode())))
+    return {name: [float(row[name]) for row in rows] for name in rows[0]}
+
+
+def drawn(strength, runs=RUNS, seed=1):
+    text = subprocess.run([BLIND, "--list-runs", "--variation", str(strength), "--runs", str(runs), "--seed", str(seed)],
+                          check=True, capture_output=True, text=True).stdout
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return {name: [float(row[name]) for row in rows] for name in rows[0]}
+
+
+class Off(unittest.TestCase):
+    def test_the_bytes_are_those_of_the_programs_before(self):
+        for options, expected in GOLDEN.items():
+            for name, digest in zip(PROGRAMS, expected):
+                with self.subTest(program=name, options=options):
+                    whole = hashlib.sha256(b"".join(logs(PROGRAMS[name], *options))).hexdigest()
+                    self.assertEqual(whole[:16], digest)
+
+    def test_strength_0_and_3_runs_are_the_default(self):
+        for name, program in PROGRAMS.items():
+            with self.subTest(program=name):
+                self.assertEqual(logs(program, "--variation", "0", "--runs", "3"), logs(program))
+
+    def test_more_runs_continue_the_campaign(self):
+        for name, program in PROGRAMS.items():
+            with self.subTest(program=name):
+                six = logs(program, "--runs", "6")
+                self.assertEqual(len({hashlib.sha256(log).digest() for log in six}), 6)
+                self.assertEqual(columns(six[0])["pressure_command_kpa"],
+                                 columns(logs(program, "--runs", "1")[0])["pressure_command_kpa"])
+
+
+class Drawn(unittest.TestCase):
+    """Means and spreads of the runs."""
+
+    def assert_spread(self, values, mean, deviation):
+        self.assertAlmostEqual(statistics.mean(values), mean, delta=4 * deviation / RUNS ** 0.5)
+        # 4 standard errors of a standard deviation.
+        self.assertAlmostEqual(statistics.stdev(values) / deviation, 1, delta=4 / (2 * RUNS) ** 0.5)
+
+    def test_offset_gain_temperature_and_supply(self):
+        for strength in (0.5, 1, 2):
+            with self.subTest(strength=strength):
+                runs = drawn(strength)
+                self.assert_spread(runs["offset_share"], 0, 0.003 * strength)
+                self.assert_spread(runs["gain"], 1, 0.01 * strength)
+                self.assert_spread(runs["warmer_c"], 0, 2 * strength)
+                self.assert_spread(runs["supply"], 1, 0.02 * strength)
+
+    def test_rates_pulses_and_amplitudes(self):
+        runs = drawn(1)
+        self.assertEqual(set(runs["rate_hz"]), {50, 100, 200})
+        for rate in (50, 100, 200):
+            self.assertAlmostEqual(runs["rate_hz"].count(rate) / RUNS, 1 / 3, delta=0.1)
+        for name, low, high in (("pulse_share", 0.2, 0.8), ("pulse_s", 2, 15), ("rest_s", 2, 20), ("amplitude", 0.8, 1)):
+            with self.subTest(name=name):
+                self.assertGreaterEqual(min(runs[name]), low)
+                self.assertLessEqual(max(runs[name]), high)
+                self.assertAlmostEqual(statistics.mean(runs[name]), (low + high) / 2, delta=0.2 * (high - low))
+
+    def test_runs_are_independent_and_belong_to_their_seed(self):
+        first, again, other = drawn(1, 50), drawn(1, 60), drawn(1, 50, seed=2)
+        self.assertEqual(first["gain"], again["gain"][:50])
+        self.assertNotEqual(first["gain"], other["gain"])
+        self.assertEqual(len(set(first["gain"])), 50)
+
+    def test_nothing_is_drawn_without_variation(self):
+        runs = drawn(0, 3)
+        self.assertEqual((runs["gain"], runs["offset_share"], runs["pulse_s"], runs["rate_hz"]),
+                         ([1] * 3, [0] * 3, [0] * 3, [0] * 3))
+
+
+class Logs(unittest.TestCase):
+    """The logs show what was drawn."""
+
+    def test_1_3_and_6_runs(self):
+        for name, program in PROGRAMS.items():
+            for runs in (1, 3, 6):
+                with self.subTest(program=name, runs=runs):
+                    found = logs(program, "--variation", "1", "--runs", str(runs), "--seed", "4")
+                    expected = drawn(1, runs, seed=4)["rate_hz"]
+                    self.assertEqual(len(found), runs)
+                    for log, rate in zip(found, expected):
+                        time = columns(log)["time_s"]
+                        self.assertEqual(time[0], 0)
+                        self.assertAlmostEqual(time[1], 1 / rate)
+
+    def test_runs_begin_unsettled(self):
+        for name, program in PROGRAMS.items():
+            with self.subTest(program=name):
+                settled = columns(logs(program, "--runs", "1")[0])["displacement_mm"]
+                varied = [columns(log)["displacement_mm"] for log in logs(program, "--variation", "1", "--runs", "4")]
+                self.assertLess(abs(settled[0]), 0.2)
+                # Creep and hysteresis of the pulse before the recording.
+                self.assertGreater(min(y[0] for y in varied), 0.2)
+
+    def test_the_size_of_the_variation_scales_with_its_strength(self):
+        for name, program in PROGRAMS.items():
+            with self.subTest(program=name):
+                temperatures = [statistics.mean(columns(logs(program, "--variation", strength, "--runs", "1", "--seed",
+                                                             "4")[0])["temperature_c"]) for strength in ("1", "3")]
+                shift = drawn(1, 1, seed=4)["warmer_c"][0]
+                self.assertAlmostEqual(temperatures[1] - temperatures[0], 2 * shift, delta=1.0)
+
+    def test_a_controller_removes_the_zero_that_it_sees(self):
+        for name, program in PROGRAMS.items():
+            with self.subTest(program=name):
+                at = {}
+                for zero in ("0", "1"):
+                    log = columns(logs(program, "--closed-loop", "--runs", "1", "--zero-mm", zero)[0])
+                    at[zero] = log
+                    self.assertGreaterEqual(min(log["pressure_command_kpa"]), 0)
+                    self.assertLessEqual(max(log["pressure_command_kpa"]), 60)
+                moving = [k for k, y in enumerate(at["0"]["displacement_mm"]) if y > 5]
+                self.assertGreater(len(moving), 500)
+                shift = statistics.mean(at["1"]["displacement_mm"][k] - at["0"]["displacement_mm"][k] for k in moving)
+                less = statistics.mean(at["0"]["pressure_command_kpa"][k] - at["1"]["pressure_command_kpa"][k] for k in moving)
+                self.assertLess(abs(shift), 0.5)
+                self.assertGreater(less, 1)
+
+    def test_the_command_of_a_closed_loop_answers_the_noise(self):
+        for name, program in PROGRAMS.items():
+            with self.subTest(program=name):
+                def roughness(*options):
+                    u = columns(logs(program, "--runs", "1", *options)[0])["pressure_command_kpa"]
+                    return statistics.mean(abs(a - 2 * b + c) for a, b, c in zip(u, u[1:], u[2:]))
+                self.assertGreater(roughness("--closed-loop"), 3 * roughness())
+
+
+if __name__ == "__main__":
+    unittest.main()
