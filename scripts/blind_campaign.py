@@ -3,8 +3,9 @@
 
     scripts/blind_campaign.py --work DIR [--build build/release] [--seeds 20] [--clean 200] [--outside 60] [--pairs 60]
                               [--strengths 8 2] [--causes ID ...] [--first-seed 1000] [--workers 1]
-                              [--page docs/reference/blind-campaign.md]
+                              [--variation X] [--closed-loop] [--page docs/reference/blind-campaign.md]
 
+--variation X lets the runs vary (tests/blind/variation.h); the page states it.
 Resumable: every world's outcome is one line of DIR/results.jsonl, and worlds that stand there are not run again.
 --page writes the table, and the pictures beside it.
 """
@@ -21,6 +22,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import blind_page  # noqa: E402
 import campaign  # noqa: E402
 import judging  # noqa: E402
+import varying  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
 # Causes that give the same readings whatever the command, or nearly: hidden together, no data could tell them apart.
@@ -48,7 +50,7 @@ def worlds(args, ids, outside):
         placed += [((k + 0.5) / len(kind) if len(kind) else 0, k, *what) for k, what in enumerate(kind)]
     placed.sort(key=lambda p: p[0])
     for _, k, causes, strength in placed[: longest * len(kinds)]:
-        yield {"causes": causes, "strength": strength, "seed": args.first_seed + k}
+        yield {"causes": causes, "strength": strength, "seed": args.first_seed + k, **varying.of_world(args)}
 
 
 def told(world, result):
@@ -70,17 +72,19 @@ def main():
     parser.add_argument("--most-minutes", type=float, help="begin no world after so long; run again to go on")
     parser.add_argument("--workers", type=int, default=1, help="diagnoses side by side")
     parser.add_argument("--page", type=pathlib.Path)
+    varying.add_options(parser)
     args = parser.parse_args()
     args.build = args.build.resolve()
-    ledger = Ledger(args.work / "results.jsonl", ("causes", "strength", "seed"))
+    ledger = Ledger(args.work / "results.jsonl", ("causes", "strength", "seed", *varying.KEYS))
     ids, outside = judging.library(args.build)
     planned = list(worlds(args, ids, outside))
     campaign.run(ledger, planned, "judging", args, told)
     if args.page:
         command = campaign.command("scripts/blind_campaign.py", parser, args, (
-            "first_seed", "seeds", "clean", "outside", "pairs", "strengths", "causes"))
-        keys = {ledger.key(world) for world in planned} | ledger.known
-        blind_page.write(args.page, ledger.rows, len(keys), command)
+            "first_seed", "seeds", "clean", "outside", "pairs", "strengths", "causes", "variation", "closed_loop"))
+        rows = [row for row in ledger.rows if varying.belongs(row, args)]
+        keys = {ledger.key(world) for world in (*planned, *rows)}
+        blind_page.write(args.page, rows, len(keys), command, varying.text(args))
 
 
 if __name__ == "__main__":

@@ -188,7 +188,8 @@ def table(results):
     return lines
 
 
-def write(path, results, planned, command):
+def write(path, results, planned, command, variation):
+    """`variation`: the sentences on run-to-run variation."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
@@ -200,7 +201,7 @@ def write(path, results, planned, command):
              f"Written by `{command}`: {len(results)} worlds{of_planned}. Every world is a program of its own "
              "that hides an effect and writes logs; `softgrip diagnose` gets the logs and a model whose numbers are some "
              "percent off. Strength is the effect's excess error after recalibration, in units of the noise (0.04 mm).",
-             "", "| measure | target | measured (95 % interval) | worlds |", "|---|---|---|---|"]
+             "", variation, "", "| measure | target | measured (95 % interval) | worlds |", "|---|---|---|---|"]
     lines += [f"| {what} | {target} | {measured} | {count} |" for what, target, measured, count in summary(results)]
     walls = [r["wall_s"] for r in results if "wall_s" in r]
     lines += ["", f"Median wall time of a diagnosis: {statistics.median(walls):.1f} s (three logs of 8,000 samples). In "

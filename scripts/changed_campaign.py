@@ -3,12 +3,15 @@
 
     scripts/changed_campaign.py --work DIR [--build build/release] [--seeds 4] [--unchanged 60] [--strengths 0.15 1]
                                 [--columns pressure command] [--first-seed 1] [--workers 2] [--most-minutes M]
+                                [--variation X] [--closed-loop] [--baseline-runs 3]
                                 [--page docs/reference/changed-campaign.md]
 
 --seeds counts per family, cause, strength and kind of columns. Worlds of both families (tests/blind, tests/blind/textbook),
 their measured pressure recorded or not. The later day has another input, another zero (up to 0.5 mm) and another
 temperature (up to 4 degrees; where the hidden cause is the temperature, the same). Resumable, and a fair sample whenever it
-is stopped: every world's outcome is one line of DIR/changed.jsonl.
+is stopped: every world's outcome is one line of DIR/changed.jsonl. --variation X lets the runs vary (tests/blind/variation.h),
+--closed-loop records the later logs in closed loop, --baseline-runs 1 3 6 gives the same fingers as many healthy logs; the
+page states them.
 """
 import argparse
 import collections
@@ -24,10 +27,11 @@ for folder in ("tests/blind", "scripts"):
 
 import campaign  # noqa: E402
 import changing  # noqa: E402
+import varying  # noqa: E402
 from blind_page import interval  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
-KEYS = ("family", "cause", "strength", "seed", "columns", "zero_mm", "warmer_c")
+KEYS = ("family", "cause", "strength", "seed", "columns", "zero_mm", "warmer_c", *varying.KEYS)
 OF_PRESSURE = {"leak", "blocked_line"}
 OUTCOMES = ("first", "twin", "listed", "wrong", "unnamed", "missed")
 
@@ -48,8 +52,9 @@ def worlds(args, build):
             rng = random.Random(f"{args.first_seed} {family} {cause} {strength} {columns}")
             for _ in range(count):
                 warmer = 0 if cause == "thermal_gain" else round(rng.uniform(-4, 4), 2)
-                planned.append({"family": family, "cause": cause, "strength": strength, "seed": rng.randrange(10**6),
-                                "columns": columns, "zero_mm": round(rng.uniform(-0.5, 0.5), 3), "warmer_c": warmer})
+                world = {"family": family, "cause": cause, "strength": strength, "seed": rng.randrange(10**6),
+                         "columns": columns, "zero_mm": round(rng.uniform(-0.5, 0.5), 3), "warmer_c": warmer}
+                planned += [{**world, **varying.of_world(args, runs)} for runs in args.baseline_runs]
     random.Random(args.first_seed).shuffle(planned)
     return planned
 
@@ -65,13 +70,33 @@ def table(rows, keys, outcomes):
     return lines
 
 
-def page(rows, command, planned):
+def with_runs(rows):
+    """The rows with the number of their healthy logs."""
+    return [{**row, "baseline runs": row.get("baseline_runs", varying.BASELINE_RUNS)} for row in rows]
+
+
+def smallest_found(changed):
+    """By number of baseline runs: the smallest strength from which on 90 % of the causes are named or listed."""
+    lines = ["| baseline runs | smallest strength found in 90 % of the worlds |", "|---|---|"]
+    for runs in sorted({row["baseline runs"] for row in changed}):
+        smallest = "-"
+        for strength in sorted({row["strength"] for row in changed}, reverse=True):
+            own = [row for row in changed if (row["baseline runs"], row["strength"]) == (runs, strength)]
+            if not own or sum(row["outcome"] in ("first", "twin", "listed") for row in own) < 0.9 * len(own):
+                break
+            smallest = f"{strength:g}"
+        lines.append(f"| {runs} | {smallest} |")
+    return lines
+
+
+def page(rows, command, planned, variation):
+    rows = with_runs(rows)
     changed = [r for r in rows if r["cause"] != "none" and r["outcome"] != "failed"]
     still = [r for r in rows if r["cause"] == "none" and r["outcome"] != "failed"]
     failed = sum(r["outcome"] == "failed" for r in rows)
     lines = ["# Campaign of changed fingers", "", f"Written by `{command}`: {len(rows)} worlds of {planned} planned, "
              f"{failed} of them failed. Stopped before its end, it is a sample of the plan in random order.", "",
-             *changing_text(), "", "| measure | wanted | measured (95 % interval) | worlds |", "|---|---|---|---|"]
+             *changing_text(), "", variation, "", "| measure | wanted | measured (95 % interval) | worlds |", "|---|---|---|---|"]
     for strength, wanted in ((0.15, 90), (1, 97)):
         own = [r for r in changed if r["strength"] == strength]
         for name, good in (("true change first", ("first",)), ("first, or its mirror image", ("first", "twin")),
@@ -84,6 +109,9 @@ def page(rows, command, planned):
     lines.append(f"| 95 % intervals of numbers that hold the truth | 92 to 97 % | {interval(sum(told), len(told))} | {len(told)} |")
     lines.append("| unchanged called unchanged | at least 98 % | "
                  f"{interval(sum(r['outcome'] == 'unchanged' for r in still), len(still))} | {len(still)} |")
+    if len({row["baseline runs"] for row in rows}) > 1:
+        lines += ["", "## By baseline runs", "", *smallest_found(changed), "", *table(changed, ("baseline runs", "strength"), OUTCOMES), "",
+                  *table(still, ("baseline runs",), ("unchanged", "false_alarm", "unexplained"))]
     lines += ["", "## By family and columns", "", *table(changed, ("family", "columns", "strength"), OUTCOMES), "",
               *table(still, ("family", "columns"), ("unchanged", "false_alarm", "unexplained")), "",
               "## By cause", "", *table(changed, ("cause", "strength"), OUTCOMES), "", "## What was named instead", "",
@@ -96,7 +124,7 @@ def page(rows, command, planned):
 
 def changing_text():
     return [
-        "Each world is a finger whose healthy logs (three, campaign 0 of its seed) are recorded before anything is hidden,",
+        "Each world is a finger whose healthy logs (campaign 0 of its seed; 3 unless given) are recorded before anything is hidden,",
         "and whose later logs (campaign 1: other waveforms, other noise) have one cause in them, or none. Strength 1 is what",
         "the other campaigns call 8: an excess error of 8 times the noise of 0.04 mm; 0.15 of it is 0.048 mm. The later day",
         "has another zero and another temperature. `first`: the true cause is named first; `twin`: stiffening and a bent",
@@ -119,6 +147,7 @@ def main():
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--most-minutes", type=float)
     parser.add_argument("--page", type=pathlib.Path)
+    varying.add_options(parser, baseline_runs=True)
     args = parser.parse_args()
     build = args.build.resolve()
     ledger = Ledger(args.work / "changed.jsonl", KEYS)
@@ -128,9 +157,11 @@ def main():
                  f"{result['outcome']} {result.get('named', '')} {result.get('wall_s', 0):.0f} s")
     if args.page:
         command = campaign.command("scripts/changed_campaign.py", parser, args,
-                                   ("seeds", "unchanged", "strengths", "columns", "first_seed"))
+                                   ("seeds", "unchanged", "strengths", "columns", "first_seed", "variation",
+                                    "closed_loop", "baseline_runs"))
         wanted = {ledger.key(world) for world in planned}
-        args.page.write_text(page([r for r in ledger.rows if ledger.key(r) in wanted], command, len(planned)))
+        rows = [row for row in ledger.rows if ledger.key(row) in wanted]
+        args.page.write_text(page(rows, command, len(planned), varying.text(args)))
 
 
 if __name__ == "__main__":

@@ -3,12 +3,14 @@
 
     scripts/textbook_campaign.py --work DIR [--build build/release] [--clean 100] [--seeds 4] [--pairs 40] [--triples 20]
                                  [--strengths 8 4 2] [--columns pressure command] [--given plain] [--first-seed 1000]
-                                 [--workers 2] [--page docs/reference/textbook-campaign.md]
+                                 [--workers 2] [--variation X] [--closed-loop]
+                                 [--page docs/reference/textbook-campaign.md]
 
 --seeds counts per cause, strength and kind of columns; --clean, --pairs and --triples per kind of columns. Resumable:
 every world's outcome is one line of DIR/textbook.jsonl, and worlds that stand there are not run again. Whenever it is
 stopped, what has been done is a fair sample of what was planned. --page writes the tables, and the pictures beside them;
---most-minutes 0 writes it from what has been done.
+--most-minutes 0 writes it from what has been done. --variation X lets the runs vary (tests/blind/variation.h); the page
+states it.
 """
 import argparse
 import itertools
@@ -23,10 +25,11 @@ for folder in ("tests/blind", "tests/blind/textbook", "scripts"):
 import campaign  # noqa: E402
 import textbook_page  # noqa: E402
 import trial  # noqa: E402
+import varying  # noqa: E402
 from blind_campaign import TWINS  # noqa: E402
 from ledger import Ledger  # noqa: E402
 
-KEYS = ("causes", "strength", "seed", "make", "columns", "given")
+KEYS = ("causes", "strength", "seed", "make", "columns", "given", *varying.KEYS)
 
 
 def groups_of(ids, size, count, rng):
@@ -54,7 +57,7 @@ def worlds(args, ids, makes):
             turn = rng.randrange(len(makes))
             for number in range(count):
                 world = {"causes": causes, "strength": strength, "seed": rng.randrange(10**6),
-                         "make": makes[(turn + number) % len(makes)], "columns": columns}
+                         "make": makes[(turn + number) % len(makes)], "columns": columns, **varying.of_world(args)}
                 planned += [{**world, "given": given} for given in args.given]
     random.Random(args.first_seed).shuffle(planned)
     return planned
@@ -86,6 +89,7 @@ def main():
     parser.add_argument("--most-minutes", type=float, help="begin no world after so long; run again to go on")
     parser.add_argument("--workers", type=int, default=1, help="diagnoses side by side, each on one core")
     parser.add_argument("--page", type=pathlib.Path)
+    varying.add_options(parser)
     args = parser.parse_args()
     args.build = args.build.resolve()
     ledger = Ledger(args.work / "textbook.jsonl", KEYS)
@@ -93,9 +97,11 @@ def main():
     campaign.run(ledger, planned, "trial", args, told)
     if args.page:
         command = campaign.command("scripts/textbook_campaign.py", parser, args, (
-            "clean", "seeds", "pairs", "triples", "strengths", "columns", "given", "causes", "first_seed"))
-        keys = {ledger.key(world) for world in planned} | ledger.known
-        textbook_page.write(args.page, ledger.rows, len(keys), command)
+            "clean", "seeds", "pairs", "triples", "strengths", "columns", "given", "causes", "first_seed",
+            "variation", "closed_loop"))
+        rows = [row for row in ledger.rows if varying.belongs(row, args)]
+        keys = {ledger.key(world) for world in (*planned, *rows)}
+        textbook_page.write(args.page, rows, len(keys), command, varying.text(args))
 
 
 if __name__ == "__main__":

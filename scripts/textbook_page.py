@@ -163,7 +163,8 @@ diagnosis' own model leaves on its held-out blocks. Where the pressure is record
 (`--drive measured`), and the valve is judged by it."""
 
 
-def write(path, results, planned, command):
+def write(path, results, planned, command, variation):
+    """`variation`: the sentences on run-to-run variation."""
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     bars_path, confusion_path = (path.with_name(f"{path.stem}-{what}.svg") for what in ("outcomes", "confusion"))
@@ -181,7 +182,7 @@ def write(path, results, planned, command):
     confusion_path.write_text(blind_page.confusion(plain))
     lines = ["# Textbook campaign", "", made(results, planned, command), "",
              f"Every outcome is a line of [{rows_path.name}]({rows_path.name}): as `DIR/textbook.jsonl` the command goes on from it.",
-             "", *INTRODUCTION.splitlines(), "",
+             "", *INTRODUCTION.splitlines(), "", variation, "",
              *table(("measure", "wanted", "measured (95 % interval)", "worlds"), summary(rows)),
              "## Without an effect", "", *clean_table(rows), "## By cause, hidden alone", "", *cause_table(rows),
              f"![Outcomes by hidden cause]({bars_path.name})", "",

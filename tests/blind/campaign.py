@@ -63,6 +63,6 @@ def command(script, parser, args, options):
     for option in options:
         value = getattr(args, option)
         if value != parser.get_default(option):
-            words = value if isinstance(value, list) else [value]
-            line += f" --{option.replace('_', '-')} {' '.join(f'{w:g}' if isinstance(w, float) else str(w) for w in words)}"
+            words = [] if value is True else value if isinstance(value, list) else [value]
+            line += f" --{option.replace('_', '-')} {' '.join(f'{w:g}' if isinstance(w, float) else str(w) for w in words)}".rstrip()
     return f"{line} --page {args.page}"

@@ -2,7 +2,8 @@
 
 A world: family (`textbook` or `first`), cause (or `none`), strength (of the usual one: `--strength 8` of the worlds),
 seed, columns (`pressure` or `command`), zero_mm and warmer_c (of the later day). The healthy logs are the finger's
-campaign 0, the later ones its campaign 1: other waveforms, other noise. The engine is called as a user calls it.
+campaign 0, the later ones its campaign 1: other waveforms, other noise. The engine is called as a user calls it. A world
+may have the keys of varying.py: with `closed_loop` the later logs are recorded in closed loop.
 """
 import json
 import pathlib
@@ -11,6 +12,7 @@ import subprocess
 import tempfile
 
 import judging
+import varying
 
 GIVEN = {"textbook": pathlib.Path(__file__).resolve().parent / "textbook/given.yaml", "first": judging.GIVEN}
 PROGRAM = {"textbook": "tests/blind/textbook/textbook-world", "first": "tests/blind/blind-world"}
@@ -68,8 +70,10 @@ def make(build, world, work):
     """(healthy logs, later logs, truth)"""
     program = [build / PROGRAM[world["family"]], "--seed", str(world["seed"])]
     program += ["--pressure"] if world["columns"] == "pressure" else []
-    subprocess.run([*program, "--out", work / "healthy", "--truth", work / "healthy.json"], check=True)
-    later = ["--campaign", "1", "--zero-mm", str(world["zero_mm"]), "--warmer-c", str(world["warmer_c"])]
+    runs = ["--runs", str(world.get("baseline_runs", varying.BASELINE_RUNS)), *varying.of_generator(world, False)]
+    subprocess.run([*program, *runs, "--out", work / "healthy", "--truth", work / "healthy.json"], check=True)
+    later = ["--campaign", "1", "--zero-mm", str(world["zero_mm"]), "--warmer-c", str(world["warmer_c"]),
+             *varying.of_generator(world)]
     if world["cause"] != "none":
         later += ["--cause", world["cause"], "--strength", str(USUAL * world["strength"])]
     subprocess.run([*program, *later, "--out", work / "later", "--truth", work / "truth.json"], check=True)

@@ -8,6 +8,8 @@ import shutil
 import subprocess
 import tempfile
 
+import varying
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GIVEN = ROOT / "tests/blind/given.yaml"
 
@@ -102,7 +104,7 @@ def run_world(build, folder, world):
     work = pathlib.Path(tempfile.mkdtemp(dir=folder))
     try:
         make = [build / "tests/blind/blind-world", "--seed", str(world["seed"]), "--strength", str(world["strength"]),
-                "--out", work / "logs", "--truth", work / "truth.json"]
+                "--out", work / "logs", "--truth", work / "truth.json", *varying.of_generator(world)]
         if world["causes"]:
             make += ["--cause", ",".join(world["causes"])]
         subprocess.run(make, check=True)

@@ -3,7 +3,8 @@ import json
 
 
 class Ledger:
-    """`rows` are those that stand in the file; what has the same values of `keys` as one of them is known."""
+    """`rows` are those that stand in the file; what has the same values of `keys` as one of them is known.
+    A key that a row or a world lacks counts as None, so that ledgers of earlier versions stay valid."""
 
     def __init__(self, path, keys):
         self.path, self.keys = path, keys
@@ -12,7 +13,8 @@ class Ledger:
         self.known = {self.key(row) for row in self.rows}
 
     def key(self, world):
-        return tuple(tuple(world[key]) if isinstance(world[key], list) else world[key] for key in self.keys)
+        values = (world.get(key) for key in self.keys)
+        return tuple(tuple(value) if isinstance(value, list) else value for value in values)
 
     def __contains__(self, world):
         return self.key(world) in self.known

@@ -14,6 +14,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import judging  # noqa: E402
+import varying  # noqa: E402
 
 GIVEN = HERE / "given.yaml"
 NOISE_MM = 0.04  # of the readings that textbook-world writes
@@ -65,7 +66,7 @@ def hiding(world):
 def make_logs(build, work, world, *options):
     """(paths of the logs, truth)"""
     command = [program(build), "--seed", str(world["seed"]), "--make", world["make"], "--out", work / "logs", "--truth",
-               work / "truth.json", *options]
+               work / "truth.json", *varying.of_generator(world), *options]
     if world["columns"] == "pressure":
         command.append("--pressure")
     subprocess.run(command, check=True)
