@@ -6,13 +6,13 @@
 
 from .aio import AsyncGripper
 from .client import Gripper
-from .errors import (ConnectionLost, GripFailed, NoDaemon, NotAnswered, Owned, ProtocolError, Refused, SequenceRefused,
-                     SoftgripError)
+from .errors import (ConnectionLost, GripFailed, MalformedFile, NoDaemon, NotAnswered, Owned, ProtocolError, Refused,
+                     SequenceRefused, SoftgripError)
 from .messages import (Channel, Checked, Event, Fault, Grip, Hello, Parameter, Problem, Result, Sequence, SequenceEnd,
                        SequenceState, State, Status)
 
 __all__ = [
     "AsyncGripper", "Channel", "Checked", "ConnectionLost", "Event", "Fault", "Grip", "GripFailed", "Gripper", "Hello",
-    "NoDaemon", "NotAnswered", "Owned", "Parameter", "Problem", "ProtocolError", "Refused", "Result", "Sequence",
-    "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError", "State", "Status",
+    "MalformedFile", "NoDaemon", "NotAnswered", "Owned", "Parameter", "Problem", "ProtocolError", "Refused", "Result",
+    "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError", "State", "Status",
 ]

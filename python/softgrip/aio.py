@@ -8,8 +8,8 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from types import TracebackType
 from typing import Any, Optional, TypeVar
 
-from .errors import ConnectionLost, NoDaemon, NotAnswered, SoftgripError
-from .messages import Checked, Event, Grip, Hello, Result, Sequence, SequenceEnd, Status
+from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError, SoftgripError
+from .messages import Checked, Event, Grip, Hello, Listing, Result, Sequence, SequenceEnd, Status
 from .session import API, LONGEST_LINE, Session, default_path, start_keys
 
 T = TypeVar("T")
@@ -53,7 +53,7 @@ class AsyncGripper:
             raise NoDaemon(f"{self.path}: {error}") from error
         self._reading = asyncio.create_task(self._read(reader))
         try:
-            self.hello = Hello.of(await self.ask("hello", client=self.name, api=API))
+            self.hello = Hello.of(await self.ask("hello", client=self.name, api=API), "hello")
             self._session.subscribed(await self.ask("subscribe", **self._session.subscription()))
         except BaseException:
             await self.close()
@@ -74,18 +74,18 @@ class AsyncGripper:
         self._writer = None
 
     async def status(self) -> Status:
-        return Status.of(await self.ask("status"))
+        return Status.of(await self.ask("status"), "status")
 
     async def sequences(self) -> tuple[Sequence, ...]:
-        return tuple(Sequence.of(s) for s in (await self.ask("sequences"))["sequences"])
+        return Listing.of(await self.ask("sequences"), "sequences").sequences
 
     async def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
-        grip = Grip.of(await self.ask("start", **start_keys(sequence, text, parameters)))
+        grip = Grip.of(await self.ask("start", **start_keys(sequence, text, parameters)), "start")
         self._session.grip = grip.request
         return grip
 
     async def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:
-        return Checked.of(await self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)))
+        return Checked.of(await self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)), "start")
 
     async def stop(self) -> None:
         await self.ask("stop")
@@ -121,8 +121,11 @@ class AsyncGripper:
             raise ConnectionLost(f"{self.path}: not connected")
         number, line = self._session.request(command, keys)
         self._writer.write(line)
-        return await self._until(
-            lambda: self._session.result_of(number) if number in self._session.replies else None, self.answer_s)
+        try:
+            return await self._until(
+                lambda: self._session.result_of(number) if number in self._session.replies else None, self.answer_s)
+        finally:
+            self._session.forget(number)
 
     async def _until(self, look: Callable[[], Optional[T]], timeout_s: float) -> T:
         """What look() returns once it returns something."""
@@ -139,12 +142,19 @@ class AsyncGripper:
             except asyncio.TimeoutError:
                 raise NotAnswered(f"{self.path}: it took too long") from None
 
+    @staticmethod
+    async def _line(reader: asyncio.StreamReader) -> bytes:
+        try:
+            return await reader.readline()
+        except ValueError as error:
+            raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes") from error
+
     async def _read(self, reader: asyncio.StreamReader) -> None:
         try:
-            while line := await reader.readline():
+            while line := await self._line(reader):
                 self._session.receive(line)
                 self._tell()
-        except (OSError, ValueError, SoftgripError) as error:
+        except (OSError, SoftgripError) as error:
             self._session.failure = error if isinstance(error, SoftgripError) else ConnectionLost(str(error))
         finally:
             # Who waits shall look once more, when this task counts as done.

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from types import TracebackType
 from typing import Any, Optional
 
-from .errors import ConnectionLost, NoDaemon, NotAnswered, SoftgripError
-from .messages import Checked, Event, Grip, Hello, Result, Sequence, SequenceEnd, Status
+from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError, SoftgripError
+from .messages import Checked, Event, Grip, Hello, Listing, Result, Sequence, SequenceEnd, Status
 from .session import API, LONGEST_LINE, Session, default_path, start_keys
 
 
@@ -60,21 +60,21 @@ class Gripper:
         return self.hello
 
     def status(self) -> Status:
-        return Status.of(self.ask("status"))
+        return Status.of(self.ask("status"), "status")
 
     def sequences(self) -> tuple[Sequence, ...]:
         """What the daemon can be asked to start by name."""
-        return tuple(Sequence.of(s) for s in self.ask("sequences")["sequences"])
+        return Listing.of(self.ask("sequences"), "sequences").sequences
 
     def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
         """Starts a sequence by its name, or one whose `text` is given. `parameters`: `squeeze_kpa=4`."""
-        grip = Grip.of(self.ask("start", **start_keys(sequence, text, parameters)))
+        grip = Grip.of(self.ask("start", **start_keys(sequence, text, parameters)), "start")
         self._session.grip = grip.request
         return grip
 
     def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:
         """Everything that a start would check, and no motion; raises what the start would raise."""
-        return Checked.of(self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)))
+        return Checked.of(self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)), "start")
 
     def stop(self) -> None:
         """Ends the sequence; the outputs go where the rig file says for the phase."""
@@ -127,10 +127,13 @@ class Gripper:
         """Any command of the socket API, and its result."""
         number, line = self._session.request(command, keys)
         end = time.monotonic() + self.answer_s
-        self._send(line, end)
-        while number not in self._session.replies:
-            self._read(end)
-        return self._session.result_of(number)
+        try:
+            self._send(line, end)
+            while number not in self._session.replies:
+                self._read(end)
+            return self._session.result_of(number)
+        finally:
+            self._session.forget(number)
 
     def _open(self) -> Hello:
         connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -143,7 +146,7 @@ class Gripper:
         self._socket = connection
         self._input = b""
         try:
-            hello = Hello.of(self.ask("hello", client=self.name, api=API))
+            hello = Hello.of(self.ask("hello", client=self.name, api=API), "hello")
             self._session.subscribed(self.ask("subscribe", **self._session.subscription()))
         except BaseException:
             self.close()
@@ -176,13 +179,20 @@ class Gripper:
         try:
             while b"\n" not in self._input:
                 data = self._connection(end).recv(1 << 16)
-                if not data or len(self._input) > LONGEST_LINE:
+                if not data:
                     raise self._lost(None)
                 self._input += data
+                if len(self._input) > LONGEST_LINE and b"\n" not in self._input:
+                    self.close()
+                    raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes")
         except TimeoutError as error:
             raise NotAnswered(f"{self.path}: it took too long") from error
         except OSError as error:
             raise self._lost(error) from error
         *lines, self._input = self._input.split(b"\n")
-        for line in lines:
-            self._session.receive(line)
+        try:
+            for line in lines:
+                self._session.receive(line)
+        except ProtocolError:
+            self.close()
+            raise

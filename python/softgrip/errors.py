@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Optional
 
-from .messages import Problem, Result, SequenceEnd
+if TYPE_CHECKING:
+    from .messages import Problem, Result, SequenceEnd
 
 
 class SoftgripError(Exception):
@@ -25,7 +25,8 @@ class NotAnswered(SoftgripError, TimeoutError):
 
 
 class ProtocolError(SoftgripError):
-    """What answers speaks something else; or it says that the request was none. `code` is the daemon's."""
+    """A line of the daemon is malformed, and the connection is closed; or the daemon does not take the request. `code` is
+    the daemon's word, if it gave one."""
 
     def __init__(self, message: str, code: str = "") -> None:
         super().__init__(message)
@@ -64,19 +65,5 @@ class GripFailed(SoftgripError):
         self.end = end
 
 
-def error_of(error: Mapping[str, Any]) -> SoftgripError:
-    """The exception that a reply of the daemon stands for."""
-    code, message = str(error.get("code", "")), str(error.get("message", ""))
-    if code == "sequence_refused":
-        return SequenceRefused(message, tuple(Problem.of(p) for p in error["problems"]))
-    if code == "refused":
-        return Refused(message, error["refusal"]["code"], error["refusal"]["name"])
-    if code == "owned":
-        return Owned(message, code, code)
-    if code in ("busy", "abandoned", "not_allowed"):
-        return Refused(message, code, code)
-    if code == "no_answer":
-        return NotAnswered(message)
-    if code == "too_many_clients":
-        return ConnectionLost(message)
-    return ProtocolError(message, code)
+class MalformedFile(SoftgripError, ValueError):
+    """A recording, a log or a report that is not as softgrip writes it."""

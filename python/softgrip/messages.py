@@ -7,6 +7,8 @@ import enum
 from collections.abc import Mapping
 from typing import Any, Optional, TypeVar
 
+from .decoding import decoded, fields_of
+
 T = TypeVar("T")
 
 
@@ -37,32 +39,23 @@ class SequenceEnd(str, enum.Enum):
     FAULTED = "faulted"
 
 
-def _taken(cls: Any, json: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys that the class has; a newer daemon may say more."""
-    return {field.name: json[field.name] for field in dataclasses.fields(cls) if field.name in json}
-
-
 class _AsSaid:
     """Its fields are the keys of the JSON."""
 
     @classmethod
-    def of(cls: type[T], json: Mapping[str, Any]) -> T:
-        return cls(**_taken(cls, json))
+    def of(cls: type[T], json: Any, where: str) -> T:
+        """ProtocolError if the JSON is anything else. `where` stands in its text."""
+        return decoded(cls, json, where)
 
 
 @dataclasses.dataclass(frozen=True)
-class Hello:
+class Hello(_AsSaid):
     api: int
     version: str
     started_at: str  # of the daemon, UTC; event ids count from there
     role: str  # "look" or "operate"
     commands: tuple[str, ...]
     capabilities: tuple[str, ...]
-
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Hello:
-        return cls(json["api"], json["version"], json["started_at"], json["role"], tuple(json["commands"]),
-                   tuple(json["capabilities"]))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -76,7 +69,7 @@ class Fault(_AsSaid):
 
 
 @dataclasses.dataclass(frozen=True)
-class Channel:
+class Channel(_AsSaid):
     """One finger."""
 
     name: str
@@ -94,15 +87,9 @@ class Channel:
     limit: Optional[str]
     health: str
 
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Channel:
-        taken = _taken(cls, json)
-        taken["result"] = Result(taken["result"])
-        return cls(**taken)
-
 
 @dataclasses.dataclass(frozen=True)
-class SequenceState:
+class SequenceState(_AsSaid):
     """The sequence that runs, or ran last."""
 
     name: str
@@ -113,12 +100,6 @@ class SequenceState:
     step_name: str
     steps: int
     ended: Optional[SequenceEnd]
-
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> SequenceState:
-        taken = _taken(cls, json)
-        taken["ended"] = SequenceEnd(taken["ended"]) if taken["ended"] else None
-        return cls(**taken)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -136,11 +117,8 @@ class Status:
     json: Mapping[str, Any] = dataclasses.field(repr=False, compare=False)  # all that it said
 
     @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Status:
-        return cls(State(json["state"]), Result(json["result"]), tuple(Channel.of(c) for c in json["channels"]),
-                   Fault.of(json["fault"]) if json["fault"] else None,
-                   SequenceState.of(json["sequence"]) if json["sequence"] else None, json["owner"], json["rig"],
-                   json["version"], json["rate_hz"], json["time_s"], json)
+    def of(cls, json: Mapping[str, Any], where: str) -> Status:
+        return cls(**fields_of(cls, {**json, "json": json}, where))
 
     def channel(self, name: str) -> Channel:
         """The finger of that name; KeyError if there is none."""
@@ -193,7 +171,7 @@ class Problem(_AsSaid):
 
 
 @dataclasses.dataclass(frozen=True)
-class Sequence:
+class Sequence(_AsSaid):
     """A file of the daemon's sequence directory."""
 
     name: str
@@ -201,22 +179,28 @@ class Sequence:
     parameters: tuple[Parameter, ...]
     problems: tuple[Problem, ...]
 
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Sequence:
-        return cls(json["name"], json["about"], tuple(Parameter.of(p) for p in json["parameters"]),
-                   tuple(Problem.of(p) for p in json["problems"]))
-
 
 @dataclasses.dataclass(frozen=True)
-class Grip:
+class Grip(_AsSaid):
     """A sequence that was started."""
 
     request: int  # under which events and recordings name it
-    warnings: tuple[Problem, ...]
+    warnings: tuple[Problem, ...] = ()
 
-    @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Grip:
-        return cls(json["request"], tuple(Problem.of(p) for p in json.get("warnings", ())))
+
+@dataclasses.dataclass(frozen=True)
+class WouldStart(_AsSaid):
+    """The daemon's reply to a dry run has it beside the warnings."""
+
+    name: str
+    parameters: Mapping[str, float]
+    steps: int
+
+
+@dataclasses.dataclass(frozen=True)
+class CheckReply(_AsSaid):
+    would_start: WouldStart
+    warnings: tuple[Problem, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -229,7 +213,45 @@ class Checked:
     warnings: tuple[Problem, ...]
 
     @classmethod
-    def of(cls, json: Mapping[str, Any]) -> Checked:
-        would = json["would_start"]
-        return cls(would["name"], would["parameters"], would["steps"],
-                   tuple(Problem.of(p) for p in json.get("warnings", ())))
+    def of(cls, json: Any, where: str) -> Checked:
+        said = CheckReply.of(json, where)
+        return cls(said.would_start.name, said.would_start.parameters, said.would_start.steps, said.warnings)
+
+
+@dataclasses.dataclass(frozen=True)
+class Listing(_AsSaid):
+    """The reply to `sequences`."""
+
+    sequences: tuple[Sequence, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class Subscribed(_AsSaid):
+    """The reply to `subscribe`."""
+
+    since: int
+    started_at: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Refusal(_AsSaid):
+    code: str  # "R02"
+    name: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Failure(_AsSaid):
+    """The error of a reply."""
+
+    code: str
+    message: str
+    problems: tuple[Problem, ...] = ()
+    refusal: Optional[Refusal] = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Reply(_AsSaid):
+    id: Optional[int]  # of the request; None: the daemon could not read it
+    ok: bool
+    result: Optional[Mapping[str, Any]] = None
+    error: Optional[Failure] = None

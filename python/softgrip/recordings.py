@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import errno
+import io
 import json
 import os
 import pathlib
@@ -14,6 +15,8 @@ from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
+
+from .errors import MalformedFile
 
 Path = Union[str, os.PathLike[str]]
 Array = npt.NDArray[Any]
@@ -35,7 +38,22 @@ def _text(path: Path, largest: int) -> str:
     _check(os.stat(path), path, largest)  # first: the opening alone starts some devices
     with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC), "rb") as file:
         _check(os.fstat(file.fileno()), path, largest)  # another process may have replaced it
-        return file.read(largest).decode()
+        data = file.read(largest)
+    try:
+        return data.decode()
+    except UnicodeDecodeError as error:
+        raise MalformedFile(f"{path}: this is no text in UTF-8: {error}") from error
+
+
+def _json_object(path: Path) -> dict[str, Any]:
+    text = _text(path, LARGEST_JSON)
+    try:
+        value = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise MalformedFile(f"{path}: this is no JSON: {error}") from error
+    if not isinstance(value, dict):
+        raise MalformedFile(f"{path}: this is no JSON object")
+    return value
 
 
 def _column(cells: list[str]) -> Array:
@@ -48,23 +66,30 @@ def _column(cells: list[str]) -> Array:
 
 def read_columns(path: Path) -> dict[str, Array]:
     """A CSV with a header (run.csv, a log, a series.csv): an array per column. A last line that is not whole, as a run
-    that was killed leaves it, is left out; any other that does not fit is a ValueError with its number."""
+    that was killed leaves it, is left out; any other that does not fit is a MalformedFile with its number."""
     text = _text(path, LARGEST_CSV)
-    whole = text[:text.rfind("\n") + 1]
-    rows = list(csv.reader(whole.splitlines()))
-    if not rows:
-        raise ValueError(f"{path}: no header")
-    names = rows[0]
-    for number, row in enumerate(rows[1:], start=2):
-        if len(row) != len(names):
-            raise ValueError(f"{path}:{number}: {len(row)} cells, the header has {len(names)}")
-    columns = zip(*rows[1:]) if len(rows) > 1 else ([] for _ in names)
+    rows = csv.reader(io.StringIO(text[:text.rfind("\n") + 1], newline=""))
+    kept: list[list[str]] = []
+    try:
+        for row in rows:
+            kept.append(row)
+            if len(row) != len(kept[0]):
+                raise MalformedFile(f"{path}:{rows.line_num}: {len(row)} cells, the header has {len(kept[0])}")
+    except csv.Error as error:
+        raise MalformedFile(f"{path}:{rows.line_num}: {error}") from error
+    if not kept or not kept[0]:
+        raise MalformedFile(f"{path}: no header")
+    names = kept[0]
+    for name in names:
+        if names.count(name) > 1:
+            raise MalformedFile(f"{path}: the column '{name}' is there more than once")
+    columns = zip(*kept[1:]) if len(kept) > 1 else ([] for _ in names)
     return {name: _column(list(cells)) for name, cells in zip(names, columns)}
 
 
 def read_report(path: Path) -> Mapping[str, Any]:
     """identify.json, diagnosis.json or run.json; lists of numbers are arrays."""
-    return _with_arrays(json.loads(_text(path, LARGEST_JSON)))  # type: ignore[no-any-return]
+    return _with_arrays(_json_object(path))  # type: ignore[no-any-return]
 
 
 def _with_arrays(value: Any) -> Any:
@@ -88,9 +113,12 @@ class Recording:
     def read(cls, folder: Path) -> Recording:
         folder = pathlib.Path(folder)
         columns = read_columns(folder / "run.csv")
-        about = json.loads(_text(folder / "run.json", LARGEST_JSON))
+        about = _json_object(folder / "run.json")
         if "channel" not in columns:
-            return cls(about, {str(about["channels"][0]): columns})
+            channels = about.get("channels")
+            if not isinstance(channels, list) or not channels:
+                raise MalformedFile(f"{folder}: run.csv has no column 'channel', and run.json lists no finger")
+            return cls(about, {str(channels[0]): columns})
         of = columns.pop("channel")
         return cls(about, {name: {key: column[of == name] for key, column in columns.items()}
                            for name in dict.fromkeys(map(str, of))})

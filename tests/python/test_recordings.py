@@ -5,6 +5,7 @@ import io
 import json
 import os
 import pathlib
+import random
 import runpy
 import sys
 import tempfile
@@ -13,6 +14,7 @@ import unittest
 
 import numpy as np
 import package
+import softgrip
 
 from softgrip.recordings import Recording, read_columns, read_report
 
@@ -97,6 +99,48 @@ class Recordings(unittest.TestCase):
             file.truncate(1 << 40)
         with self.assertRaisesRegex(OSError, "larger than"):
             read_columns(self.folder / "run.csv")
+
+    def malformed(self, text):
+        return self.assertRaisesRegex(softgrip.MalformedFile, text)
+
+    def test_a_malformed_csv_is_a_malformed_file(self):
+        path = self.folder / "run.csv"
+        for content, text in ((b"time_s\n\xff\xfe\n", "no text in UTF-8"), (b"\n", "no header"),
+                              (b"a,b,a\n1,2,3\n", "column 'a' is there more than once"),
+                              (b"a\n\"" + b"x" * 200_000 + b"\"\n", r"run\.csv:2: field larger"),
+                              (b"a,b\n1,2\n\n3,4\n", r"run\.csv:3: 0 cells, the header has 2"),
+                              (b"a,b\n1,\xe2\x80\xa82\n3\n", r"run\.csv:3: 1 cells")):
+            path.write_bytes(content)
+            with self.subTest(text), self.malformed(text):
+                read_columns(path)
+
+    def test_a_malformed_report_is_a_malformed_file(self):
+        path = self.folder / "run.json"
+        self.write(RUN)
+        for content, text in ((b"", "no JSON"), (b"{", "no JSON"), (b"[" * 200_000, "no JSON"),
+                              (b"\xff", "no text in UTF-8"), (b"[1]", "no JSON object"), (b"7", "no JSON object")):
+            path.write_bytes(content)
+            for read in (lambda: read_report(path), lambda: Recording.read(self.folder)):
+                with self.subTest(text), self.malformed(text):
+                    read()
+
+    def test_a_recording_without_the_names_of_its_fingers(self):
+        self.write("time_s,displacement_mm\n0,1\n")
+        for about in ({}, {"channels": []}, {"channels": "left"}, {"channels": None}):
+            (self.folder / "run.json").write_text(json.dumps(about))
+            with self.subTest(about), self.malformed("lists no finger"):
+                Recording.read(self.folder)
+
+    def test_damaged_bytes(self):
+        for seed in range(300):
+            chance = random.Random(seed)
+            for name, whole in (("run.csv", RUN), ("run.json", json.dumps(ABOUT))):
+                text = bytearray(whole.encode())
+                at = chance.randrange(len(text))
+                text[at:at + chance.randrange(4)] = bytes(chance.randrange(256) for _ in range(chance.randrange(4)))
+                (self.folder / name).write_bytes(text)
+            with self.subTest(seed=seed), contextlib.suppress(softgrip.MalformedFile):
+                Recording.read(self.folder)
 
     def test_the_example_reads_it(self):
         self.write(RUN)
