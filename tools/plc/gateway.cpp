@@ -15,8 +15,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* own_name = "softgrip-plc";
 constexpr double watch_rate_hz = 25;
-/// Between two attempts to reach the daemon.
-constexpr Nanoseconds retry_pause = ns_per_s / 4;
 /// A daemon that says nothing for so long is none.
 constexpr Nanoseconds longest_silence = ns_per_s;
 constexpr Nanoseconds beat_period = ns_per_s / 10;
@@ -51,18 +49,18 @@ void Gateway::command(Nanoseconds now) {
   auto request = request_of(settings_, registers_);
   if (!request) return refuse(request.error());
   if (kind == CommandCode::start && watch_.silent(now)) return refuse(Reason::master_silent);
-  if (!daemon_) return refuse(Reason::no_daemon);
+  if (!connected_) return refuse(Reason::no_daemon);
   send(std::move(*request), counter);
 }
 
 void Gateway::send(Json request, std::optional<std::uint16_t> counter) {
   request["id"] = ++last_id_;
   if (counter) asked_[last_id_] = *counter;
-  daemon_->send(request);
+  to_daemon_.push_back(std::move(request));
 }
 
 void Gateway::react(Nanoseconds now) {
-  if (!watch_.falls_silent(now) || settings_.when_silent == Reaction::nothing || !daemon_) return;
+  if (!watch_.falls_silent(now) || settings_.when_silent == Reaction::nothing || !connected_) return;
   const CommandCode code = settings_.when_silent == Reaction::stop   ? CommandCode::stop
                            : settings_.when_silent == Reaction::vent ? CommandCode::vent
                                                                      : CommandCode::release;
@@ -70,42 +68,35 @@ void Gateway::react(Nanoseconds now) {
 }
 
 void Gateway::look_after(Nanoseconds now) {
-  if (!daemon_) connect(now);
-  while (daemon_) {
-    auto line = daemon_->next_line(std::chrono::milliseconds(0));
-    if (!line) {
-      lose();
-    } else if (*line) {
-      take(**line, now);
-    } else {
-      break;
-    }
-  }
-  if (daemon_ && now - heard_at_ > longest_silence) lose();
   // What has waited for the end of the command before it.
   if (handshake_.synchronised()) command(now);
   react(now);
 }
 
-void Gateway::connect(Nanoseconds now) {
-  if (tried_at_ != 0 && now - tried_at_ < retry_pause) return;
-  tried_at_ = now;
-  auto daemon = tools::DaemonClient::connect(settings_.socket);
-  if (!daemon) return;
-  daemon_.emplace(std::move(*daemon));
+void Gateway::daemon_came(Nanoseconds now) {
+  connected_ = true;
   heard_at_ = now;
   send({{"command", "hello"}, {"client", own_name}, {"api", 1}}, std::nullopt);
   send({{"command", "watch"}, {"rate_hz", watch_rate_hz}}, std::nullopt);
 }
 
-void Gateway::lose() noexcept {
-  daemon_.reset();
+void Gateway::daemon_went() noexcept {
+  connected_ = false;
+  to_daemon_.clear();
   asked_.clear();
   handshake_.lose();
   show_no_daemon(settings_.registers, registers_);
 }
 
-void Gateway::take(const Json& line, Nanoseconds now) {
+bool Gateway::daemon_is_silent(Nanoseconds now) const noexcept {
+  return connected_ && now - heard_at_ > longest_silence;
+}
+
+std::vector<Json> Gateway::lines_to_daemon() {
+  return std::exchange(to_daemon_, {});
+}
+
+void Gateway::daemon_said(const Json& line, Nanoseconds now) {
   if (line.contains("watch")) {
     heard_at_ = now;
     show_status(line["watch"], settings_.registers, registers_);

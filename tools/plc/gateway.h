@@ -1,17 +1,18 @@
 #pragma once
-// The daemon on one side, registers on the other.
+// Registers on one side, the daemon's lines on the other. No sockets and no clock: who owns those hands in
+// what arrived and the time, and sends what goes out.
 
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <vector>
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "base/time.h"
 #include "drivers/modbus_server/registers.h"
 #include "drivers/modbus_server/reply.h"
 #include "rig/plc_file/settings.h"
-#include "tools/client/daemon_client.h"
 #include "tools/plc/handshake.h"
 #include "tools/plc/master_watch.h"
 
@@ -22,22 +23,27 @@ class Gateway {
   /// `settings` outlives it.
   explicit Gateway(const Settings& settings);
 
-  /// Answers a master, and sends on what it commands.
+  /// Answers a master, and passes its command on to the daemon.
   [[nodiscard]] modbus::Reply serve(const modbus::Request& request, Nanoseconds now);
-  /// To be called when the daemon's descriptor can be read, and every `longest_pause`: the daemon's lines,
-  /// heartbeats, connecting anew.
+  /// To be called after the daemon's lines, and every `longest_pause`: commands that waited, heartbeats.
   void look_after(Nanoseconds now);
   static constexpr Nanoseconds longest_pause = 20'000'000;
 
-  /// Of the connection with the daemon; -1 if there is none.
-  [[nodiscard]] int descriptor() const noexcept { return daemon_ ? daemon_->descriptor() : -1; }
+  /// The connection with the daemon is open.
+  void daemon_came(Nanoseconds now);
+  /// A line of the daemon.
+  void daemon_said(const nlohmann::ordered_json& line, Nanoseconds now);
+  /// The connection with the daemon has ended.
+  void daemon_went() noexcept;
+  /// The daemon has sent no state for so long that its connection is to be ended.
+  [[nodiscard]] bool daemon_is_silent(Nanoseconds now) const noexcept;
+  /// Returns the lines that go to the daemon, the oldest first, and forgets them.
+  [[nodiscard]] std::vector<nlohmann::ordered_json> lines_to_daemon();
+
   /// The master beats, or has never begun to.
   [[nodiscard]] bool hears_master(Nanoseconds now) const noexcept { return !watch_.silent(now); }
 
  private:
-  void connect(Nanoseconds now);
-  void lose() noexcept;
-  void take(const nlohmann::ordered_json& line, Nanoseconds now);
   void command(Nanoseconds now);
   void react(Nanoseconds now);
   void send(nlohmann::ordered_json request, std::optional<std::uint16_t> counter);
@@ -47,9 +53,9 @@ class Gateway {
   modbus::Registers registers_;
   Handshake handshake_;
   MasterWatch watch_;
-  std::optional<tools::DaemonClient> daemon_;
-  Nanoseconds tried_at_ = 0;  // to connect
+  bool connected_ = false;
   Nanoseconds heard_at_ = 0;  // a state of the daemon
+  std::vector<nlohmann::ordered_json> to_daemon_;
   std::uint64_t last_id_ = 0;
   std::map<std::uint64_t, std::uint16_t> asked_;  // counters of commands by the ids of their requests
 };

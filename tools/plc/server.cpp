@@ -32,7 +32,11 @@ bool is_allowed(int socket, const std::vector<std::string>& allow) {
 }
 
 Server::Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals)
-    : settings_(settings), gateway_(gateway), listener_(std::move(listener)), signals_(std::move(signals)) {}
+    : settings_(settings),
+      gateway_(gateway),
+      daemon_(settings.socket, gateway),
+      listener_(std::move(listener)),
+      signals_(std::move(signals)) {}
 
 void Server::run() {
   std::vector<pollfd> watched;
@@ -40,7 +44,7 @@ void Server::run() {
   const timespec pause{0, Gateway::longest_pause};
   for (;;) {
     watched.assign(
-        {{signals_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}, {gateway_.descriptor(), POLLIN, 0}});
+        {{signals_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}, {daemon_.descriptor(), POLLIN, 0}});
     for (const Master& master : masters_) {
       const int events = master.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
       watched.push_back({master.connection.descriptor(), static_cast<short>(events), 0});
@@ -48,10 +52,12 @@ void Server::run() {
     if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) return;
     if (watched[0].revents != 0) return;
     const Nanoseconds now = clock_.now();
+    daemon_.receive(now);
     gateway_.look_after(now);
     auto watch = watched.begin() + others;
     std::erase_if(masters_, [&](Master& master) { return !serve(master, (watch++)->revents, now); });
     if (watched[1].revents != 0) accept(now);
+    daemon_.send();
   }
 }
 

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/descriptor.h"
 #include "drivers/modbus_server/connection.h"
+#include "tools/plc/daemon_line.h"
 #include "tools/plc/gateway.h"
 
 namespace softgrip::plc {
@@ -31,6 +32,7 @@ class Server {
 
   const Settings& settings_;
   Gateway& gateway_;
+  DaemonLine daemon_;
   Descriptor listener_;
   Descriptor signals_;
   MonotonicClock clock_;
