@@ -26,7 +26,7 @@ class Map:
 
 
 class Plc(bench.Process):
-    def __init__(self, folder, port=0, changes=(), name="softgrip-plc"):
+    def __init__(self, folder, port=0, changes=(), name="softgrip-plc", socket=None):
         path = folder / "config" / "plc.yaml"
         text = path.read_text()
         for pattern, replacement in changes:
@@ -34,8 +34,8 @@ class Plc(bench.Process):
             assert count, pattern
         path.write_text(text)
         self.map = Map(path)
-        super().__init__(name, [SOFTGRIP_PLC, "--config", path, "--port", port, "--socket", folder / "softgripd.sock"],
-                         folder)
+        super().__init__(name, [SOFTGRIP_PLC, "--config", path, "--port", port,
+                                "--socket", socket or folder / "softgripd.sock"], folder)
         self.port = int(bench.wait_for(f"{name} to listen", self._ready))
 
     def _ready(self):

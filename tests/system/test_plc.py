@@ -1,5 +1,6 @@
 """A PLC grips through softgrip-plc: counters, registers, a master that falls silent, daemons that come and go."""
 
+import contextlib
 import socket
 import time
 
@@ -136,6 +137,25 @@ class Gateway(bench.BenchTest):
                 return False
         bench.wait_for("the end of one that says nothing", others_place)
         self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
+
+    def test_a_daemon_that_accepts_nobody_keeps_no_master_waiting(self):
+        path = self.folder / "full.sock"
+        full = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.addCleanup(full.close)
+        full.bind(str(path))
+        full.listen(0)
+        with contextlib.suppress(BlockingIOError):
+            for _ in range(100):
+                client = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+                self.addCleanup(client.close)
+                client.setblocking(False)
+                client.connect(str(path))
+        gateway = self.gateway(socket=path)
+        master = plc.Master(gateway)
+        self.addCleanup(master.close)
+        before = master.read("heartbeat")
+        bench.wait_for("its heartbeat", lambda: master.read("heartbeat") != before)
+        self.assertEqual(master.command(plc.VENT), (plc.REFUSED, plc.NO_DAEMON))
 
     def test_who_is_not_on_the_list_is_shown_out(self):
         gateway = self.gateway(changes=((r"allow: \[127.0.0.1\]", "allow: [127.0.0.2]"),))

@@ -1,5 +1,6 @@
 #include "tools/client/daemon_client.h"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -31,6 +32,8 @@ ClientFailure cannot_connect(const std::string& path, int error) {
     case EACCES:
       return {ExitCode::io,
               "you may not open " + path + ": who may move the gripper is decided by that file's group"};
+    case EAGAIN:
+      return {ExitCode::io, "the daemon at " + path + " accepts no connection: it is paused or overloaded"};
     default:
       return {ExitCode::io, "cannot connect to " + path + ": " + std::strerror(error)};
   }
@@ -78,13 +81,24 @@ std::string default_socket_path() {
 }
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path) {
+  return connect(path, 0);
+}
+
+tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const std::string& path) {
+  auto client = connect(path, SOCK_NONBLOCK);
+  // Only to connect: send() leaves a line whole.
+  if (client) ::fcntl(client->descriptor(), F_SETFL, 0);
+  return client;
+}
+
+tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path, int flags) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) {
     return tl::unexpected{ClientFailure{ExitCode::io, "the path " + path + " is too long for a socket"}};
   }
   std::memcpy(address.sun_path, path.data(), path.size());
-  Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)};
+  Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)};
   if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return tl::unexpected{cannot_connect(path, errno)};
   }

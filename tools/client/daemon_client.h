@@ -30,6 +30,9 @@ class DaemonClient {
  public:
   /// The failure says what to do when no daemon is there.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
+  /// For a program that must not wait: fails if the daemon has too many connections to accept. connect()
+  /// waits.
+  [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
 
   /// Sends a request and waits for nothing. What cannot be sent shows itself in next_line(): the reason
   /// stands in what the daemon says last, if it gave one before it hung up.
@@ -52,6 +55,7 @@ class DaemonClient {
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
  private:
+  [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path, int flags);
   DaemonClient(Descriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
   [[nodiscard]] ClientFailure gone() const;
 

@@ -37,7 +37,7 @@ void DaemonLine::send() {
 void DaemonLine::connect(Nanoseconds now) {
   if (tried_at_ != 0 && now - tried_at_ < retry_pause) return;
   tried_at_ = now;
-  auto client = tools::DaemonClient::connect(path_);
+  auto client = tools::DaemonClient::connect_at_once(path_);
   if (!client) return;
   client_.emplace(std::move(*client));
   gateway_.daemon_came(now);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <vector>
 
 #include "drivers/modbus_server/listener.h"
 
@@ -83,6 +84,24 @@ TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {
   const auto left_over = DaemonClient::connect(path);
   ASSERT_FALSE(left_over);
   EXPECT_NE(left_over.error().message.find("nobody listens"), std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(DaemonClient, DoesNotWaitForADaemonThatAcceptsNobodyIfItMustNot) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("softgrip_full_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / "full.sock";
+  const auto listener = modbus::listen_unix(path);
+  ASSERT_TRUE(listener);
+  std::vector<DaemonClient> waiting;
+  auto client = DaemonClient::connect_at_once(path);
+  for (; client && waiting.size() < 10'000; client = DaemonClient::connect_at_once(path))
+    waiting.push_back(std::move(*client));
+  ASSERT_FALSE(client);
+  EXPECT_EQ(client.error().code, ExitCode::io);
+  EXPECT_NE(client.error().message.find("accepts no connection"), std::string::npos);
+  EXPECT_FALSE(client.error().nobody_listens);
   std::filesystem::remove_all(folder);
 }
 
