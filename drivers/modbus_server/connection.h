@@ -38,6 +38,11 @@ class Connection {
   [[nodiscard]] std::optional<Clock::time_point> next_due() const;
   /// A piece is due and the descriptor did not take it yet.
   [[nodiscard]] bool blocked() const noexcept { return blocked_; }
+  /// A client on the network has sent a part of a request and not yet its rest.
+  [[nodiscard]] bool half() const {
+    const auto* const network = std::get_if<RequestStream>(&stream_);
+    return network != nullptr && network->half();
+  }
   [[nodiscard]] int descriptor() const noexcept { return descriptor_.get(); }
 
  private:

@@ -35,6 +35,8 @@ class RequestStream {
   [[nodiscard]] std::optional<Request> next();
   /// True once a header made no sense. The stream cannot be brought into step again: close the connection.
   [[nodiscard]] bool broken() const noexcept { return broken_; }
+  /// A request has begun to arrive, and its rest has not.
+  [[nodiscard]] bool half() const noexcept { return !pending_.empty(); }
 
  private:
   Bytes pending_;

@@ -1,6 +1,7 @@
 """softgrip-plc beside the other processes of a test, and a master that commands it as a PLC would."""
 
 import re
+import struct
 
 import bench
 import yaml
@@ -10,6 +11,7 @@ SOFTGRIP_PLC = bench.BUILD / "tools" / "softgrip-plc"
 START, STOP, VENT, RELEASE, ACKNOWLEDGE = range(1, 6)
 ACCEPTED, REFUSED, UNKNOWN = 2, 3, 4
 FIRST_AFTER_START, NO_DAEMON, NO_SUCH_COMMAND, NO_SUCH_RECIPE, MASTER_SILENT = range(1, 6)
+NOT_NEXT = 10
 NO_DAEMON_STATE, IDLE, RESYNCHRONISING, RUNNING, FAULTED = 0, 2, 3, 4, 6
 HOLDING, NO_PART, PART_LOST, RELEASED = range(1, 5)
 NOT_GIVEN = 0x8000
@@ -43,6 +45,12 @@ class Plc(bench.Process):
             raise AssertionError(f"{self.name} ended: {self.errors()}")
         found = re.search(r"listening on [\d.]+:(\d+)\n", self.output())
         return found and found.group(1)
+
+
+def block(counter, command, recipe=0):
+    """A request as a PLC writes it in every cycle: counter, command and recipe in one frame."""
+    pdu = struct.pack(">BHHB3H", 16, 0, 3, 6, counter, command, recipe)
+    return struct.pack(">HHHB", 7, 0, len(pdu) + 1, 1) + pdu
 
 
 class Master:

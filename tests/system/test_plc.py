@@ -53,6 +53,64 @@ class Gateway(bench.BenchTest):
         self.assertEqual(len(plc.started(self.softgripd)), 1)
         self.assertEqual(self.softgripd.status()["state"], "idle")
 
+    def test_an_old_block_from_a_second_connection_starts_nothing(self):
+        gateway = self.gateway()
+        master = self.master(gateway)
+        second = plc.Master(gateway, synchronise=False)
+        self.addCleanup(second.close)
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+        old = master.counter
+        self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
+        self.softgripd.wait_for_state("idle")
+        for _ in range(20):
+            second.write("command_counter", old, plc.START, 1)
+            # The one that wrote it reads the reason; the other one reads the end of its own command.
+            self.assertEqual((second.read("outcome"), second.read("reason")), (plc.REFUSED, plc.NOT_NEXT))
+            self.assertEqual(master.done(master.counter), (plc.ACCEPTED, 0))
+        for wrong in (0, master.counter + 2, 65535):
+            second.write("command_counter", wrong, plc.START, 1)
+            self.assertEqual(second.read("reason"), plc.NOT_NEXT)
+        self.assertEqual(second.read("done_counter"), master.counter)
+        self.assertEqual(len(plc.started(self.softgripd)), 1)
+        self.assertEqual(self.softgripd.status()["state"], "idle")
+        second.synchronise()
+        self.assertEqual(second.command(plc.START, recipe=1), (plc.ACCEPTED, 0))
+
+    def test_the_late_rest_of_a_half_sent_block_starts_nothing(self):
+        gateway = self.gateway()
+        master = self.master(gateway)
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+        late = []
+        # An old counter, and the one that is next by the time of the rest.
+        for counter in (master.counter, master.counter + 2):
+            client = socket.create_connection(("127.0.0.1", gateway.port))
+            self.addCleanup(client.close)
+            client.settimeout(bench.PATIENCE_S)
+            # A whole request before it: the gateway has read the half when it has answered that.
+            client.sendall(plc.block(master.counter, 0) + plc.block(counter, plc.START, 1)[:11])
+            self.assertEqual(len(client.recv(100)), 12)
+            late.append((client, plc.block(counter, plc.START, 1)[11:]))
+        self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
+        for client, rest in late:
+            with contextlib.suppress(ConnectionResetError, BrokenPipeError):
+                client.sendall(rest)
+                self.assertEqual(client.recv(1), b"")
+        self.softgripd.wait_for_state("idle")
+        self.assertEqual(master.read("done_counter"), master.counter)
+        self.assertEqual(len(plc.started(self.softgripd)), 1)
+
+    def test_two_masters_do_not_write_one_command_together(self):
+        gateway = self.gateway()
+        master = self.master(gateway)
+        second = self.master(gateway)
+        self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+        master.write("command", plc.VENT)
+        second.write("command", plc.START, 1)
+        master.write("command_counter", master.counter + 1)
+        self.assertEqual(master.done(master.counter + 1), (plc.ACCEPTED, 0))
+        self.softgripd.wait_for_state("idle")
+        self.assertEqual(len(plc.started(self.softgripd)), 1)
+
     def test_what_is_refused_says_why(self):
         master = self.master(self.gateway())
         self.assertEqual(master.command(9), (plc.REFUSED, plc.NO_SUCH_COMMAND))

@@ -8,13 +8,13 @@ namespace softgrip::plc {
 enum class CommandCode : std::uint16_t { none, start, stop, vent, release, acknowledge };
 inline constexpr std::uint16_t last_command = 5;
 
-/// What became of the command whose counter is `done_counter`, or of a newer one that is under way.
+/// The end of the command whose counter is `done_counter`, or a newer one that is under way.
 enum class Outcome : std::uint16_t {
   none,
   executing,
   accepted,
-  refused,  ///< nothing came of it; `reason` says why
-  unknown,  ///< the daemon went before it answered; it is not sent again
+  refused,  ///< it was not executed; `reason` gives the cause
+  unknown,  ///< the daemon went, or fell silent, before it answered; it is not sent again
 };
 
 enum class Reason : std::uint16_t {
@@ -28,6 +28,7 @@ enum class Reason : std::uint16_t {
   sequence_refused,
   not_allowed,
   no_answer,
+  not_next,       ///< the counter does not follow the newest one, or this connection has not written that one
   refusal = 100,  ///< and the daemon's number: 102 is R02
 };
 

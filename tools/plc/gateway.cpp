@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "base/grid.h"
 #include "tools/plc/process_image.h"
 
@@ -15,69 +13,97 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* own_name = "softgrip-plc";
 constexpr double watch_rate_hz = 25;
-/// A daemon that says nothing for so long is none.
+/// A daemon that sends nothing for this time counts as none.
 constexpr Nanoseconds longest_silence = ns_per_s;
 constexpr Nanoseconds beat_period = ns_per_s / 10;
+
+CommandCode command_of(Reaction reaction) {
+  switch (reaction) {
+    case Reaction::stop:
+      return CommandCode::stop;
+    case Reaction::vent:
+      return CommandCode::vent;
+    case Reaction::release:
+      return CommandCode::release;
+    case Reaction::nothing:
+      break;
+  }
+  return CommandCode::none;
+}
 
 }  // namespace
 
 Gateway::Gateway(const Settings& settings)
     : settings_(settings),
       registers_(make_registers(settings.registers)),
+      masters_(settings.max_masters),
       watch_(nanoseconds(settings.silence_s)) {}
 
-modbus::Reply Gateway::serve(const modbus::Request& request, Nanoseconds now) {
+modbus::Reply Gateway::serve(Masters::Id id, const modbus::Request& request, Nanoseconds now) {
   const RegisterMap& map = settings_.registers;
-  show(now);
+  Master& master = *masters_.find(id);
+  master.asked_at = now;
+  master.asked = true;
+  show(master, now);
   const modbus::Registers::Answer answer = registers_.answer(request.pdu);
-  if (answer.wrote && writes(request.pdu, map.at(Name::master_heartbeat)))
-    watch_.beat(registers_.holding(map.at(Name::master_heartbeat)), now);
-  if (answer.wrote && writes(request.pdu, map.at(Name::command_counter))) command(now);
+  if (answer.wrote) {
+    masters_.drop_halves(id);
+    for (std::size_t i = 0; i < master.written.size(); ++i)
+      master.written[i] = registers_.holding(map.at(static_cast<Name>(i)));
+    if (writes(request.pdu, map.at(Name::master_heartbeat))) take_heartbeat(master, now);
+    if (writes(request.pdu, map.at(Name::command_counter))) take_counter(master, now);
+  }
   modbus::Reply reply;
   reply.pieces.push_back(
       {{}, modbus::frame_on(modbus::Wire::tcp, request.transaction, request.unit, answer.pdu)});
   return reply;
 }
 
-void Gateway::command(Nanoseconds now) {
-  const RegisterMap& map = settings_.registers;
-  const std::uint16_t counter = registers_.holding(map.at(Name::command_counter));
-  const std::uint16_t code = registers_.holding(map.at(Name::command));
-  const auto kind = static_cast<CommandCode>(code);  // or none that there is
-  if (!handshake_.write(counter, kind)) return;
-  const auto refuse = [&](Reason reason) { handshake_.finish(counter, Outcome::refused, reason); };
-  auto request = request_of(settings_, registers_);
-  if (!request) return refuse(request.error());
-  if (kind == CommandCode::start && watch_.silent(now)) return refuse(Reason::master_silent);
-  if (!connected_) return refuse(Reason::no_daemon);
-  send(std::move(*request), counter);
+/// A change is one of the same connection: of two masters that have stopped, each writes its last value.
+void Gateway::take_heartbeat(Master& master, Nanoseconds now) {
+  const std::uint16_t value = at(master.written, Name::master_heartbeat);
+  if (value != master.heartbeat) watch_.beat(now);
+  master.heartbeat = value;
+  masters_.remember_heartbeat(master);
 }
 
-void Gateway::send(Json request, std::optional<std::uint16_t> counter) {
+void Gateway::take_counter(Master& master, Nanoseconds now) {
+  const Handshake::Entry entry{at(master.written, Name::command_counter), command_in(master.written)};
+  if (handshake_.write(master.cursor, entry)) execute(entry, now);
+  if (!master.cursor.refused) masters_.remember_counter(master);
+}
+
+void Gateway::execute(const Handshake::Entry& entry, Nanoseconds now) {
+  const auto refuse = [&](Reason reason) { handshake_.finish(entry.counter, Outcome::refused, reason); };
+  auto request = request_of(settings_, entry.command);
+  if (!request) return refuse(request.error());
+  if (entry.command.is(CommandCode::start) && watch_.silent(now)) return refuse(Reason::master_silent);
+  if (!connected_) return refuse(Reason::no_daemon);
+  asked_[send(std::move(*request))] = entry.counter;
+}
+
+std::uint64_t Gateway::send(Json request) {
   request["id"] = ++last_id_;
-  if (counter) asked_[last_id_] = *counter;
   to_daemon_.push_back(std::move(request));
+  return last_id_;
 }
 
 void Gateway::react(Nanoseconds now) {
   if (!watch_.falls_silent(now) || settings_.when_silent == Reaction::nothing || !connected_) return;
-  const CommandCode code = settings_.when_silent == Reaction::stop   ? CommandCode::stop
-                           : settings_.when_silent == Reaction::vent ? CommandCode::vent
-                                                                     : CommandCode::release;
-  send({{"command", command_of(code)}}, std::nullopt);
+  send({{"command", command_of(command_of(settings_.when_silent))}});
 }
 
 void Gateway::look_after(Nanoseconds now) {
-  // What has waited for the end of the command before it.
-  if (handshake_.synchronised()) command(now);
+  masters_.drop_silent(now, nanoseconds(settings_.idle_s));
+  if (const auto waited = handshake_.take_waiting()) execute(*waited, now);
   react(now);
 }
 
 void Gateway::daemon_came(Nanoseconds now) {
   connected_ = true;
   heard_at_ = now;
-  send({{"command", "hello"}, {"client", own_name}, {"api", 1}}, std::nullopt);
-  send({{"command", "watch"}, {"rate_hz", watch_rate_hz}}, std::nullopt);
+  send({{"command", "hello"}, {"client", own_name}, {"api", 1}});
+  send({{"command", "watch"}, {"rate_hz", watch_rate_hz}});
 }
 
 void Gateway::daemon_went() noexcept {
@@ -102,27 +128,30 @@ void Gateway::daemon_said(const Json& line, Nanoseconds now) {
     show_status(line["watch"], settings_.registers, registers_);
     return;
   }
-  const auto asked =
-      asked_.find(line.contains("id") && line["id"].is_number() ? line["id"].get<std::uint64_t>() : 0);
+  const std::uint64_t id =
+      line.contains("id") && line["id"].is_number() ? line["id"].get<std::uint64_t>() : 0;
+  const auto asked = asked_.find(id);
   if (asked == asked_.end()) return;
   const std::uint16_t counter = asked->second;
   asked_.erase(asked);
   if (line.value("ok", false)) {
     handshake_.finish(counter, Outcome::accepted);
   } else {
-    handshake_.finish(counter, Outcome::refused, reason_of(line["error"]));
+    handshake_.finish(counter, Outcome::refused, reason_of(line.value("error", Json::object())));
   }
 }
 
-/// What is the gateway's own to say.
-void Gateway::show(Nanoseconds now) {
-  const RegisterMap& map = settings_.registers;
-  registers_.set_holding(map.at(Name::done_counter), handshake_.done_counter());
-  registers_.set_holding(map.at(Name::outcome), static_cast<std::uint16_t>(handshake_.outcome()));
-  registers_.set_holding(map.at(Name::reason), static_cast<std::uint16_t>(handshake_.reason()));
-  registers_.set_holding(map.at(Name::heartbeat), static_cast<std::uint16_t>(now / beat_period));
-  const std::uint16_t master = watch_.silent(now) ? 2 : watch_.watched() ? 1 : 0;
-  registers_.set_holding(map.at(Name::master), master);
+/// The gateway's own registers, and those that this master wrote.
+void Gateway::show(const Master& master, Nanoseconds now) {
+  const auto set = [&](Name name, auto value) {
+    registers_.set_holding(settings_.registers.at(name), static_cast<std::uint16_t>(value));
+  };
+  for (std::size_t i = 0; i < master.written.size(); ++i) set(static_cast<Name>(i), master.written[i]);
+  set(Name::done_counter, handshake_.done_counter());
+  set(Name::outcome, master.cursor.refused ? Outcome::refused : handshake_.outcome());
+  set(Name::reason, master.cursor.refused ? Reason::not_next : handshake_.reason());
+  set(Name::heartbeat, now / beat_period);
+  set(Name::master, watch_.silent(now) ? 2 : watch_.watched() ? 1 : 0);
 }
 
 }  // namespace softgrip::plc

@@ -15,6 +15,7 @@
 #include "rig/plc_file/settings.h"
 #include "tools/plc/handshake.h"
 #include "tools/plc/master_watch.h"
+#include "tools/plc/masters.h"
 
 namespace softgrip::plc {
 
@@ -23,9 +24,12 @@ class Gateway {
   /// `settings` outlives it.
   explicit Gateway(const Settings& settings);
 
-  /// Answers a master, and passes its command on to the daemon.
-  [[nodiscard]] modbus::Reply serve(const modbus::Request& request, Nanoseconds now);
-  /// To be called after the daemon's lines, and every `longest_pause`: commands that waited, heartbeats.
+  /// Who is connected. Connections come and go here; one that has no place any more is to be closed.
+  [[nodiscard]] Masters& masters() noexcept { return masters_; }
+  [[nodiscard]] const Masters& masters() const noexcept { return masters_; }
+  /// Answers a master that has a place, and passes its command on to the daemon.
+  [[nodiscard]] modbus::Reply serve(Masters::Id id, const modbus::Request& request, Nanoseconds now);
+  /// To be called after the daemon's lines, and every `longest_pause`: commands that waited, silences.
   void look_after(Nanoseconds now);
   static constexpr Nanoseconds longest_pause = 20'000'000;
 
@@ -40,17 +44,19 @@ class Gateway {
   /// Returns the lines that go to the daemon, the oldest first, and forgets them.
   [[nodiscard]] std::vector<nlohmann::ordered_json> lines_to_daemon();
 
-  /// The master beats, or has never begun to.
-  [[nodiscard]] bool hears_master(Nanoseconds now) const noexcept { return !watch_.silent(now); }
+  [[nodiscard]] const Handshake& handshake() const noexcept { return handshake_; }
 
  private:
-  void command(Nanoseconds now);
+  void take_counter(Master& master, Nanoseconds now);
+  void take_heartbeat(Master& master, Nanoseconds now);
+  void execute(const Handshake::Entry& entry, Nanoseconds now);
   void react(Nanoseconds now);
-  void send(nlohmann::ordered_json request, std::optional<std::uint16_t> counter);
-  void show(Nanoseconds now);
+  std::uint64_t send(nlohmann::ordered_json request);
+  void show(const Master& master, Nanoseconds now);
 
   const Settings& settings_;
   modbus::Registers registers_;
+  Masters masters_;
   Handshake handshake_;
   MasterWatch watch_;
   bool connected_ = false;

@@ -2,39 +2,76 @@
 
 namespace softgrip::plc {
 
-bool Handshake::write(std::uint16_t counter, CommandCode command) noexcept {
+bool Handshake::write(Cursor& cursor, const Entry& entry) noexcept {
+  cursor.refused = false;
   if (!done_) {
-    done_ = counter;
-    const bool asks = command != CommandCode::none;
-    outcome_ = asks ? Outcome::refused : Outcome::none;
-    reason_ = asks ? Reason::first_after_start : Reason::none;
+    store_first(cursor, entry);
     return false;
   }
-  if (counter == executing_.value_or(*done_)) return false;
-  // Nothing keeps a stop or a vent waiting; anything else waits for the end of what is under way.
-  const bool halts = command == CommandCode::stop || command == CommandCode::vent;
-  if (executing_ && !halts) return false;
-  if (command == CommandCode::none) {
-    done_ = counter;
-    outcome_ = Outcome::none;
-    reason_ = Reason::none;
+  if (const Entry* const known = find(entry.counter)) {
+    // A connection that has written this counter may prepare its next command behind it. From another one,
+    // a different command means that two masters have counted to the same number.
+    const bool repeats =
+        entry.command == known->command || entry.command.is(CommandCode::none) || cursor.at == entry.counter;
+    cursor.refused = !repeats;
+    if (repeats) cursor.at = entry.counter;
     return false;
   }
-  executing_ = counter;
+  const std::uint16_t last = newest().counter;
+  const bool follows = entry.counter == static_cast<std::uint16_t>(last + 1) && cursor.at == last;
+  const bool halts = entry.command.halts();
+  if (!follows || (waiting_ && !halts)) {
+    cursor.refused = true;
+    return false;
+  }
+  cursor.at = entry.counter;
+  if (executing_ && !halts) {
+    waiting_ = entry;
+    return false;
+  }
+  waiting_.reset();
+  executing_ = entry;
   reason_ = Reason::none;
   return true;
 }
 
+void Handshake::store_first(Cursor& cursor, const Entry& entry) noexcept {
+  done_ = entry;
+  cursor.at = entry.counter;
+  const bool asks = !entry.command.is(CommandCode::none);
+  outcome_ = asks ? Outcome::refused : Outcome::none;
+  reason_ = asks ? Reason::first_after_start : Reason::none;
+}
+
+const Handshake::Entry& Handshake::newest() const noexcept {
+  return waiting_ ? *waiting_ : executing_ ? *executing_ : *done_;
+}
+
+const Handshake::Entry* Handshake::find(std::uint16_t counter) const noexcept {
+  for (const std::optional<Entry>* const entry : {&done_, &executing_, &waiting_}) {
+    if (*entry && (*entry)->counter == counter) return &**entry;
+  }
+  return nullptr;
+}
+
+std::optional<Handshake::Entry> Handshake::take_waiting() noexcept {
+  if (executing_ || !waiting_) return std::nullopt;
+  executing_ = waiting_;
+  waiting_.reset();
+  reason_ = Reason::none;
+  return executing_;
+}
+
 void Handshake::finish(std::uint16_t counter, Outcome outcome, Reason reason) noexcept {
-  if (executing_ != counter) return;
-  done_ = counter;
+  if (!executing_ || executing_->counter != counter) return;
+  done_ = executing_;
   executing_.reset();
   outcome_ = outcome;
   reason_ = reason;
 }
 
 void Handshake::lose() noexcept {
-  if (executing_) finish(*executing_, Outcome::unknown, Reason::no_daemon);
+  if (executing_) finish(executing_->counter, Outcome::unknown, Reason::no_daemon);
 }
 
 }  // namespace softgrip::plc

@@ -1,22 +1,19 @@
 #pragma once
 // Whether the master still lives.
 
-#include <cstdint>
 #include <optional>
 
 #include "base/time.h"
 
 namespace softgrip::plc {
 
-/// Looks at the master's heartbeat register from the first time that it changes: who writes none is not
-/// watched.
+/// Watches the master's heartbeat from its first change on: a master that never writes one is not watched.
 class MasterWatch {
  public:
   explicit MasterWatch(Nanoseconds silence) noexcept : silence_(silence) {}
 
-  void beat(std::uint16_t value, Nanoseconds now) noexcept {
-    if (value == value_) return;
-    value_ = value;
+  /// A heartbeat has changed.
+  void beat(Nanoseconds now) noexcept {
     changed_ = now;
     told_ = false;
   }
@@ -31,7 +28,6 @@ class MasterWatch {
 
  private:
   Nanoseconds silence_;
-  std::uint16_t value_ = 0;
   std::optional<Nanoseconds> changed_;
   bool told_ = false;
 };

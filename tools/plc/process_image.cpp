@@ -37,11 +37,10 @@ std::uint16_t number_in(std::string_view code) {
   return number;
 }
 
-/// What a command register asks for; nothing where the sequence's default shall stand.
-std::optional<double> asked(const Settings& settings, const modbus::Registers& registers, Name name) {
-  const std::uint16_t counts = registers.holding(settings.registers.at(name));
+/// Returns the quantity in a command register, or nothing: the sequence's default applies.
+std::optional<double> asked(std::uint16_t counts, double resolution) {
   if (counts == no_value) return std::nullopt;
-  return static_cast<std::int16_t>(counts) * settings.registers.of_one(name);
+  return static_cast<std::int16_t>(counts) * resolution;
 }
 
 }  // namespace
@@ -116,25 +115,22 @@ const char* command_of(CommandCode code) noexcept {
   return words[static_cast<std::size_t>(code)];
 }
 
-tl::expected<Json, Reason> request_of(const Settings& settings, const modbus::Registers& from) {
-  const std::uint16_t code = from.holding(settings.registers.at(Name::command));
-  if (code == 0 || code > last_command) return tl::unexpected(Reason::no_such_command);
-  const auto command = static_cast<CommandCode>(code);
-  Json request{{"command", command_of(command)}};
-  if (command != CommandCode::start) return request;
-  const std::uint16_t number = from.holding(settings.registers.at(Name::recipe));
+tl::expected<Json, Reason> request_of(const Settings& settings, const Command& command) {
+  if (command.code == 0 || command.code > last_command) return tl::unexpected(Reason::no_such_command);
+  Json request{{"command", command_of(static_cast<CommandCode>(command.code))}};
+  if (!command.is(CommandCode::start)) return request;
   const auto recipe = std::find_if(settings.recipes.begin(), settings.recipes.end(),
-                                   [number](const Recipe& other) { return other.number == number; });
+                                   [&](const Recipe& other) { return other.number == command.recipe; });
   if (recipe == settings.recipes.end()) return tl::unexpected(Reason::no_such_recipe);
   request["sequence"] = recipe->sequence;
   Json parameters = Json::object();
-  const auto choose = [&](const std::string& parameter, Name name) {
-    const auto value = asked(settings, from, name);
+  const auto choose = [&](const std::string& parameter, Name name, std::uint16_t counts) {
+    const auto value = asked(counts, settings.registers.of_one(name));
     if (!parameter.empty() && value) parameters[parameter] = *value;
   };
-  choose(recipe->squeeze, Name::squeeze);
-  choose(recipe->speed, Name::speed);
-  choose(recipe->displacement, Name::displacement);
+  choose(recipe->squeeze, Name::squeeze, command.squeeze);
+  choose(recipe->speed, Name::speed, command.speed);
+  choose(recipe->displacement, Name::displacement, command.displacement);
   if (!parameters.empty()) request["parameters"] = std::move(parameters);
   return request;
 }
@@ -142,7 +138,7 @@ tl::expected<Json, Reason> request_of(const Settings& settings, const modbus::Re
 Reason reason_of(const Json& error) {
   const std::string code = error.value("code", "");
   if (code == "refused") {
-    const std::uint16_t refusal = number_in(error["refusal"].value("code", ""));
+    const std::uint16_t refusal = number_in(error.value("refusal", Json::object()).value("code", ""));
     return static_cast<Reason>(static_cast<std::uint16_t>(Reason::refusal) + refusal);
   }
   if (code == "sequence_refused") return Reason::sequence_refused;

@@ -12,6 +12,7 @@
 #include "drivers/modbus_server/registers.h"
 #include "rig/plc_file/settings.h"
 #include "tools/plc/codes.h"
+#include "tools/plc/handshake.h"
 
 namespace softgrip::plc {
 
@@ -26,9 +27,9 @@ void show_status(const nlohmann::ordered_json& status, const RegisterMap& map, m
 /// The daemon does not answer: its state is no_daemon, results and readings are unknown.
 void show_no_daemon(const RegisterMap& map, modbus::Registers& registers);
 
-/// The request to the daemon that the command registers stand for, or why there is none.
+/// The request to the daemon that a command stands for, or why there is none.
 [[nodiscard]] tl::expected<nlohmann::ordered_json, Reason> request_of(const Settings& settings,
-                                                                      const modbus::Registers& registers);
+                                                                      const Command& command);
 /// The daemon's word for what is to be done.
 [[nodiscard]] const char* command_of(CommandCode code) noexcept;
 /// Why the daemon refused: its `error`.

@@ -16,19 +16,19 @@
 
 namespace softgrip::plc {
 
-bool is_allowed(int socket, const std::vector<std::string>& allow) {
+std::string address_of(int socket) {
   sockaddr_storage peer{};
   socklen_t size = sizeof peer;
   std::array<char, NI_MAXHOST> host{};
   if (::getpeername(socket, reinterpret_cast<sockaddr*>(&peer), &size) != 0 ||
       ::getnameinfo(reinterpret_cast<const sockaddr*>(&peer), size, host.data(), host.size(), nullptr, 0,
                     NI_NUMERICHOST) != 0) {
-    return false;
+    return {};
   }
   std::string_view name(host.data());
   constexpr std::string_view four_in_six = "::ffff:";
   if (name.starts_with(four_in_six)) name.remove_prefix(four_in_six.size());
-  return std::find(allow.begin(), allow.end(), name) != allow.end();
+  return std::string(name);
 }
 
 Server::Server(const Settings& settings, Gateway& gateway, Descriptor listener, Descriptor signals)
@@ -45,9 +45,9 @@ void Server::run() {
   for (;;) {
     watched.assign(
         {{signals_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}, {daemon_.descriptor(), POLLIN, 0}});
-    for (const Master& master : masters_) {
-      const int events = master.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
-      watched.push_back({master.connection.descriptor(), static_cast<short>(events), 0});
+    for (const Line& line : lines_) {
+      const int events = line.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
+      watched.push_back({line.connection.descriptor(), static_cast<short>(events), 0});
     }
     if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) return;
     if (watched[0].revents != 0) return;
@@ -55,28 +55,35 @@ void Server::run() {
     daemon_.receive(now);
     gateway_.look_after(now);
     auto watch = watched.begin() + others;
-    std::erase_if(masters_, [&](Master& master) { return !serve(master, (watch++)->revents, now); });
+    for (Line& line : lines_) {
+      if (!serve(line, (watch++)->revents, now)) gateway_.masters().leave(line.master);
+    }
     if (watched[1].revents != 0) accept(now);
+    std::erase_if(lines_, [&](const Line& line) { return !gateway_.masters().has(line.master); });
     daemon_.send();
   }
 }
 
 void Server::accept(Nanoseconds now) {
   Descriptor socket = modbus::accept_client(listener_);
-  if (!socket || !is_allowed(socket.get(), settings_.allow)) return;
-  if (masters_.size() >= settings_.max_masters) return;
-  masters_.push_back({modbus::Connection(std::move(socket)), now});
+  if (!socket) return;
+  const std::string address = address_of(socket.get());
+  const std::vector<std::string>& allow = settings_.allow;
+  if (std::find(allow.begin(), allow.end(), address) == allow.end()) return;
+  if (const auto master = gateway_.masters().admit(address, now))
+    lines_.push_back({*master, modbus::Connection(std::move(socket))});
 }
 
-bool Server::serve(Master& master, short events, Nanoseconds now) {
-  bool open = now - master.asked_at < nanoseconds(settings_.idle_s);
+bool Server::serve(Line& line, short events, Nanoseconds now) {
+  Master* const master = gateway_.masters().find(line.master);
+  if (master == nullptr) return false;
+  bool open = true;
   if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
-    open = master.connection.receive([&](const modbus::Request& request) {
-      master.asked_at = now;
-      return gateway_.serve(request, now);
-    });
+    open = line.connection.receive(
+        [&](const modbus::Request& request) { return gateway_.serve(line.master, request, now); });
+    master->half = line.connection.half();
   }
-  return open && master.connection.send_due(modbus::Clock::now());
+  return open && line.connection.send_due(modbus::Clock::now());
 }
 
 }  // namespace softgrip::plc

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <list>
 #include <string>
-#include <vector>
 
 #include "base/clock.h"
 #include "base/descriptor.h"
@@ -22,13 +21,13 @@ class Server {
   void run();
 
  private:
-  struct Master {
+  struct Line {
+    Masters::Id master;
     modbus::Connection connection;
-    Nanoseconds asked_at = 0;  // last, or when it came
   };
   void accept(Nanoseconds now);
-  /// False: it has gone, or is to be shown out.
-  [[nodiscard]] bool serve(Master& master, short events, Nanoseconds now);
+  /// False: it has gone, or is to be closed.
+  [[nodiscard]] bool serve(Line& line, short events, Nanoseconds now);
 
   const Settings& settings_;
   Gateway& gateway_;
@@ -36,10 +35,10 @@ class Server {
   Descriptor listener_;
   Descriptor signals_;
   MonotonicClock clock_;
-  std::list<Master> masters_;
+  std::list<Line> lines_;
 };
 
-/// Whether a connection comes from one of the addresses, as numbers; an IPv4 address may come in IPv6.
-[[nodiscard]] bool is_allowed(int socket, const std::vector<std::string>& allow);
+/// Returns the numeric address of the peer, an IPv4 address in IPv6 as IPv4; empty if it is not known.
+[[nodiscard]] std::string address_of(int socket);
 
 }  // namespace softgrip::plc

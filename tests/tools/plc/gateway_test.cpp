@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "base/files.h"
 #include "base/grid.h"
 #include "drivers/modbus_server/listener.h"
@@ -17,52 +19,96 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 namespace softgrip::plc::gateway_test {
 namespace {
 
-/// A gateway whose daemon is not there.
-class GatewayAlone : public ::testing::Test {
+using Json = nlohmann::ordered_json;
+
+/// A gateway, masters and a daemon that answers what it is asked to answer.
+class GatewayTest : public ::testing::Test {
  protected:
-  static Settings shipped_without_daemon() {
+  static Settings shipped() {
     document::Problems problems;
-    Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
-    settings.socket = "/nowhere/softgripd.sock";
-    return settings;
+    return *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
   }
-  void write(Name name, std::uint16_t value) {
-    modbus::Request request{1, 1, {6}};
-    modbus::append_word(request.pdu, settings_.registers.at(name));
-    modbus::append_word(request.pdu, value);
-    static_cast<void>(gateway_.serve(request, now_));
+  Masters::Id come(const std::string& address = "127.0.0.1") {
+    return *gateway_.masters().admit(address, now_);
   }
-  std::uint16_t read(Name name) {
+  void write(Masters::Id id, Name first, const std::vector<std::uint16_t>& values) {
+    modbus::Request request{1, 1, {16}};
+    modbus::append_word(request.pdu, settings_.registers.at(first));
+    modbus::append_word(request.pdu, static_cast<std::uint16_t>(values.size()));
+    request.pdu.push_back(static_cast<std::uint8_t>(2 * values.size()));
+    for (const std::uint16_t value : values) modbus::append_word(request.pdu, value);
+    static_cast<void>(gateway_.serve(id, request, now_));
+  }
+  void write(Name name, std::uint16_t value) { write(plc_, name, {value}); }
+  /// Counter and command in one block.
+  void put(Masters::Id id, std::uint16_t counter, CommandCode command) {
+    write(id, Name::command_counter, {counter, static_cast<std::uint16_t>(command), 1});
+  }
+  std::uint16_t read(Masters::Id id, Name name) {
     modbus::Request request{1, 1, {3}};
     modbus::append_word(request.pdu, settings_.registers.at(name));
     modbus::append_word(request.pdu, 1);
-    const modbus::Reply reply = gateway_.serve(request, now_);
+    const modbus::Reply reply = gateway_.serve(id, request, now_);
     const modbus::Bytes& frame = reply.pieces.at(0).bytes;
     return modbus::word_at(frame, frame.size() - 2);
   }
+  std::uint16_t read(Name name) { return read(plc_, name); }
+  /// (outcome, reason) as that connection reads them.
+  std::pair<Outcome, Reason> end_of(Masters::Id id) {
+    return {static_cast<Outcome>(read(id, Name::outcome)), static_cast<Reason>(read(id, Name::reason))};
+  }
 
-  Settings settings_ = shipped_without_daemon();
+  void daemon_comes() {
+    gateway_.daemon_came(now_);
+    EXPECT_EQ(sent(), (std::vector<std::string>{"hello", "watch"}));
+  }
+  /// The commands that have gone to the daemon since this was asked last.
+  std::vector<std::string> sent() {
+    std::vector<std::string> commands;
+    for (const Json& line : gateway_.lines_to_daemon()) {
+      commands.push_back(line["command"]);
+      last_id_ = line["id"];
+    }
+    return commands;
+  }
+  void accept() { gateway_.daemon_said({{"id", last_id_}, {"ok", true}}, now_); }
+  void say_status() {
+    gateway_.daemon_said(Json::parse(R"({"id": 2, "watch": {"state": "idle", "result": "-", "fault": null,
+      "sequence": null, "channels": []}})"),
+                         now_);
+  }
+  /// In steps, as the server turns. A daemon that speaks sends its state.
+  void pass(double duration_s, bool daemon_speaks = true) {
+    for (const Nanoseconds end = now_ + nanoseconds(duration_s); now_ < end;) {
+      now_ += Gateway::longest_pause;
+      if (daemon_speaks) say_status();
+      gateway_.look_after(now_);
+    }
+  }
+
+  Settings settings_ = shipped();
   Gateway gateway_{settings_};
-  Nanoseconds now_ = ns_per_s;
+  Nanoseconds now_ = 100 * ns_per_s;
+  Masters::Id plc_ = come();
+  std::uint64_t last_id_ = 0;
 };
 
-TEST_F(GatewayAlone, RefusesEachCommandOnce) {
+TEST_F(GatewayTest, RefusesEachCommandOnceWithoutADaemon) {
   write(Name::command_counter, 0);
   gateway_.look_after(now_);
-  EXPECT_TRUE(gateway_.lines_to_daemon().empty());
+  EXPECT_TRUE(sent().empty());
   write(Name::command, 3);
   EXPECT_EQ(read(Name::outcome), static_cast<int>(Outcome::none));
   write(Name::command_counter, 1);
   EXPECT_EQ(read(Name::done_counter), 1);
-  EXPECT_EQ(read(Name::outcome), static_cast<int>(Outcome::refused));
-  EXPECT_EQ(read(Name::reason), static_cast<int>(Reason::no_daemon));
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_daemon));
   write(Name::command, 77);
   write(Name::command_counter, 2);
-  EXPECT_EQ(read(Name::reason), static_cast<int>(Reason::no_such_command));
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_such_command));
 }
 
 /// It aborts where a promise is broken.
-TEST_F(GatewayAlone, AnswersTheSeedsOfTheFuzzTargetWholeAndCutOff) {
+TEST(PlcRequests, TheSeedsOfTheFuzzTargetAreAnsweredWholeAndCutOff) {
   std::size_t seeds = 0;
   for (const auto& entry :
        std::filesystem::directory_iterator(SOFTGRIP_SOURCE_DIR "/tests/tools/plc/plc_request_corpus")) {
@@ -74,29 +120,98 @@ TEST_F(GatewayAlone, AnswersTheSeedsOfTheFuzzTargetWholeAndCutOff) {
   EXPECT_GE(seeds, 5U);
 }
 
-TEST_F(GatewayAlone, TellsAMasterThatBeatsFromOneThatFellSilent) {
-  EXPECT_EQ(read(Name::master), 0);
-  write(Name::master_heartbeat, 5);
-  EXPECT_EQ(read(Name::master), 1);
-  now_ += nanoseconds(settings_.silence_s) + 1;
-  EXPECT_EQ(read(Name::master), 2);
-  EXPECT_FALSE(gateway_.hears_master(now_));
-  write(Name::command_counter, 0);
-  write(Name::command, 1);
-  write(Name::recipe, 1);
-  write(Name::command_counter, 1);
-  EXPECT_EQ(read(Name::reason), static_cast<int>(Reason::master_silent));
-  write(Name::master_heartbeat, 6);
-  EXPECT_EQ(read(Name::master), 1);
-}
-
-TEST_F(GatewayAlone, BeatsItself) {
+TEST_F(GatewayTest, BeatsItself) {
   const std::uint16_t before = read(Name::heartbeat);
   now_ += ns_per_s;
   EXPECT_EQ(read(Name::heartbeat), before + 10);
 }
 
-TEST(Server, LetsInWhoIsOnTheList) {
+TEST_F(GatewayTest, AnOldBlockFromASecondConnectionStartsNothing) {
+  daemon_comes();
+  const Masters::Id second = come();
+  put(plc_, 0, CommandCode::none);
+  put(plc_, 1, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+  accept();
+  put(plc_, 2, CommandCode::vent);
+  EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
+  accept();
+  put(second, 1, CommandCode::start);
+  EXPECT_TRUE(sent().empty());
+  // The reason is for the connection that wrote it; the other one reads the end of its own command.
+  EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::accepted, Reason::none));
+  EXPECT_EQ(read(second, Name::done_counter), 2);
+  put(second, 2, CommandCode::none);
+  EXPECT_EQ(end_of(second), std::pair(Outcome::accepted, Reason::none));
+  put(second, 3, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+}
+
+TEST_F(GatewayTest, TwoMastersDoNotWriteOneCommandTogether) {
+  daemon_comes();
+  const Masters::Id second = come("127.0.0.2");
+  put(plc_, 0, CommandCode::none);
+  write(Name::command, 3);               // a vent is prepared
+  write(second, Name::command, {1, 1});  // and a start, by the second master
+  EXPECT_EQ(read(Name::command), 3);
+  write(Name::command_counter, 1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
+}
+
+TEST_F(GatewayTest, AWriteDropsWhatAnotherConnectionHasSentHalf) {
+  const Masters::Id half = come();
+  gateway_.masters().find(half)->half = true;
+  static_cast<void>(read(Name::state));
+  EXPECT_TRUE(gateway_.masters().has(half));
+  write(Name::command, 3);
+  EXPECT_FALSE(gateway_.masters().has(half));
+  EXPECT_TRUE(gateway_.masters().has(plc_));
+}
+
+TEST_F(GatewayTest, TellsAMasterThatBeatsFromOneThatFellSilent) {
+  daemon_comes();
+  EXPECT_EQ(read(Name::master), 0);
+  write(Name::master_heartbeat, 5);
+  EXPECT_EQ(read(Name::master), 1);
+  pass(settings_.silence_s + 0.1);
+  EXPECT_EQ(read(Name::master), 2);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  write(Name::command_counter, 0);
+  put(plc_, 1, CommandCode::start);
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::master_silent));
+  write(Name::master_heartbeat, 6);
+  EXPECT_EQ(read(Name::master), 1);
+  put(plc_, 2, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+}
+
+TEST_F(GatewayTest, LastValuesOfTwoStoppedMastersAreNoHeartbeat) {
+  daemon_comes();
+  const Masters::Id second = come();
+  write(plc_, Name::master_heartbeat, {5});
+  write(second, Name::master_heartbeat, {9});
+  for (int i = 0; i < 30; ++i) {
+    pass(0.1);
+    write(plc_, Name::master_heartbeat, {5});
+    write(second, Name::master_heartbeat, {9});
+  }
+  EXPECT_EQ(read(Name::master), 2);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+}
+
+TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
+  daemon_comes();
+  put(plc_, 0, CommandCode::none);
+  put(plc_, 1, CommandCode::release);
+  put(plc_, 2, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"release"});
+  accept();
+  gateway_.look_after(now_);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+}
+
+TEST(Server, KnowsWhereAConnectionComesFrom) {
   const auto listener = modbus::listen_tcp("127.0.0.1", 0);
   ASSERT_TRUE(listener);
   Descriptor client(::socket(AF_INET, SOCK_STREAM, 0));
@@ -106,9 +221,8 @@ TEST(Server, LetsInWhoIsOnTheList) {
   ASSERT_EQ(::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
   const Descriptor accepted = modbus::accept_client(listener->socket);
   ASSERT_TRUE(accepted);
-  EXPECT_TRUE(is_allowed(accepted.get(), {"192.168.1.9", "127.0.0.1"}));
-  EXPECT_FALSE(is_allowed(accepted.get(), {"192.168.1.9"}));
-  EXPECT_FALSE(is_allowed(accepted.get(), {}));
+  EXPECT_EQ(address_of(accepted.get()), "127.0.0.1");
+  EXPECT_EQ(address_of(-1), "");
 }
 
 }  // namespace

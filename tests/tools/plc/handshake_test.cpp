@@ -2,91 +2,186 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/plc/master_watch.h"
-
 namespace softgrip::plc::handshake_test {
 namespace {
 
+constexpr Command none{0};
+constexpr Command start{1, 1};
+constexpr Command stop{2};
+constexpr Command vent{3};
+constexpr Command release{4};
+
 TEST(Handshake, ACounterIsCarriedOutOnceHoweverOftenItIsWritten) {
   Handshake handshake;
-  EXPECT_FALSE(handshake.write(0, CommandCode::none));
-  EXPECT_TRUE(handshake.write(1, CommandCode::start));
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {0, none}));
+  EXPECT_TRUE(handshake.write(plc, {1, start}));
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
-  EXPECT_FALSE(handshake.write(1, CommandCode::start));
+  EXPECT_FALSE(handshake.write(plc, {1, start}));
   handshake.finish(1, Outcome::accepted);
-  EXPECT_FALSE(handshake.write(1, CommandCode::start));
+  EXPECT_FALSE(handshake.write(plc, {1, start}));
   EXPECT_EQ(handshake.done_counter(), 1);
   EXPECT_EQ(handshake.outcome(), Outcome::accepted);
-  EXPECT_TRUE(handshake.write(2, CommandCode::release));
+  EXPECT_FALSE(plc.refused);
+  EXPECT_TRUE(handshake.write(plc, {2, release}));
 }
 
 TEST(Handshake, TheFirstCounterAfterTheStartIsRefused) {
   Handshake handshake;
-  EXPECT_FALSE(handshake.synchronised());
-  EXPECT_FALSE(handshake.write(17, CommandCode::start));
-  EXPECT_TRUE(handshake.synchronised());
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {17, start}));
   EXPECT_EQ(handshake.done_counter(), 17);
   EXPECT_EQ(handshake.outcome(), Outcome::refused);
   EXPECT_EQ(handshake.reason(), Reason::first_after_start);
-  EXPECT_FALSE(handshake.write(17, CommandCode::start));
-  EXPECT_TRUE(handshake.write(18, CommandCode::start));
+  EXPECT_FALSE(handshake.write(plc, {17, start}));
+  EXPECT_FALSE(plc.refused);
+  EXPECT_TRUE(handshake.write(plc, {18, start}));
 }
 
-TEST(Handshake, ACounterWithoutACommandIsWhereAMasterBegins) {
+TEST(Handshake, TheFirstCounterWithoutACommandIsWhereAMasterBegins) {
   Handshake handshake;
-  EXPECT_FALSE(handshake.write(0, CommandCode::none));
-  EXPECT_FALSE(handshake.write(40, CommandCode::none));
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {40, none}));
   EXPECT_EQ(handshake.done_counter(), 40);
   EXPECT_EQ(handshake.outcome(), Outcome::none);
-  EXPECT_TRUE(handshake.write(41, CommandCode::start));
-  EXPECT_FALSE(handshake.write(50, CommandCode::none));
-  EXPECT_EQ(handshake.outcome(), Outcome::executing);
+  EXPECT_TRUE(handshake.write(plc, {41, start}));
+}
+
+TEST(Handshake, OnlyTheNextCounterIsExecuted) {
+  Handshake handshake;
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {0, none}));
+  EXPECT_TRUE(handshake.write(plc, {1, start}));
+  handshake.finish(1, Outcome::accepted);
+  EXPECT_TRUE(handshake.write(plc, {2, vent}));
+  handshake.finish(2, Outcome::accepted);
+  for (const int wrong : {0, 1, 4, 5, 40000, 65535}) {
+    EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), start})) << wrong;
+    EXPECT_TRUE(plc.refused) << wrong;
+    // It is no place to begin from, either.
+    EXPECT_FALSE(handshake.write(plc, {static_cast<std::uint16_t>(wrong), none})) << wrong;
+    EXPECT_TRUE(plc.refused) << wrong;
+  }
+  // A refusal changes nothing of the last command, and the next counter is executed.
+  EXPECT_EQ(handshake.done_counter(), 2);
+  EXPECT_EQ(handshake.outcome(), Outcome::accepted);
+  EXPECT_TRUE(handshake.write(plc, {3, start}));
+  EXPECT_FALSE(plc.refused);
+}
+
+TEST(Handshake, ABlockThatArrivesLateOnAnotherConnectionIsRefused) {
+  Handshake handshake;
+  Cursor first;
+  Cursor second;
+  EXPECT_FALSE(handshake.write(first, {0, none}));
+  EXPECT_FALSE(handshake.write(second, {0, none}));
+  EXPECT_TRUE(handshake.write(second, {1, start}));
+  handshake.finish(1, Outcome::accepted);
+  EXPECT_TRUE(handshake.write(second, {2, vent}));
+  handshake.finish(2, Outcome::accepted);
+  // The blocks that the first one sent before them, in its order.
+  EXPECT_FALSE(handshake.write(first, {1, start}));
+  EXPECT_TRUE(first.refused);
+  EXPECT_FALSE(handshake.write(first, {2, start}));
+  EXPECT_TRUE(first.refused);
+  EXPECT_FALSE(handshake.write(first, {3, start}));
+  EXPECT_TRUE(first.refused);
+  EXPECT_FALSE(second.refused);
+  EXPECT_EQ(handshake.done_counter(), 2);
+  // After it has written the newest one, it may command again.
+  EXPECT_FALSE(handshake.write(first, {2, none}));
+  EXPECT_FALSE(first.refused);
+  EXPECT_TRUE(handshake.write(first, {3, start}));
+}
+
+TEST(Handshake, OfTwoMastersThatCountToTheSameNumberTheSecondIsRefused) {
+  Handshake handshake;
+  Cursor first;
+  Cursor second;
+  EXPECT_FALSE(handshake.write(first, {0, none}));
+  EXPECT_FALSE(handshake.write(second, {0, none}));
+  EXPECT_TRUE(handshake.write(first, {1, start}));
+  EXPECT_FALSE(handshake.write(second, {1, vent}));  // it must not read that its vent was accepted
+  EXPECT_TRUE(second.refused);
+  handshake.finish(1, Outcome::accepted);
+  EXPECT_FALSE(handshake.write(second, {1, vent}));
+  EXPECT_TRUE(second.refused);
+  // A master that connects again writes the same block as before.
+  Cursor again;
+  EXPECT_FALSE(handshake.write(again, {1, start}));
+  EXPECT_FALSE(again.refused);
+}
+
+TEST(Handshake, ANextCommandMayBePreparedBehindTheLastCounter) {
+  Handshake handshake;
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {0, none}));
+  EXPECT_TRUE(handshake.write(plc, {1, start}));
+  handshake.finish(1, Outcome::accepted);
+  EXPECT_FALSE(handshake.write(plc, {1, vent}));  // the counter is counted up in the next cycle
+  EXPECT_FALSE(plc.refused);
+  EXPECT_EQ(handshake.outcome(), Outcome::accepted);
+  EXPECT_TRUE(handshake.write(plc, {2, vent}));
 }
 
 TEST(Handshake, OnlyStopAndVentOvertake) {
   Handshake handshake;
-  EXPECT_FALSE(handshake.write(0, CommandCode::none));
-  EXPECT_TRUE(handshake.write(1, CommandCode::start));
-  EXPECT_FALSE(handshake.write(2, CommandCode::release));
-  EXPECT_TRUE(handshake.write(3, CommandCode::vent));
-  handshake.finish(1, Outcome::accepted);  // too late: nobody asks any more
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {0, none}));
+  EXPECT_TRUE(handshake.write(plc, {1, start}));
+  EXPECT_FALSE(handshake.write(plc, {2, release}));
+  EXPECT_TRUE(handshake.waits());
+  EXPECT_FALSE(handshake.take_waiting());
+  EXPECT_FALSE(handshake.write(plc, {3, release}));  // one may wait
+  EXPECT_TRUE(plc.refused);
+  EXPECT_TRUE(handshake.write(plc, {3, vent}));
+  EXPECT_FALSE(handshake.waits());
+  handshake.finish(1, Outcome::accepted);  // overtaken: not reported
   EXPECT_EQ(handshake.outcome(), Outcome::executing);
   handshake.finish(3, Outcome::accepted);
   EXPECT_EQ(handshake.done_counter(), 3);
+  EXPECT_FALSE(handshake.take_waiting());
+}
+
+TEST(Handshake, WhatWaitsHasItsTurnOnce) {
+  Handshake handshake;
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {0, none}));
+  EXPECT_TRUE(handshake.write(plc, {1, release}));
+  EXPECT_FALSE(handshake.write(plc, {2, start}));
+  EXPECT_FALSE(handshake.write(plc, {2, start}));
+  EXPECT_FALSE(plc.refused);
+  handshake.finish(1, Outcome::accepted);
+  const auto entry = handshake.take_waiting();
+  ASSERT_TRUE(entry);
+  EXPECT_EQ(*entry, (Handshake::Entry{2, start}));
+  EXPECT_EQ(handshake.outcome(), Outcome::executing);
+  EXPECT_FALSE(handshake.take_waiting());
 }
 
 TEST(Handshake, WhatIsUnderWayWhenTheDaemonGoesIsUnknownAndNotSentAgain) {
   Handshake handshake;
-  EXPECT_FALSE(handshake.write(0, CommandCode::none));
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {0, none}));
   handshake.lose();
   EXPECT_EQ(handshake.outcome(), Outcome::none);
-  EXPECT_TRUE(handshake.write(1, CommandCode::start));
+  EXPECT_TRUE(handshake.write(plc, {1, start}));
   handshake.lose();
   EXPECT_EQ(handshake.outcome(), Outcome::unknown);
   EXPECT_EQ(handshake.done_counter(), 1);
-  EXPECT_FALSE(handshake.write(1, CommandCode::start));
+  EXPECT_FALSE(handshake.write(plc, {1, start}));
 }
 
 TEST(Handshake, TheCounterMayWrap) {
   Handshake handshake;
-  EXPECT_FALSE(handshake.write(65535, CommandCode::none));
-  EXPECT_TRUE(handshake.write(0, CommandCode::stop));
-}
-
-TEST(MasterWatch, SilenceCountsFromTheFirstBeatAndIsToldOnce) {
-  MasterWatch watch(100);
-  watch.beat(0, 10);  // what the register holds anyway
-  EXPECT_FALSE(watch.watched());
-  EXPECT_FALSE(watch.silent(1000));
-  watch.beat(1, 1000);
-  EXPECT_FALSE(watch.falls_silent(1100));
-  watch.beat(1, 1090);  // the same value is no beat
-  EXPECT_TRUE(watch.falls_silent(1101));
-  EXPECT_FALSE(watch.falls_silent(1200));
-  EXPECT_TRUE(watch.silent(1200));
-  watch.beat(2, 1300);
-  EXPECT_FALSE(watch.silent(1400));
-  EXPECT_TRUE(watch.falls_silent(1401));
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {65534, none}));
+  EXPECT_TRUE(handshake.write(plc, {65535, stop}));
+  handshake.finish(65535, Outcome::accepted);
+  EXPECT_TRUE(handshake.write(plc, {0, stop}));
+  handshake.finish(0, Outcome::accepted);
+  EXPECT_FALSE(handshake.write(plc, {65535, stop}));
+  EXPECT_TRUE(plc.refused);
 }
 
 }  // namespace

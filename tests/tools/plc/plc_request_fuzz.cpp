@@ -40,11 +40,11 @@ void check(const modbus::Request& request, const modbus::Reply& reply) {
 }
 
 /// What only the gateway may write, read by a request of its own.
-std::uint16_t read(plc::Gateway& gateway, std::uint16_t address, Nanoseconds now) {
+std::uint16_t read(plc::Gateway& gateway, plc::Masters::Id id, std::uint16_t address, Nanoseconds now) {
   modbus::Request request{0, 1, {3}};
   modbus::append_word(request.pdu, address);
   modbus::append_word(request.pdu, 1);
-  const modbus::Reply reply = gateway.serve(request, now);
+  const modbus::Reply reply = gateway.serve(id, request, now);
   return modbus::word_at(reply.pieces.front().bytes, 9);
 }
 
@@ -55,6 +55,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using plc::Name;
   static const plc::Settings settings = shipped();
   plc::Gateway gateway(settings);
+  const auto master = gateway.masters().admit("127.0.0.1", 0);
+  const auto other = gateway.masters().admit("127.0.0.1", 0);
+  require(master && other);
   modbus::RequestStream stream;
   std::span<const std::uint8_t> bytes(data, size);
   Nanoseconds now = 0;
@@ -64,12 +67,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     bytes = bytes.subspan(piece);
     while (const auto request = stream.next()) {
       now += 10'000'000;
-      check(*request, gateway.serve(*request, now));
-      require(read(gateway, settings.registers.at(Name::map_version), now) == plc::version_of_map);
+      check(*request, gateway.serve(*master, *request, now));
+      require(read(gateway, *other, settings.registers.at(Name::map_version), now) == plc::version_of_map);
       // Without a daemon nothing is ever under way or carried out.
-      const auto outcome =
-          static_cast<plc::Outcome>(read(gateway, settings.registers.at(Name::outcome), now));
-      require(outcome == plc::Outcome::none || outcome == plc::Outcome::refused);
+      for (const auto reader : {*master, *other}) {
+        const auto outcome =
+            static_cast<plc::Outcome>(read(gateway, reader, settings.registers.at(Name::outcome), now));
+        require(outcome == plc::Outcome::none || outcome == plc::Outcome::refused);
+      }
+      require(gateway.lines_to_daemon().empty());
     }
   }
   return 0;

@@ -23,7 +23,6 @@ class ProcessImage : public ::testing::Test {
   std::uint16_t value(Name name, std::size_t finger) const {
     return registers_.holding(settings_.registers.at(name, finger));
   }
-  void set(Name name, std::uint16_t value) { registers_.set_holding(settings_.registers.at(name), value); }
 
   Settings settings_ = shipped();
   modbus::Registers registers_ = make_registers(settings_.registers);
@@ -69,19 +68,18 @@ TEST_F(ProcessImage, WithoutADaemonNothingOfItIsLeft) {
 }
 
 TEST_F(ProcessImage, ACommandBecomesARequest) {
-  set(Name::command, 1);
-  set(Name::recipe, 1);
-  EXPECT_EQ(request_of(settings_, registers_)->dump(), R"({"command":"start","sequence":"pick_stone"})");
-  set(Name::squeeze, 425);
-  set(Name::speed, 500);  // recipe 1 has no parameter for it
-  EXPECT_EQ((*request_of(settings_, registers_))["parameters"].dump(), R"({"squeeze_kpa":4.25})");
-  set(Name::recipe, 99);
-  EXPECT_EQ(request_of(settings_, registers_).error(), Reason::no_such_recipe);
-  set(Name::command, 3);
-  EXPECT_EQ(request_of(settings_, registers_)->dump(), R"({"command":"vent"})");
+  Command command{1, 1};
+  EXPECT_EQ(request_of(settings_, command)->dump(), R"({"command":"start","sequence":"pick_stone"})");
+  command.squeeze = 425;
+  command.speed = 500;  // recipe 1 has no parameter for it
+  EXPECT_EQ((*request_of(settings_, command))["parameters"].dump(), R"({"squeeze_kpa":4.25})");
+  command.recipe = 99;
+  EXPECT_EQ(request_of(settings_, command).error(), Reason::no_such_recipe);
+  command.code = 3;
+  EXPECT_EQ(request_of(settings_, command)->dump(), R"({"command":"vent"})");
   for (const int wrong : {0, 6, 65535}) {
-    set(Name::command, static_cast<std::uint16_t>(wrong));
-    EXPECT_EQ(request_of(settings_, registers_).error(), Reason::no_such_command);
+    command.code = static_cast<std::uint16_t>(wrong);
+    EXPECT_EQ(request_of(settings_, command).error(), Reason::no_such_command);
   }
 }
 
