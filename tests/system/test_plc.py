@@ -6,6 +6,7 @@ import time
 
 import bench
 import plc
+from pymodbus.exceptions import ModbusException
 
 
 class Gateway(bench.BenchTest):
@@ -195,6 +196,22 @@ class Gateway(bench.BenchTest):
                 return False
         bench.wait_for("the end of one that says nothing", others_place)
         self.assertEqual(master.command(plc.VENT)[0], plc.ACCEPTED)
+
+    def test_a_master_is_not_locked_out_by_its_own_dead_connections(self):
+        """They stay for a minute; it is served much earlier."""
+        gateway = self.gateway()
+        dead = [self.master(gateway) for _ in range(4)]
+        alive = bench.wait_for("a place", lambda: self.connected(gateway))
+        self.assertEqual(alive.command(plc.VENT)[0], plc.ACCEPTED)
+        self.assertEqual(dead[0].client.socket.recv(1), b"")
+
+    def connected(self, gateway):
+        try:
+            master = plc.Master(gateway)
+        except (ConnectionError, ModbusException):
+            return None
+        self.addCleanup(master.close)
+        return master
 
     def test_a_daemon_that_accepts_nobody_keeps_no_master_waiting(self):
         path = self.folder / "full.sock"

@@ -38,6 +38,8 @@ class Abuse(bench.BenchTest):
         crowd = []
         for _ in range(1000):
             crowd.append(self.connect())
+            if len(crowd) % 5 == 0:
+                self.master.read("state")  # as often as a PLC; on a busy machine these take seconds
             if len(crowd) % 100 == 0:
                 self.assert_well()
         # Three beside the PLC may stay until they have asked nothing for five seconds.

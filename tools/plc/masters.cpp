@@ -1,6 +1,22 @@
 #include "tools/plc/masters.h"
 
+#include <algorithm>
+#include <tuple>
+
+#include "base/grid.h"
+
 namespace softgrip::plc {
+
+namespace {
+
+/// A connection that came or asked within this time is in use. Masters ask several times a second.
+constexpr Nanoseconds in_use = ns_per_s;
+
+bool is_idle(const Master& master, Nanoseconds now) {
+  return now - master.asked_at >= in_use;
+}
+
+}  // namespace
 
 Command command_in(const Written& written) noexcept {
   const auto word = [&](Name name) { return written[static_cast<std::size_t>(name)]; };
@@ -9,7 +25,11 @@ Command command_in(const Written& written) noexcept {
 }
 
 std::optional<Masters::Id> Masters::admit(const std::string& address, Nanoseconds now) {
-  if (masters_.size() >= most_) return std::nullopt;
+  if (masters_.size() >= most_) {
+    const Place dropped = to_drop_for(address, now);
+    if (dropped == masters_.end()) return std::nullopt;
+    masters_.erase(dropped);
+  }
   Master& master = masters_[++last_id_];
   master.address = address;
   master.asked_at = now;
@@ -18,6 +38,28 @@ std::optional<Masters::Id> Masters::admit(const std::string& address, Nanosecond
     master.heartbeat = past->second.heartbeat;
   }
   return last_id_;
+}
+
+std::size_t Masters::places_of(const std::string& address) const {
+  return static_cast<std::size_t>(std::count_if(
+      masters_.begin(), masters_.end(), [&](const auto& entry) { return entry.second.address == address; }));
+}
+
+Masters::Place Masters::to_drop_for(const std::string& address, Nanoseconds now) {
+  const bool has_none = places_of(address) == 0;
+  // Of the address with the most places: those who never asked first, then those who asked longest ago.
+  const auto rank = [&](const Place place) {
+    const Master& master = place->second;
+    return std::tuple(masters_.size() - places_of(master.address), master.asked, master.asked_at);
+  };
+  Place found = masters_.end();
+  for (Place place = masters_.begin(); place != masters_.end(); ++place) {
+    const std::string& other = place->second.address;
+    const bool may_go = has_none ? places_of(other) > 1 : other == address;
+    if (may_go && (found == masters_.end() || rank(place) < rank(found))) found = place;
+  }
+  const bool goes = has_none || found == masters_.end() || is_idle(found->second, now);
+  return goes ? found : masters_.end();
 }
 
 Master* Masters::find(Id id) noexcept {

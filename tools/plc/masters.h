@@ -40,7 +40,9 @@ class Masters {
 
   explicit Masters(std::size_t most) : most_(most) {}
 
-  /// A connection from a numeric address. Nothing: all places are taken.
+  /// A connection from a numeric address. When all places are taken, the oldest idle one of the same address
+  /// is dropped: a master that lost its connections is not locked out by them. An address without a place
+  /// takes one from the address that has the most. Nothing: there is no place.
   [[nodiscard]] std::optional<Id> admit(const std::string& address, Nanoseconds now);
   /// Null: it has no place (any more), and its connection is to be closed.
   [[nodiscard]] Master* find(Id id) noexcept;
@@ -66,6 +68,10 @@ class Masters {
   [[nodiscard]] const std::map<std::string, Past>& past() const noexcept { return past_; }
 
  private:
+  using Place = std::map<Id, Master>::iterator;
+  [[nodiscard]] std::size_t places_of(const std::string& address) const;
+  [[nodiscard]] Place to_drop_for(const std::string& address, Nanoseconds now);
+
   std::size_t most_;
   std::map<Id, Master> masters_;
   std::map<std::string, Past> past_;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "base/grid.h"
 
 namespace softgrip::plc::masters_test {
@@ -25,9 +27,87 @@ class Places : public ::testing::Test {
   Nanoseconds now_ = ns_per_s;
 };
 
-TEST_F(Places, AreFew) {
-  for (int i = 0; i < 3; ++i) come();
+TEST_F(Places, AMasterIsNotLockedOutByItsOwnDeadConnections) {
+  std::vector<Masters::Id> dead;
+  for (int i = 0; i < 3; ++i) {
+    dead.push_back(come());
+    ask(dead.back());
+    now_ += ns_per_s;
+  }
+  const Masters::Id alive = come();
+  EXPECT_FALSE(masters_.has(dead[0]));
+  EXPECT_TRUE(masters_.has(dead[1]));
+  EXPECT_TRUE(masters_.has(alive));
+  now_ += ns_per_s;
+  ask(alive);
+  come();
+  EXPECT_FALSE(masters_.has(dead[1]));
+  EXPECT_TRUE(masters_.has(alive));
+}
+
+TEST_F(Places, WhoAsksKeepsItsPlace) {
+  const Masters::Id plc = come();
+  std::size_t admitted = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 10 == 0) ask(plc);
+    admitted += masters_.admit("10.0.0.1", now_) ? 1U : 0U;
+    EXPECT_TRUE(masters_.has(plc));
+    EXPECT_LE(masters_.all().size(), 3U);
+    now_ += ns_per_s / 11;
+  }
+  EXPECT_GT(admitted, 100U);
+}
+
+TEST_F(Places, WhoNeverAskedGoesBeforeWhoDid) {
+  const Masters::Id plc = come();
+  ask(plc);
+  now_ += ns_per_s;
+  const Masters::Id first = come();
+  const Masters::Id second = come();
+  now_ += ns_per_s;
+  come();
+  EXPECT_TRUE(masters_.has(plc) && masters_.has(second));
+  EXPECT_FALSE(masters_.has(first));
+}
+
+TEST_F(Places, ACrowdThatAsksNothingTakesNoPlaceFromAMasterThatAsksSeldom) {
+  const Masters::Id plc = come();
+  ask(plc);
+  for (int i = 0; i < 1000; ++i) {
+    now_ += ns_per_s / 20;
+    static_cast<void>(masters_.admit("10.0.0.1", now_));
+    EXPECT_TRUE(masters_.has(plc));
+  }
+}
+
+TEST_F(Places, WithoutAnIdleConnectionThereIsNoPlace) {
+  for (int i = 0; i < 3; ++i) ask(come());
   EXPECT_FALSE(masters_.admit("10.0.0.1", now_));
+  now_ += ns_per_s;
+  EXPECT_TRUE(masters_.admit("10.0.0.1", now_));
+}
+
+TEST_F(Places, AnotherAddressKeepsItsPlace) {
+  const Masters::Id other = come("10.0.0.2");
+  come();
+  come();
+  for (int i = 0; i < 10; ++i) {
+    now_ += minute;
+    come();
+  }
+  EXPECT_TRUE(masters_.has(other));
+}
+
+TEST_F(Places, AnAddressWithoutAPlaceGetsOneOfTheAddressWithTheMost) {
+  const Masters::Id first = come("10.0.0.2");
+  const Masters::Id second = come("10.0.0.2");
+  const Masters::Id other = come("10.0.0.3");
+  for (const Masters::Id id : {first, second, other}) ask(id);
+  const Masters::Id plc = come();
+  EXPECT_FALSE(masters_.has(first));
+  EXPECT_TRUE(masters_.has(second) && masters_.has(other) && masters_.has(plc));
+  // Everybody has one now.
+  EXPECT_FALSE(masters_.admit("10.0.0.4", now_));
 }
 
 TEST_F(Places, WhoAsksNothingIsDropped) {
