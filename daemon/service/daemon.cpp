@@ -138,8 +138,13 @@ void DaemonParts::conclude(Outcome& outcome) {
     const bool on = outcome.last.channels[i].safe_kpa > rig.settings.channels[i].limits.pressure_min_kpa;
     if (on) outcome.vents_after_s = seconds(board->watchdog_time().count());
   }
-  if (outcome.ending != Ending::asked || !errand || !errand->over()) return;
+  if (outcome.ending != Ending::asked || !errand) return;
   outcome.sequence_end = errand->end();
+  if (!errand->over()) {
+    outcome.ending = outcome.sequence_end ? Ending::sequence_ended : Ending::interrupted;
+    if (!outcome.sequence_end) outcome.sequence_end = control::SequenceEnd::stopped;
+    return;
+  }
   switch (errand->state()) {
     case Errand::State::refused:
       outcome.ending = Ending::sequence_refused;
@@ -184,6 +189,8 @@ ExitCode exit_code_of(const Outcome& outcome) noexcept {
     case Ending::sequence_ended:
       if (outcome.sequence_end == control::SequenceEnd::done || !outcome.left_safely) return done;
       return ExitCode::not_acceptable;
+    case Ending::interrupted:
+      return outcome.left_safely ? ExitCode::not_acceptable : ExitCode::failed;
     case Ending::gpio_refused:
       return ExitCode::input_refused;
     case Ending::socket_failed:
@@ -227,7 +234,11 @@ Daemon::Daemon(std::unique_ptr<DaemonParts> parts) : parts_(std::move(parts)) {}
 Daemon::~Daemon() = default;
 
 Outcome Daemon::run() {
-  return parts_->options.virtual_time ? run_in_virtual_time(*parts_) : run_in_real_time(*parts_);
+  Signals signals;
+  Outcome outcome = parts_->options.virtual_time ? run_in_virtual_time(*parts_, signals)
+                                                 : run_in_real_time(*parts_, signals);
+  outcome.signal = signals.first();
+  return outcome;
 }
 
 const LoopStatistics& Daemon::loop_statistics() const noexcept {

@@ -47,7 +47,8 @@ struct DaemonOptions {
 
 /// Why run() ended.
 enum class Ending : std::uint8_t {
-  asked,              ///< by a signal, or the duration is over
+  asked,              ///< by a signal, or the duration is over; no sequence was to run
+  interrupted,        ///< by a signal or the duration, before the sequence had ended
   sequence_ended,     ///< see Outcome::sequence_end
   sequence_refused,   ///< by the state of the rig
   not_idle,           ///< the rig did not become idle, so the sequence was not started
@@ -69,6 +70,7 @@ struct Outcome {
   std::string recording_error;  ///< why record_folder does not hold all of the run; empty: it does
   bool left_safely = false;     ///< the board confirmed the safe outputs at the end
   double vents_after_s = 0;  ///< pressure was left on, and the board's watchdog vents it so soon; 0: neither
+  int signal = 0;  ///< the first signal that asked for the end, until the outputs were safe; 0: none
   std::uint64_t ticks = 0;
   std::uint64_t slips = 0;
   double wall_s = 0;  ///< how long it took
@@ -97,8 +99,8 @@ class Daemon {
   Daemon& operator=(Daemon&&) = delete;
   ~Daemon();
 
-  /// Runs until a signal (SIGINT, SIGTERM) or what the options say, then leaves the board with its safe
-  /// outputs. Blocks these two signals in the calling thread and in its own while it runs.
+  /// Runs until a signal (see Signals) or what the options say, then leaves the board with its safe outputs.
+  /// Blocks these signals in the calling thread and in its own while it runs.
   Outcome run();
 
   [[nodiscard]] const LoopStatistics& loop_statistics() const noexcept;

@@ -12,6 +12,7 @@
 #include "daemon/recording/provenance.h"
 #include "daemon/recording/recorder.h"
 #include "daemon/service/daemon.h"
+#include "daemon/service/signals.h"
 #include "daemon/socket/service.h"
 
 namespace softgrip::daemon {
@@ -57,8 +58,8 @@ struct DaemonParts {
 };
 
 /// Ticks as fast as it can, in this thread alone.
-[[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts);
+[[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals);
 /// Ticks by the clock, with threads.
-[[nodiscard]] Outcome run_in_real_time(DaemonParts& parts);
+[[nodiscard]] Outcome run_in_real_time(DaemonParts& parts, Signals& signals);
 
 }  // namespace softgrip::daemon

@@ -22,7 +22,6 @@
 #include "daemon/service/daemon_parts.h"
 #include "daemon/service/panel_run.h"
 #include "daemon/service/service_manager.h"
-#include "daemon/service/signals.h"
 #include "daemon/service/startup_report.h"
 #include "daemon/socket/socket_api.h"
 #include "daemon/socket/socket_server.h"
@@ -70,8 +69,10 @@ class Stop {
 
 class RealRun {
  public:
-  explicit RealRun(DaemonParts& parts)
-      : parts_(parts), panel_(parts.rig, parts.options, parts.clock, parts.wires, parts.loop_statistics) {}
+  RealRun(DaemonParts& parts, Signals& signals)
+      : parts_(parts),
+        signals_(signals),
+        panel_(parts.rig, parts.options, parts.clock, parts.wires, parts.loop_statistics) {}
 
   Outcome run();
 
@@ -98,7 +99,7 @@ class RealRun {
   [[nodiscard]] std::string status_line();
 
   DaemonParts& parts_;
-  Signals signals_;
+  Signals& signals_;
   PanelRun panel_;
   ServiceManager manager_;
   Outcome outcome_;
@@ -372,8 +373,8 @@ Outcome RealRun::run() {
 
 }  // namespace
 
-Outcome run_in_real_time(DaemonParts& parts) {
-  return RealRun(parts).run();
+Outcome run_in_real_time(DaemonParts& parts, Signals& signals) {
+  return RealRun(parts, signals).run();
 }
 
 }  // namespace softgrip::daemon

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "base/ending_signal.h"
+
 namespace softgrip::daemon {
 
 namespace {
@@ -24,16 +26,25 @@ Signals::Signals() noexcept {
 
 Signals::~Signals() {
   for (std::size_t i = 0; i < ignored.size(); ++i) sigaction(ignored[i], &ignored_before_[i], nullptr);
-  // What came meanwhile was answered by the orderly stop; delivered now it would end the process.
-  while (wait(0) > 0) {
-  }
+  // After one that was answered by an orderly stop, the others ask for nothing more. One that was never taken
+  // stays pending: it goes to an outer object of this class, or ends the process.
+  if (first_ != 0) (void)first();
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
 int Signals::wait(Nanoseconds timeout) noexcept {
   const timespec time{timeout / ns_per_s, timeout % ns_per_s};
   const int signal = sigtimedwait(&set_, nullptr, &time);
-  return signal > 0 ? signal : 0;
+  if (signal <= 0) return 0;
+  if (first_ == 0) first_ = signal;
+  note_ending_signal(signal);
+  return signal;
+}
+
+int Signals::first() noexcept {
+  while (wait(0) > 0) {
+  }
+  return first_;
 }
 
 }  // namespace softgrip::daemon

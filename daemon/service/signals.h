@@ -22,12 +22,16 @@ class Signals {
   Signals& operator=(Signals&&) = delete;
   ~Signals();
 
-  /// The signal that came, or 0 after `timeout`.
+  /// The signal that came, or 0 after `timeout`. It is noted as the process's ending signal
+  /// (ending_signal.h).
   [[nodiscard]] int wait(Nanoseconds timeout) noexcept;
+  /// Takes all signals that came meanwhile. Returns the first one that this object has ever taken, or 0.
+  [[nodiscard]] int first() noexcept;
 
  private:
   sigset_t set_{};
   sigset_t before_{};
+  int first_ = 0;
   static constexpr std::array ignored{SIGPIPE, SIGXFSZ, SIGTSTP, SIGTTIN, SIGTTOU};
   std::array<struct sigaction, ignored.size()> ignored_before_{};
 };

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/ending_signal.h"
 #include "base/exit_code.h"
 #include "base/version.h"
 #include "daemon/service/daemon.h"
@@ -70,7 +71,8 @@ void declare(CLI::App& program, Arguments& arguments) {
       "does not\n"
       "allow the sequence, 6 the sequence ended, but not done. SIGINT, SIGTERM and every other signal that\n"
       "ends a process which is not broken: the safe outputs are written and confirmed, the recording is\n"
-      "closed, then it ends. The configuration is read once; restart to change it.");
+      "closed, then it ends with 0. With --sequence or --duration-s it ends by the same signal instead.\n"
+      "The configuration is read once; restart to change it.");
 }
 
 /// fmt::print throws where nothing can be written, and then nothing could say why.
@@ -175,9 +177,13 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }
-    return static_cast<int>(arguments.safe_outputs ? safe_outputs(arguments)
-                            : arguments.check      ? check(arguments)
-                                                   : run(arguments));
+    const ExitCode code = arguments.safe_outputs ? safe_outputs(arguments)
+                          : arguments.check      ? check(arguments)
+                                                 : run(arguments);
+    // A signal is the usual end of a daemon, but it interrupts a run that has an end of its own.
+    const bool has_an_end = !arguments.sequence.empty() || arguments.duration_s;
+    if (has_an_end && ending_signal() != 0) end_by_signal(ending_signal());
+    return static_cast<int>(code);
   } catch (const std::exception& error) {
     complain(error.what());
     return static_cast<int>(ExitCode::failed);

@@ -1,7 +1,6 @@
 // Virtual time: one thread, no sleeping, the same bytes every time.
 
 #include "daemon/service/daemon_parts.h"
-#include "daemon/service/signals.h"
 #include "daemon/service/startup_report.h"
 
 namespace softgrip::daemon {
@@ -25,8 +24,7 @@ void look(DaemonParts& parts, Nanoseconds now) {
 
 }  // namespace
 
-Outcome run_in_virtual_time(DaemonParts& parts) {
-  Signals signals;
+Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals) {
   if (parts.options.on_start)
     parts.options.on_start(startup_report(parts.rig, *parts.board, nullptr, parts.options.program));
   const Nanoseconds began = parts.system_clock.now();

@@ -317,8 +317,7 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
   command->add_flag("--yes", options->yes, "Write what is doubtful without asking");
   command->footer(
       "Questions go to the standard error, answers come line by line from the standard input.\nExit codes: 0 "
-      "done, 1 "
-      "stopped, 2 usage, 3 input refused, 4 the board or a file, 5 the daemon runs,\n6 what was measured "
+      "done, 2 usage, 3 input refused, 4 the board or a file, 5 the daemon runs,\n6 what was measured "
       "makes no "
       "calibration.");
   command->callback([options, &outcome] { outcome = run(*options); });

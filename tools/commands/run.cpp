@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/ending_signal.h"
 #include "base/numbers.h"
 #include "daemon/service/daemon.h"
 #include "daemon/socket/sequence_loader.h"
@@ -55,7 +56,9 @@ void report(const RunOptions& options, const daemon::Outcome& outcome) {
   }
   for (std::size_t i = 0; i < channels.size(); ++i)
     std::printf("%s: %s\n", channels[i].c_str(), title(i).c_str());
-  std::printf("sequence %s; %s ticks, %s slips in %s s; %s\n", end.c_str(),
+  const bool by_signal = outcome.ending == daemon::Ending::interrupted && outcome.signal != 0;
+  std::printf("sequence %s%s; %s ticks, %s slips in %s s; %s\n", end.c_str(),
+              by_signal ? (" by " + name_of_signal(outcome.signal)).c_str() : "",
               std::to_string(outcome.ticks).c_str(), std::to_string(outcome.slips).c_str(),
               significant(outcome.wall_s, 4).c_str(),
               outcome.left_safely ? "the board confirmed the safe outputs"
@@ -123,6 +126,10 @@ void add_run(CLI::App& program, ExitCode& outcome) {
   command->add_flag("--no-socket", options->no_socket, "Do not listen on the rig file's socket");
   command->add_flag("--quiet", options->quiet, "Only the results");
   command->add_flag("--json", options->json, "Events and results as JSON, one per line");
+  command->footer(
+      "Ctrl-C and other ending signals: it writes the safe outputs, then ends by the same signal, so that "
+      "the "
+      "loop of a\nshell does not start the next sequence.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/ending_signal.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/event_text.h"
 #include "tools/client/key_dialogue.h"
@@ -46,6 +47,12 @@ void print(const Json& status, bool json) {
   std::fflush(stdout);
 }
 
+/// A signal is the usual end, but it interrupts a number of updates that was asked for.
+ExitCode ended_by(int signal, std::uint64_t count) {
+  if (count > 0) note_ending_signal(signal);
+  return ExitCode::done;
+}
+
 /// A line per update, until a signal ends it.
 ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
   const Descriptor signals = take_ending_signals();
@@ -55,7 +62,7 @@ ExitCode print_updates(DaemonClient& client, const WatchOptions& options) {
     if (watched[1].revents != 0) {
       const int signal = next_signal(signals);
       if (signal == SIGTSTP) ::raise(SIGSTOP);
-      if (signal != 0 && signal != SIGTSTP && signal != SIGWINCH) return ExitCode::done;
+      if (signal != 0 && signal != SIGTSTP && signal != SIGWINCH) return ended_by(signal, options.count);
     }
     if (watched[0].revents == 0) continue;
     // Everything that came, or poll() would not tell of what is already buffered here.
@@ -104,7 +111,7 @@ class LiveWatch {
 
  private:
   /// False when it is time to leave.
-  bool hear_signals();
+  bool hear_signals(std::uint64_t count);
   bool hear_keys();
   [[nodiscard]] std::optional<ClientFailure> hear_daemon();
   void take_line(const Json& line);
@@ -195,14 +202,16 @@ std::optional<ClientFailure> LiveWatch::hear_daemon() {
   return std::nullopt;
 }
 
-bool LiveWatch::hear_signals() {
+bool LiveWatch::hear_signals(std::uint64_t count) {
   const int signal = next_signal(signals_);
   if (signal == SIGTSTP) {
     screen_.reset();
     ::raise(SIGSTOP);
     screen_.emplace();
   }
-  return signal == 0 || signal == SIGTSTP || signal == SIGWINCH;
+  if (signal == 0 || signal == SIGTSTP || signal == SIGWINCH) return true;
+  (void)ended_by(signal, count);
+  return false;
 }
 
 bool LiveWatch::hear_keys() {
@@ -243,7 +252,7 @@ ExitCode LiveWatch::run(std::uint64_t count) {
                                    {signals_.get(), POLLIN, 0}}};
     ask_for_events();
     if (::poll(watched.data(), watched.size(), look_pause_ms) < 0) continue;
-    if (watched[2].revents != 0 && !hear_signals()) break;
+    if (watched[2].revents != 0 && !hear_signals(count)) break;
     if (watched[1].revents != 0 && !hear_keys()) break;
     if (watched[0].revents != 0) {
       if (const auto failure = hear_daemon()) {

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <variant>
 
+#include "base/ending_signal.h"
 #include "base/files.h"
 #include "base/numbers.h"
 #include "base/random.h"
@@ -58,6 +59,10 @@ tl::expected<void, NotPlayed> call(const std::string& command, const std::string
   std::fflush(nullptr);
   const int status = std::system((command + " " + shell_word(in) + " " + shell_word(out)).c_str());
   const bool by_signal = WIFSIGNALED(status) || (WIFEXITED(status) && WEXITSTATUS(status) == 128 + SIGINT);
+  // Ctrl-C reaches this process, too, but system() ignores it meanwhile.
+  const bool by_user =
+      (WIFEXITED(status) && by_signal) || (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+  if (by_user) note_ending_signal(SIGINT);
   if (by_signal) return stopped("the rig's command was stopped by a signal");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     return failed("the rig's command failed with exit code " + std::to_string(WEXITSTATUS(status)));
@@ -137,7 +142,8 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   auto daemon = daemon::Daemon::create(rig.rig, options);
   if (!daemon) return failed(daemon.error());
   const daemon::Outcome outcome = (*daemon)->run();
-  if (outcome.ending == daemon::Ending::asked) return stopped("stopped by the user; the rig is vented");
+  // A signal that came in the last moment of the experiment must keep the next one from moving the finger.
+  if (outcome.signal != 0) return stopped("stopped by the user; the rig is vented");
   if (outcome.ending != daemon::Ending::sequence_ended || !outcome.sequence_end ||
       *outcome.sequence_end != control::SequenceEnd::done) {
     const std::string& why = outcome.message.empty() ? fault : outcome.message;

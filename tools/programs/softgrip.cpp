@@ -5,6 +5,7 @@
 #include <exception>
 #include <string>
 
+#include "base/ending_signal.h"
 #include "base/version.h"
 #include "tools/command_line/usage.h"
 #include "tools/commands/commands.h"
@@ -17,7 +18,8 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(
       "Exit codes: 0 done, 1 failed, 2 usage, 3 configuration or input refused, 4 I/O,\n"
-      "5 refused by the daemon's state, 6 finished but the result is not acceptable.");
+      "5 refused by the daemon's state, 6 finished but the result is not acceptable.\n"
+      "Ctrl-C and other ending signals: it tidies up, then ends by the same signal.");
 
   softgrip::ExitCode outcome = softgrip::ExitCode::done;
 #define SOFTGRIP_ADD(name) softgrip::tools::add_##name(program, outcome);
@@ -29,6 +31,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return softgrip::tools::end_of(program, error, argc, argv);
   }
+  // Everything is in order and safe. A shell goes on with its loop unless the program dies by the signal.
+  if (softgrip::ending_signal() != 0) softgrip::end_by_signal(softgrip::ending_signal());
   return static_cast<int>(outcome);
 }
 

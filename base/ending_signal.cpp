@@ -1,0 +1,48 @@
+#include "base/ending_signal.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+namespace softgrip {
+namespace {
+
+std::atomic<int> noted{0};
+
+/// Shells report a process that a signal ended as this number plus the signal.
+constexpr int shell_offset = 128;
+
+}  // namespace
+
+void note_ending_signal(int signal) noexcept {
+  int none = 0;
+  noted.compare_exchange_strong(none, signal);
+}
+
+int ending_signal() noexcept {
+  return noted.load();
+}
+
+std::string name_of_signal(int signal) {
+  const char* const name = ::sigabbrev_np(signal);
+  return name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(signal);
+}
+
+void end_by_signal(int signal) noexcept {
+  std::fflush(nullptr);
+  struct sigaction usual {};
+  usual.sa_handler = SIG_DFL;
+  sigaction(signal, &usual, nullptr);
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, signal);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  ::raise(signal);
+  // Only a signal that does not end a process comes here.
+  ::_exit(shell_offset + signal);
+}
+
+}  // namespace softgrip

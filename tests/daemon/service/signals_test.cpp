@@ -1,0 +1,73 @@
+#include "daemon/service/signals.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <functional>
+
+#include "base/ending_signal.h"
+
+namespace softgrip::daemon::signals_test {
+namespace {
+
+/// How a child that does `body` ended: a signal is a matter of the whole process.
+int status_of(const std::function<bool()>& body) {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(body() ? 0 : 1);
+  int status = 0;
+  EXPECT_EQ(::waitpid(child, &status, 0), child);
+  return status;
+}
+
+TEST(Signals, TheFirstOneIsKnownAndIsTheOneToEndBy) {
+  EXPECT_EQ(status_of([] {
+              Signals signals;
+              if (signals.first() != 0) return false;
+              ::raise(SIGTERM);
+              if (signals.wait(0) != SIGTERM) return false;
+              ::raise(SIGINT);
+              return signals.first() == SIGTERM && ending_signal() == SIGTERM && signals.wait(0) == 0;
+            }),
+            0);
+}
+
+TEST(Signals, AfterAnAnsweredOneTheOthersDoNotEndTheProcess) {
+  EXPECT_EQ(status_of([] {
+              {
+                Signals signals;
+                ::raise(SIGINT);
+                (void)signals.wait(0);
+                ::raise(SIGINT);
+                ::raise(SIGTERM);
+              }
+              return true;
+            }),
+            0);
+}
+
+TEST(Signals, OneThatWasNeverTakenGoesToAnOuterObject) {
+  EXPECT_EQ(status_of([] {
+              Signals outer;
+              {
+                const Signals inner;
+                ::raise(SIGHUP);
+              }
+              return outer.wait(0) == SIGHUP;
+            }),
+            0);
+}
+
+TEST(Signals, OneThatWasNeverTakenEndsTheProcess) {
+  const int status = status_of([] {
+    {
+      const Signals signals;
+      ::raise(SIGTERM);
+    }
+    return true;
+  });
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) << status;
+}
+
+}  // namespace
+}  // namespace softgrip::daemon::signals_test

@@ -1,0 +1,112 @@
+"""A signal that interrupts a command: safe outputs, then the end by the same signal, so that a shell ends its loop."""
+
+import os
+import signal
+import subprocess
+import time
+
+import bench
+
+INTERRUPTING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Interrupted(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        self.board = self.emulator("--object", "stone")
+        self.rig_path = self.rig(self.board.port)
+
+    def process(self, *arguments):
+        process = bench.Process("interrupted", arguments, self.folder)
+        self.processes.append(process)
+        return process
+
+    def running(self, *more):
+        """A run whose fingers are under pressure."""
+        run = self.process(bench.SOFTGRIP, "run", "config/sequences/pick_stone.yaml", "--rig", self.rig_path, *more)
+        bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
+        return run
+
+    def test_a_run_ends_by_the_signal_with_safe_outputs(self):
+        for number in INTERRUPTING:
+            with self.subTest(signal=number.name):
+                run = self.running()
+                self.assertEqual(run.end(number), -number, run.output() + run.errors())
+                self.assertEqual(max(self.board.commands_kpa()), 0)
+                self.assertIn(f"sequence stopped by {number.name}", run.output())
+                self.assertIn("the board confirmed the safe outputs", run.output())
+
+    def test_a_run_that_reports_as_json_says_stopped(self):
+        run = self.running("--json", "--quiet")
+        self.assertEqual(run.end(signal.SIGTERM), -signal.SIGTERM)
+        self.assertIn('"sequence_end":"stopped"', run.output().replace(" ", ""))
+
+    def test_a_signal_after_the_last_step_ends_the_run_too(self):
+        run = self.running()
+        bench.wait_for("the end of the sequence", lambda: "RELEASED" in run.output(), pause_s=0.005)
+        self.assertEqual(run.end(signal.SIGINT), -signal.SIGINT, run.output())
+        self.assertIn("sequence done", run.output())
+
+    def test_the_loop_of_a_shell_does_not_start_the_next_sequence(self):
+        command = (f"for turn in 1 2; do echo turn $turn >> turns; {bench.SOFTGRIP} run "
+                   f"config/sequences/pick_stone.yaml --rig {self.rig_path} --quiet; done; echo over >> turns")
+        shell = subprocess.Popen(["bash", "-c", command], cwd=self.folder, start_new_session=True,
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(shell.wait)
+        bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
+        os.killpg(shell.pid, signal.SIGINT)  # as a terminal does
+        self.assertEqual(shell.wait(bench.PATIENCE_S), -signal.SIGINT)
+        self.assertEqual((self.folder / "turns").read_text(), "turn 1\n")
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+
+    def test_a_daemon_with_a_sequence_is_interrupted(self):
+        daemon = self.process(bench.SOFTGRIPD, "--config", self.rig_path, "--sequence",
+                              "config/sequences/pick_stone.yaml")
+        bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 3, pause_s=0.005)
+        self.assertEqual(daemon.end(signal.SIGTERM), -signal.SIGTERM)
+        self.assertIn("the sequence ended: stopped", daemon.errors())
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+
+    def test_a_sequence_that_outlasts_the_duration_is_not_done(self):
+        daemon = self.process(bench.SOFTGRIPD, "--config", self.rig_path, "--sequence",
+                              "config/sequences/pick_stone.yaml", "--duration-s", "3")
+        self.assertEqual(daemon.wait(), 6, daemon.errors())
+        self.assertIn("the sequence ended: stopped", daemon.errors())
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+
+    def test_a_number_of_updates_that_is_not_reached(self):
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        watch = self.process(bench.SOFTGRIP, "watch", "--count", "100000", "--socket", daemon.socket_path)
+        bench.wait_for("updates", lambda: watch.output().count("\n") > 2)
+        self.assertEqual(watch.end(signal.SIGINT), -signal.SIGINT)
+
+    def test_a_daemon_and_a_watch_without_an_end_are_done(self):
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        watch = self.process(bench.SOFTGRIP, "watch", "--socket", daemon.socket_path)
+        bench.wait_for("updates", lambda: watch.output().count("\n") > 2)
+        self.assertEqual(watch.end(signal.SIGINT), 0)
+        self.assertEqual(daemon.end(signal.SIGTERM), 0)
+
+
+class WithoutABoard(bench.BenchTest):
+    """Virtual time: an endless sequence is interrupted, and its recording is closed."""
+
+    def test_a_run_in_virtual_time(self):
+        for number in INTERRUPTING:
+            with self.subTest(signal=number.name):
+                folder = self.folder / f"record_{number.name}"
+                run = bench.Process("virtual", [bench.SOFTGRIP, "run", "config/sequences/pick_stone.yaml", "--set",
+                                                "hold_s=600", "--rig", "config/rig.yaml", "--virtual-time",
+                                                "--record", folder, "--quiet"], self.folder)
+                self.processes.append(run)
+                bench.wait_for("a recording", (folder / "run.csv").exists, pause_s=0.001)
+                time.sleep(0.05)
+                self.assertEqual(run.end(number), -number, run.output() + run.errors())
+                self.assertIn(f"sequence stopped by {number.name}", run.output())
+                self.assertIn('"state": "complete"', (folder / "run.json").read_text())
+
+
+if __name__ == "__main__":
+    bench.main()
