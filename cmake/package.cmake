@@ -3,17 +3,18 @@
 set(packaging ${PROJECT_SOURCE_DIR}/packaging)
 set(packaged ${CMAKE_CURRENT_BINARY_DIR}/packaging)
 
-# Units name programs by their full path, which only the installation knows.
+# Units and rules name programs by their full path, which only the installation knows.
 install(CODE "set(CMAKE_INSTALL_FULL_BINDIR \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
 set(SOFTGRIP_CONFIGURATION \"${SOFTGRIP_CONFIGURATION}\")
 foreach(unit IN ITEMS softgripd softgrip-plc softgrip-web softgrip-health)
   configure_file(\"${PROJECT_SOURCE_DIR}/systemd/\${unit}.service.in\" \"${packaged}/\${unit}.service\" @ONLY)
   file(INSTALL \"${packaged}/\${unit}.service\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/lib/systemd/system\")
-endforeach()")
+endforeach()
+configure_file(\"${PROJECT_SOURCE_DIR}/systemd/softgrip.rules.in\" \"${packaged}/70-softgrip.rules\" @ONLY)
+file(INSTALL \"${packaged}/70-softgrip.rules\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/lib/udev/rules.d\")")
 install(FILES systemd/softgrip-health.timer DESTINATION lib/systemd/system)
 install(FILES systemd/softgrip.sysusers DESTINATION lib/sysusers.d RENAME softgrip.conf)
 install(FILES systemd/softgrip.tmpfiles DESTINATION lib/tmpfiles.d RENAME softgrip.conf)
-install(FILES systemd/softgrip.rules DESTINATION lib/udev/rules.d RENAME 70-softgrip.rules)
 
 # Man pages, where pandoc is there to make them.
 find_program(SOFTGRIP_PANDOC pandoc)

@@ -58,7 +58,7 @@ softgrip_room(daemon/socket
   USES base document model control/elements control/tick control/sequences rig daemon/loop daemon/recording
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(daemon/service
-  USES base control/tick drivers/board drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
+  USES base control/tick drivers/board drivers/iio drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
   LIBRARIES spdlog::spdlog PkgConfig::systemd)
 
 # From a log to the reason.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include "base/ending_signal.h"
@@ -16,6 +17,7 @@
 #include "base/version.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/event_printer.h"
+#include "daemon/service/named_device.h"
 #include "daemon/service/safe_outputs.h"
 #include "daemon/service/startup_report.h"
 #include "rig/check.h"
@@ -31,6 +33,7 @@ struct Arguments {
   std::string sequence;
   std::string record;
   std::string histograms;
+  std::string device;
   bool check = false;
   bool safe_outputs = false;
   bool virtual_time = false;
@@ -47,6 +50,12 @@ void declare(CLI::App& program, Arguments& arguments) {
       "--safe-outputs", arguments.safe_outputs,
       "vent: connect to the board, write the lowest pressure of every channel until the board confirms "
       "it, and end. For ExecStopPost= of the unit: does nothing where $SERVICE_RESULT is success");
+  program
+      .add_option(
+          "--device", arguments.device,
+          "for the udev rule: end with 0 if the rig file names this device of the computer, else with 6. "
+          "Prints the attributes of a converter that the daemon writes")
+      ->type_name("gpiochipN|iio:deviceN");
   program.add_flag("--virtual-time", arguments.virtual_time,
                    "as fast as possible on a simulated board, repeatable bit by bit; ends with --sequence or "
                    "--duration-s");
@@ -98,6 +107,16 @@ ExitCode check(const Arguments& arguments) {
   fmt::print("{}{}: fit to run\n",
              daemon::startup_report(*rig, *daemon::make_board(*rig, clock), nullptr, "softgripd"),
              arguments.config);
+  return ExitCode::done;
+}
+
+ExitCode say_whether_named(const Arguments& arguments) {
+  document::Problems problems;
+  const auto rig = rig::load_rig(arguments.config, problems);
+  if (!rig) return refuse(problems);
+  const auto named = daemon::named_device(*rig, arguments.device);
+  if (!named) return ExitCode::not_acceptable;
+  fmt::print("{}\n", fmt::join(named->written, " "));
   return ExitCode::done;
 }
 
@@ -177,9 +196,10 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }
-    const ExitCode code = arguments.safe_outputs ? safe_outputs(arguments)
-                          : arguments.check      ? check(arguments)
-                                                 : run(arguments);
+    const ExitCode code = arguments.safe_outputs      ? safe_outputs(arguments)
+                          : arguments.check           ? check(arguments)
+                          : !arguments.device.empty() ? say_whether_named(arguments)
+                                                      : run(arguments);
     // A signal is the usual end of a daemon, but it interrupts a run that has an end of its own.
     const bool has_an_end = !arguments.sequence.empty() || arguments.duration_s;
     if (has_an_end && ending_signal() != 0) end_by_signal(ending_signal());

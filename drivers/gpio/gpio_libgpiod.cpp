@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "drivers/gpio/gpio_chip.h"
 #include "drivers/gpio/gpio_lines.h"
 #if SOFTGRIP_GPIOD_2
 #include "drivers/gpio/libgpiod_2.h"
@@ -37,7 +38,8 @@ Failure failed(const std::string& what, int error) {
   Failure failure{Failure::Kind::failed, 0, what + ": " + std::strerror(error), ""};
   if (error == EACCES || error == EPERM) {
     failure.hint =
-        "/dev/gpiochip* must be readable and writable for this user: see the udev rule of the package";
+        "the package's udev rule gives the service the chips that its rig file names; after a change: "
+        "`udevadm trigger --action=add --subsystem-match=gpio`";
   }
   return failure;
 }
@@ -198,6 +200,12 @@ class LibgpiodLines final : public GpioLines {
 };
 
 }  // namespace
+
+bool is_chip(const std::filesystem::path& device, const std::string& wanted) {
+  if (device.filename() == wanted) return true;
+  const Chip chip(gpiod_chip_open(device.c_str()));
+  return chip && libgpiod::label_of(chip.get()) == wanted;
+}
 
 tl::expected<std::unique_ptr<GpioLines>, GpioFailure> open_gpio_lines(
     std::span<const GpioLineSettings> lines) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "base/clock.h"
@@ -14,6 +13,7 @@
 #include "drivers/board/judged_input.h"
 #include "drivers/board/round_trip.h"
 #include "drivers/iio/iio_attribute.h"
+#include "drivers/iio/iio_device.h"
 
 namespace softgrip::drivers {
 namespace {
@@ -25,21 +25,13 @@ double per_unit(std::string_view channel) noexcept {
   return unit_of_channel(channel) == ElectricalUnit::volt ? 1e-3 : 1;
 }
 
-std::string first_word(const std::filesystem::path& file) {
-  std::string word;
-  std::ifstream(file) >> word;
-  return word;
-}
-
 /// The device's folder, or an empty path; `known` gets the names of all that are there.
 std::filesystem::path folder_of(const std::string& root, const std::string& device, std::string& known) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(root, error)) {
-    const std::string folder = entry.path().filename().string();
-    if (folder.rfind("iio:device", 0) != 0) continue;
-    const std::string name = first_word(entry.path() / "name");
-    if (device == folder || device == name) return entry.path();
-    known += (known.empty() ? "" : ", ") + name;
+    if (!entry.path().filename().string().starts_with("iio:device")) continue;
+    if (is_converter(entry.path(), device)) return entry.path();
+    known += (known.empty() ? "" : ", ") + name_of_converter(entry.path());
   }
   return {};
 }

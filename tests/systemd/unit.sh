@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# What systemd says of the files in systemd/ without starting anything: unit.sh verify|exposure|users|folders UNIT SOURCE
+# What systemd says of the files in systemd/ without starting anything: unit.sh verify|exposure|users|folders|rules UNIT SOURCE
 # UNIT is the configured unit whose ExecStart= exists; SOURCE the folder systemd/.
 set -euo pipefail
 unit=$2 source=$3
-# 2.0 of 10, as tenths.
-most_exposure=20
+# 1.5 of 10, as tenths.
+most_exposure=15
 
 case $1 in
   verify)
@@ -42,6 +42,26 @@ case $1 in
     systemd-tmpfiles --root="$root" --clean "$root/etc/softgrip.conf"
     [ ! -e "$runs/kept/run.csv" ]
     [ -f "$runs/health/notes.yaml" ]
+    ;;
+  rules)
+    # Every line that gives a chip or a converter away asks the daemon first if the rig file names it.
+    rules=$source/softgrip.rules.in
+    asks='PROGRAM="@CMAKE_INSTALL_FULL_BINDIR@/softgripd --config @SOFTGRIP_CONFIGURATION@/rig_service.yaml --device %k"'
+    grep -E 'SUBSYSTEM=="(gpio|iio)"' "$rules" >/dev/null
+    if grep -E 'SUBSYSTEM=="(gpio|iio)"' "$rules" | grep -vF "$asks"; then exit 1; fi
+    # The answers: 0 for a device that the file names, 6 for another one, 3 for a file that cannot be read.
+    softgripd=$(sed -n 's/^ExecStart=\([^ ]*\) .*/\1/p' "$unit")
+    folder=$(mktemp -d) && trap 'rm -rf "$folder"' EXIT
+    cp -r "$source/../config" "$folder"
+    rig=$folder/config/rig_service.yaml
+    answer() { local code=0; "$softgripd" --config "$rig" --device "$1" || code=$?; [ "$code" = "$2" ]; }
+    answer gpiochip7 6
+    printf 'gpio:\n  debounce_s: 0.005\n  stale_after_s: 0.5\n  ready_lamp: {chip: gpiochip7, offset: 0, active: high}\n' >>"$rig"
+    answer gpiochip7 0
+    answer gpiochip0 6
+    answer iio:device0 6
+    printf 'half: [' >>"$rig"
+    answer gpiochip7 3
     ;;
   *) echo "unit.sh: unknown check $1" >&2; exit 2 ;;
 esac

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "drivers/gpio/gpio_chip.h"
 #include "drivers/gpio/gpio_lines.h"
 #include "tests/drivers/gpio/fake_gpio.h"
 
@@ -72,6 +73,14 @@ TEST_F(Libgpiod, RequestsEachLineAsDescribed) {
   EXPECT_TRUE(output.used && output.output && !output.edges_seen);
   EXPECT_TRUE(output.high) << "an output starts inactive, which is high where low is active";
   EXPECT_TRUE((*lines)->sees_edges());
+}
+
+TEST_F(Libgpiod, KnowsAChipByItsNameAndByItsLabel) {
+  add_chip("gpiochip1", "second", 2);
+  EXPECT_TRUE(is_chip(devices_ / "gpiochip1", "gpiochip1"));
+  EXPECT_TRUE(is_chip(devices_ / "gpiochip1", "second"));
+  EXPECT_FALSE(is_chip(devices_ / "gpiochip1", "first"));
+  EXPECT_FALSE(is_chip(devices_ / "gpiochip2", "second")) << "a chip that is not there";
 }
 
 TEST_F(Libgpiod, PassesEveryBiasOn) {

@@ -99,22 +99,30 @@ class Emulator:
 
 
 class Lines:
-    """A chip of simulated GPIO lines, pulled from outside."""
+    """A chip of simulated GPIO lines, pulled from outside, that the rig file names already; and one that it does not."""
 
     label = "softgrip-panel"
     emergency_stop, enable = 0, 1
 
     def __init__(self):
         sh("modprobe gpio-sim; mountpoint -q /sys/kernel/config || mount -t configfs configfs /sys/kernel/config")
-        device = pathlib.Path("/sys/kernel/config/gpio-sim/panel")
+        other, _ = self.plug_in("other", "not-of-softgrip")
+        self.chip, self.folder = self.plug_in("panel", self.label)
+        wait_for("udev to give the chip away", lambda: sh(f"stat -c '%G %a' /dev/{self.chip}") == "softgrip 660\n")
+        sh("udevadm settle")
+        expect(sh(f"stat -c '%U %G' /dev/{other}") == "root root\n", "udev gave a chip away that no rig file names")
+
+    @staticmethod
+    def plug_in(name, label):
+        """A chip of two lines: its name and its folder."""
+        device = pathlib.Path("/sys/kernel/config/gpio-sim") / name
         bank = device / "bank"
         bank.mkdir(parents=True)
         (bank / "num_lines").write_text("2")
-        (bank / "label").write_text(self.label)
+        (bank / "label").write_text(label)
         (device / "live").write_text("1")
-        self.chip = (bank / "chip_name").read_text().strip()
-        self.folder = pathlib.Path("/sys/devices/platform") / (device / "dev_name").read_text().strip() / self.chip
-        wait_for("udev to give the chip away", lambda: sh(f"stat -c '%G %a' /dev/{self.chip}") == "softgrip 660\n")
+        chip = (bank / "chip_name").read_text().strip()
+        return chip, pathlib.Path("/sys/devices/platform") / (device / "dev_name").read_text().strip() / chip
 
     def pull(self, line, level):
         (self.folder / f"sim_gpio{line}" / "pull").write_text("pull-up" if level else "pull-down")

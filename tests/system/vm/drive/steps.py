@@ -99,8 +99,7 @@ def sequence(state):
 
 
 def emergency_stop(state):
-    lines, emulator = Lines(), state["emulator"]
-    lines.pull(Lines.emergency_stop, 0)
+    emulator = state["emulator"]
     before = RIG.read_text()
     RIG.write_text(before + f"""
 gpio:
@@ -109,6 +108,8 @@ gpio:
   emergency_stop: {{chip: {Lines.label}, offset: {Lines.emergency_stop}, active: high}}
   enable: {{chip: {Lines.label}, offset: {Lines.enable}, active: high, on_fault: drop}}
 """)
+    lines = Lines()
+    lines.pull(Lines.emergency_stop, 0)
     try:
         sh(f"systemctl stop {UNIT}")
         emulator.start()

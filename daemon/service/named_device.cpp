@@ -1,0 +1,46 @@
+#include "daemon/service/named_device.h"
+
+#include <algorithm>
+#include <variant>
+
+#include "drivers/gpio/gpio_chip.h"
+#include "drivers/iio/iio_device.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+std::optional<NamedDevice> named_chip(const rig::RigFile& rig, const std::filesystem::path& chip) {
+  if (!rig.gpio) return std::nullopt;
+  const auto& lines = rig.gpio->lines;
+  const bool named = std::any_of(lines.begin(), lines.end(), [&](const drivers::GpioLineSettings& line) {
+    return drivers::is_chip(chip, line.chip);
+  });
+  return named ? std::optional(NamedDevice{}) : std::nullopt;
+}
+
+std::optional<NamedDevice> named_converter(const rig::RigFile& rig, const std::string& device) {
+  const auto* const converters = std::get_if<drivers::IioSettings>(&rig.board);
+  if (converters == nullptr) return std::nullopt;
+  const std::filesystem::path folder = std::filesystem::path(converters->root) / device;
+  const auto is_it = [&](const drivers::IioTerminal& terminal) {
+    return drivers::is_converter(folder, terminal.device);
+  };
+  const bool read = std::any_of(converters->inputs.begin(), converters->inputs.end(), is_it);
+  NamedDevice named;
+  for (const drivers::IioTerminal& output : converters->outputs) {
+    if (is_it(output)) named.written.push_back("out_" + output.channel + "_raw");
+  }
+  return read || !named.written.empty() ? std::optional(named) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<NamedDevice> named_device(const rig::RigFile& rig, const std::string& device,
+                                        const std::filesystem::path& chips) {
+  if (device.starts_with("gpiochip")) return named_chip(rig, chips / device);
+  if (device.starts_with("iio:device")) return named_converter(rig, device);
+  return std::nullopt;
+}
+
+}  // namespace softgrip::daemon
