@@ -59,7 +59,7 @@ softgrip_room(daemon/socket
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(daemon/service
   USES base control/tick drivers/board drivers/iio drivers/gpio rig daemon/loop daemon/recording daemon/panel daemon/socket
-  LIBRARIES spdlog::spdlog PkgConfig::systemd)
+  LIBRARIES spdlog::spdlog nlohmann_json::nlohmann_json PkgConfig::systemd)
 
 # From a log to the reason.
 softgrip_room(sysid/logs USES base document model)

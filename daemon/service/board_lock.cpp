@@ -1,20 +1,30 @@
 #include "daemon/service/board_lock.h"
 
 #include <arpa/inet.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "base/clock.h"
+#include "base/grid.h"
 #include "base/sha256.h"
+#include "daemon/service/trusted_user.h"
 
 namespace softgrip::daemon {
 
@@ -50,24 +60,92 @@ std::string name_of(const drivers::ModbusAddress& link, std::uint8_t unit) {
   return "serial " + real_path(std::get<drivers::SerialLine>(link).device);
 }
 
-/// A name in the kernel, not in a folder: nobody can remove it, and it goes when its process goes.
-sockaddr_un address_of(const std::string& name, socklen_t& length) {
+std::string key_of(const std::string& board) {
+  return "board-" + sha256(board);
+}
+
+sockaddr_un address_of(const std::string& board, socklen_t& length) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string key = "softgrip-board-" + sha256(name);
+  const std::string key = "softgrip-" + key_of(board);
   std::memcpy(address.sun_path + 1, key.data(), key.size());
   length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + key.size());
   return address;
 }
 
 /// " (process 4711)", or nothing.
-std::string holder(const sockaddr_un& address, socklen_t length) {
-  const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  ucred peer{};
-  socklen_t size = sizeof peer;
-  const bool known = connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0 &&
-                     getsockopt(probe.get(), SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
-  return known ? fmt::format(" (process {})", peer.pid) : "";
+std::string in_brackets(pid_t process) {
+  return process > 0 ? fmt::format(" (process {})", process) : "";
+}
+
+std::string taken(const std::string& board, pid_t process) {
+  return fmt::format("{}: another softgrip program drives this board{}; two masters would fight", board,
+                     in_brackets(process));
+}
+
+/// The state of a process as in /proc: R, S, D, T ...; nothing if it cannot be seen from here.
+std::optional<char> state_of(pid_t process) {
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string text;
+  std::getline(file, text, '\0');
+  const std::size_t name_end = text.rfind(") ");
+  if (name_end == std::string::npos || name_end + 2 >= text.size()) return std::nullopt;
+  return text[name_end + 2];
+}
+
+/// True if the process is stopped, dead or hung in a system call: it drives nothing.
+bool stands_still(pid_t process) {
+  constexpr int looks = 5;
+  constexpr Nanoseconds pause = 50'000'000;
+  for (int i = 0; i < looks; ++i) {
+    const std::optional<char> state = process > 0 ? state_of(process) : std::nullopt;
+    if (!state || std::string_view("DTtZX").find(*state) == std::string_view::npos) return false;
+    sleep_until(monotonic_now() + pause);
+  }
+  return true;
+}
+
+/// The process that locked the file, as it wrote into it; 0: not known.
+pid_t holder_of(int file) {
+  std::array<char, 16> text{};
+  if (::pread(file, text.data(), text.size() - 1, 0) <= 0) return 0;
+  return static_cast<pid_t>(std::strtol(text.data(), nullptr, 10));
+}
+
+void write_holder(int file) {
+  const std::string text = std::to_string(::getpid()) + "\n";
+  // Only messages need it.
+  if (::ftruncate(file, 0) == 0) [[maybe_unused]]
+    const ssize_t written = ::pwrite(file, text.data(), text.size(), 0);
+}
+
+/// Returns the holder of a name, or nothing if it cannot be seen: it does not listen, or its queue is full.
+std::optional<Peer> holder_of(const sockaddr_un& address, socklen_t length) {
+  // Between its bind() and listen() a program of softgrip cannot be seen yet.
+  constexpr int attempts = 5;
+  constexpr Nanoseconds pause = 2'000'000;
+  for (int i = 0; i < attempts; ++i) {
+    const Descriptor probe(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+    if (connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0)
+      return peer_of(probe.get());
+    if (errno != ECONNREFUSED) return std::nullopt;
+    sleep_until(monotonic_now() + pause);
+  }
+  return std::nullopt;
+}
+
+std::string standing_still(const std::string& board, pid_t process) {
+  return fmt::format("{}: the softgrip program that holds its lock{} stands still", board,
+                     in_brackets(process));
+}
+
+/// A holder that does not count.
+std::string without_right(const std::string& board, const std::optional<Peer>& holder) {
+  if (holder && holder->trusted) return standing_still(board, holder->process);
+  const std::string who =
+      holder ? fmt::format("user {}{}", holder->user, in_brackets(holder->process)) : "an unknown program";
+  return fmt::format("{}: {} occupies the name of its lock without the right to it; this does not count",
+                     board, who);
 }
 
 }  // namespace
@@ -87,21 +165,79 @@ std::vector<std::string> driven_by(const rig::RigFile& rig) {
   return {names.begin(), names.end()};
 }
 
-tl::expected<BoardLock, std::string> BoardLock::take(const rig::RigFile& rig) {
-  BoardLock lock;
-  for (const std::string& name : driven_by(rig)) {
-    socklen_t length = 0;
-    const sockaddr_un address = address_of(name, length);
-    Descriptor held(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    if (bind(held.get(), reinterpret_cast<const sockaddr*>(&address), length) != 0) {
-      if (errno != EADDRINUSE) return tl::unexpected(fmt::format("{}: {}", name, std::strerror(errno)));
-      return tl::unexpected(
-          fmt::format("{}: another softgrip program drives this board{}; two masters would fight", name,
-                      holder(address, length)));
+LockedFile::LockedFile(std::shared_ptr<const RuntimeFolder> folder, std::string name, Descriptor file)
+    : folder_(std::move(folder)), name_(std::move(name)), file_(std::move(file)) {}
+
+LockedFile& LockedFile::operator=(LockedFile&& other) noexcept {
+  std::swap(folder_, other.folder_);
+  std::swap(name_, other.name_);
+  std::swap(file_, other.file_);
+  return *this;
+}
+
+LockedFile::~LockedFile() {
+  // A program that has opened it meanwhile sees by the name that it must open the next one.
+  if (file_ && folder_->still_names(name_, file_.get())) folder_->remove(name_);
+}
+
+tl::expected<void, std::string> BoardLock::add_file(const std::shared_ptr<const RuntimeFolder>& folder,
+                                                    const std::string& board, LockPurpose purpose) {
+  const std::string name = key_of(board) + ".lock";
+  for (;;) {
+    auto file = folder->lock_file(name);
+    if (!file && purpose == LockPurpose::drive) return tl::unexpected(file.error());
+    if (!file) {
+      remarks_.push_back(file.error());
+      return {};
     }
-    // Only a socket that listens says who has it.
-    if (listen(held.get(), 1) != 0) return tl::unexpected(fmt::format("{}: {}", name, std::strerror(errno)));
-    lock.held_.push_back(std::move(held));
+    if (::flock(file->get(), LOCK_EX | LOCK_NB) != 0) {
+      const pid_t process = holder_of(file->get());
+      if (purpose != LockPurpose::vent || !stands_still(process))
+        return tl::unexpected(taken(board, process));
+      remarks_.push_back(standing_still(board, process));
+      return {};
+    }
+    // A holder that ended between open() and flock() took the name away.
+    if (!folder->still_names(name, file->get())) continue;
+    write_holder(file->get());
+    files_.emplace_back(folder, name, std::move(*file));
+    return {};
+  }
+}
+
+tl::expected<void, std::string> BoardLock::add_name(const std::string& board, LockPurpose purpose) {
+  socklen_t length = 0;
+  const sockaddr_un address = address_of(board, length);
+  Descriptor held(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (bind(held.get(), reinterpret_cast<const sockaddr*>(&address), length) == 0 &&
+      listen(held.get(), SOMAXCONN) == 0) {  // the kernel names the holder only of a socket that listens
+    names_.push_back(std::move(held));
+    return {};
+  }
+  if (errno != EADDRINUSE) return tl::unexpected(fmt::format("{}: {}", board, std::strerror(errno)));
+  const std::optional<Peer> holder = holder_of(address, length);
+  const bool counts =
+      holder && holder->trusted && !(purpose == LockPurpose::vent && stands_still(holder->process));
+  if (counts) return tl::unexpected(taken(board, holder->process));
+  remarks_.push_back(without_right(board, holder));
+  return {};
+}
+
+tl::expected<BoardLock, std::string> BoardLock::take(const rig::RigFile& rig, LockPurpose purpose) {
+  BoardLock lock;
+  const std::vector<std::string> boards = driven_by(rig);
+  if (boards.empty()) return lock;
+  auto folder = RuntimeFolder::open();
+  if (!folder && purpose == LockPurpose::drive)
+    return tl::unexpected("the board cannot be locked: " + folder.error());
+  if (!folder) lock.remarks_.push_back("the board cannot be locked: " + folder.error());
+  const auto shared = folder ? std::make_shared<const RuntimeFolder>(std::move(*folder)) : nullptr;
+  for (const std::string& board : boards) {
+    if (shared) {
+      if (const auto added = lock.add_file(shared, board, purpose); !added)
+        return tl::unexpected(added.error());
+    }
+    if (const auto added = lock.add_name(board, purpose); !added) return tl::unexpected(added.error());
   }
   return lock;
 }

@@ -356,6 +356,8 @@ Outcome RealRun::run() {
     return outcome_;
   }
   if (!panel_.open(outcome_) || !listen()) return outcome_;
+  for (const std::string& remark : lock->remarks())
+    parts_.tell("board_lock", Severity::warning, remark + ".");
   parts_.bus.open();
   start();
   if (outcome_.ending == Ending::asked) {

@@ -10,7 +10,7 @@
 #include "base/grid.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
-#include "daemon/socket/listener.h"
+#include "daemon/service/daemon_answers.h"
 
 namespace softgrip::daemon {
 
@@ -83,15 +83,17 @@ SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig, const std::string&
   if (service_result == "success") {
     return {SafeOutputsEnd::not_needed, "softgripd ended in order; its last outputs stay"};
   }
-  if (socket_answers(rig.socket.path)) {
+  if (daemon_answers(rig.socket.path)) {
     return {SafeOutputsEnd::daemon_running,
             fmt::format("a daemon answers on {}; use `softgrip vent`", rig.socket.path)};
   }
-  const auto lock = BoardLock::take(rig);
+  const auto lock = BoardLock::take(rig, LockPurpose::vent);
   if (!lock) return {SafeOutputsEnd::daemon_running, lock.error()};
   const MonotonicClock clock;
   const auto board = make_board(rig, clock);
-  return write_safe_outputs(rig, *board, clock, unit_patience);
+  SafeOutputsReport report = write_safe_outputs(rig, *board, clock, unit_patience);
+  for (const std::string& remark : lock->remarks()) report.text += "; " + remark;
+  return report;
 }
 
 }  // namespace softgrip::daemon

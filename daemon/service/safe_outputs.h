@@ -37,8 +37,10 @@ struct SafeOutputsReport {
 [[nodiscard]] SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board,
                                                    const Clock& clock, std::chrono::nanoseconds patience);
 
-/// The same for a process: asks first whether there is anything to do. `service_result`: the environment
-/// variable SERVICE_RESULT that systemd gives to ExecStopPost=, empty without it.
+/// Vents for a process that has no board yet. Yields to a daemon that answers on the rig's socket and to a
+/// softgrip program that holds the board's lock. A program of a user without the right to the lock does not
+/// count, nor one that does not answer. `service_result`: the environment variable SERVICE_RESULT that systemd
+/// gives to ExecStopPost=, empty without it. After "success" nothing is done.
 [[nodiscard]] SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig,
                                                    const std::string& service_result);
 

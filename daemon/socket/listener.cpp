@@ -69,9 +69,13 @@ bool give_rights(const rig::SocketFile& file) {
 
 }  // namespace
 
-bool socket_answers(const std::string& path) {
+Descriptor connect_to(const std::string& path) {
   const auto address = address_of(path);
-  return !path.empty() && address && answers(*address);
+  if (path.empty() || !address) return {};
+  Descriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (connect(socket.get(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) != 0)
+    socket.reset();
+  return socket;
 }
 
 tl::expected<Listener, std::string> Listener::open(const rig::SocketFile& file) {

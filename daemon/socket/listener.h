@@ -12,8 +12,8 @@
 
 namespace softgrip::daemon {
 
-/// Whether a daemon listens on the socket at `path`.
-[[nodiscard]] bool socket_answers(const std::string& path);
+/// Returns a connection to the socket at `path` that does not block, or an empty descriptor.
+[[nodiscard]] Descriptor connect_to(const std::string& path);
 
 class Listener {
  public:

@@ -1,9 +1,14 @@
 """One master per board, and signals that end a process end it in order."""
 
+import os
+import pathlib
 import signal
+import subprocess
 import time
+import unittest
 
 import bench
+import other_user
 
 ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGALRM,
           signal.SIGXCPU, signal.SIGVTALRM, signal.SIGPROF, signal.SIGIO, signal.SIGPWR, signal.SIGRTMIN)
@@ -37,6 +42,18 @@ class Masters(bench.BenchTest):
         self.assertEqual(second.wait(), 4)
         self.assertIn("another softgrip program", second.errors())
         self.assertEqual(daemon.status()["state"], "idle")
+
+    def test_a_lock_file_that_was_removed_makes_no_room_for_another(self):
+        emulator = self.emulator()
+        rig = self.rig(emulator.port)
+        daemon = self.daemon(rig)
+        daemon.wait_for_state("idle")
+        for folder in other_user.lock_folders():
+            for lock in folder.glob(f"*{other_user.board_name(emulator.port)[len('.softgrip-'):]}*"):
+                lock.unlink()
+        second = bench.Process("second", [bench.SOFTGRIPD, "--config", self.second_rig(rig)], self.folder)
+        self.assertEqual(second.wait(), 4)
+        self.assertIn(f"another softgrip program drives this board (process {daemon.child.pid})", second.errors())
 
     def test_a_killed_master_leaves_the_board_to_the_next(self):
         emulator = self.emulator()
@@ -76,6 +93,106 @@ class Masters(bench.BenchTest):
         before = daemon.status()["loop"]["ticks"]
         time.sleep(0.2)
         self.assertGreater(daemon.status()["loop"]["ticks"], before)
+
+
+@unittest.skipUnless(os.geteuid() == 0, other_user.NEEDS_ROOT)
+class OtherUsers(bench.BenchTest):
+    """Another user of the machine holds the name of the board's lock. The board has no watchdog."""
+
+    HOLDERS = {"listens": 5, "lets nobody in": 0, "does not listen": None}
+
+    def setUp(self):
+        super().setUp()
+        self.board = self.emulator("--object", "stone", "--watchdog-s", "0")
+        self.rig_path = self.rig(self.board.port)
+        self.name = other_user.board_name(self.board.port)
+
+    def safe_outputs(self):
+        return subprocess.run([bench.SOFTGRIPD, "--config", self.rig_path, "--safe-outputs"], capture_output=True,
+                              text=True, timeout=bench.PATIENCE_S, check=False)
+
+    def test_the_daemon_starts_and_says_who_is_in_the_way(self):
+        for how, backlog in self.HOLDERS.items():
+            with self.subTest(holder=how):
+                holder = other_user.OtherUser(self, self.name, backlog)
+                daemon = self.daemon(self.rig_path)
+                daemon.wait_for_state("idle")
+                text = daemon.wait_for_event("board_lock")["text"]
+                self.assertIn("without the right to it", text)
+                if backlog == 5:
+                    self.assertIn(f"user {other_user.NOBODY} (process {holder.pid})", text)
+                self.assertEqual(daemon.end(), 0)
+                holder.end()
+
+    def test_two_daemons_are_kept_apart_all_the_same(self):
+        other_user.OtherUser(self, self.name)
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        second = self.rig_path.with_name("second.yaml")
+        second.write_text(self.rig_path.read_text().replace("softgripd.sock", "second.sock"))
+        other = bench.Process("second", [bench.SOFTGRIPD, "--config", second], self.folder)
+        self.assertEqual(other.wait(), 4)
+        self.assertIn(f"another softgrip program drives this board (process {daemon.child.pid})", other.errors())
+        self.assertIn("another softgrip program", self.softgrip("doctor", "--rig", second, expect=6).stdout)
+        self.assertEqual(daemon.status()["state"], "idle")
+
+    def test_after_a_kill_the_board_is_vented(self):
+        for how, backlog in self.HOLDERS.items():
+            with self.subTest(holder=how):
+                daemon = self.daemon(self.rig_path)
+                daemon.wait_for_state("idle")
+                daemon.start("pick_stone")
+                bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
+                daemon.kill()
+                holder = other_user.OtherUser(self, self.name, backlog)
+                self.assertGreater(min(self.board.commands_kpa()), 10)
+                ended = self.safe_outputs()
+                self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+                self.assertEqual(max(self.board.commands_kpa()), 0)
+                holder.end()
+
+    def test_another_user_behind_the_rigs_socket_does_not_keep_the_pressure(self):
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
+        daemon.kill()
+        daemon.socket_path.unlink()
+        self.folder.chmod(0o777)
+        other_user.OtherUser(self, str(daemon.socket_path))
+        ended = self.safe_outputs()
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+
+    def test_a_daemon_that_stands_still_does_not_keep_the_pressure(self):
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
+        daemon.send(signal.SIGSTOP)
+        ended = self.safe_outputs()
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        self.assertIn("stands still", ended.stdout)
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+        daemon.kill()
+
+    def test_another_user_is_kept_off_a_board_that_root_drives(self):
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        self.folder.chmod(0o777)
+        own = pathlib.Path(f"/tmp/softgrip-{other_user.NOBODY}")
+        self.addCleanup(lambda: own.is_dir() and own.rmdir())
+        second = self.rig_path.with_name("second.yaml")
+        second.write_text(self.rig_path.read_text().replace("softgripd.sock", "second.sock"))
+        program = self.folder / "softgripd"
+        program.write_bytes(bench.SOFTGRIPD.read_bytes())  # the build may be where others cannot go
+        program.chmod(0o755)
+        other = subprocess.run([program, "--config", second], user=other_user.NOBODY, group=other_user.NOBODY,
+                               extra_groups=[], cwd=self.folder, capture_output=True, text=True,
+                               timeout=bench.PATIENCE_S, check=False)
+        self.assertEqual(other.returncode, 4, other.stdout + other.stderr)
+        self.assertIn(f"another softgrip program drives this board (process {daemon.child.pid})", other.stderr)
+        self.assertEqual(daemon.status()["state"], "idle")
 
 
 if __name__ == "__main__":

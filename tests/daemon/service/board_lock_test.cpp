@@ -2,7 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
+
+#include <csignal>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+
+#include "base/sha256.h"
 
 namespace softgrip::daemon::board_lock_test {
 namespace {
@@ -52,6 +63,120 @@ TEST(BoardLock, ASerialLineHasOneMasterWhateverUnitItAsks) {
   const auto first = BoardLock::take(one);
   ASSERT_TRUE(first) << first.error();
   EXPECT_FALSE(BoardLock::take(two));
+}
+
+/// A process that does `body` and then waits for its end.
+class Holder {
+ public:
+  explicit Holder(const std::function<bool()>& body) {
+    int ready[2];
+    EXPECT_EQ(::pipe(ready), 0);
+    process_ = ::fork();
+    if (process_ == 0) {
+      const char good = body() ? 1 : 0;
+      if (::write(ready[1], &good, 1) != 1) ::_exit(1);
+      for (;;) ::pause();
+    }
+    ::close(ready[1]);
+    char good = 0;
+    EXPECT_TRUE(::read(ready[0], &good, 1) == 1 && good == 1);
+    ::close(ready[0]);
+  }
+  Holder(const Holder&) = delete;
+  Holder& operator=(const Holder&) = delete;
+  Holder(Holder&&) = delete;
+  Holder& operator=(Holder&&) = delete;
+  ~Holder() {
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+  }
+  [[nodiscard]] pid_t process() const { return process_; }
+  void stop() const {
+    ::kill(process_, SIGSTOP);
+    int status = 0;
+    EXPECT_EQ(::waitpid(process_, &status, WUNTRACED), process_);
+  }
+
+ private:
+  pid_t process_ = 0;
+};
+
+std::function<bool()> a_program_on(const rig::RigFile& rig) {
+  return [rig] {
+    static auto lock = BoardLock::take(rig);  // NOLINT: kept until the process ends
+    return lock.has_value();
+  };
+}
+
+/// Every user of the machine can do this.
+std::function<bool()> another_user_on(const std::string& board, int backlog) {
+  return [board, backlog] {
+    constexpr uid_t nobody = 65534;
+    if (::setresgid(nobody, nobody, nobody) != 0 || ::setresuid(nobody, nobody, nobody) != 0) return false;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string key = "softgrip-board-" + sha256(board);
+    std::memcpy(address.sun_path + 1, key.data(), key.size());
+    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + key.size());
+    if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), length) != 0) return false;
+    return backlog < 0 || ::listen(socket, backlog) == 0;
+  };
+}
+
+TEST(BoardLock, AnotherUsersClaimDoesNotCountAndIsSaid) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  const rig::RigFile rig = rig_at("127.0.0.1", 40511);
+  for (const int backlog : {-1, 0, 5}) {
+    const Holder other(another_user_on("modbus 127.0.0.1 port 40511 unit 1", backlog));
+    const auto lock = BoardLock::take(rig);
+    ASSERT_TRUE(lock) << lock.error();
+    ASSERT_EQ(lock->remarks().size(), 1U);
+    EXPECT_NE(lock->remarks()[0].find("without the right to it"), std::string::npos) << lock->remarks()[0];
+    EXPECT_FALSE(BoardLock::take(rig)) << "and programs of softgrip are kept apart nevertheless";
+    EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
+  }
+}
+
+TEST(BoardLock, AFileThatSomebodyRemovedKeepsOthersOffAllTheSame) {
+  const rig::RigFile rig = rig_at("127.0.0.1", 40512);
+  const Holder holder(a_program_on(rig));
+  const auto folder = RuntimeFolder::open();
+  ASSERT_TRUE(folder) << folder.error();
+  const std::string file =
+      folder->path() + "/board-" + sha256("modbus 127.0.0.1 port 40512 unit 1") + ".lock";
+  ASSERT_TRUE(std::filesystem::remove(file)) << file;
+  const auto second = BoardLock::take(rig);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().find("process " + std::to_string(holder.process())), std::string::npos)
+      << second.error();
+}
+
+TEST(BoardLock, IsLetGoByAKilledProcessAndLeavesNoFile) {
+  const rig::RigFile rig = rig_at("127.0.0.1", 40513);
+  { const Holder killed(a_program_on(rig)); }
+  const std::string name = "board-" + sha256("modbus 127.0.0.1 port 40513 unit 1") + ".lock";
+  const auto folder = RuntimeFolder::open();
+  ASSERT_TRUE(folder) << folder.error();
+  {
+    const auto lock = BoardLock::take(rig);
+    ASSERT_TRUE(lock) << lock.error();
+    EXPECT_TRUE(lock->remarks().empty());
+    EXPECT_TRUE(std::filesystem::exists(folder->path() + "/" + name));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder->path() + "/" + name));
+}
+
+TEST(BoardLock, SafeOutputsYieldToAProgramThatRunsAndNotToOneThatStandsStill) {
+  const rig::RigFile rig = rig_at("127.0.0.1", 40514);
+  const Holder holder(a_program_on(rig));
+  EXPECT_FALSE(BoardLock::take(rig, LockPurpose::vent));
+  holder.stop();
+  EXPECT_FALSE(BoardLock::take(rig)) << "a program that is to drive the board waits for its end";
+  const auto lock = BoardLock::take(rig, LockPurpose::vent);
+  ASSERT_TRUE(lock) << lock.error();
+  ASSERT_FALSE(lock->remarks().empty());
+  EXPECT_NE(lock->remarks()[0].find("stands still"), std::string::npos) << lock->remarks()[0];
 }
 
 TEST(BoardLock, NothingIsDrivenByASimulatedBoardNorByAModuleOfInputs) {

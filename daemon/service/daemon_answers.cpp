@@ -1,0 +1,55 @@
+#include "daemon/service/daemon_answers.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "base/clock.h"
+#include "base/descriptor_wait.h"
+#include "daemon/service/trusted_user.h"
+#include "daemon/socket/listener.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+/// The thread that serves clients may take this long for one turn (service_patience of real_run.cpp).
+constexpr Nanoseconds patience = 2 * ns_per_s;
+constexpr std::size_t longest_reply = std::size_t{8} << 20U;
+constexpr std::string_view question = "{\"command\": \"status\"}\n";
+
+/// The first line that comes until `deadline`, or what came of it.
+std::string line_from(int socket, Nanoseconds deadline) {
+  std::string line;
+  std::array<char, 16384> chunk{};
+  while (line.find('\n') == std::string::npos && line.size() < longest_reply) {
+    if (wait_for(socket, POLLIN, deadline) != Waited::ready) break;
+    const ssize_t count = ::recv(socket, chunk.data(), chunk.size(), 0);
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (count <= 0) break;
+    line.append(chunk.data(), static_cast<std::size_t>(count));
+  }
+  return line.substr(0, line.find('\n'));
+}
+
+}  // namespace
+
+bool daemon_answers(const std::string& socket_path) {
+  const Descriptor socket = connect_to(socket_path);
+  if (!socket) return false;
+  const auto peer = peer_of(socket.get());
+  if (!peer || !peer->trusted) return false;
+  const ssize_t sent = ::send(socket.get(), question.data(), question.size(), MSG_NOSIGNAL);
+  if (sent != static_cast<ssize_t>(question.size())) return false;
+  const auto reply =
+      nlohmann::json::parse(line_from(socket.get(), monotonic_now() + patience), nullptr, false);
+  return reply.is_object() && reply.contains("ok");
+}
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,146 @@
+#include "daemon/service/runtime_folder.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/errno_text.h"
+#include "daemon/service/trusted_user.h"
+
+namespace softgrip::daemon {
+
+namespace {
+
+constexpr const char* service_folder = "/run/softgrip";
+constexpr mode_t others_may_write = S_IWGRP | S_IWOTH;
+constexpr mode_t others_may_do_anything = S_IRWXG | S_IRWXO;
+
+using Failure = tl::unexpected<std::string>;
+
+Failure failure(const std::string& path, std::string_view what) {
+  return Failure(fmt::format("{}: {}: {}", path, what, text_of_errno(errno)));
+}
+
+std::vector<std::string> usual_places() {
+  const std::string user = std::to_string(::geteuid());
+  return {service_folder, "/run/user/" + user + "/softgrip", "/tmp/softgrip-" + user};
+}
+
+/// Makes the folder if it is missing. That of the service belongs to the service, whoever was first.
+void make(const std::string& place) {
+  const bool of_service = place == service_folder;
+  if (::mkdir(place.c_str(), of_service ? 0755 : 0700) != 0 || !of_service) return;
+  const std::optional<uid_t> user = service_user();
+  // A machine without this user has no service either: root keeps the folder.
+  if (user) [[maybe_unused]]
+    const int given = ::chown(place.c_str(), *user, static_cast<gid_t>(-1));
+}
+
+}  // namespace
+
+tl::expected<RuntimeFolder, std::string> RuntimeFolder::open_one(const std::string& place) {
+  make(place);
+  Descriptor folder(::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  struct stat status {};
+  if (!folder || ::fstat(folder.get(), &status) != 0) return failure(place, "cannot be opened");
+  if (!is_trusted(status.st_uid)) return Failure(fmt::format("{}: belongs to user {}", place, status.st_uid));
+  if ((status.st_mode & others_may_write) != 0) return Failure(place + ": other users may write there");
+  if (::faccessat(folder.get(), ".", W_OK | X_OK, AT_EACCESS) != 0)
+    return failure(place, "cannot be written");
+  return RuntimeFolder(place, std::move(folder));
+}
+
+tl::expected<RuntimeFolder, std::string> RuntimeFolder::open(const std::vector<std::string>& places) {
+  std::string why;
+  for (const std::string& place : places) {
+    auto folder = open_one(place);
+    if (folder) return folder;
+    why += (why.empty() ? "" : "; ") + folder.error();
+  }
+  return Failure(std::move(why));
+}
+
+tl::expected<RuntimeFolder, std::string> RuntimeFolder::open() {
+  return open(usual_places());
+}
+
+bool RuntimeFolder::ends_with_the_machine() const noexcept {
+  return path_.starts_with("/run/");
+}
+
+tl::expected<Descriptor, std::string> RuntimeFolder::open_file(const std::string& name, int flags) const {
+  constexpr int always = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const std::string path = path_ + "/" + name;
+  Descriptor file(::openat(folder_.get(), name.c_str(), flags | always, 0600));
+  struct stat status {};
+  struct stat folder {};
+  if (!file || ::fstat(file.get(), &status) != 0 || ::fstat(folder_.get(), &folder) != 0)
+    return failure(path, "cannot be opened");
+  if (!S_ISREG(status.st_mode)) return Failure(path + ": is no regular file");
+  if (!is_trusted(status.st_uid) || (status.st_mode & others_may_do_anything) != 0 || status.st_nlink != 1)
+    return Failure(path + ": other users could open it");
+  // What root makes must be the service's, too. Only root can give it away.
+  if (status.st_uid != folder.st_uid && (flags & O_CREAT) != 0) [[maybe_unused]]
+    const int given = ::fchown(file.get(), folder.st_uid, folder.st_gid);
+  return file;
+}
+
+tl::expected<Descriptor, std::string> RuntimeFolder::lock_file(const std::string& name) const {
+  return open_file(name, O_RDWR | O_CREAT);
+}
+
+tl::expected<void, std::string> RuntimeFolder::put(const std::string& name,
+                                                   const std::string& contents) const {
+  const std::string temporary = fmt::format("{}.part{}", name, ::getpid());
+  remove(temporary);  // of a process of the same number that was killed
+  const auto file = open_file(temporary, O_WRONLY | O_CREAT | O_EXCL);
+  if (!file) return Failure(file.error());
+  std::string_view rest = contents;
+  bool whole = true;
+  while (whole && !rest.empty()) {
+    const ssize_t count = ::write(file->get(), rest.data(), rest.size());
+    if (count < 0 && errno == EINTR) continue;
+    whole = count >= 0;
+    if (whole) rest.remove_prefix(static_cast<std::size_t>(count));
+  }
+  if (whole && ::renameat(folder_.get(), temporary.c_str(), folder_.get(), name.c_str()) == 0) return {};
+  const auto why = failure(path_ + "/" + name, "cannot be written");
+  remove(temporary);
+  return why;
+}
+
+tl::expected<std::string, std::string> RuntimeFolder::get(const std::string& name, std::size_t bound) const {
+  const auto file = open_file(name, O_RDONLY);
+  if (!file) return Failure(file.error());
+  std::string contents;
+  std::array<char, 65536> chunk{};
+  for (;;) {
+    const ssize_t count = ::read(file->get(), chunk.data(), chunk.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return failure(path_ + "/" + name, "cannot be read");
+    if (count == 0) return contents;
+    contents.append(chunk.data(), static_cast<std::size_t>(count));
+    if (contents.size() > bound)
+      return Failure(fmt::format("{}/{}: has more than {} bytes", path_, name, bound));
+  }
+}
+
+void RuntimeFolder::remove(const std::string& name) const noexcept {
+  ::unlinkat(folder_.get(), name.c_str(), 0);
+}
+
+bool RuntimeFolder::still_names(const std::string& name, int opened) const noexcept {
+  struct stat there {};
+  struct stat mine {};
+  return ::fstatat(folder_.get(), name.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 &&
+         ::fstat(opened, &mine) == 0 && there.st_dev == mine.st_dev && there.st_ino == mine.st_ino;
+}
+
+}  // namespace softgrip::daemon

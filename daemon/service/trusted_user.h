@@ -1,0 +1,29 @@
+#pragma once
+// Whom a program of softgrip believes that it drives a board: other users may bind any name first.
+
+#include <sys/types.h>
+
+#include <optional>
+
+namespace softgrip::daemon {
+
+/// The user and the group of the service.
+inline constexpr const char* service_account = "softgrip";
+
+/// Returns the user id of the service, or nothing on a machine without this user.
+[[nodiscard]] std::optional<uid_t> service_user();
+
+/// True for root, the user of the service and the user of this process.
+[[nodiscard]] bool is_trusted(uid_t user);
+
+/// The other end of a Unix domain socket, as the kernel knows it from connect() or listen().
+struct Peer {
+  pid_t process = 0;  ///< 0: not visible from here
+  uid_t user = 0;
+  /// A trusted user, or a member of the service's group, who may move the gripper anyway.
+  bool trusted = false;
+};
+/// Returns the peer of a connected socket, or nothing if the kernel does not tell it.
+[[nodiscard]] std::optional<Peer> peer_of(int socket);
+
+}  // namespace softgrip::daemon

@@ -1,0 +1,74 @@
+"""A process of a user without any right to the rig: what every local user can do."""
+
+import hashlib
+import os
+import pathlib
+import select
+import signal
+import socket
+import time
+
+import bench
+
+NOBODY = 65534
+NEEDS_ROOT = "only root can become another user"
+
+
+def board_name(port):
+    """The abstract name of the lock of the emulated board."""
+    return "\0softgrip-board-" + hashlib.sha256(f"modbus 127.0.0.1 port {port} unit 1".encode()).hexdigest()
+
+
+def lock_folders():
+    """Where the daemon of this user may have the file of its lock."""
+    user = os.geteuid()
+    places = ("/run/softgrip", f"/run/user/{user}/softgrip", f"/tmp/softgrip-{user}")
+    return [place for place in map(pathlib.Path, places) if place.is_dir()]
+
+
+class OtherUser:
+    """Holds a name, or a path, from its start to its end; `backlog`: None does not listen, 0 lets nobody in."""
+
+    def __init__(self, test, address, backlog=5):
+        ready, told = os.pipe()
+        self.pid = os.fork()
+        if self.pid == 0:
+            try:
+                self._hold(address, backlog, told)
+            finally:
+                os._exit(1)
+        os.close(told)
+        self.ended = False
+        test.addCleanup(self.end)
+        readable, _, _ = select.select([ready], [], [], bench.PATIENCE_S)
+        test.assertTrue(readable and os.read(ready, 1) == b"1", "the other user did not get the name")
+        os.close(ready)
+
+    @staticmethod
+    def _hold(address, backlog, told):
+        os.setgroups([])
+        os.setresgid(NOBODY, NOBODY, NOBODY)
+        os.setresuid(NOBODY, NOBODY, NOBODY)
+        held = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        give_up = time.monotonic() + bench.PATIENCE_S
+        while True:
+            try:
+                held.bind(address)
+                break
+            except OSError:
+                if time.monotonic() > give_up:
+                    raise
+        if backlog is not None:
+            held.listen(backlog)
+        if backlog == 0:  # its queue is full: who connects is put off
+            full = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            full.connect(address)
+        os.write(told, b"1")
+        signal.pause()
+
+    def end(self):
+        if self.ended:
+            return
+        self.ended = True
+        os.kill(self.pid, signal.SIGKILL)
+        os.waitpid(self.pid, 0)
