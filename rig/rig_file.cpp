@@ -10,6 +10,7 @@
 
 #include "model/file/model_file.h"
 #include "rig/rig_file_reader.h"
+#include "rig/stored_rig.h"
 
 namespace softgrip::rig {
 
@@ -34,6 +35,13 @@ int reading_error(const std::string& path) {
   if (::access(path.c_str(), R_OK) != 0) return errno;
   std::error_code error;
   return std::filesystem::is_directory(path, error) ? EISDIR : 0;
+}
+
+/// The text of a file that was stored, or null.
+const std::string* stored_text(const std::vector<InputFile>& stored, const std::string& path) {
+  const auto found =
+      std::find_if(stored.begin(), stored.end(), [&](const InputFile& file) { return file.path == path; });
+  return found != stored.end() ? &found->text : nullptr;
 }
 
 void remember(Context& context, InputFile::Role role, const document::Document& document) {
@@ -112,7 +120,9 @@ std::optional<document::Document> named_document(Context& context, MapReader& re
   const std::string named = reader.text(key);
   if (named.empty()) return std::nullopt;
   const std::string path = resolved(context, named);
-  if (const int error = reading_error(path); error != 0) {
+  const std::string* const text = context.stored != nullptr ? stored_text(*context.stored, path) : nullptr;
+  const int unstored = context.stored != nullptr ? ENOENT : reading_error(path);
+  if (const int error = text != nullptr ? 0 : unstored; error != 0) {
     const std::string near = error == ENOENT ? nearest_file(named, path) : std::string{};
     reader.report(key,
                   "`" + std::string(key) + "` names `" + document::shown(path, 200) +
@@ -121,7 +131,8 @@ std::optional<document::Document> named_document(Context& context, MapReader& re
                                : "did you mean `" + document::shown(near, 200) + "`?");
     return std::nullopt;
   }
-  document::Document document = document::parse_file(path, context.problems);
+  document::Document document = text != nullptr ? document::parse(path, *text, context.problems)
+                                                : document::parse_file(path, context.problems);
   remember(context, role, document);
   return document;
 }
@@ -164,13 +175,16 @@ void report_repeated(MapReader& reader, std::string_view key, const std::string&
   reader.report(key, what + " is already used at " + place(first));
 }
 
-RigReading read_rig_so_far(const document::Document& document, document::Problems& problems) {
+namespace {
+
+RigReading read_with(const std::vector<InputFile>* stored, const document::Document& document,
+                     document::Problems& problems) {
   const std::size_t before = problems.size();
   RigReading reading;
   RigFile& rig = reading.rig;
   rig.path = document.file;
   rig.inputs.push_back({InputFile::Role::rig, document.file, document.text});
-  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}, {}, false, {}, {}};
+  Context context{document, problems, rig, {}, {}, {}, {}, {}, {}, {}, {}, false, {}, {}, stored};
   Context::Sound& sound = context.sound;
   MapReader top(document, document.root, problems, "the rig");
   rig.name = read_name(top, "name");
@@ -193,6 +207,21 @@ RigReading read_rig_so_far(const document::Document& document, document::Problem
       document.complete && context.rate_known && sound.detection && sound.rest && all_named(context);
   reading.motion_known = context.motion_known;
   return reading;
+}
+
+}  // namespace
+
+RigReading read_rig_so_far(const document::Document& document, document::Problems& problems) {
+  return read_with(nullptr, document, problems);
+}
+
+std::optional<RigFile> read_stored_rig(const std::vector<InputFile>& inputs, document::Problems& problems) {
+  if (inputs.empty()) return std::nullopt;
+  const std::size_t before = problems.size();
+  const document::Document document = document::parse(inputs.front().path, inputs.front().text, problems);
+  RigReading reading = read_with(&inputs, document, problems);
+  if (problems.size() != before || !reading.accepted) return std::nullopt;
+  return std::move(reading.rig);
 }
 
 std::optional<RigFile> read_rig(const document::Document& document, document::Problems& problems) {

@@ -52,6 +52,8 @@ struct Context {
   Sound sound;
   /// One per channel: model, feedforward, gains and limits are known.
   std::vector<bool> motion_known;
+  /// Where the files that the rig names come from; null: from the disk.
+  const std::vector<InputFile>* stored = nullptr;
 
   [[nodiscard]] double period_s() const { return 1 / rig.settings.rate_hz; }
 };

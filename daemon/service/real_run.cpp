@@ -20,6 +20,7 @@
 #include "daemon/loop/thread.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon_parts.h"
+#include "daemon/service/kept_rig.h"
 #include "daemon/service/panel_run.h"
 #include "daemon/service/service_manager.h"
 #include "daemon/service/startup_report.h"
@@ -78,6 +79,9 @@ class RealRun {
 
  private:
   bool listen();
+  /// Says what was found beside the lock, and keeps the rig for the safe outputs after a crash.
+  void note_and_keep(const BoardLock& lock);
+  void forget_if_lowest();
   void start_threads();
   void start();
   /// An exception of this thread must not leave the others alone: it is noted, and the run ends in order.
@@ -347,6 +351,19 @@ bool RealRun::listen() {
   return true;
 }
 
+void RealRun::note_and_keep(const BoardLock& lock) {
+  for (const std::string& remark : lock.remarks()) parts_.tell("board_lock", Severity::warning, remark + ".");
+  const auto kept = keep_rig(parts_.rig);
+  if (kept) return;
+  parts_.tell("rig_not_kept", Severity::warning,
+              fmt::format("{}; after a crash the safe outputs depend on the rig file.", kept.error()));
+}
+
+/// As long as pressure may be on, the safe outputs need the rig that put it there.
+void RealRun::forget_if_lowest() {
+  if (outcome_.left_safely && !outcome_.pressure_left_on) forget_rig(parts_.rig.path);
+}
+
 Outcome RealRun::run() {
   const ProcessorLatencyRequest latency = prepare_process(parts_.rig.real_time, report_);
   const auto lock = BoardLock::take(parts_.rig);
@@ -356,8 +373,7 @@ Outcome RealRun::run() {
     return outcome_;
   }
   if (!panel_.open(outcome_) || !listen()) return outcome_;
-  for (const std::string& remark : lock->remarks())
-    parts_.tell("board_lock", Severity::warning, remark + ".");
+  note_and_keep(*lock);
   parts_.bus.open();
   start();
   if (outcome_.ending == Ending::asked) {
@@ -367,6 +383,7 @@ Outcome RealRun::run() {
   }
   stop();
   parts_.conclude(outcome_);
+  forget_if_lowest();
   if (outcome_.ending == Ending::broken) outcome_.message = broken_text_;
   outcome_.wall_s = seconds(parts_.clock.now() - start_);
   guarded([this] { parts_.deliver_events(); });

@@ -79,10 +79,11 @@ SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& bo
       fmt::format("{}: not confirmed: {}. Only its own watchdog can vent it now", board.describe(), failure)};
 }
 
-SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig, const std::string& service_result) {
-  if (service_result == "success") {
-    return {SafeOutputsEnd::not_needed, "softgripd ended in order; its last outputs stay"};
-  }
+bool safe_outputs_needed(const std::string& service_result) noexcept {
+  return service_result != "success";
+}
+
+SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig) {
   if (daemon_answers(rig.socket.path)) {
     return {SafeOutputsEnd::daemon_running,
             fmt::format("a daemon answers on {}; use `softgrip vent`", rig.socket.path)};

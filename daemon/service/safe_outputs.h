@@ -37,11 +37,13 @@ struct SafeOutputsReport {
 [[nodiscard]] SafeOutputsReport write_safe_outputs(const rig::RigFile& rig, drivers::Board& board,
                                                    const Clock& clock, std::chrono::nanoseconds patience);
 
+/// False after an orderly end, whose outputs stay. `service_result`: the environment variable SERVICE_RESULT
+/// that systemd gives to ExecStopPost=, empty without it.
+[[nodiscard]] bool safe_outputs_needed(const std::string& service_result) noexcept;
+
 /// Vents for a process that has no board yet. Yields to a daemon that answers on the rig's socket and to a
 /// softgrip program that holds the board's lock. A program of a user without the right to the lock does not
-/// count, nor one that does not answer. `service_result`: the environment variable SERVICE_RESULT that systemd
-/// gives to ExecStopPost=, empty without it. After "success" nothing is done.
-[[nodiscard]] SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig,
-                                                   const std::string& service_result);
+/// count, nor one that does not answer.
+[[nodiscard]] SafeOutputsReport leave_safe_outputs(const rig::RigFile& rig);
 
 }  // namespace softgrip::daemon

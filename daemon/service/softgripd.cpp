@@ -17,6 +17,7 @@
 #include "base/version.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/event_printer.h"
+#include "daemon/service/kept_rig.h"
 #include "daemon/service/named_device.h"
 #include "daemon/service/safe_outputs.h"
 #include "daemon/service/startup_report.h"
@@ -120,14 +121,27 @@ ExitCode say_whether_named(const Arguments& arguments) {
   return ExitCode::done;
 }
 
-ExitCode safe_outputs(const Arguments& arguments) {
-  document::Problems problems;
-  const auto rig = rig::load_rig(arguments.config, problems);
-  if (!rig || !problems.empty()) return refuse(problems);
-  const char* result = std::getenv("SERVICE_RESULT");
-  const daemon::SafeOutputsReport report = daemon::leave_safe_outputs(*rig, result == nullptr ? "" : result);
+ExitCode end_of_safe_outputs(const daemon::SafeOutputsReport& report) {
   fmt::print("safe outputs: {}\n", report.text);
   return daemon::exit_code_of(report.end);
+}
+
+/// Prefers the rig as the last softgripd read it: the rig file may be half edited.
+ExitCode safe_outputs(const Arguments& arguments) {
+  const char* result = std::getenv("SERVICE_RESULT");
+  if (!daemon::safe_outputs_needed(result == nullptr ? "" : result)) {
+    return end_of_safe_outputs(
+        {daemon::SafeOutputsEnd::not_needed, "softgripd ended in order; its last outputs stay"});
+  }
+  document::Problems problems;
+  const auto kept = daemon::kept_rig(arguments.config);
+  const auto rig = kept ? kept : rig::load_rig(arguments.config, problems);
+  if (!rig || !problems.empty()) return refuse(problems);
+  daemon::SafeOutputsReport report = daemon::leave_safe_outputs(*rig);
+  if (kept) report.text += "; with the rig file as the last softgripd read it";
+  const bool safe = daemon::exit_code_of(report.end) == ExitCode::done;
+  if (kept && safe) daemon::forget_rig(arguments.config);
+  return end_of_safe_outputs(report);
 }
 
 /// False if the file cannot be written.

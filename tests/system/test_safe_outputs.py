@@ -1,6 +1,7 @@
 """What a daemon leaves behind: softgripd --safe-outputs, which the service manager runs after a crash, and a hold."""
 
 import os
+import signal
 import subprocess
 import time
 
@@ -53,6 +54,93 @@ class SafeOutputs(bench.BenchTest):
         ended = self.safe_outputs()
         self.assertEqual(ended.returncode, 4, ended.stdout + ended.stderr)
         self.assertIn("not confirmed", ended.stdout)
+
+
+class EditedRig(bench.BenchTest):
+    """A rig file that is half edited at the moment of a crash. The board has no watchdog."""
+
+    def setUp(self):
+        super().setUp()
+        if os.geteuid() != 0 and not os.path.isdir(f"/run/user/{os.geteuid()}"):
+            self.skipTest("this user has no folder in /run")
+        self.board = self.emulator("--object", "stone", "--watchdog-s", "0")
+        self.rig_path = self.rig(self.board.port)
+
+    def under_pressure(self):
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        daemon.start("pick_stone")
+        bench.wait_for("pressure", lambda: min(self.board.commands_kpa()) > 10, pause_s=0.005)
+        return daemon
+
+    def safe_outputs(self, expect, **environment):
+        ended = subprocess.run([bench.SOFTGRIPD, "--config", self.rig_path, "--safe-outputs"], capture_output=True,
+                               text=True, timeout=bench.PATIENCE_S, env={**os.environ, **environment}, check=False)
+        self.assertEqual(ended.returncode, expect, ended.stdout + ended.stderr)
+        return ended
+
+    def edits(self):
+        """Ways in which a rig cannot be read, by the names of what was done."""
+        board = self.folder / "config/boards/adam-6024.yaml"
+        model = self.folder / "config/models/bench_twin.yaml"
+        for path in (self.rig_path, board, model):
+            yield f"half of {path.name}", path, path.read_bytes()[:path.stat().st_size // 2]
+        yield "an empty rig file", self.rig_path, b""
+        yield "another kind of file", self.rig_path, b"steps: []\n"
+
+    def test_the_rig_that_ran_is_vented(self):
+        for what, path, contents in self.edits():
+            with self.subTest(edit=what):
+                whole = path.read_bytes()
+                daemon = self.under_pressure()
+                path.write_bytes(contents)
+                daemon.kill()
+                self.assertGreater(min(self.board.commands_kpa()), 10)
+                ended = self.safe_outputs(0, SERVICE_RESULT="signal")
+                self.assertIn("vented and confirmed", ended.stdout)
+                self.assertIn("as the last softgripd read it", ended.stdout)
+                self.assertEqual(max(self.board.commands_kpa()), 0)
+                path.write_bytes(whole)
+
+    def test_a_rig_file_that_is_gone(self):
+        daemon = self.under_pressure()
+        self.rig_path.unlink()
+        daemon.kill()
+        self.safe_outputs(0)
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+
+    def test_a_file_that_names_another_board_by_now(self):
+        daemon = self.under_pressure()
+        self.rig_path.write_text(self.rig_path.read_text().replace(f"port: {self.board.port}", "port: 1"))
+        daemon.kill()
+        self.safe_outputs(0)
+        self.assertEqual(max(self.board.commands_kpa()), 0)
+
+    def test_once_the_board_is_safe_the_file_counts_again(self):
+        self.under_pressure().kill()
+        self.assertIn("as the last softgripd read it", self.safe_outputs(0).stdout)
+        self.assertNotIn("as the last softgripd read it", self.safe_outputs(0).stdout)
+        self.rig_path.write_text("name: half")
+        self.safe_outputs(3)
+
+    def test_as_long_as_the_board_is_silent_it_is_kept(self):
+        daemon = self.under_pressure()
+        port = self.board.port
+        daemon.kill()
+        self.board.kill()
+        self.rig_path.write_text("name: half")
+        self.safe_outputs(4)
+        again = self.emulator("--object", "stone", "--watchdog-s", "0", port=port, name="again")
+        self.safe_outputs(0)
+        self.assertEqual(max(again.commands_kpa()), 0)
+
+    def test_after_an_orderly_end_the_file_counts(self):
+        daemon = self.daemon(self.rig_path)
+        daemon.wait_for_state("idle")
+        self.assertEqual(daemon.end(signal.SIGTERM), 0)
+        self.rig_path.write_text("name: half")
+        self.safe_outputs(0, SERVICE_RESULT="success")
+        self.safe_outputs(3)
 
 
 class Hold(bench.BenchTest):

@@ -82,7 +82,9 @@ TEST_F(SafeOutputsTest, ATrippedWatchdogOfTheBoardIsSafeEnough) {
 }
 
 TEST_F(SafeOutputsTest, AfterAnOrderlyEndTheOutputsStay) {
-  EXPECT_EQ(leave_safe_outputs(rig_, "success").end, SafeOutputsEnd::not_needed);
+  EXPECT_FALSE(safe_outputs_needed("success"));
+  for (const char* result : {"", "exit-code", "signal", "core-dump", "watchdog", "timeout"})
+    EXPECT_TRUE(safe_outputs_needed(result)) << result;
   EXPECT_EQ(exit_code_of(SafeOutputsEnd::not_needed), ExitCode::done);
 }
 
