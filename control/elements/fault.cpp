@@ -95,7 +95,7 @@ struct RefusalInfo {
   std::string_view id;
   std::string_view name;
 };
-constexpr std::array<RefusalInfo, 12> refusals{{
+constexpr std::array<RefusalInfo, 13> refusals{{
     {"R00", "none"},
     {"R01", "faulted"},
     {"R02", "not_idle"},
@@ -108,6 +108,7 @@ constexpr std::array<RefusalInfo, 12> refusals{{
     {"R09", "cause_persists"},
     {"R10", "overtaken"},
     {"R11", "nothing_to_release"},
+    {"R12", "named_start_not_running"},
 }};
 
 const RefusalInfo& info_of(RefusalCode code) noexcept {

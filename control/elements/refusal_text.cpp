@@ -7,7 +7,7 @@ namespace softgrip::control {
 
 namespace {
 /// In the order of RefusalCode.
-constexpr std::array<RefusalText, 12> texts{{
+constexpr std::array<RefusalText, 13> texts{{
     {"There is no reason.", ""},
     {"A fault is latched.",
      "`softgrip status` says which and what to do about it; then `softgrip acknowledge`. `softgrip vent` "
@@ -26,8 +26,10 @@ constexpr std::array<RefusalText, 12> texts{{
      "`softgrip status` says what to do about it; acknowledge again when it is gone."},
     {"A stop or a vent was asked for before the loop could take the start.", "Start again if it shall move."},
     {"No sequence runs and every channel is at its lowest pressure.", "There is nothing to let go of."},
+    {"The start that this stop names does not run, and will not begin.",
+     "There is nothing to do. `softgrip stop` stops any sequence."},
 }};
-static_assert(static_cast<std::size_t>(RefusalCode::nothing_to_release) + 1 == texts.size());
+static_assert(static_cast<std::size_t>(RefusalCode::named_start_not_running) + 1 == texts.size());
 }  // namespace
 
 const RefusalText& text_of(RefusalCode code) noexcept {

@@ -73,7 +73,8 @@ void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orde
                         EventList& events) noexcept {
   const Request& request = input.request;
   const bool halts = request.kind == Request::Kind::stop || request.kind == Request::Kind::vent;
-  if (halts) halted_by_ = std::max(halted_by_, request.id);
+  if (halts && request.of_start == 0) halted_by_ = std::max(halted_by_, request.id);
+  if (!halts) taken_ = std::max(taken_, request.id);
   switch (request.kind) {
     case Request::Kind::none:
       break;
@@ -84,13 +85,7 @@ void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orde
       answer_check(input, facts, events);
       break;
     case Request::Kind::stop:
-      if (playing()) {
-        stop(facts, request.id, orders, events);
-      } else {
-        events.add(Event::Kind::request_refused,
-                   state_ == State::faulted ? RefusalCode::faulted : RefusalCode::nothing_to_stop,
-                   request.id);
-      }
+      answer_stop(facts, request, orders, events);
       break;
     case Request::Kind::vent:
       answer_vent(request, orders, events);
@@ -105,7 +100,7 @@ void Supervisor::answer(const TickInput& input, const Facts& facts, Orders& orde
 }
 
 RefusalCode Supervisor::refusal_of_start(const TickInput& input, const Facts& facts) const noexcept {
-  if (input.request.id < halted_by_) return RefusalCode::overtaken;
+  if (input.request.id < halted_by_ || withdrawn(input.request.id)) return RefusalCode::overtaken;
   if (state_ == State::faulted) return RefusalCode::faulted;
   if (input.emergency_stop) return RefusalCode::emergency_stop;
   if (state_ == State::starting) return RefusalCode::no_valid_reading;
@@ -140,6 +135,41 @@ void Supervisor::answer_start(const TickInput& input, const Facts& facts, Orders
   orders.seek_rest = true;
   events.add(Event::Kind::sequence_started, 0, request.id);
   go(State::resynchronising, request.id, events);
+}
+
+void Supervisor::answer_stop(const Facts& facts, const Request& request, Orders& orders,
+                             EventList& events) noexcept {
+  if (request.of_start != 0) {
+    answer_stop_of(facts, request, orders, events);
+  } else if (playing()) {
+    stop(facts, request.id, orders, events);
+  } else {
+    events.add(Event::Kind::request_refused,
+               state_ == State::faulted ? RefusalCode::faulted : RefusalCode::nothing_to_stop, request.id);
+  }
+}
+
+/// Decided here and not where the client is: only the loop knows which start runs in this tick.
+void Supervisor::answer_stop_of(const Facts& facts, const Request& request, Orders& orders,
+                                EventList& events) noexcept {
+  if (playing() && start_request_ == request.of_start) {
+    stop(facts, request.id, orders, events);
+    return;
+  }
+  withdraw(request);
+  events.add(Event::Kind::request_refused, RefusalCode::named_start_not_running, request.id);
+}
+
+/// A stop passes the starts that wait, so the start that it names may be among them.
+void Supervisor::withdraw(const Request& stop) noexcept {
+  const bool may_wait = stop.of_start > taken_ && stop.of_start < stop.id;
+  if (!may_wait || withdrawn(stop.of_start)) return;
+  withdrawn_[next_withdrawn_] = stop.of_start;
+  next_withdrawn_ = (next_withdrawn_ + 1) % most_withdrawn;
+}
+
+bool Supervisor::withdrawn(std::uint32_t start) const noexcept {
+  return start != 0 && std::find(withdrawn_.begin(), withdrawn_.end(), start) != withdrawn_.end();
 }
 
 /// Everything down. Never refused: it is the way out of a hold, faulted or not.

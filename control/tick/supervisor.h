@@ -6,6 +6,8 @@
 //                             +-> stopping <--+ -> idle
 //   any -> faulted -> (acknowledge) starting
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -69,10 +71,14 @@ class Supervisor {
   [[nodiscard]] bool refuses_start(const TickInput& input, const Facts& facts,
                                    EventList& events) const noexcept;
   void answer_check(const TickInput& input, const Facts& facts, EventList& events) const noexcept;
+  void answer_stop(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
+  void answer_stop_of(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
   void answer_vent(const Request& request, Orders& orders, EventList& events) noexcept;
   void answer_release(const Facts& facts, const Request& request, Orders& orders, EventList& events) noexcept;
   void answer_acknowledge(const Facts& facts, const Request& request, Orders& orders,
                           EventList& events) noexcept;
+  [[nodiscard]] bool withdrawn(std::uint32_t start) const noexcept;
+  void withdraw(const Request& stop) noexcept;
   void stop(const Facts& facts, std::uint32_t request, Orders& orders, EventList& events) noexcept;
   void end_sequence(SequenceEnd end, EventList& events) noexcept;
   void move_on(const Facts& facts, Orders& orders, EventList& events) noexcept;
@@ -88,7 +94,12 @@ class Supervisor {
   std::uint32_t venting_ = 0;
   const PreparedSequence* sequence_ = nullptr;  ///< from the accepted start to its end
   std::uint32_t start_request_ = 0;
-  std::uint32_t halted_by_ = 0;  ///< the newest request to stop or to vent
+  std::uint32_t halted_by_ = 0;  ///< the newest request to stop any sequence, or to vent
+  std::uint32_t taken_ = 0;      ///< the newest request of another kind: these come in the order of their ids
+  /// Starts that a stop has named before they came. No more can wait in the loop's lane.
+  static constexpr std::size_t most_withdrawn = 64;
+  std::array<std::uint32_t, most_withdrawn> withdrawn_{};
+  std::size_t next_withdrawn_ = 0;  ///< its place
 };
 
 }  // namespace softgrip::control

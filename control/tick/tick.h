@@ -60,6 +60,7 @@ struct Request {
   Kind kind = Kind::none;
   std::uint32_t id = 0;                        ///< echoed in the events that answer it
   const PreparedSequence* sequence = nullptr;  ///< for start, whose run it outlives, and check
+  std::uint32_t of_start = 0;                  ///< for stop: the only start that it stops; 0: any
 };
 
 /// What the bus did since the last tick, as far as control must know.

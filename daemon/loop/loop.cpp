@@ -70,7 +70,8 @@ void Loop::read(control::TickInput& input) noexcept {
   input.inputs_lost = inputs_lost(input.now);
   input.slipped_cycles = slipped_;
   slipped_ = 0;
-  if (!wires_.vents.pop(input.request) && !wires_.stops.pop(input.request)) {
+  if (!wires_.vents.pop(input.request) && !wires_.stops.pop(input.request) &&
+      !wires_.named_stops.pop(input.request)) {
     wires_.requests.pop(input.request);
   }
 

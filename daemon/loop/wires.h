@@ -122,7 +122,10 @@ struct Wires {
   Broadcast<StampedEvent> events;
   Ring<PanelEvent> panel_events{64};
   Ring<control::Request> vents{16};  ///< taken before ...
-  Ring<control::Request> stops{16};  ///< ... these, and these before ...
+  Ring<control::Request> stops{16};  ///< ... these, these before ...
+  /// ... these, each the only one of its start: as many as starts can wait, and some that were taken just
+  /// now.
+  Ring<control::Request> named_stops{128};
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< of the last tick
   std::atomic<bool> under_pressure{false};                      ///< some finger stays so, of the last tick

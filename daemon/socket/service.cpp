@@ -49,10 +49,31 @@ std::optional<std::uint32_t> Service::submit(control::Request::Kind kind,
     if (!vents && kind != control::Request::Kind::stop) return std::nullopt;
     return answers_.try_emplace(vents ? last_vent_ : last_stop_).first->first;
   }
-  ++last_request_;
-  answers_[request.id] = {};
-  note_client(request.id, client);
+  note_submitted(request.id, client);
   return request.id;
+}
+
+std::optional<std::uint32_t> Service::submit_stop_of(std::uint32_t start, const std::string& client) {
+  if (const auto waiting = stops_of_.find(start); waiting != stops_of_.end()) return waiting->second;
+  control::Request request;
+  request.kind = control::Request::Kind::stop;
+  request.id = last_request_ + 1;
+  request.of_start = start;
+  if (!wires_.named_stops.push(request)) return std::nullopt;
+  stops_of_[start] = request.id;
+  note_submitted(request.id, client);
+  return request.id;
+}
+
+void Service::note_submitted(std::uint32_t request, const std::string& client) {
+  last_request_ = request;
+  answers_[request] = {};
+  note_client(request, client);
+}
+
+void Service::forget(std::uint32_t request) {
+  answers_.erase(request);
+  std::erase_if(stops_of_, [request](const auto& stop) { return stop.second == request; });
 }
 
 void Service::note_client(std::uint32_t request, const std::string& client) {
@@ -134,6 +155,7 @@ void Service::take(const StampedEvent& stamped) {
     answer->second.kind = refused ? Answer::Kind::refused : Answer::Kind::accepted;
     if (refused) answer->second.refusal = static_cast<control::RefusalCode>(event.detail);
     answer->second.fault = fault_in(event);
+    std::erase_if(stops_of_, [&event](const auto& stop) { return stop.second == event.request; });
   }
   EventEntry entry = describe(event, channel_names_, sequence_ ? &sequence_->prepared : nullptr);
   entry.time_s = seconds(stamped.at - origin_);

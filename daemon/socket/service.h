@@ -29,6 +29,11 @@ class Service {
                                       std::shared_ptr<const LoadedSequence> sequence = nullptr,
                                       const std::string& client = {});
 
+  /// Hands over a stop of what the request `start` began, or will begin, and of nothing else. Returns its id;
+  /// that of an earlier one of the same start that waits for its answer; or nothing if the loop has not taken
+  /// the last ones yet.
+  std::optional<std::uint32_t> submit_stop_of(std::uint32_t start, const std::string& client = {});
+
   /// Moves what loop and bus had to tell into the log, and notes answers.
   void pump();
 
@@ -41,7 +46,7 @@ class Service {
   };
   [[nodiscard]] Answer take_answer(std::uint32_t request);
   /// Nobody waits for the answer any more.
-  void forget(std::uint32_t request) { answers_.erase(request); }
+  void forget(std::uint32_t request);
 
   /// How the newest sequence ended that has ended, and which request had started it.
   struct Ending {
@@ -74,6 +79,7 @@ class Service {
   void note_result(const StampedEvent& event);
   void note_client(std::uint32_t request, const std::string& client);
   bool push(const control::Request& request, std::shared_ptr<const LoadedSequence> sequence);
+  void note_submitted(std::uint32_t request, const std::string& client);
 
   std::vector<std::string> channel_names_;
   Nanoseconds origin_;
@@ -84,8 +90,9 @@ class Service {
   std::uint32_t last_request_ = 0;
   std::uint32_t last_vent_ = 0;
   std::uint32_t last_stop_ = 0;
-  std::map<std::uint32_t, Answer> answers_;   // of requests that were submitted and not taken
-  std::vector<control::GripResult> results_;  // by channel, of the sequence
+  std::map<std::uint32_t, Answer> answers_;          // of requests that were submitted and not taken
+  std::map<std::uint32_t, std::uint32_t> stops_of_;  // by start: its stop that waits for an answer
+  std::vector<control::GripResult> results_;         // by channel, of the sequence
   control::GripResult overall_ = control::GripResult::none;
   std::map<std::uint32_t, std::string> clients_;  // who made the newest requests
   std::shared_ptr<const LoadedSequence> sequence_;

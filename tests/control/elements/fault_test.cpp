@@ -49,7 +49,7 @@ TEST(Faults, CodesAreStable) {
 
 TEST(Refusals, HaveIdAndName) {
   std::set<std::string> ids;
-  for (int i = 0; i <= 11; ++i) {
+  for (int i = 0; i <= 12; ++i) {
     const auto code = static_cast<RefusalCode>(i);
     EXPECT_EQ(id_of(code), std::string(i < 10 ? "R0" : "R") + std::to_string(i));
     EXPECT_TRUE(ids.insert(std::string(name_of(code))).second);
@@ -60,7 +60,7 @@ TEST(Refusals, HaveIdAndName) {
 std::string refusal_table() {
   std::ostringstream out;
   out << "| code | name | meaning | what to do |\n|---|---|---|---|\n";
-  for (int i = 1; i <= 11; ++i) {
+  for (int i = 1; i <= 12; ++i) {
     const auto code = static_cast<RefusalCode>(i);
     out << "| " << id_of(code) << " | `" << name_of(code) << "` | " << text_of(code).meaning << " | "
         << text_of(code).next << " |\n";

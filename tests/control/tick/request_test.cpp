@@ -146,6 +146,65 @@ TEST_F(Requests, AStopWhileLookingForRestEndsTheStart) {
   EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
 }
 
+TEST_F(Requests, AStopOfOneStartEndsThatOneAlone) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request({Request::Kind::start, 7, &pick});
+  ASSERT_TRUE(rig.run_until(State::running, 5));
+  rig.request({Request::Kind::stop, 8, nullptr, 6});
+  rig.tick();
+  EXPECT_EQ(rig.output().state, State::running) << "another start was named";
+  const auto refused = std::ranges::find(rig.events, Event::Kind::request_refused, &Event::kind);
+  ASSERT_NE(refused, rig.events.end());
+  EXPECT_EQ(refused->request, 8U);
+  EXPECT_EQ(refused->detail, static_cast<std::uint16_t>(RefusalCode::named_start_not_running));
+  rig.request({Request::Kind::stop, 9, nullptr, 7});
+  rig.tick();
+  EXPECT_FALSE(may_rise(rig.output().state));
+  EXPECT_EQ(rig.count(Event::Kind::sequence_finished), 1U);
+  ASSERT_TRUE(rig.run_until(State::idle, 2));
+  rig.request({Request::Kind::stop, 10, nullptr, 7});
+  rig.tick();
+  EXPECT_EQ(rig.count(Event::Kind::request_refused), 2U) << "it has ended already";
+}
+
+TEST_F(Requests, AStopOfOneStartThatPassesItKeepsItFromBeginning) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  const auto refused = [&](std::uint32_t id) {
+    return std::ranges::any_of(rig.events, [id](const Event& event) {
+      return event.kind == Event::Kind::request_refused && event.request == id;
+    });
+  };
+  // Both starts wait in the loop's lane, and a stop of the second passes them.
+  rig.request({Request::Kind::stop, 9, nullptr, 7});
+  rig.tick();
+  rig.request({Request::Kind::start, 7, &pick});
+  rig.tick();
+  EXPECT_EQ(rig.output().state, State::idle);
+  EXPECT_TRUE(refused(7));
+  rig.request({Request::Kind::start, 8, &pick});
+  rig.tick();
+  EXPECT_EQ(rig.output().state, State::resynchronising) << "nothing has named this one";
+  EXPECT_FALSE(refused(8));
+}
+
+TEST_F(Requests, StopsOfStartsThatCannotWaitForgetNoneThatDoes) {
+  SimulatedRig rig(settings);
+  ASSERT_TRUE(rig.run_until(State::idle, 1));
+  rig.request({Request::Kind::check, 500, &pick});
+  rig.tick();
+  rig.request({Request::Kind::stop, 502, nullptr, 501});
+  rig.tick();
+  for (std::uint32_t id = 503; id < 703; ++id) {
+    rig.request({Request::Kind::stop, id, nullptr, id - 300});
+    rig.tick();
+  }
+  rig.request({Request::Kind::start, 501, &pick});
+  rig.tick();
+  EXPECT_EQ(rig.output().state, State::idle);
+}
+
 TEST_F(Requests, VentWorksFromEverywhere) {
   SimulatedRig rig(settings);
   rig.request(Request::Kind::vent);

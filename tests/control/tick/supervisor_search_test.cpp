@@ -29,7 +29,11 @@ struct Tick {
   Phase phase = Phase::idle;
   Rest rest = Rest::pending;
   bool sequence_ends = false;  // after the tick, if one runs
+  std::uint32_t of_start = 0;  // of a stop
 };
+
+constexpr std::uint32_t own_start = 2;
+constexpr std::uint32_t another_start = 9;
 
 std::vector<Tick> all_ticks() {
   std::vector<Tick> ticks;
@@ -43,6 +47,11 @@ std::vector<Tick> all_ticks() {
             const bool cause = (bits & 1U) != 0 || fault != FaultCode::none;
             ticks.push_back({request, fault, cause, (bits & 2U) == 0, (bits & 4U) == 0, (bits & 8U) != 0,
                              (bits & 16U) != 0, phase, rest, (bits & 32U) != 0});
+            if (request != Kind::stop) continue;
+            for (const std::uint32_t of_start : {own_start, another_start}) {
+              ticks.push_back(ticks.back());
+              ticks.back().of_start = of_start;
+            }
           }
         }
       }
@@ -69,7 +78,8 @@ class SupervisorSearch : public testing::Test {
     TickInput input;
     // A start is always newer than what would overtake it; that is a test of its own.
     const bool names_one = tick.request == Kind::start || tick.request == Kind::check;
-    input.request = {tick.request, names_one ? 2U : 1U, names_one ? &sequence_ : nullptr};
+    const std::uint32_t id = tick.of_start != 0 ? own_start + 1 : names_one ? own_start : 1;
+    input.request = {tick.request, id, names_one ? &sequence_ : nullptr, tick.of_start};
     input.interlock_open = tick.interlock_open;
     input.emergency_stop = tick.fault == FaultCode::emergency_stop;
     Facts facts;
@@ -101,7 +111,11 @@ class SupervisorSearch : public testing::Test {
       started = started || event.kind == Event::Kind::sequence_started;
       acknowledged = acknowledged || event.kind == Event::Kind::fault_acknowledged;
     }
-    const bool halts = tick.request == Kind::vent || (tick.request == Kind::stop && may_rise(before));
+    const bool stops = tick.request == Kind::stop && tick.of_start != another_start;
+    const bool halts = tick.request == Kind::vent || (stops && may_rise(before));
+    const bool undisturbed = tick.fault == FaultCode::none && !tick.interlock_open;
+    if (tick.of_start == another_start && undisturbed && before == State::running && after != before)
+      return "a stop of another start ends this one";
     if (tick.fault != FaultCode::none && after != State::faulted) return "a fault that is due does not latch";
     if (halts && may_rise(after)) return "motion goes on after a stop or a vent";
     if (tick.request == Kind::vent && supervisor.venting() != all && after != State::idle)
