@@ -16,6 +16,7 @@ using SortedJson = nlohmann::json;
 using Command = ClientRequest::Command;
 
 constexpr std::uint64_t largest_id = std::uint64_t{1} << 53;  // what every JSON reader keeps exactly
+constexpr std::uint64_t largest_request = (std::uint64_t{1} << 32) - 1;
 
 constexpr std::array<std::pair<std::string_view, Command>, 14> commands{{
     {"status", Command::status},
@@ -165,7 +166,16 @@ void read_arguments(Reader& reader, ClientRequest& request) {
       reader.text("sequence_text", request.sequence_text);
       reader.parameters("parameters", request.parameters);
       reader.boolean("dry_run", request.dry_run);
+      reader.name("start_id", request.start_id);
       if (request.sequence.empty()) reader.fail("'start' needs the key 'sequence'");
+      if (request.dry_run && !request.start_id.empty())
+        reader.fail("a dry run starts nothing that 'start_id' could name");
+      break;
+    case Command::stop:
+      reader.whole("request", 1, largest_request, request.request);
+      reader.name("start_id", request.start_id);
+      if (request.request && !request.start_id.empty())
+        reader.fail("'stop' takes 'request' or 'start_id', not both");
       break;
     case Command::events:
       reader.whole("since", 0, largest_id, request.since);
@@ -184,7 +194,6 @@ void read_arguments(Reader& reader, ClientRequest& request) {
       break;
     case Command::status:
     case Command::unwatch:
-    case Command::stop:
     case Command::vent:
     case Command::release:
     case Command::acknowledge:

@@ -44,12 +44,16 @@ struct ClientRequest {
   std::string sequence_text;  ///< ... the sequence itself; then `sequence` is its name in messages
   std::vector<control::Argument> parameters;  ///< of start: values in the place of defaults
   bool dry_run = false;                       ///< of start: everything but the motion
-  std::optional<std::uint64_t> since;         ///< of events and subscribe: only those with a larger id
-  std::string started_at;           ///< of subscribe: of the daemon whose ids these are; empty: this one
-  std::string client;               ///< of hello: who it is, [1, 64] bytes without control characters
-  std::uint64_t api = api_version;  ///< of hello: the version that the client speaks
-  std::uint64_t limit = 100;        ///< of events: [1, 1000]
-  bool histograms = false;          ///< of statistics: with the bins
+  /// The client's own name for a start, [1, 64] bytes without control characters: given by start, and by a
+  /// stop of this start alone. Empty: none.
+  std::string start_id;
+  std::optional<std::uint64_t> request;  ///< of a stop: the number of the only start that it stops, [1, 2^32)
+  std::optional<std::uint64_t> since;    ///< of events and subscribe: only those with a larger id
+  std::string started_at;                ///< of subscribe: of the daemon whose ids these are; empty: this one
+  std::string client;                    ///< of hello: who it is, [1, 64] bytes without control characters
+  std::uint64_t api = api_version;       ///< of hello: the version that the client speaks
+  std::uint64_t limit = 100;             ///< of events: [1, 1000]
+  bool histograms = false;               ///< of statistics: with the bins
 };
 
 /// Why a line was refused.

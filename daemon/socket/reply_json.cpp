@@ -63,7 +63,7 @@ Json checked_json(const LoadedSequence& sequence) {
 Json hello_json(const Greeting& greeting, const rig::SocketSettings& settings) {
   Json commands = Json::array();
   for (const std::string_view name : commands_of(greeting.role)) commands.push_back(name);
-  Json capabilities = Json::array({"event_ids", "overall_result", "owner"});
+  Json capabilities = Json::array({"event_ids", "overall_result", "owner", "start_id"});
   if (greeting.role == Role::operate) capabilities.push_back("dry_run");
   return {{"api", api_version},
           {"version", greeting.software_version},

@@ -79,8 +79,7 @@ void SocketApi::on_line(ClientId client, std::string_view line, Nanoseconds now)
       start(client, *request, now);
       break;
     case Command::stop:
-      refuse_planned();
-      ask(client, request->id, Kind::stop, nullptr, now);
+      stop(client, *request, now);
       break;
     case Command::vent:
       refuse_planned();
@@ -116,7 +115,7 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
   }
   const bool halts = request.command == Command::stop || request.command == Command::vent;
   const std::string* const other = owner();
-  if (halts || request.dry_run || other == nullptr || owner_.client == client) return nullptr;
+  if (halts || request.dry_run || other == nullptr || owner_client() == client) return nullptr;
   Json error = error_json("owned", "'" + *other +
                                        "' has started the sequence that runs, and is still connected: others "
                                        "may stop and vent");
@@ -127,10 +126,18 @@ Json SocketApi::refusal_of(ClientId client, const ClientRequest& request) const 
 /// The name of the client whose sequence runs or is asked for; nullptr if there is none. One without a name
 /// owns nothing, nor does one that has gone.
 const std::string* SocketApi::owner() const {
-  const auto found = clients_.find(owner_.client);
-  if (found == clients_.end() || found->second.name.empty()) return nullptr;
-  const bool keeps = asked_.contains(owner_.request) || sources_.service.runs(owner_.request);
-  return keeps ? &found->second.name : nullptr;
+  const auto found = clients_.find(owner_client());
+  return found == clients_.end() || found->second.name.empty() ? nullptr : &found->second.name;
+}
+
+/// The client whose sequence runs, or whose start is the first that waits for the loop's answer; 0: none. It
+/// may have gone.
+ClientId SocketApi::owner_client() const {
+  const std::uint32_t running = sources_.service.sequence_request();
+  if (sources_.service.runs(running)) return starts_.client_of(running);
+  const auto waiting =
+      std::ranges::find_if(asked_, [this](const auto& entry) { return starts_.has(entry.first); });
+  return waiting == asked_.end() ? 0 : waiting->second.client;
 }
 
 Json SocketApi::status() const {
@@ -206,6 +213,10 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
     fail(client, request.id, error_json("busy", "the sequence of an earlier start is still being loaded"));
     return;
   }
+  if (const Json refusal = refusal_of_id(request.start_id); !refusal.is_null()) {
+    fail(client, request.id, refusal);
+    return;
+  }
   const std::stop_source stop;
   std::packaged_task<SequenceLoader::Result()> load(
       [loader = loader_, name = request.sequence, text = request.sequence_text,
@@ -213,8 +224,47 @@ void SocketApi::start(ClientId client, const ClientRequest& request, Nanoseconds
         return text.empty() ? loader->load_named(name, parameters, token)
                             : loader->load_text(name, text, parameters, token);
       });
-  planned_ = Planned{client, request.id, load.get_future(), stop, request.dry_run};
+  planned_ = Planned{client, request.id, load.get_future(), stop, request.start_id, request.dry_run};
   std::thread(std::move(load)).detach();
+}
+
+/// Returns null if a start may have that id.
+Json SocketApi::refusal_of_id(const std::string& start_id) const {
+  if (starts_.is_forbidden(start_id))
+    return error_json("abandoned", "a stop that names this start came before it");
+  if (starts_.request_of(start_id))
+    return error_json("bad_request", "an earlier start has this 'start_id' already");
+  return nullptr;
+}
+
+void SocketApi::stop(ClientId client, const ClientRequest& request, Nanoseconds now) {
+  if (request.request || !request.start_id.empty()) {
+    stop_of(client, request, now);
+    return;
+  }
+  refuse_planned();
+  ask(client, request.id, Kind::stop, nullptr, now);
+}
+
+/// Stops one start wherever it is: still to come, being loaded, on its way into the loop, or running.
+void SocketApi::stop_of(ClientId client, const ClientRequest& request, Nanoseconds now) {
+  const std::string& id = request.start_id;
+  if (!id.empty() && planned_ && !planned_->abandoned && planned_->start_id == id) {
+    refuse_planned();
+    starts_.forbid(id);
+    ok(client, request.id, {{"request", 0}});
+    return;
+  }
+  std::optional<std::uint32_t> start = starts_.request_of(id);
+  if (request.request && starts_.has(static_cast<std::uint32_t>(*request.request)))
+    start = static_cast<std::uint32_t>(*request.request);
+  if (!start) {
+    if (!id.empty()) starts_.forbid(id);
+    fail(client, request.id, refused_json(control::RefusalCode::named_start_not_running, {}, 0));
+    return;
+  }
+  const auto number = sources_.service.submit_stop_of(*start, clients_[client].name);
+  wait_for(number, {client, request.id, now + longest_answer, {}, {}});
 }
 
 /// Nobody who asks for a vent waits for a disk, and a directory that hangs costs one thread, however often it
@@ -260,28 +310,36 @@ void SocketApi::take_planned(Nanoseconds now) {
 }
 
 void SocketApi::loaded(const Planned& planned, SequenceLoader::Result sequence, Nanoseconds now) {
-  if (sequence) {
-    ask(planned.client, planned.id, planned.dry_run ? Kind::check : Kind::start, std::move(*sequence), now);
+  if (!sequence) {
+    Json error = error_json("sequence_refused", "the sequence cannot be run on this rig");
+    error["problems"] = problems_json(sequence.error().list());
+    fail(planned.client, planned.id, error);
     return;
   }
-  Json error = error_json("sequence_refused", "the sequence cannot be run on this rig");
-  error["problems"] = problems_json(sequence.error().list());
-  fail(planned.client, planned.id, error);
+  const auto number =
+      ask(planned.client, planned.id, planned.dry_run ? Kind::check : Kind::start, std::move(*sequence), now);
+  if (number && !planned.dry_run)
+    starts_.add({*number, planned.start_id, planned.client}, sources_.service.sequence_request());
 }
 
-void SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
-                    std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
+std::optional<std::uint32_t> SocketApi::ask(ClientId client, std::optional<std::uint64_t> id, Kind kind,
+                                            std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now) {
   Asked asked{client, id, now + longest_answer, {}, {}};
   if (sequence) asked.remarks = sequence->remarks;
   if (kind == Kind::check) asked.checked = sequence;
   const auto number = sources_.service.submit(kind, std::move(sequence), clients_[client].name);
-  if (!number) {
-    fail(client, id, error_json("busy", "the loop has not yet taken the requests before this one"));
-    return;
+  wait_for(number, std::move(asked));
+  return number;
+}
+
+/// Replies `busy` if the loop had no room for the request and so gave it no number.
+void SocketApi::wait_for(std::optional<std::uint32_t> number, Asked asked) {
+  if (number) {
+    asked_.insert({*number, std::move(asked)});
+  } else {
+    fail(asked.client, asked.id,
+         error_json("busy", "the loop has not yet taken the requests before this one"));
   }
-  const bool taken = asked_.contains(owner_.request) || sources_.service.runs(owner_.request);
-  if (kind == Kind::start && !taken) owner_ = {client, *number};
-  asked_.insert({*number, std::move(asked)});
 }
 
 void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer) {
@@ -299,11 +357,15 @@ void SocketApi::answer(const Asked& asked, std::uint32_t request, const Service:
     ok(asked.client, asked.id, result);
     return;
   }
-  Json error =
-      error_json("refused", sentences_of(answer.refusal, answer.fault, sources_.service.channel_names()));
-  error["refusal"] = {{"code", control::id_of(answer.refusal)}, {"name", control::name_of(answer.refusal)}};
+  fail(asked.client, asked.id, refused_json(answer.refusal, answer.fault, request));
+}
+
+Json SocketApi::refused_json(control::RefusalCode refusal, const control::Fault& fault,
+                             std::uint32_t request) const {
+  Json error = error_json("refused", sentences_of(refusal, fault, sources_.service.channel_names()));
+  error["refusal"] = {{"code", control::id_of(refusal)}, {"name", control::name_of(refusal)}};
   error["request"] = request;
-  fail(asked.client, asked.id, error);
+  return error;
 }
 
 void SocketApi::watch(ClientId client, const ClientRequest& request, Nanoseconds now) {

@@ -17,6 +17,7 @@
 #include "daemon/socket/role.h"
 #include "daemon/socket/sequence_loader.h"
 #include "daemon/socket/service.h"
+#include "daemon/socket/start_ledger.h"
 #include "daemon/socket/status_json.h"
 #include "rig/socket_settings.h"
 
@@ -53,10 +54,6 @@ class SocketApi {
     Role role = Role::look;
     std::string name;  ///< of its hello
   };
-  struct Owner {  // of the sequence that runs
-    ClientId client = 0;
-    std::uint32_t request = 0;  ///< that started it
-  };
   struct Asked {  // of the loop
     ClientId client = 0;
     std::optional<std::uint64_t> id;
@@ -79,6 +76,7 @@ class SocketApi {
     std::optional<std::uint64_t> id;
     std::future<SequenceLoader::Result> loaded;
     std::stop_source stop;
+    std::string start_id;  ///< the client's own name for it; may be empty
     bool dry_run = false;
     bool abandoned = false;  ///< nobody waits for it any more
   };
@@ -90,6 +88,7 @@ class SocketApi {
 
   [[nodiscard]] nlohmann::ordered_json refusal_of(ClientId client, const ClientRequest& request) const;
   [[nodiscard]] const std::string* owner() const;
+  [[nodiscard]] ClientId owner_client() const;
   [[nodiscard]] nlohmann::ordered_json status() const;
   void greet(ClientId client, const ClientRequest& request);
   void subscribe(ClientId client, const ClientRequest& request);
@@ -97,12 +96,19 @@ class SocketApi {
   [[nodiscard]] nlohmann::ordered_json dated(const EventEntry& event, Nanoseconds now);
   [[nodiscard]] Nanoseconds wall_origin(Nanoseconds now);
   void start(ClientId client, const ClientRequest& request, Nanoseconds now);
+  [[nodiscard]] nlohmann::ordered_json refusal_of_id(const std::string& start_id) const;
+  void stop(ClientId client, const ClientRequest& request, Nanoseconds now);
+  void stop_of(ClientId client, const ClientRequest& request, Nanoseconds now);
   void loaded(const Planned& planned, SequenceLoader::Result sequence, Nanoseconds now);
   void take_planned(Nanoseconds now);
   void abandon_planned() noexcept;
   void refuse_planned();
-  void ask(ClientId client, std::optional<std::uint64_t> id, control::Request::Kind kind,
-           std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
+  std::optional<std::uint32_t> ask(ClientId client, std::optional<std::uint64_t> id,
+                                   control::Request::Kind kind,
+                                   std::shared_ptr<const LoadedSequence> sequence, Nanoseconds now);
+  [[nodiscard]] nlohmann::ordered_json refused_json(control::RefusalCode refusal, const control::Fault& fault,
+                                                    std::uint32_t request) const;
+  void wait_for(std::optional<std::uint32_t> number, Asked asked);
   void answer(const Asked& asked, std::uint32_t request, const Service::Answer& answer);
   void watch(ClientId client, const ClientRequest& request, Nanoseconds now);
   void list_sequences(ClientId client, std::optional<std::uint64_t> id);
@@ -119,10 +125,10 @@ class SocketApi {
   Send send_;
   std::multimap<std::uint32_t, Asked> asked_;  // by the request's id in the loop
   std::map<ClientId, Client> clients_;
-  Owner owner_;
   std::map<ClientId, Subscription> subscriptions_;
   std::map<ClientId, Watch> watches_;
   std::optional<Planned> planned_;
+  StartLedger starts_;
   std::optional<Listing> listing_;
   std::optional<Nanoseconds> wall_origin_;  ///< the time of day at sources_.origin
 };

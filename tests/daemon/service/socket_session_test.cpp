@@ -79,6 +79,51 @@ TEST_F(SocketSession, AGripFromStartToVent) {
   for (const json& event : later) EXPECT_GT(event["id"].get<std::uint64_t>(), newest);
 }
 
+TEST_F(SocketSession, AStopThatNamesAStartEndsThatOneAlone) {
+  const auto start = [&](const char* id) {
+    return ask({{"command", "start"}, {"sequence", "pick_stone"}, {"start_id", id}});
+  };
+  const auto stop_of = [&](const char* key, const json& value) {
+    return ask({{"command", "stop"}, {key, value}});
+  };
+  const json first = start("cell/1");
+  ASSERT_EQ(first["ok"], true) << first;
+  const auto request = first["result"]["request"].get<std::uint32_t>();
+  for (const auto& [key, value] : std::vector<std::pair<const char*, json>>{
+           {"start_id", "cell/2"}, {"request", request + 1}, {"request", 4294967295U}}) {
+    EXPECT_EQ(stop_of(key, value)["error"]["refusal"]["name"], "named_start_not_running") << key << value;
+  }
+  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "none of them has named it";
+  EXPECT_EQ(start("cell/1")["error"]["code"], "bad_request") << "the id has been given away";
+  EXPECT_EQ(stop_of("start_id", "cell/1")["ok"], true);
+  ASSERT_TRUE(until_state("idle"));
+  EXPECT_EQ(status()["sequence"]["ended"], "stopped");
+
+  const json second = start("cell/3");
+  ASSERT_EQ(second["ok"], true) << second;
+  EXPECT_EQ(stop_of("start_id", "cell/1")["error"]["refusal"]["code"], "R12");
+  EXPECT_EQ(stop_of("request", request)["error"]["refusal"]["code"], "R12");
+  EXPECT_EQ(status()["sequence"]["ended"], nullptr) << "another start runs now";
+  EXPECT_EQ(stop_of("request", second["result"]["request"])["ok"], true);
+}
+
+TEST_F(SocketSession, AStartThatAStopHasNamedBeforeItCameDoesNotBegin) {
+  EXPECT_EQ(ask({{"command", "stop"}, {"start_id", "late"}})["error"]["refusal"]["code"], "R12");
+  const json late = ask({{"command", "start"}, {"sequence", "pick_stone"}, {"start_id", "late"}});
+  EXPECT_EQ(late["error"]["code"], "abandoned");
+  // A start, and its stop right behind it: wherever the start is by then, it does not run.
+  for (int i = 0; i < 20; ++i) {
+    const std::string id = "at once " + std::to_string(i);
+    client_.send(R"({"id":1,"command":"start","sequence":"pick_stone","start_id":")" + id + "\"}\n");
+    if (i % 2 == 1) std::this_thread::sleep_for(std::chrono::milliseconds(i));
+    client_.send(R"({"id":2,"command":"stop","start_id":")" + id + "\"}\n");
+    for (int replies = 0; replies < 2; ++replies) ASSERT_TRUE(client_.receive().contains("ok"));
+    const json after = status();
+    EXPECT_FALSE(after["state"] == "running" || after["state"] == "resynchronising") << after;
+    ASSERT_TRUE(until_state("idle"));
+  }
+}
+
 TEST_F(SocketSession, RequestsThatTheStateDoesNotAllowAreRefusedWithTheirReason) {
   EXPECT_EQ(ask({{"command", "stop"}})["error"]["refusal"]["name"], "nothing_to_stop");
   EXPECT_EQ(ask({{"command", "acknowledge"}})["error"]["refusal"]["name"], "nothing_to_acknowledge");

@@ -65,6 +65,12 @@ TEST(ClientRequest, ReadsArguments) {
       R"({"command":"start","sequence":"s","parameters":{"squeeze_kpa":4,"hold_s":0.5}})");
   ASSERT_TRUE(asked);
   EXPECT_EQ(asked->parameters, (std::vector<control::Argument>{{"hold_s", 0.5}, {"squeeze_kpa", 4}}));
+  const auto named = parse_client_request(R"({"command":"start","sequence":"s","start_id":"cell 4/17"})");
+  ASSERT_TRUE(named);
+  EXPECT_EQ(named->start_id, "cell 4/17");
+  EXPECT_EQ(parse_client_request(R"({"command":"stop","start_id":"cell 4/17"})")->start_id, "cell 4/17");
+  EXPECT_EQ(parse_client_request(R"({"command":"stop","request":4294967295})")->request, 4294967295U);
+  EXPECT_EQ(parse_client_request(R"({"command":"stop"})")->request, std::nullopt);
   const auto events = parse_client_request(R"({"id":9007199254740992,"command":"events","since":12})");
   ASSERT_TRUE(events);
   EXPECT_EQ(events->id, 9007199254740992U);
@@ -110,6 +116,13 @@ TEST(ClientRequest, SaysWhatIsWrong) {
       {R"({"command":"statistics","histograms":1})", "'histograms' is true or false"},
       {R"({"command":"start","sequence":"s","dry_run":1})", "'dry_run' is true or false"},
       {R"({"command":"stop","dry_run":true})", "knows no key 'dry_run'"},
+      {R"({"command":"stop","request":0})", "'request' is a whole number from 1 to 4294967295"},
+      {R"({"command":"stop","request":4294967296})", "'request' is a whole number from 1 to 4294967295"},
+      {R"({"command":"stop","start_id":""})", "'start_id' is a text"},
+      {R"({"command":"stop","start_id":"a\nb"})", "'start_id' has at most 64 bytes"},
+      {R"({"command":"stop","request":3,"start_id":"a"})", "not both"},
+      {R"({"command":"vent","start_id":"a"})", "knows no key 'start_id'"},
+      {R"({"command":"start","sequence":"s","dry_run":true,"start_id":"a"})", "a dry run starts nothing"},
       {R"({"command":"hello","client":"a\nb"})", "'client' has at most 64 bytes"},
       {R"({"command":"hello","api":0})", "'api' is a whole number"},
       {R"({"command":"subscribe","since":-1})", "'since' is a whole number"},
