@@ -193,7 +193,8 @@ void RealRun::service_body() {
     server_->set_handlers(
         {[&](ClientId client, std::string_view line) { api.on_line(client, line, parts_.clock.now()); },
          [&](ClientId client) { api.on_closed(client); }, is_urgent,
-         [&](ClientId client, Role role) { api.on_opened(client, role); }});
+         [&](ClientId client, Role role) { api.on_opened(client, role); },
+         [&](ClientId client) { return api.keeps_place(client); }});
   }
   while (!stop_service_.is_set()) {
     service_turns_.add();

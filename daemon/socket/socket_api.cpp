@@ -140,6 +140,12 @@ ClientId SocketApi::owner_client() const {
   return waiting == asked_.end() ? 0 : waiting->second.client;
 }
 
+bool SocketApi::keeps_place(ClientId client) const {
+  if (subscriptions_.contains(client)) return true;
+  if (planned_ && planned_->client == client && !planned_->abandoned) return true;
+  return owner_client() == client;
+}
+
 Json SocketApi::status() const {
   Json json = status_json(sources_);
   const std::string* const name = owner();

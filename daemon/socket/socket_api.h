@@ -46,6 +46,9 @@ class SocketApi {
   void on_line(ClientId client, std::string_view line, Nanoseconds now);
   /// The client is gone.
   void on_closed(ClientId client);
+  /// Returns true if the client must keep its connection although it is silent: it has a subscription, or its
+  /// start runs or may still begin.
+  [[nodiscard]] bool keeps_place(ClientId client) const;
   /// Sends what is due: answers of the loop, watched states. Returns when to call again at the latest.
   Nanoseconds on_time(Nanoseconds now);
 

@@ -80,10 +80,11 @@ void SocketServer::poll(Nanoseconds now, Nanoseconds until) {
   if (::ppoll(polled.data(), polled.size(), &timeout, nullptr) > 0) {
     for (std::size_t i = listeners_.size(); i < polled.size(); ++i) {
       Client& client = clients_.at(ids[i]);
+      const bool gone = (polled[i].revents & (POLLERR | POLLHUP)) != 0;
+      if (gone) stop_writing(client);
       if ((polled[i].revents & POLLOUT) != 0) write_to(client, now);
-      if ((polled[i].revents & POLLIN) != 0) read_from(client);
-      if ((polled[i].revents & (POLLERR | POLLNVAL)) != 0) client.dead = true;
-      if ((polled[i].revents & POLLHUP) != 0 && (polled[i].revents & POLLIN) == 0) client.dead = true;
+      if ((polled[i].revents & POLLIN) != 0 || (gone && !has_line(client))) read_from(client);
+      if ((polled[i].revents & POLLNVAL) != 0) client.dead = true;
     }
     for (std::size_t i = 0; i < listeners_.size(); ++i) {
       if ((polled[i].revents & POLLIN) != 0) accept_some(listeners_[i]);
@@ -138,21 +139,24 @@ Descriptor SocketServer::accept_one(const Entrance& entrance) {
   }
 }
 
-/// It has had the time to say something, and has not for long.
-bool SocketServer::may_go(const Client& client) const {
-  return client.ended_at != 0 || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
+/// Returns true if the client has ended, or was silent for long, or if `any` silent or active client may go.
+/// One that keeps its place may not go: the sequence that it has started would lose its owner.
+bool SocketServer::may_go(std::uint64_t id, const Client& client, bool any) const {
+  if (client.ended_at != 0) return true;
+  if (handlers_.keeps_place && handlers_.keeps_place(id)) return false;
+  return any || now_ - client.active_at >= (client.spoke ? longest_silence : first_word);
 }
 
-/// Of those of the role that may go, or of all if it must be: the one that stands, never spoke, was silent
-/// for longest, in this order. False if there is none.
-bool SocketServer::displace_one(Role role, bool whoever) {
+/// Displaces one client of the role that may go. A client without a place comes first, then one that never
+/// spoke, then the one that was silent for longest. Returns false if there is none.
+bool SocketServer::displace_one(Role role, bool any) {
   const auto rank = [](const Client& client) {
     return std::tuple(client.ended_at == 0, !client.stands, client.spoke, client.active_at);
   };
   auto found = clients_.end();
   for (auto entry = clients_.begin(); entry != clients_.end(); ++entry) {
     const Client& client = entry->second;
-    if (client.role != role || (!whoever && !may_go(client))) continue;
+    if (client.role != role || !may_go(entry->first, client, any)) continue;
     if (found == clients_.end() || rank(client) < rank(found->second)) found = entry;
   }
   if (found == clients_.end()) return false;
@@ -173,9 +177,10 @@ std::string SocketServer::too_many() const {
 }
 
 void SocketServer::hear(std::uint64_t id, Client& client, std::string_view line) {
-  if (!client.stands || (handlers_.is_urgent && handlers_.is_urgent(line))) {
+  const bool places = !client.stands && !client.deaf;
+  if (places || (handlers_.is_urgent && handlers_.is_urgent(line))) {
     handlers_.on_line(id, line);
-  } else {
+  } else if (!client.deaf) {
     send(id, too_many(), false);
     client.closing = true;
   }
@@ -187,11 +192,8 @@ void SocketServer::read_from(Client& client) {
   if (client.closing) return;
   std::array<char, read_bytes> buffer;
   const ssize_t count = recv(client.socket.get(), buffer.data(), buffer.size(), 0);
-  if (count < 0) {
-    client.dead = errno != EAGAIN && errno != EINTR;
-    return;
-  }
-  if (count == 0) {
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (count <= 0) {
     // `echo ... | socat` says no more, but waits for the answer.
     client.ended_at = now_;
     return;
@@ -235,7 +237,7 @@ bool SocketServer::send(std::uint64_t id, std::string_view line, bool skippable)
   const auto found = clients_.find(id);
   if (found == clients_.end()) return false;
   Client& client = found->second;
-  if (client.dead || client.closing || (skippable && !client.output.empty())) return false;
+  if (client.dead || client.deaf || client.closing || (skippable && !client.output.empty())) return false;
   if (client.output.size() + line.size() > settings_.max_queue_bytes) {
     client.dead = true;
     return false;
@@ -255,7 +257,7 @@ void SocketServer::write_to(Client& client, Nanoseconds now) {
       return;
     }
     if (count < 0) {
-      client.dead = true;
+      stop_writing(client);
       return;
     }
     client.output.erase(0, static_cast<std::size_t>(count));
@@ -264,11 +266,20 @@ void SocketServer::write_to(Client& client, Nanoseconds now) {
   }
 }
 
+/// The client has closed its end. The server still reads the lines that it sent before, because a stop or a
+/// vent may be among them.
+void SocketServer::stop_writing(Client& client) {
+  client.deaf = true;
+  client.output.clear();
+  client.stalled_since = 0;
+}
+
 void SocketServer::sweep(Nanoseconds now) {
   for (auto entry = clients_.begin(); entry != clients_.end();) {
     Client& client = entry->second;
     const bool stalled = client.stalled_since != 0 && now - client.stalled_since > longest_stall;
-    const bool left = client.ended_at != 0 && now - client.ended_at > answer_pause && !has_line(client);
+    const bool waits = !client.deaf && now - client.ended_at <= answer_pause;
+    const bool left = client.ended_at != 0 && !waits && !has_line(client);
     const bool done = (client.closing || left) && client.output.empty();
     if (!client.dead && !stalled && !done) {
       ++entry;

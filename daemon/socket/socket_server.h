@@ -29,6 +29,8 @@ class SocketServer {
     std::function<bool(std::string_view line)> is_urgent;
     /// Before its first line.
     std::function<void(std::uint64_t client, Role role)> on_opened = nullptr;
+    /// Returns true if a client keeps its place while it is silent.
+    std::function<bool(std::uint64_t client)> keeps_place = nullptr;
   };
 
   /// Opens the sockets of the settings (daemon/socket/listener.h). The error is a sentence.
@@ -44,8 +46,9 @@ class SocketServer {
 
   /// Waits for something to happen, at most until `until`, and deals with it: a part of it, if there is much,
   /// so that every client has its turn in the next call. When all places are taken, a new client gets that of
-  /// one that has been silent for long; if there is none, it stands: it may say one line, which is refused
-  /// unless it is urgent.
+  /// one that has been silent for long and does not keep its place. If there is none, the new client may send
+  /// one line, which is refused unless it is urgent. Urgent lines of a client that has closed its end
+  /// meanwhile are heard.
   void poll(Nanoseconds now, Nanoseconds until);
 
   /// Queues a line for a client; false if it is gone. `skippable`: dropped, and false, if the client has not
@@ -66,6 +69,7 @@ class SocketServer {
     bool spoke = false;             // it has sent a line
     bool stands = false;            // there was no place for it
     bool closing = false;           // after the output is gone
+    bool deaf = false;              // it reads no more; its last lines are still to be read
     bool dead = false;
   };
 
@@ -78,14 +82,15 @@ class SocketServer {
   [[nodiscard]] std::size_t count_of(Role role) const;
   void accept_some(const Entrance& entrance);
   Descriptor accept_one(const Entrance& entrance);
-  [[nodiscard]] bool may_go(const Client& client) const;
-  bool displace_one(Role role, bool whoever);
+  [[nodiscard]] bool may_go(std::uint64_t id, const Client& client, bool any) const;
+  bool displace_one(Role role, bool any);
   [[nodiscard]] std::string too_many() const;
   void hear(std::uint64_t id, Client& client, std::string_view line);
   void read_from(Client& client);
   void take_lines(std::uint64_t id, Client& client);
   [[nodiscard]] static bool has_line(const Client& client);
   void write_to(Client& client, Nanoseconds now);
+  static void stop_writing(Client& client);
   void sweep(Nanoseconds now);
 
   rig::SocketSettings settings_;

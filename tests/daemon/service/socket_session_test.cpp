@@ -124,6 +124,26 @@ TEST_F(SocketSession, AStartThatAStopHasNamedBeforeItCameDoesNotBegin) {
   }
 }
 
+TEST_F(SocketSession, AStopOfAClientThatHasGoneIsHeardWhenAPausedDaemonGoesOn) {
+  const auto line = [](const char* command, const std::string& rest) {
+    return std::string(R"({"command":")") + command + "\"" + rest + ",\"start_id\":\"x\"}\n";
+  };
+  ASSERT_EQ(ask(json::parse(line("start", R"(,"sequence":"pick_stone")")))["ok"], true);
+  ASSERT_TRUE(until_state("running"));
+  {
+    ApiClient watching(socket());
+    ASSERT_TRUE(watching.open());
+    watching.send("{\"command\":\"events\",\"limit\":1000}\n{\"command\":\"watch\",\"rate_hz\":50}\n");
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    process_.signal(SIGSTOP);
+    // It has read none of what it was sent, so its connection ends as one that is reset.
+    watching.send(line("stop", ""));
+  }
+  process_.signal(SIGCONT);
+  ASSERT_TRUE(until_state("idle"));
+  EXPECT_EQ(status()["sequence"]["ended"], "stopped");
+}
+
 TEST_F(SocketSession, RequestsThatTheStateDoesNotAllowAreRefusedWithTheirReason) {
   EXPECT_EQ(ask({{"command", "stop"}})["error"]["refusal"]["name"], "nothing_to_stop");
   EXPECT_EQ(ask({{"command", "acknowledge"}})["error"]["refusal"]["name"], "nothing_to_acknowledge");

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -55,7 +56,8 @@ class SocketServerTest : public ::testing::Test {
                              },
                              [this](std::uint64_t) { ++closed_; },
                              [](std::string_view line) { return line.rfind("urgent", 0) == 0; },
-                             [this](std::uint64_t, Role role) { opened_.push_back(role); }});
+                             [this](std::uint64_t, Role role) { opened_.push_back(role); },
+                             [this](std::uint64_t client) { return keeps_.contains(client); }});
     }
     return *server_;
   }
@@ -85,6 +87,7 @@ class SocketServerTest : public ::testing::Test {
   std::vector<std::string> lines_;
   std::function<void(std::uint64_t, std::string_view)> answer_;
   std::vector<Role> opened_;
+  std::set<std::uint64_t> keeps_;
   int closed_ = 0;
   Nanoseconds now_ = MonotonicClock().now();
 };
@@ -231,6 +234,37 @@ TEST_F(SocketServerTest, TheLongestSilentOnesMakeRoom) {
       << "the longest silent";
   EXPECT_EQ(received(clients[2]), "");
   EXPECT_EQ(received(clients[3]), "");
+}
+
+TEST_F(SocketServerTest, AClientThatKeepsItsPlaceIsDisplacedByNobody) {
+  keeps_ = {1, 3};
+  server();
+  std::vector<Descriptor> clients;
+  for (int i = 0; i < 3; ++i) {
+    clients.push_back(connect_to(settings_.path));
+    send_text(clients.back(), "hello\n");
+    turn();
+  }
+  turn(1, 60 * ns_per_s);
+  clients.push_back(connect_to(settings_.path));
+  send_text(clients.back(), "hello\n");
+  turn();
+  EXPECT_NE(received(clients[1]).value_or("").find("too_many_clients"), std::string::npos)
+      << "silent, and nothing keeps its place";
+  keeps_.insert(4);
+  turn(1, 60 * ns_per_s);
+  const Descriptor late = connect_to(settings_.path);
+  send_text(late, "and I\n");
+  turn();
+  EXPECT_NE(received(late).value_or("").find("too_many_clients"), std::string::npos)
+      << "all places are kept: the newcomer is refused with a sentence";
+  for (const std::size_t i : {0UL, 2UL, 3UL})
+    EXPECT_EQ(received(clients[i]), "") << i << " is still connected";
+  const Descriptor urgent = connect_to(settings_.path);
+  lines_.clear();
+  send_text(urgent, "urgent: down\n");
+  turn(2);
+  EXPECT_EQ(lines_, std::vector<std::string>{"urgent: down"});
 }
 
 TEST_F(SocketServerTest, WhoLooksHasPlacesOfItsOwn) {
@@ -407,6 +441,29 @@ TEST_F(SocketServerTest, AClientThatEndsItsSendingSideStillGetsItsAnswer) {
   EXPECT_EQ(received(client), "answer\n");
   turn(4, ns_per_s);
   EXPECT_EQ(server().clients(), 0U);
+}
+
+TEST_F(SocketServerTest, AnUrgentLineOfAClientThatHasGoneIsHeard) {
+  std::uint64_t sender = 0;
+  answer_ = [&](std::uint64_t client, std::string_view) { sender = client; };
+  server();
+  for (const std::size_t unread : {0U, 10U, 250'000U}) {
+    SCOPED_TRACE(unread);
+    {
+      const Descriptor client = connect_to(settings_.path);
+      send_text(client, "hello\n");
+      turn();
+      if (unread > 0) server().send(sender, std::string(unread, 'a'), false);
+      // The server does not look meanwhile, as a process that is paused.
+      send_text(client, "move\nurgent: down\nmove\n");
+      lines_.clear();
+    }
+    turn(20);
+    EXPECT_EQ(std::count(lines_.begin(), lines_.end(), "urgent: down"), 1);
+    EXPECT_EQ(std::count(lines_.begin(), lines_.end(), "move"), 0) << "it has gone, and wants no motion";
+    EXPECT_EQ(server().clients(), 0U);
+  }
+  EXPECT_EQ(closed_, 3);
 }
 
 TEST_F(SocketServerTest, AClientThatVanishesIsForgotten) {
