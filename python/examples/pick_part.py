@@ -20,7 +20,7 @@ def main() -> int:
     parser.add_argument("--squeeze-kpa", type=float, default=4.0)
     arguments = parser.parse_args()
 
-    # Whatever happens below, leaving the block stops what still runs.
+    # Leaving the block stops what it started and what may still run, whatever happens below.
     with softgrip.Gripper(arguments.socket, name="pick_part") as gripper:
         gripper.check(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)
         gripper.start(arguments.sequence, squeeze_kpa=arguments.squeeze_kpa)

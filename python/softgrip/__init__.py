@@ -7,7 +7,7 @@
 from .aio import AsyncGripper
 from .client import Gripper
 from .errors import (ConnectionLost, GripFailed, MalformedFile, NoDaemon, NotAnswered, Owned, ProtocolError, Refused,
-                     SequenceRefused, SoftgripError)
+                     SequenceRefused, SoftgripError, StopNotConfirmed)
 from .messages import (Channel, Checked, Event, Fault, Grip, Hello, Parameter, Problem, Result, Sequence, SequenceEnd,
                        SequenceState, State, Status)
 
@@ -15,4 +15,5 @@ __all__ = [
     "AsyncGripper", "Channel", "Checked", "ConnectionLost", "Event", "Fault", "Grip", "GripFailed", "Gripper", "Hello",
     "MalformedFile", "NoDaemon", "NotAnswered", "Owned", "Parameter", "Problem", "ProtocolError", "Refused", "Result",
     "Sequence", "SequenceEnd", "SequenceRefused", "SequenceState", "SoftgripError", "State", "Status",
+    "StopNotConfirmed",
 ]

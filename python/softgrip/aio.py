@@ -8,9 +8,9 @@ from collections.abc import AsyncIterator, Callable, Mapping
 from types import TracebackType
 from typing import Any, Optional, TypeVar
 
-from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError, SoftgripError
+from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError, Refused, SoftgripError
 from .messages import Checked, Event, Grip, Hello, Listing, Result, Sequence, SequenceEnd, Status
-from .session import API, LONGEST_LINE, Session, default_path, start_keys
+from .session import API, LONGEST_LINE, NOT_RUNNING, START_ID, Session, default_path, start_keys
 
 T = TypeVar("T")
 
@@ -35,33 +35,38 @@ class AsyncGripper:
     async def __aexit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
                         traceback: Optional[TracebackType]) -> None:
         try:
-            if self._session.runs() and (await self.status()).json["sequence"]["ended"] is None:
-                await self.stop()
-        except SoftgripError:
-            # It ended by itself meanwhile, or the daemon has gone, whose own rules hold then.
-            pass
+            await self._stop_own()
         finally:
             await self.close()
 
     async def connect(self) -> Hello:
         """Also after a ConnectionLost: no event is missed that the daemon still keeps."""
-        await self.close()
-        try:
-            opened = asyncio.open_unix_connection(self.path, limit=LONGEST_LINE)
-            reader, self._writer = await asyncio.wait_for(opened, self.answer_s)
-        except (OSError, asyncio.TimeoutError) as error:
-            raise NoDaemon(f"{self.path}: {error}") from error
+        await self._hang_up()
+        reader, self._writer = await self._open()
         self._reading = asyncio.create_task(self._read(reader))
         try:
             self.hello = Hello.of(await self.ask("hello", client=self.name, api=API), "hello")
+            self._session.greeted(self.hello)
             self._session.subscribed(await self.ask("subscribe", **self._session.subscription()))
         except BaseException:
-            await self.close()
+            await self._hang_up()
             raise
         return self.hello
 
     async def close(self) -> None:
-        """Ends the connection; what runs goes on running, owned by nobody."""
+        """Ends the connection. A sequence that runs continues without an owner: leaving the block does not stop it any
+        more."""
+        self._session.starts.clear()
+        await self._hang_up()
+
+    async def _open(self) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+        try:
+            opened = asyncio.open_unix_connection(self.path, limit=LONGEST_LINE)
+            return await asyncio.wait_for(opened, self.answer_s)
+        except (OSError, asyncio.TimeoutError) as error:
+            raise NoDaemon(f"{self.path}: {error}") from error
+
+    async def _hang_up(self) -> None:
         if self._reading:
             self._reading.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -80,9 +85,7 @@ class AsyncGripper:
         return Listing.of(await self.ask("sequences"), "sequences").sequences
 
     async def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
-        grip = Grip.of(await self.ask("start", **start_keys(sequence, text, parameters)), "start")
-        self._session.grip = grip.request
-        return grip
+        return Grip.of(await self.ask("start", **start_keys(sequence, text, parameters)), "start")
 
     async def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:
         return Checked.of(await self.ask("start", dry_run=True, **start_keys(sequence, text, parameters)), "start")
@@ -127,6 +130,57 @@ class AsyncGripper:
         finally:
             self._session.forget(number)
 
+    async def _stop_own(self) -> None:
+        """As Gripper does it."""
+        failure: Optional[SoftgripError] = None
+        for start_id in tuple(self._session.starts):
+            try:
+                await self._stop_start(start_id)
+                self._session.starts.pop(start_id, None)
+            except SoftgripError as error:
+                failure = error
+        self._session.raise_unconfirmed(failure)
+
+    async def _stop_start(self, start_id: str) -> None:
+        try:
+            try:
+                await self.ask("stop", **{START_ID: start_id})
+            except (ConnectionLost, ProtocolError):
+                await self._stop_over_another(start_id)
+        except Refused as refused:
+            if refused.name != NOT_RUNNING:
+                raise
+
+    async def _stop_over_another(self, start_id: str) -> None:
+        """Over a connection of its own."""
+        session = Session()
+        number, line = session.request("stop", {START_ID: start_id})
+        reader, writer = await self._open()
+        try:
+            writer.write(line)
+            await asyncio.wait_for(self._take_until(reader, session, number), self.answer_s)
+        except asyncio.TimeoutError:
+            raise NotAnswered(f"{self.path}: it took too long") from None
+        except OSError as error:
+            raise ConnectionLost(f"{self.path}: {error}") from error
+        finally:
+            writer.close()
+        session.result_of(number)
+
+    async def _take_until(self, reader: asyncio.StreamReader, session: Session, number: int) -> None:
+        while number not in session.replies:
+            line = await self._line(reader)
+            if not line:
+                raise session.failure or ConnectionLost(f"{self.path}: the daemon hung up")
+            session.receive(line)
+
+    @staticmethod
+    async def _line(reader: asyncio.StreamReader) -> bytes:
+        try:
+            return await reader.readline()
+        except ValueError as error:
+            raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes") from error
+
     async def _until(self, look: Callable[[], Optional[T]], timeout_s: float) -> T:
         """What look() returns once it returns something."""
         end = asyncio.get_running_loop().time() + timeout_s
@@ -141,13 +195,6 @@ class AsyncGripper:
                 await asyncio.wait_for(self._changed.wait(), max(left, 0))
             except asyncio.TimeoutError:
                 raise NotAnswered(f"{self.path}: it took too long") from None
-
-    @staticmethod
-    async def _line(reader: asyncio.StreamReader) -> bytes:
-        try:
-            return await reader.readline()
-        except ValueError as error:
-            raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes") from error
 
     async def _read(self, reader: asyncio.StreamReader) -> None:
         try:

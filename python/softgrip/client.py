@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import socket
 import time
 from collections.abc import Iterator, Mapping
 from types import TracebackType
 from typing import Any, Optional
 
-from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError, SoftgripError
+from .errors import ConnectionLost, NotAnswered, ProtocolError, Refused, SoftgripError
 from .messages import Checked, Event, Grip, Hello, Listing, Result, Sequence, SequenceEnd, Status
-from .session import API, LONGEST_LINE, Session, default_path, start_keys
+from .session import API, NOT_RUNNING, START_ID, Session, default_path, start_keys
+from .wire import Wire
 
 
 class Gripper:
@@ -20,7 +20,8 @@ class Gripper:
     the daemon's events; who has one owns the sequences that it starts: others may then only stop and vent.
     `answer_s`: how long an answer may take. Not to be shared by threads.
 
-    As a context manager it stops on exit what it has started and what still runs.
+    As a context manager it stops on exit what it has started and what may still run, and nothing else. StopNotConfirmed
+    if the daemon does not confirm that within `answer_s`.
     """
 
     def __init__(self, path: Optional[str] = None, *, name: str, answer_s: float = 5.0) -> None:
@@ -28,8 +29,7 @@ class Gripper:
         self.name = name
         self.answer_s = answer_s
         self._session = Session()
-        self._socket: Optional[socket.socket] = None
-        self._input = b""
+        self._wire: Optional[Wire] = None
         self.hello = self._open()
 
     def __enter__(self) -> Gripper:
@@ -38,24 +38,23 @@ class Gripper:
     def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
                  traceback: Optional[TracebackType]) -> None:
         try:
-            if self._session.runs() and self.status().json["sequence"]["ended"] is None:
-                self.stop()
-        except SoftgripError:
-            # It ended by itself meanwhile, or the daemon has gone, whose own rules hold then.
-            pass
+            self._stop_own()
         finally:
             self.close()
 
     def close(self) -> None:
-        """Ends the connection; what runs goes on running, owned by nobody."""
-        if self._socket:
-            self._socket.close()
-        self._socket = None
+        """Ends the connection. A sequence that runs continues without an owner: leaving the block does not stop it any
+        more."""
+        self._session.starts.clear()
+        if self._wire:
+            self._wire.close()
+        self._wire = None
 
     def reconnect(self) -> Hello:
         """After a ConnectionLost. No event is missed that the daemon still keeps; a grip of a daemon that has gone counts
         as ended by a fault."""
-        self.close()
+        if self._wire:
+            self._wire.close()
         self.hello = self._open()
         return self.hello
 
@@ -68,9 +67,7 @@ class Gripper:
 
     def start(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Grip:
         """Starts a sequence by its name, or one whose `text` is given. `parameters`: `squeeze_kpa=4`."""
-        grip = Grip.of(self.ask("start", **start_keys(sequence, text, parameters)), "start")
-        self._session.grip = grip.request
-        return grip
+        return Grip.of(self.ask("start", **start_keys(sequence, text, parameters)), "start")
 
     def check(self, sequence: str, *, text: Optional[str] = None, **parameters: float) -> Checked:
         """Everything that a start would check, and no motion; raises what the start would raise."""
@@ -101,7 +98,7 @@ class Gripper:
             result = self._session.reached(frozenset(wanted))
             if result is not None:
                 return result
-            self._read(end)
+            self._connected().read(self._session, end)
 
     def wait(self, *, timeout_s: float) -> SequenceEnd:
         """Waits for the end of the sequence that was started last."""
@@ -110,7 +107,7 @@ class Gripper:
             how = self._session.ended()
             if how is not None:
                 return how
-            self._read(end)
+            self._connected().read(self._session, end)
 
     def events(self, *, timeout_s: float) -> Iterator[Event]:
         """Events as they come, none missed; ends when none has come for `timeout_s`."""
@@ -118,81 +115,60 @@ class Gripper:
             end = time.monotonic() + timeout_s
             try:
                 while not self._session.events:
-                    self._read(end)
+                    self._connected().read(self._session, end)
             except NotAnswered:
                 return
             yield self._session.events.popleft()
 
     def ask(self, command: str, **keys: Any) -> Mapping[str, Any]:
         """Any command of the socket API, and its result."""
-        number, line = self._session.request(command, keys)
-        end = time.monotonic() + self.answer_s
-        try:
-            self._send(line, end)
-            while number not in self._session.replies:
-                self._read(end)
-            return self._session.result_of(number)
-        finally:
-            self._session.forget(number)
+        return self._connected().ask(self._session, command, keys, time.monotonic() + self.answer_s)
 
     def _open(self) -> Hello:
-        connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        connection.settimeout(self.answer_s)
-        try:
-            connection.connect(self.path)
-        except OSError as error:
-            connection.close()
-            raise NoDaemon(f"{self.path}: {error.strerror or error}") from error
-        self._socket = connection
-        self._input = b""
+        end = time.monotonic() + self.answer_s
+        self._wire = Wire(self.path, end)
         try:
             hello = Hello.of(self.ask("hello", client=self.name, api=API), "hello")
+            self._session.greeted(hello)
             self._session.subscribed(self.ask("subscribe", **self._session.subscription()))
         except BaseException:
-            self.close()
+            self._wire.close()
             raise
         return hello
 
-    def _connection(self, end: float) -> socket.socket:
-        if self._socket is None:
+    def _connected(self) -> Wire:
+        if self._wire is None:
             raise ConnectionLost(f"{self.path}: not connected")
-        left = end - time.monotonic()
-        if left <= 0:
-            raise NotAnswered(f"{self.path}: it took too long")
-        self._socket.settimeout(left)
-        return self._socket
+        return self._wire
 
-    def _lost(self, error: Optional[OSError]) -> Exception:
-        self.close()
-        return self._session.failure or ConnectionLost(f"{self.path}: {error or 'the daemon hung up'}")
+    def _stop_own(self) -> None:
+        """Nothing is asked first: a daemon that is silent at present hears the stop later. The stop names the start, so it
+        ends nothing else, and a start that is still on its way does not begin."""
+        end = time.monotonic() + self.answer_s
+        failure: Optional[SoftgripError] = None
+        for start_id in tuple(self._session.starts):
+            try:
+                self._stop_start(start_id, end)
+                self._session.starts.pop(start_id, None)
+            except SoftgripError as error:
+                failure = error
+        self._session.raise_unconfirmed(failure)
 
-    def _send(self, line: bytes, end: float) -> None:
+    def _stop_start(self, start_id: str, end: float) -> None:
         try:
-            self._connection(end).sendall(line)
-        except TimeoutError as error:
-            raise NotAnswered(f"{self.path}: it took too long") from error
-        except OSError as error:
-            raise self._lost(error) from error
+            self._ask_stop(self._connected(), self._session, start_id, end)
+        except (ConnectionLost, ProtocolError):
+            # The connection has gone, or an exception has interrupted it in the middle of a line.
+            wire = Wire(self.path, end)
+            try:
+                self._ask_stop(wire, Session(), start_id, end)
+            finally:
+                wire.close()
 
-    def _read(self, end: float) -> None:
-        """Takes at least one line."""
+    @staticmethod
+    def _ask_stop(wire: Wire, session: Session, start_id: str, end: float) -> None:
         try:
-            while b"\n" not in self._input:
-                data = self._connection(end).recv(1 << 16)
-                if not data:
-                    raise self._lost(None)
-                self._input += data
-                if len(self._input) > LONGEST_LINE and b"\n" not in self._input:
-                    self.close()
-                    raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes")
-        except TimeoutError as error:
-            raise NotAnswered(f"{self.path}: it took too long") from error
-        except OSError as error:
-            raise self._lost(error) from error
-        *lines, self._input = self._input.split(b"\n")
-        try:
-            for line in lines:
-                self._session.receive(line)
-        except ProtocolError:
-            self.close()
-            raise
+            wire.ask(session, "stop", {START_ID: start_id}, end)
+        except Refused as refused:
+            if refused.name != NOT_RUNNING:
+                raise

@@ -65,5 +65,10 @@ class GripFailed(SoftgripError):
         self.end = end
 
 
+class StopNotConfirmed(SoftgripError):
+    """Leaving the block sent the stop of what the block had started, and no confirmation came: it may still run. The cause
+    is in `__cause__`, the exception that left the block in `__context__` of that."""
+
+
 class MalformedFile(SoftgripError, ValueError):
     """A recording, a log or a report that is not as softgrip writes it."""

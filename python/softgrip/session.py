@@ -10,8 +10,8 @@ from typing import Any, Optional
 
 from .decoding import checked, parsed
 from .errors import (ConnectionLost, GripFailed, NotAnswered, Owned, ProtocolError, Refused, SequenceRefused,
-                     SoftgripError)
-from .messages import Event, Failure, Reply, Result, SequenceEnd, Subscribed
+                     SoftgripError, StopNotConfirmed)
+from .messages import Event, Failure, Grip, Hello, Reply, Result, SequenceEnd, Subscribed
 
 API = 1
 LONGEST_LINE = 16 << 20
@@ -20,6 +20,10 @@ MOST_GRIPS = 64
 # In the place of a request's number.
 OF_ANOTHER_DAEMON = -1
 FAILURES = frozenset({Result.NO_PART, Result.PART_LOST, Result.ERROR})
+# Of the capabilities in a hello: starts have ids, and a stop may name one.
+START_ID = "start_id"
+# Of a stop that names a start: it does not run, and will not begin.
+NOT_RUNNING = "named_start_not_running"
 
 
 def default_path() -> str:
@@ -72,16 +76,47 @@ class Session:
         self.last_event: Optional[int] = None
         self.grip = 0  # the request of the last start
         self.failure: Optional[Exception] = None  # what the daemon said before it hung up
+        # By their ids: starts of this client that may run. What they are in the daemon's events, once that is known.
+        self.starts: dict[str, Optional[int]] = {}
+        self._names_starts = True
         self._last_id = 0
         self._waiting: set[int] = set()
+        self._start_of: dict[int, str] = {}  # by the id of a request without a reply
+        self._last_start = 0
         self._stories: collections.OrderedDict[int, _Story] = collections.OrderedDict()
 
+    def raise_unconfirmed(self, failure: Optional[SoftgripError]) -> None:
+        """Of the starts that may still run after an attempt to stop each."""
+        if self.starts and failure:
+            which = ", ".join("a start without a reply" if request is None else f"request {request}"
+                              for request in self.starts.values())
+            raise StopNotConfirmed(f"the stop was not confirmed of what this program started ({which}): {failure}. It may "
+                                   "still run. `softgrip status` shows it, `softgrip stop` stops it") from failure
+
+    def greeted(self, hello: Hello) -> None:
+        self._names_starts = START_ID in hello.capabilities
+
     def request(self, command: str, keys: Mapping[str, Any]) -> tuple[int, bytes]:
-        """A line, and the id that its reply will have."""
-        self._last_id += 1
-        self._waiting.add(self._last_id)
-        line = json.dumps({"id": self._last_id, "command": command, **keys}, allow_nan=False)
-        return self._last_id, line.encode() + b"\n"
+        """A line, and the id that its reply will have. A start is remembered before it is sent, under an id of its own: an
+        exception may come at any moment from then on."""
+        number = self._last_id + 1
+        starts = command == "start" and not keys.get("dry_run")
+        if starts:
+            keys = {START_ID: self._new_start_id(), **keys}
+        line = json.dumps({"id": number, "command": command, **keys}, allow_nan=False)
+        self._last_id = number
+        self._waiting.add(number)
+        if starts:
+            self._last_start = number
+            self._start_of[number] = keys[START_ID]
+            self.starts[keys[START_ID]] = None
+        return number, line.encode() + b"\n"
+
+    def _new_start_id(self) -> str:
+        if not self._names_starts:
+            raise ProtocolError("this softgripd is older than the package: it cannot stop the sequence of one client alone, "
+                                "so nothing is started")
+        return os.urandom(16).hex()
 
     def forget(self, number: int) -> None:
         """Nobody waits for that reply any more."""
@@ -98,6 +133,8 @@ class Session:
         """Another daemon than before counts its requests anew, and what ran has ended with the one before."""
         reply = Subscribed.of(result, "subscribe")
         if self.started_at not in ("", reply.started_at):
+            self.starts.clear()
+            self._start_of.clear()
             story = self._story(self.grip)
             story.end = story.end or SequenceEnd.FAULTED
             self._stories.clear()
@@ -118,8 +155,27 @@ class Session:
     def _take_reply(self, reply: Reply) -> None:
         if reply.id is None:
             self.failure = None if reply.ok else error_of(reply.error)
-        elif reply.id in self._waiting:
+            return
+        if reply.id in self._start_of:
+            self._take_start(reply.id, reply)
+        if reply.id in self._waiting:
             self.replies[reply.id] = reply
+
+    def _take_start(self, number: int, reply: Reply) -> None:
+        """Also if the program does not wait for the reply any more. Only a refusal says that the start will not begin."""
+        start_id = self._start_of.pop(number)
+        if reply.ok:
+            request = Grip.of(reply.result, "start").request
+            if number == self._last_start:
+                self.grip = request
+            self.starts[start_id] = request
+            self._drop_ended()
+        elif isinstance(error_of(reply.error), (Refused, SequenceRefused)):
+            self.starts.pop(start_id, None)
+
+    def _drop_ended(self) -> None:
+        self.starts = {start_id: request for start_id, request in self.starts.items()
+                       if request is None or self._story(request).end is None}
 
     def result_of(self, number: int) -> Mapping[str, Any]:
         """The result of a reply that has come, once; or the exception that it stands for."""
@@ -141,6 +197,7 @@ class Session:
             story.results.append(story.last)
         elif event.kind == "sequence_finished" and event.code:
             self._story(event.request).end = checked(SequenceEnd, event.code, "event.code")
+            self._drop_ended()
 
     def _story(self, request: int) -> _Story:
         story = self._stories.setdefault(request, _Story())
@@ -164,7 +221,3 @@ class Session:
     def ended(self) -> Optional[SequenceEnd]:
         """How the last start has ended; None if it has not."""
         return self._story(self.grip).end
-
-    def runs(self) -> bool:
-        """A sequence of this client runs, as far as it was told."""
-        return self.grip != 0 and self.ended() is None

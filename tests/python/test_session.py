@@ -16,11 +16,16 @@ def line(**said):
 class Events:
     """A session that is told of one grip."""
 
-    def __init__(self):
+    def __init__(self, request=3):
         self.session = Session()
         self.session.subscribed({"since": 0, "started_at": "first"})
-        self.session.grip = 3
         self.id = 0
+        self.number, _ = self.session.request("start", {"sequence": "pick"})
+        if request:
+            self.reply(ok=True, result={"request": request})
+
+    def reply(self, **said):
+        self.session.receive(line(id=self.number, **said))
 
     def tell(self, kind, code, request=3):
         self.id += 1
@@ -42,7 +47,7 @@ class Story(unittest.TestCase):
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
         self.assertEqual(told.reached(softgrip.Result.RELEASED), softgrip.Result.RELEASED)
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.DONE)
-        self.assertFalse(told.session.runs())
+        self.assertFalse(told.session.starts)
 
     def test_another_end_than_was_waited_for_is_an_error(self):
         told = Events()
@@ -65,23 +70,29 @@ class Story(unittest.TestCase):
         told.tell("overall_result", "HOLDING", request=2)
         told.tell("sequence_finished", "done", request=2)
         self.assertIsNone(told.reached(softgrip.Result.HOLDING))
-        self.assertTrue(told.session.runs())
+        self.assertEqual(list(told.session.starts.values()), [3])
 
     def test_events_before_the_answer_to_the_start_count(self):
-        told = Events()
-        told.session.grip = 0
+        told = Events(request=None)
         told.tell("overall_result", "HOLDING", request=7)
-        told.session.grip = 7
+        told.reply(ok=True, result={"request": 7})
         self.assertEqual(told.reached(softgrip.Result.HOLDING), softgrip.Result.HOLDING)
+        told = Events(request=None)
+        told.tell("sequence_finished", "failed", request=7)
+        self.assertEqual(list(told.session.starts.values()), [None], "the start's number is not known yet")
+        told.reply(ok=True, result={"request": 7})
+        self.assertFalse(told.session.starts)
+        self.assertEqual(told.session.ended(), softgrip.SequenceEnd.FAILED)
 
     def test_a_subscription_goes_on_where_it_was(self):
         told = Events()
         told.tell("overall_result", "HOLDING")
         self.assertEqual(told.session.subscription(), {"since": 1, "started_at": "first"})
         told.session.subscribed({"since": 1, "started_at": "first"})
-        self.assertTrue(told.session.runs())
+        self.assertTrue(told.session.starts)
         told.session.subscribed({"since": 0, "started_at": "second"})
         self.assertEqual(told.session.ended(), softgrip.SequenceEnd.FAULTED)
+        self.assertFalse(told.session.starts, "what ran has ended with the daemon before")
 
     def test_another_daemon_counts_its_requests_anew(self):
         told = Events()
@@ -97,6 +108,56 @@ class Story(unittest.TestCase):
         told = Events()
         told.tell("grip_result", "HOLDING")
         self.assertIsNone(told.reached(softgrip.Result.HOLDING))
+
+
+class Starts(unittest.TestCase):
+    def test_a_start_is_remembered_from_before_it_is_sent_until_it_cannot_run(self):
+        session = Session()
+        number, sent = session.request("start", {"sequence": "pick"})
+        (start_id,) = session.starts
+        self.assertEqual(json.loads(sent)["start_id"], start_id)
+        session.forget(number)  # an exception came while it was waited for
+        session.receive(line(id=number, ok=True, result={"request": 5}))
+        self.assertEqual(session.starts, {start_id: 5})
+        self.assertEqual(session.grip, 5)
+        self.assertFalse(session.replies)
+
+    def test_a_refused_start_does_not_run_and_one_without_an_answer_may(self):
+        for error, runs in (({"code": "busy", "message": "m"}, False), ({"code": "no_answer", "message": "m"}, True),
+                            ({"code": "refused", "message": "without its reason"}, True),
+                            ({"code": "too_many_clients", "message": "m"}, True),
+                            ({"code": "owned", "message": "m", "owner": "robot"}, False)):
+            session = Session()
+            number, _ = session.request("start", {"sequence": "pick"})
+            session.receive(line(id=number, ok=False, error=error))
+            self.assertEqual(bool(session.starts), runs, error)
+
+    def test_a_start_that_is_refused_leaves_the_one_that_runs(self):
+        told = Events()
+        (own,) = told.session.starts
+        number, _ = told.session.request("start", {"sequence": "pick"})
+        told.session.receive(line(id=number, ok=False, error={
+            "code": "refused", "message": "m", "refusal": {"code": "R02", "name": "not_idle"}}))
+        self.assertEqual(told.session.starts, {own: 3})
+        self.assertEqual(told.session.grip, 3)
+
+    def test_no_two_starts_have_the_same_id_and_a_dry_run_has_none(self):
+        session = Session()
+        for _ in range(100):
+            session.request("start", {"sequence": "pick"})
+        self.assertEqual(len(session.starts), 100)
+        _, sent = session.request("start", {"sequence": "pick", "dry_run": True})
+        self.assertNotIn("start_id", json.loads(sent))
+        self.assertEqual(len(session.starts), 100)
+
+    def test_an_older_daemon_starts_nothing(self):
+        session = Session()
+        session.greeted(softgrip.Hello(1, "1.0", "first", "operate", ("start",), ("owner", "dry_run")))
+        with self.assertRaisesRegex(softgrip.ProtocolError, "older"):
+            session.request("start", {"sequence": "pick"})
+        self.assertFalse(session.starts)
+        session.request("status", {})
+        session.request("start", {"sequence": "pick", "dry_run": True})
 
 
 class Replies(unittest.TestCase):

@@ -1,0 +1,116 @@
+"""Lines over the daemon's socket, for the client that blocks."""
+
+from __future__ import annotations
+
+import socket
+import time
+from collections.abc import Mapping
+from typing import Any, Optional
+
+from .errors import ConnectionLost, NoDaemon, NotAnswered, ProtocolError
+from .session import LONGEST_LINE, Session
+
+# Between two attempts to connect while more clients wait than the daemon takes at a time.
+CONNECT_PAUSE_S = 0.01
+
+
+class Wire:
+    """A connection. An exception of Python's own, as Ctrl-C raises it, may leave a line half sent: `torn`."""
+
+    def __init__(self, path: str, end: float) -> None:
+        self.path = path
+        self.torn = False
+        self._input = b""
+        self._socket: Optional[socket.socket] = _connected(path, end)
+
+    def close(self) -> None:
+        if self._socket:
+            self._socket.close()
+        self._socket = None
+
+    def ask(self, session: Session, command: str, keys: Mapping[str, Any], end: float) -> Mapping[str, Any]:
+        """The result of a request."""
+        number, line = session.request(command, keys)
+        try:
+            self._send(session, line, end)
+            while number not in session.replies:
+                self.read(session, end)
+            return session.result_of(number)
+        finally:
+            session.forget(number)
+
+    def read(self, session: Session, end: float) -> None:
+        """Takes at least one line."""
+        while b"\n" not in self._input:
+            self._receive(session, end)
+        *lines, self._input = self._input.split(b"\n")
+        try:
+            for line in lines:
+                session.receive(line)
+        except ProtocolError:
+            self.close()
+            raise
+
+    def _receive(self, session: Session, end: float) -> None:
+        try:
+            data = self._ready(end).recv(1 << 16)
+        except socket.timeout as error:
+            raise self._late() from error
+        except OSError as error:
+            raise self._lost(session, error) from error
+        if not data:
+            raise self._lost(session, None)
+        self._input += data
+        if len(self._input) > LONGEST_LINE and b"\n" not in self._input:
+            self.close()
+            raise ProtocolError(f"a line is longer than {LONGEST_LINE} bytes")
+
+    def _send(self, session: Session, line: bytes, end: float) -> None:
+        if self.torn:
+            self.close()
+        connection = self._ready(end)
+        self.torn = True
+        try:
+            connection.sendall(line)
+        except socket.timeout as error:
+            raise self._late() from error
+        except OSError as error:
+            raise self._lost(session, error) from error
+        self.torn = False
+
+    def _ready(self, end: float) -> socket.socket:
+        if self._socket is None:
+            raise ConnectionLost(f"{self.path}: not connected")
+        left = end - time.monotonic()
+        if left <= 0:
+            raise self._late()
+        self._socket.settimeout(left)
+        return self._socket
+
+    def _late(self) -> NotAnswered:
+        return NotAnswered(f"{self.path}: it took too long")
+
+    def _lost(self, session: Session, error: Optional[OSError]) -> Exception:
+        """What the daemon said last tells more than that it hung up."""
+        self.close()
+        return session.failure or ConnectionLost(f"{self.path}: {error or 'the daemon hung up'}")
+
+
+def _connected(path: str, end: float) -> socket.socket:
+    connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        while True:
+            connection.settimeout(max(end - time.monotonic(), CONNECT_PAUSE_S))
+            try:
+                connection.connect(path)
+                return connection
+            except BlockingIOError:
+                if time.monotonic() > end:
+                    raise
+                time.sleep(CONNECT_PAUSE_S)
+    except OSError as error:
+        connection.close()
+        raise NoDaemon(f"{path}: {error.strerror or error}") from error
+    except BaseException:
+        connection.close()
+        raise

@@ -1,0 +1,356 @@
+"""Leaving the block of a Python client, whatever happened in it: its own sequence does not run any more or an exception
+says that it may, and no sequence of another client is touched."""
+
+import asyncio
+import contextlib
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+import traceback
+
+import bench
+import quiet_rig
+from quiet_rig import LONG, SHORT
+from socket_proxy import TO_CLIENT, TO_DAEMON, SocketProxy
+
+sys.path.insert(0, str(bench.SOURCE / "python"))
+
+import softgrip  # noqa: E402
+
+# Printed by a test that fails; SOFTGRIP_SEEDS=FIRST:COUNT runs others.
+FIRST_SEED, SEEDS = map(int, os.environ.get("SOFTGRIP_SEEDS", "1:25").split(":"))
+# A client's patience, and a silence that is longer.
+ANSWER_S = 0.4
+SILENCE_S = 0.7
+
+ROBOT = """
+import sys
+import softgrip
+path, text, answer_s = sys.argv[1], sys.argv[2], float(sys.argv[3])
+with softgrip.Gripper(path, name="robot", answer_s=answer_s) as gripper:
+    print("ready", flush=True)
+    gripper.start("long", text=text)
+    print("started", flush=True)
+    gripper.wait(timeout_s=60)
+"""
+ASYNCIO_ROBOT = """
+import asyncio, sys
+import softgrip
+async def work(path, text, answer_s):
+    async with softgrip.AsyncGripper(path, name="robot", answer_s=float(answer_s)) as gripper:
+        print("ready", flush=True)
+        await gripper.start("long", text=text)
+        print("started", flush=True)
+        await gripper.wait(timeout_s=60)
+asyncio.run(work(*sys.argv[1:]))
+"""
+
+
+class Leaving(quiet_rig.QuietRigTest):
+    def proxy(self):
+        proxy = SocketProxy(self.folder / "proxy.sock", self.path)
+        self.addCleanup(proxy.close)
+        return proxy
+
+    def gripper(self, path=None, name="robot", answer_s=bench.PATIENCE_S):
+        return softgrip.Gripper(path or self.path, name=name, answer_s=answer_s)
+
+    def starts(self, client="robot"):
+        return [event["request"] for event in self.softgripd.events()
+                if event["kind"] == "sequence_started" and event.get("client") == client]
+
+    def test_the_sequence_of_another_client_goes_on(self):
+        with self.gripper() as robot:
+            first = robot.start("short", text=SHORT).request
+            self.wait_until_ended(first)
+            self.softgripd.wait_for_state("idle")
+            other = self.gripper(name="other")
+            self.addCleanup(other.close)
+            theirs = other.start("long", text=LONG).request
+            # What the robot has not read yet: that its sequence ended, and that another one runs.
+        self.assertEqual(self.running(), theirs)
+        other.status()
+        other.stop()
+        self.assertEqual(self.wait_until_ended(theirs), "stopped")
+
+    def test_the_sequence_of_another_client_goes_on_beside_asyncio(self):
+        async def work():
+            async with softgrip.AsyncGripper(self.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
+                await robot.start("short", text=SHORT)
+                # The loop of asyncio does not run meanwhile, so nothing is read.
+                self.wait_until_ended(self.starts()[-1])
+                self.softgripd.wait_for_state("idle")
+                return other.start("long", text=LONG).request
+
+        other = self.gripper(name="other")
+        self.addCleanup(other.close)
+        theirs = asyncio.run(work())
+        self.assertEqual(self.running(), theirs)
+
+    def test_a_daemon_that_was_silent_stops_when_it_goes_on(self):
+        """Paused, and behind a line that is stalled: the stop waits in the socket, and an exception says so."""
+        proxy = self.proxy()
+        for path, pause, resume in (
+                (self.path, lambda: self.softgripd.send(signal.SIGSTOP), lambda: self.softgripd.send(signal.SIGCONT)),
+                (proxy.path, proxy.hold, proxy.let_go)):
+            with self.subTest(path):
+                self.softgripd.wait_for_state("idle")
+                with self.assertRaises(softgrip.StopNotConfirmed) as raised, self.gripper(path, answer_s=ANSWER_S) as robot:
+                    request = robot.start("long", text=LONG).request
+                    pause()
+                    try:
+                        robot.status()
+                        self.fail("the daemon answers though it is silent")
+                    except softgrip.NotAnswered:
+                        pass
+                self.assertIn(f"request {request}", str(raised.exception))
+                self.assertIsInstance(raised.exception.__cause__, softgrip.NotAnswered)
+                resume()
+                self.assertEqual(self.wait_until_ended(request), "stopped")
+
+    def test_a_start_without_a_reply_is_stopped(self):
+        proxy = self.proxy()
+        for held in ((TO_CLIENT,), (TO_DAEMON,), (TO_DAEMON, TO_CLIENT)):
+            with self.subTest(held):
+                self.softgripd.wait_for_state("idle")
+                before = self.starts()
+                with self.assertRaises(softgrip.StopNotConfirmed) as raised, \
+                        self.gripper(proxy.path, answer_s=ANSWER_S) as robot:
+                    proxy.hold(*held)
+                    robot.start("long", text=LONG)
+                self.assertIn("without a reply", str(raised.exception))
+                self.assertIn("NotAnswered", "".join(traceback.format_exception(raised.exception)))
+                proxy.let_go()
+                for request in self.starts()[len(before):]:
+                    self.assertEqual(self.wait_until_ended(request), "stopped")
+                time.sleep(0.2)
+                self.assertIsNone(self.running(), "it began later")
+
+    def test_a_connection_that_was_cut(self):
+        proxy = self.proxy()
+        with self.gripper(proxy.path) as robot:
+            request = robot.start("long", text=LONG).request
+            proxy.cut()
+        self.assertEqual(self.wait_until_ended(request), "stopped")
+
+    def test_a_connection_that_was_cut_beside_asyncio(self):
+        async def work():
+            async with softgrip.AsyncGripper(proxy.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
+                grip = await robot.start("long", text=LONG)
+                proxy.cut()
+                return grip.request
+
+        proxy = self.proxy()
+        self.assertEqual(self.wait_until_ended(asyncio.run(work())), "stopped")
+
+    def test_a_daemon_that_cannot_be_reached_any_more_is_an_error(self):
+        proxy = self.proxy()
+        with self.assertRaises(softgrip.StopNotConfirmed) as raised, self.gripper(proxy.path) as robot:
+            request = robot.start("long", text=LONG).request
+            proxy.refuses = True
+            proxy.cut()
+        self.assertIn("softgrip stop", str(raised.exception))
+        self.assertEqual(self.running(), request, "nothing could be done, and this is why there is an exception")
+
+    def test_a_block_that_was_given_up_lets_its_sequence_go_on(self):
+        with self.gripper() as robot:
+            request = robot.start("long", text=LONG).request
+            robot.close()
+        self.assertEqual(self.running(), request)
+
+    def interrupted(self, path, chance):
+        """A robot's program that gets a SIGINT in start() or a moment later."""
+        program = chance.choice((ROBOT, ROBOT, ASYNCIO_ROBOT))
+        robot = subprocess.Popen([sys.executable, "-c", program, path, LONG, str(bench.PATIENCE_S)], text=True,
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 env={**os.environ, "PYTHONPATH": str(bench.SOURCE / "python")})
+        self.addCleanup(robot.kill)
+        self.assertEqual(robot.stdout.readline(), "ready\n")
+        time.sleep(chance.choice((0.002, 0.01, 0.05)) * chance.random())
+        robot.send_signal(signal.SIGINT)
+        _, errors = robot.communicate(timeout=bench.PATIENCE_S)
+        self.assertEqual(robot.returncode, -signal.SIGINT, errors)
+        self.assertIn("KeyboardInterrupt", errors)
+
+    def test_ctrl_c_at_any_moment_of_a_start(self):
+        proxy = self.proxy()
+        for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
+            with self.subTest(seed=seed):
+                chance = random.Random(seed)
+                self.softgripd.wait_for_state("idle")
+                self.interrupted(chance.choice((self.path, proxy.path)), chance)
+                self.assertIsNone(self.running(), "leaving the block was confirmed")
+        time.sleep(0.2)
+        self.assertIsNone(self.running(), "a start came behind its stop")
+        self.assertEqual({self.ended(request) for request in self.starts()} - {"stopped"}, set())
+
+    def test_tasks_that_are_cancelled_in_a_start(self):
+        async def work(chance):
+            async with softgrip.AsyncGripper(self.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
+                starting = asyncio.create_task(robot.start("long", text=LONG))
+                await asyncio.sleep(0.02 * chance.random())
+                starting.cancel()
+                with contextlib.suppress(asyncio.CancelledError):
+                    await starting
+
+        for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
+            with self.subTest(seed=seed):
+                self.softgripd.wait_for_state("idle")
+                asyncio.run(work(random.Random(seed)))
+                self.assertIsNone(self.running())
+        time.sleep(0.2)
+        self.assertIsNone(self.running())
+        self.assertEqual({self.ended(request) for request in self.starts()} - {"stopped"}, set())
+
+    def test_a_crowd_does_not_displace_an_owner_or_a_subscriber(self):
+        with self.gripper() as robot:
+            request = robot.start("long", text=LONG).request
+            subscriber = self.gripper(name="subscriber")
+            self.addCleanup(subscriber.close)
+            # All other places are of clients that are never silent.
+            crowd = [bench.Lines(self.path) for _ in range(13)]
+            for client in crowd:
+                self.addCleanup(client.close)
+            began = time.monotonic()
+            refused = 0
+            while time.monotonic() - began < 6:  # longer than a place is kept for a client that is silent
+                self.softgripd.status()
+                for client in crowd:
+                    client.ask('{"command":"sequences"}')
+                late = bench.Lines(self.path)
+                refused += "at most 16 clients" in late.ask('{"command":"status"}')
+                late.close()
+                time.sleep(0.1)
+            self.assertGreater(refused, 0)
+            self.assertEqual(self.softgripd.status()["owner"], "robot")
+            self.assertEqual(subscriber.status().owner, "robot")
+            self.assertEqual(robot.status().sequence.request, request)
+        self.assertEqual(self.wait_until_ended(request), "stopped")
+
+    def test_a_newcomer_without_a_place_is_refused_with_a_sentence(self):
+        proxy = self.proxy()
+        # And the test's own connection.
+        subscribers = [self.gripper(path, name="subscriber") for path in [proxy.path] + 14 * [self.path]]
+        for subscriber in subscribers:
+            self.addCleanup(subscriber.close)
+        time.sleep(5.5)
+        self.softgripd.status()
+        with self.assertRaisesRegex(softgrip.ConnectionLost, "at most 16 clients"):
+            self.gripper(name="late")
+        # A stop is heard all the same, and so is that of a program whose connection was lost meanwhile.
+        with subscribers[0] as robot:
+            request = robot.start("long", text=LONG).request
+            proxy.cut()
+            late = self.gripper(name="takes the place")
+            self.addCleanup(late.close)
+        self.assertEqual(self.wait_until_ended(request), "stopped")
+        for subscriber in subscribers[1:]:
+            self.assertEqual(subscriber.status().state, softgrip.State.IDLE)
+
+    def test_malformed_lines(self):
+        """Whatever the daemon says: an exception of the package, and the sequence is stopped."""
+        proxy = self.proxy()
+        for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
+            with self.subTest(seed=seed):
+                chance = random.Random(seed)
+                self.softgripd.wait_for_state("idle")
+                before = len(self.starts())
+                said = chance.choice((b"\n", b"{\n", b"[]\n", b'{"ok":1}\n', b'{"event":{}}\n', b'{"id":[],"ok":true}\n',
+                                      b'{"id":2,"ok":true,"result":7}\n', b"\xff\xfe\n", b"[" * 100_000 + b"\n",
+                                      bytes(chance.randrange(256) for _ in range(50)) + b"\n",
+                                      b'{"id":3,"ok":false,"error":{"code":"refused","message":"m"}}\n'))
+                with contextlib.suppress(softgrip.SoftgripError), self.gripper(proxy.path, answer_s=ANSWER_S) as robot:
+                    when = chance.randrange(3)
+                    if when == 0:
+                        proxy.inject(said)
+                    robot.start("long", text=LONG)
+                    if when == 1:
+                        proxy.inject(said)
+                    robot.status()
+                    if when == 2:
+                        proxy.inject(said)
+                    robot.wait(timeout_s=0.3)
+                for request in self.starts()[before:]:
+                    self.assertEqual(self.wait_until_ended(request), "stopped")
+                self.assertIsNone(self.running())
+
+    def test_an_endless_line_is_a_protocol_error(self):
+        proxy = self.proxy()
+        for use in (self.read_sync, self.read_async):
+            with self.subTest(use.__name__), self.assertRaisesRegex(softgrip.ProtocolError, "longer than"):
+                use(proxy)
+
+    def read_sync(self, proxy):
+        with self.gripper(proxy.path) as robot:
+            proxy.inject(b"x" * (17 << 20))
+            robot.status()
+
+    def read_async(self, proxy):
+        async def work():
+            async with softgrip.AsyncGripper(proxy.path, name="robot", answer_s=bench.PATIENCE_S) as robot:
+                proxy.inject(b"x" * (17 << 20))
+                await robot.status()
+                await robot.wait(timeout_s=bench.PATIENCE_S)
+
+        asyncio.run(work())
+
+    def test_two_clients_and_two_faults_at_once(self):
+        """Seeded: stalls, cuts, damaged lines and exceptions around two clients that use the rig in turn."""
+        proxy = self.proxy()
+        for seed in range(FIRST_SEED, FIRST_SEED + SEEDS):
+            with self.subTest(seed=seed):
+                self.softgripd.wait_for_state("idle")
+                self.one_world(random.Random(seed), proxy)
+                proxy.refuses = False
+                proxy.cut()
+                proxy.let_go()
+
+    def one_world(self, chance, proxy):
+        before = len(self.starts())
+        other = self.gripper(name="other")
+        theirs = None
+        raised = None
+
+        def fault():
+            chance.choice((proxy.cut, proxy.hold, lambda: proxy.hold(TO_CLIENT), lambda: proxy.hold(TO_DAEMON),
+                           lambda: proxy.inject(b"\xff\n"), lambda: None, lambda: setattr(proxy, "refuses", True)))()
+
+        class Interrupt(BaseException):
+            pass
+
+        def sequence_of_another():
+            nonlocal theirs
+            if chance.random() < 0.5:
+                with contextlib.suppress(softgrip.SoftgripError):
+                    theirs = other.start("long", text=LONG).request
+
+        try:
+            with self.gripper(proxy.path, answer_s=ANSWER_S) as robot:
+                robot.start("robot", text=chance.choice((SHORT, LONG)))
+                fault()
+                time.sleep(chance.choice((0, 0.3)))
+                sequence_of_another()
+                fault()
+                if chance.random() < 0.5:
+                    raise Interrupt
+                robot.start("robot", text=LONG)
+        except (softgrip.SoftgripError, Interrupt) as error:
+            raised = error
+        own = self.starts()[before:]
+        proxy.let_go()
+        if isinstance(raised, softgrip.StopNotConfirmed):
+            time.sleep(0.1)  # what waited in the socket is heard, if it was not cut
+        else:
+            self.assertNotIn(self.running(), own, raised)
+        if theirs is not None:
+            self.assertIsNone(self.ended(theirs), "the robot has stopped the sequence of another client")
+        with contextlib.suppress(softgrip.Refused):
+            other.stop()
+        other.close()
+
+
+if __name__ == "__main__":
+    bench.main()
