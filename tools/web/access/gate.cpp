@@ -38,9 +38,9 @@ Role Gate::role_of(const Credentials& credentials, Nanoseconds now) {
 }
 
 tl::expected<std::string, Refusal> Gate::open(std::string_view token, Nanoseconds now) {
-  const Role role = tokens_.role_of(token);
-  if (role == Role::none) return tl::unexpected{Refusal{401, "nobody has given out that token"}};
-  return sessions_.open(role, now);
+  const Grant grant = tokens_.grant_of(token);
+  if (grant.role == Role::none) return tl::unexpected{Refusal{401, "nobody has given out that token"}};
+  return sessions_.open(grant, now);
 }
 
 void Gate::close(std::string_view cookie_header) {

@@ -27,16 +27,24 @@ std::string random_id() {
 
 }  // namespace
 
-std::string Sessions::open(Role role, Nanoseconds now) {
+std::string Sessions::open(Grant grant, Nanoseconds now) {
   std::erase_if(sessions_, [&](const auto& entry) { return ended(entry.second, now); });
-  if (sessions_.size() >= most) {
-    sessions_.erase(std::min_element(
-        sessions_.begin(), sessions_.end(),
-        [](const auto& one, const auto& other) { return one.second.seen < other.second.seen; }));
-  }
+  const auto of_token = std::count_if(sessions_.begin(), sessions_.end(), [&](const auto& entry) {
+    return entry.second.grant.token == grant.token;
+  });
+  if (static_cast<std::size_t>(of_token) >= most_per_token) end_idlest_of(grant.token);
   std::string id = random_id();
-  sessions_[id] = {role, now, now};
+  sessions_[id] = {grant, now, now};
   return id;
+}
+
+void Sessions::end_idlest_of(std::size_t token) {
+  auto idlest = sessions_.end();
+  for (auto entry = sessions_.begin(); entry != sessions_.end(); ++entry) {
+    if (entry->second.grant.token != token) continue;
+    if (idlest == sessions_.end() || entry->second.seen < idlest->second.seen) idlest = entry;
+  }
+  if (idlest != sessions_.end()) sessions_.erase(idlest);
 }
 
 Role Sessions::role_of(std::string_view id, Nanoseconds now) {
@@ -47,7 +55,7 @@ Role Sessions::role_of(std::string_view id, Nanoseconds now) {
     return Role::none;
   }
   found->second.seen = now;
-  return found->second.role;
+  return found->second.grant.role;
 }
 
 void Sessions::close(std::string_view id) {

@@ -8,19 +8,23 @@
 
 #include "base/time.h"
 #include "rig/web_file/settings.h"
+#include "tools/web/access/tokens.h"
 
 namespace softgrip::web {
 
-/// A session ends when it was idle for long, when it is old, when its browser says so, and when too many
-/// others come after it. Nothing of it outlives the process.
+/// A session ends when it was idle for long, when it is old, and when its browser says so. It also ends when
+/// its own token opens more than `most_per_token` later ones. The bearer of another token cannot end it.
+/// Nothing of it outlives the process.
 class Sessions {
  public:
-  static constexpr std::size_t most = 64;
+  /// A token is shared by the browsers of one team. The file's size bounds the number of tokens.
+  static constexpr std::size_t most_per_token = 32;
 
   Sessions(Nanoseconds longest_idle, Nanoseconds longest) : longest_idle_(longest_idle), longest_(longest) {}
 
-  /// Its id: 256 random bits as text. The one that was idle for the longest time goes if there are too many.
-  [[nodiscard]] std::string open(Role role, Nanoseconds now);
+  /// Returns the id of a new session: 256 random bits as text. If the token has too many sessions, the one
+  /// that was idle for the longest time ends.
+  [[nodiscard]] std::string open(Grant grant, Nanoseconds now);
   /// What it may do, none if there is no such session (any more). Counts as a sign of life.
   [[nodiscard]] Role role_of(std::string_view id, Nanoseconds now);
   void close(std::string_view id);
@@ -28,13 +32,15 @@ class Sessions {
 
  private:
   struct Session {
-    Role role = Role::none;
+    Grant grant;
     Nanoseconds opened = 0;
     Nanoseconds seen = 0;
   };
   [[nodiscard]] bool ended(const Session& session, Nanoseconds now) const noexcept {
     return now - session.seen > longest_idle_ || now - session.opened > longest_;
   }
+
+  void end_idlest_of(std::size_t token);
 
   Nanoseconds longest_idle_;
   Nanoseconds longest_;

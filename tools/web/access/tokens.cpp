@@ -85,12 +85,13 @@ tl::expected<Tokens, std::string> Tokens::load(const std::string& path) {
   return tokens;
 }
 
-Role Tokens::role_of(std::string_view token) const noexcept {
-  Role role = Role::none;
-  for (const Token& known : tokens_) {
-    if (equal_in_constant_time(known.text, token)) role = known.role;
+Grant Tokens::grant_of(std::string_view token) const noexcept {
+  Grant grant;
+  // The search does not stop at a match: its duration must not depend on the token.
+  for (std::size_t number = 0; number < tokens_.size(); ++number) {
+    if (equal_in_constant_time(tokens_[number].text, token)) grant = {tokens_[number].role, number};
   }
-  return role;
+  return grant;
 }
 
 }  // namespace softgrip::web

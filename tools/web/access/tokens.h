@@ -1,6 +1,7 @@
 #pragma once
 // Secrets by which a browser or a collector shows what it may do.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,12 @@ namespace softgrip::web {
 /// Whether two texts are equal, in a time that tells nothing of where they differ.
 [[nodiscard]] bool equal_in_constant_time(std::string_view one, std::string_view other) noexcept;
 
+/// What a token allows, and which of the file's tokens it is.
+struct Grant {
+  Role role = Role::none;  ///< none: the file does not list the token
+  std::size_t token = 0;   ///< its number in the file, from 0
+};
+
 class Tokens {
  public:
   static constexpr std::size_t shortest = 20;
@@ -25,8 +32,10 @@ class Tokens {
   /// Of a file that only its owner and group may read; the error is a sentence.
   [[nodiscard]] static tl::expected<Tokens, std::string> load(const std::string& path);
 
-  /// What the token's bearer may do: none, if nobody gave it out.
-  [[nodiscard]] Role role_of(std::string_view token) const noexcept;
+  /// Returns what the bearer of a token may do.
+  [[nodiscard]] Grant grant_of(std::string_view token) const noexcept;
+  /// The role of grant_of().
+  [[nodiscard]] Role role_of(std::string_view token) const noexcept { return grant_of(token).role; }
   [[nodiscard]] bool empty() const noexcept { return tokens_.empty(); }
 
  private:

@@ -106,16 +106,17 @@ TEST_F(GateTest, SessionsEndAndTokensDecideWhatTheyMay) {
   EXPECT_EQ(gate.admit(browser, false, 0), Role::none);
 }
 
-TEST(Sessions, AreFewAndTheIdlestGoes) {
-  Sessions sessions(100, 1000);
-  const std::string first = sessions.open(Role::look, 0);
-  const std::string second = sessions.open(Role::look, 1);
-  for (std::size_t i = 2; i < Sessions::most; ++i) static_cast<void>(sessions.open(Role::look, 2));
-  EXPECT_EQ(sessions.role_of(first, 3), Role::look);
-  static_cast<void>(sessions.open(Role::look, 4));
-  EXPECT_EQ(sessions.size(), Sessions::most);
-  EXPECT_EQ(sessions.role_of(second, 5), Role::none);
-  EXPECT_EQ(sessions.role_of(first, 5), Role::look);
+TEST_F(GateTest, LogInsWithOneTokenEndNoSessionOfAnother) {
+  Gate gate = this->gate(Role::none);
+  Credentials operator_page = page();
+  operator_page.cookie = "softgrip=" + *gate.open(operate, 0);
+  Credentials first_viewer = page();
+  first_viewer.cookie = "softgrip=" + *gate.open(look, 0);
+  Credentials last_viewer = page();
+  for (int i = 0; i < 1000; ++i) last_viewer.cookie = "softgrip=" + *gate.open(look, 1);
+  EXPECT_EQ(gate.admit(operator_page, true, 2), Role::operate);
+  EXPECT_EQ(gate.admit(last_viewer, false, 2), Role::look);
+  EXPECT_EQ(gate.admit(first_viewer, false, 2), Role::none) << "sessions of one token have a bound";
 }
 
 }  // namespace
