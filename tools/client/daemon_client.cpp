@@ -81,17 +81,18 @@ std::string default_socket_path() {
 }
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path) {
-  return connect(path, 0);
+  return connect(path, 0, longest_answer);
 }
 
 tl::expected<DaemonClient, ClientFailure> DaemonClient::connect_at_once(const std::string& path) {
-  auto client = connect(path, SOCK_NONBLOCK);
+  auto client = connect(path, SOCK_NONBLOCK, longest_send);
   // Only to connect: send() leaves a line whole.
   if (client) ::fcntl(client->descriptor(), F_SETFL, 0);
   return client;
 }
 
-tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path, int flags) {
+tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::string& path, int flags,
+                                                                std::chrono::milliseconds send_limit) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.size() >= sizeof address.sun_path) {
@@ -99,7 +100,10 @@ tl::expected<DaemonClient, ClientFailure> DaemonClient::connect(const std::strin
   }
   std::memcpy(address.sun_path, path.data(), path.size());
   Descriptor socket{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0)};
-  if (!socket || ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  const timeval limit{send_limit.count() / 1000, send_limit.count() % 1000 * 1000};
+  // It limits connect() too.
+  if (!socket || ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) != 0 ||
+      ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     return tl::unexpected{cannot_connect(path, errno)};
   }
   return DaemonClient{std::move(socket), path};
@@ -110,7 +114,12 @@ void DaemonClient::send(const Json& request) {
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t count = ::send(socket_.get(), line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return;
+    if (count < 0) {
+      deaf_ = errno == EAGAIN || errno == EWOULDBLOCK;
+      // Half of a request must not become the begin of the next one.
+      if (deaf_) ::shutdown(socket_.get(), SHUT_RDWR);
+      return;
+    }
     sent += static_cast<std::size_t>(count);
   }
 }
@@ -154,7 +163,8 @@ tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::ch
 }
 
 ClientFailure DaemonClient::gone() const {
-  return {ExitCode::io, "the daemon at " + path_ + " closed the connection"};
+  return {ExitCode::io,
+          "the daemon at " + path_ + (deaf_ ? " does not take requests" : " closed the connection")};
 }
 
 bool daemon_runs(const std::string& path) {

@@ -28,14 +28,18 @@ struct ClientFailure {
 
 class DaemonClient {
  public:
+  static constexpr std::chrono::milliseconds longest_answer{5000};
+
   /// The failure says what to do when no daemon is there.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path);
-  /// For a program that must not wait: fails if the daemon has too many connections to accept. connect()
-  /// waits.
+  /// For a program that must not wait: fails if the daemon has too many connections to accept, and a request
+  /// waits for `longest_send` at most. connect(), and the requests after it, wait for `longest_answer`.
   [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect_at_once(const std::string& path);
+  static constexpr std::chrono::milliseconds longest_send{50};
 
   /// Sends a request and waits for nothing. What cannot be sent shows itself in next_line(): the reason
-  /// stands in what the daemon says last, if it gave one before it hung up.
+  /// stands in what the daemon says last, if it gave one before it hung up. The connection ends if the daemon
+  /// does not take the request.
   void send(const nlohmann::ordered_json& request);
   /// The `result` of an answer that next_line() brought; a refusal as a failure, as of ask().
   [[nodiscard]] static tl::expected<nlohmann::ordered_json, ClientFailure> result_of(
@@ -45,7 +49,6 @@ class DaemonClient {
   /// ExitCode::state_refused, refused sequences with ExitCode::input_refused.
   [[nodiscard]] tl::expected<nlohmann::ordered_json, ClientFailure> ask(
       const nlohmann::ordered_json& request, std::chrono::milliseconds patience = longest_answer);
-  static constexpr std::chrono::milliseconds longest_answer{5000};
 
   /// The next line that the daemon sends by itself (a watched state); nothing when `patience` ends first.
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
@@ -55,13 +58,15 @@ class DaemonClient {
   [[nodiscard]] int descriptor() const noexcept { return socket_.get(); }
 
  private:
-  [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(const std::string& path, int flags);
+  [[nodiscard]] static tl::expected<DaemonClient, ClientFailure> connect(
+      const std::string& path, int flags, std::chrono::milliseconds send_limit);
   DaemonClient(Descriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
   [[nodiscard]] ClientFailure gone() const;
 
   Descriptor socket_;
   std::string path_;
   std::string pending_;
+  bool deaf_ = false;  // the daemon did not take a request
 };
 
 /// Whether a daemon runs on that socket, be it that it does not answer: it holds the board then.

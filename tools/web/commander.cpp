@@ -62,11 +62,13 @@ tl::expected<Json, std::string> command_in(std::string_view body) {
 }
 
 tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now) {
-  if (waiting_.size() >= most_waiting)
+  const std::string_view command = request["command"].get_ref<const std::string&>();
+  const bool is_urgent = command == "stop" || command == "vent";
+  if (waiting_.size() >= (is_urgent ? 2 * most_waiting : most_waiting))
     return tl::unexpected<Json>{failure("busy", "too many commands wait for their answers")};
   if (!daemon_) {
     if (socket_.empty()) return tl::unexpected<Json>{failure("not_allowed", "this page is for looking only")};
-    auto daemon = tools::DaemonClient::connect(socket_);
+    auto daemon = tools::DaemonClient::connect_at_once(socket_);
     if (!daemon) return tl::unexpected<Json>{failure("no_daemon", daemon.error().message)};
     daemon_.emplace(std::move(*daemon));
     daemon_->send({{"id", 0}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});

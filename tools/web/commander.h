@@ -20,6 +20,7 @@ namespace softgrip::web {
 
 class Commander {
  public:
+  /// Commands that wait for their answers. As many stops and vents may wait beside them.
   static constexpr std::size_t most_waiting = 32;
 
   /// `socket` is the daemon's for operating, and outlives this.

@@ -46,7 +46,7 @@ void DaemonWatch::look_after(Nanoseconds now) {
 void DaemonWatch::connect(Nanoseconds now) {
   if (tried_at_ != 0 && now - tried_at_ < retry_pause) return;
   tried_at_ = now;
-  auto daemon = tools::DaemonClient::connect(socket_);
+  auto daemon = tools::DaemonClient::connect_at_once(socket_);
   if (!daemon) return;
   daemon_.emplace(std::move(*daemon));
   heard_at_ = now;

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -68,6 +70,36 @@ TEST(DaemonClient, ReturnsTheResult) {
   const auto result = answer_to("{\"id\": null, \"ok\": true, \"result\": {\"state\": \"idle\"}}\n");
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_EQ((*result)["state"], "idle");
+}
+
+class HangingDaemon : public ::testing::Test {
+ protected:
+  HangingDaemon() : listener_(std::move(*modbus::listen_unix(path_))) {}
+  ~HangingDaemon() override { ::unlink(path_.c_str()); }
+  HangingDaemon(const HangingDaemon&) = delete;
+  HangingDaemon& operator=(const HangingDaemon&) = delete;
+  HangingDaemon(HangingDaemon&&) = delete;
+  HangingDaemon& operator=(HangingDaemon&&) = delete;
+
+  std::string path_ =
+      std::filesystem::temp_directory_path() / ("softgrip_hangs_" + std::to_string(::getpid()));
+  Descriptor listener_;
+};
+
+TEST_F(HangingDaemon, HoldsNoOneWhoSends) {
+  auto client = DaemonClient::connect_at_once(path_);
+  ASSERT_TRUE(client);
+  const Json request{{"command", std::string(10'000, 'x')}};
+  tl::expected<std::optional<Json>, ClientFailure> line = std::optional<Json>{};
+  int sent = 0;
+  for (; line && sent < 1000; ++sent) {
+    client->send(request);
+    line = client->next_line(std::chrono::milliseconds(0));
+  }
+  ASSERT_FALSE(line) << "after " << sent << " requests";
+  EXPECT_NE(line.error().message.find("does not take requests"), std::string::npos) << line.error().message;
+  client->send(request);
+  EXPECT_FALSE(client->next_line(std::chrono::milliseconds(0)));
 }
 
 TEST(DaemonClient, SaysWhatToDoWhenNoDaemonIsThere) {

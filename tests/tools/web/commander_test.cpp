@@ -1,11 +1,16 @@
 #include "tools/web/commander.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <string>
 
+#include "drivers/modbus_server/listener.h"
+
 namespace softgrip::web::commander_test {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 TEST(CommandInABody, IsOneThatTheDaemonHas) {
   for (const char* good : {R"({"command":"stop"})", R"({"command":"start","sequence":"pick"})",
@@ -41,6 +46,46 @@ TEST(Commander, WithoutADaemonItSaysSo) {
   const std::string none;
   Commander looking(none);
   EXPECT_EQ(looking.send({{"command", "stop"}}, 0).error()["error"]["code"], "not_allowed");
+}
+
+TEST(Commander, StartsThatWaitKeepNoStopFromTheDaemon) {
+  const std::string path = "/tmp/commander_" + std::to_string(::getpid());
+  const auto daemon = modbus::listen_unix(path);
+  ASSERT_TRUE(daemon) << daemon.error();
+  Commander commander(path);
+  const Json start{{"command", "start"}, {"sequence", "pick"}};
+  while (commander.send(start, 0)) {
+  }
+  EXPECT_EQ(commander.send(start, 0).error()["error"]["code"], "busy");
+  for (const char* urgent : {"stop", "vent"}) {
+    const auto sent = commander.send({{"command", urgent}}, 0);
+    ASSERT_TRUE(sent) << sent.error();
+    commander.forget(*sent);
+  }
+  for (std::size_t i = 0; i < Commander::most_waiting; ++i) {
+    const auto sent = commander.send({{"command", "stop"}}, 0);
+    ASSERT_TRUE(sent) << i;
+    commander.forget(*sent);
+  }
+  ::unlink(path.c_str());
+}
+
+TEST(Commander, ADaemonThatHangsHoldsNoOne) {
+  const std::string path = "/tmp/commander_hangs_" + std::to_string(::getpid());
+  const auto daemon = modbus::listen_unix(path);
+  ASSERT_TRUE(daemon) << daemon.error();
+  Commander commander(path);
+  bool ended = false;
+  for (int i = 0; i < 5000 && !ended; ++i) {
+    const auto sent = commander.send({{"command", "stop"}}, 0);
+    commander.look_after();
+    // The one that the daemon does not take is answered.
+    const auto answer = sent ? commander.take_answer(*sent, 0) : std::nullopt;
+    ended = answer && (*answer)["error"]["code"] == "no_answer";
+    if (sent && !answer) commander.forget(*sent);
+  }
+  EXPECT_TRUE(ended);
+  ::unlink(path.c_str());
 }
 
 }  // namespace
