@@ -9,9 +9,9 @@
 #include <array>
 #include <cerrno>
 #include <ctime>
+#include <iterator>
 #include <vector>
 
-#include "drivers/modbus_server/listener.h"
 #include "simulation/emulator/control.h"
 
 namespace softgrip::simulation {
@@ -30,7 +30,11 @@ int Server::ControlClient::input() const noexcept {
 }
 
 Server::Server(Emulator& emulator, ServerSockets sockets)
-    : emulator_(emulator), sockets_(std::move(sockets)) {
+    : emulator_(emulator),
+      sockets_(std::move(sockets)),
+      entrances_(std::make_move_iterator(sockets_.modbus.begin()),
+                 std::make_move_iterator(sockets_.modbus.end())),
+      control_entrance_(std::move(sockets_.control)) {
   if (sockets_.standard_input) control_clients_.emplace_back();
 }
 
@@ -40,8 +44,10 @@ void Server::run(const std::function<void()>& idle) {
     plug_line();
     watched.clear();
     watched.push_back({sockets_.signals.get(), POLLIN, 0});
-    watched.push_back({sockets_.control.get(), POLLIN, 0});  // poll() skips an empty one: it is -1
-    for (const Descriptor& modbus : sockets_.modbus) watched.push_back({modbus.get(), POLLIN, 0});
+    // poll() skips an empty or a resting one: it is -1.
+    watched.push_back({control_entrance_.descriptor(now()), POLLIN, 0});
+    for (const modbus::Entrance& entrance : entrances_)
+      watched.push_back({entrance.descriptor(now()), POLLIN, 0});
     for (const ControlClient& client : control_clients_) watched.push_back({client.input(), POLLIN, 0});
     for (const Client& client : clients_) {
       const int events = client.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
@@ -52,7 +58,7 @@ void Server::run(const std::function<void()>& idle) {
     if (::ppoll(watched.data(), watched.size(), &limit, nullptr) < 0 && errno != EINTR) return;
 
     emulator_.advance(now());
-    auto watch = watched.begin() + 2 + static_cast<std::ptrdiff_t>(sockets_.modbus.size());
+    auto watch = watched.begin() + 2 + static_cast<std::ptrdiff_t>(entrances_.size());
     for (ControlClient& client : control_clients_) {
       if ((watch++)->revents != 0) read_control(client);
     }
@@ -64,7 +70,7 @@ void Server::run(const std::function<void()>& idle) {
     });
     if (watched[0].revents != 0) take_signal();
     if (watched[1].revents != 0) accept_control();
-    for (std::size_t link = 0; link < sockets_.modbus.size(); ++link) {
+    for (std::size_t link = 0; link < entrances_.size(); ++link) {
       if (watched[2 + link].revents != 0) accept_modbus(link);
     }
     idle();
@@ -109,7 +115,7 @@ void Server::serve(Client& client, short events, bool& open) {
 }
 
 void Server::accept_modbus(std::size_t link) {
-  Descriptor client = modbus::accept_client(sockets_.modbus[link]);
+  Descriptor client = entrances_[link].accept(now());
   // While the cable is cut, and beyond what poll() should watch, a client is let in and shown out.
   if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
     clients_.push_back({Connection(std::move(client)), link});
@@ -117,7 +123,7 @@ void Server::accept_modbus(std::size_t link) {
 }
 
 void Server::accept_control() {
-  Descriptor client = modbus::accept_client(sockets_.control);
+  Descriptor client = control_entrance_.accept(now());
   if (client && control_clients_.size() < max_control_clients) {
     control_clients_.push_back({std::move(client), {}, true});
   }
