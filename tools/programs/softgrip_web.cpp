@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -17,6 +18,7 @@
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/usage.h"
+#include "tools/web/places.h"
 #include "tools/web/server.h"
 
 namespace softgrip::web {
@@ -81,6 +83,12 @@ ExitCode run(const Options& options) {
     tokens = std::move(*loaded);
   }
   if (options.check) return ExitCode::done;
+  if (const std::size_t places = places_for(settings->max_connections, descriptor_limit());
+      places < settings->max_connections) {
+    std::fprintf(stderr,
+                 "softgrip-web: the limit of open files allows %zu connections, not %zu (max_connections)\n",
+                 places, settings->max_connections);
+  }
   Descriptor signals = take_signals();
   auto listener = modbus::listen_tcp(settings->address, settings->port);
   if (!listener) return tools::fail(ExitCode::io, listener.error());

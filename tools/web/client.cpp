@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <utility>
@@ -12,27 +13,38 @@ namespace softgrip::web {
 
 bool Client::receive() {
   std::array<char, 4096> bytes;
-  for (;;) {
+  // More than a request, and no endless turn for one who never stops sending.
+  constexpr std::size_t most_reads = 2 * (longest_head + longest_body) / bytes.size();
+  for (std::size_t reads = 0; reads < most_reads;) {
     const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), 0);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
-    if (count == 0) return false;
+    if (count == 0) {
+      // Some say no more and wait for their answer. With a stream it means that the page was closed.
+      const bool known = said_all_;
+      said_all_ = true;
+      return !known && phase_ != Phase::following;
+    }
     // Whatever comes behind the request is nobody's.
     if (phase_ == Phase::asking && in_.size() < longest_head + longest_body)
       in_.append(bytes.data(), static_cast<std::size_t>(count));
     if (static_cast<std::size_t>(count) < bytes.size()) return true;
+    ++reads;
   }
+  return true;
 }
 
 bool Client::send_on(Nanoseconds now) {
-  while (sent_ < out_.size()) {
-    const ssize_t count = ::send(socket_.get(), out_.data() + sent_, out_.size() - sent_, MSG_NOSIGNAL);
+  const std::size_t end = std::min(out_.size(), sent_ + most_at_once);
+  while (sent_ < end) {
+    const ssize_t count = ::send(socket_.get(), out_.data() + sent_, end - sent_, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return errno == EAGAIN || errno == EWOULDBLOCK;
     sent_ += static_cast<std::size_t>(count);
     moved_at_ = now;
   }
-  out_.clear();
+  if (sent_ < out_.size()) return true;
+  std::string().swap(out_);  // and its memory: a greeting is large
   sent_ = 0;
   if (phase_ != Phase::answering) return true;
   // He is told that this is all; what he still says would make the system throw away what he has not read.
@@ -47,6 +59,7 @@ bool Client::late(Nanoseconds now) const noexcept {
     case Phase::waiting:
       return false;
     case Phase::answering:
+    case Phase::loading:
       return now - moved_at_ > longest_pause || now - answered_at_ > longest_answer;
     case Phase::following:
       return has_to_send() && now - moved_at_ > longest_pause;
@@ -54,17 +67,18 @@ bool Client::late(Nanoseconds now) const noexcept {
   return true;
 }
 
-void Client::answer(std::string bytes, bool follows, Nanoseconds now) {
-  phase_ = follows ? Phase::following : Phase::answering;
+void Client::answer(std::string bytes, Phase next, Nanoseconds now) {
+  phase_ = next;
+  std::string().swap(in_);
   out_ = std::move(bytes);
   moved_at_ = answered_at_ = now;
 }
 
-bool Client::add(std::string_view messages) {
-  if (out_.size() - sent_ + messages.size() > most_kept) return false;
+bool Client::add(std::string_view bytes) {
+  if (unsent() + bytes.size() > most_kept) return false;
   out_.erase(0, sent_);
   sent_ = 0;
-  out_ += messages;
+  out_ += bytes;
   return true;
 }
 

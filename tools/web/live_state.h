@@ -22,6 +22,8 @@ class LiveState {
   void take_event(nlohmann::ordered_json event);
   void take_statistics(nlohmann::ordered_json statistics);
   void take_sequences(nlohmann::ordered_json sequences);
+  /// Takes the last result of `softgrip health`, which the daemon does not know.
+  void take_health(nlohmann::ordered_json health) { health_ = std::move(health); }
   /// The daemon does not answer any more: nothing of it is known but what happened.
   void lose();
 
@@ -29,6 +31,8 @@ class LiveState {
   [[nodiscard]] const nlohmann::ordered_json& status() const noexcept { return status_; }
   [[nodiscard]] const nlohmann::ordered_json& statistics() const noexcept { return statistics_; }
   [[nodiscard]] const nlohmann::ordered_json& sequences() const noexcept { return sequences_; }
+  /// Null where there is none.
+  [[nodiscard]] const nlohmann::ordered_json& health() const noexcept { return health_; }
 
   /// All that there is, as the first message of a stream of server-sent events.
   [[nodiscard]] std::string greeting() const;
@@ -41,6 +45,7 @@ class LiveState {
   nlohmann::ordered_json status_;
   nlohmann::ordered_json statistics_;
   nlohmann::ordered_json sequences_;
+  nlohmann::ordered_json health_;
   std::deque<nlohmann::ordered_json> events_;
   std::deque<nlohmann::ordered_json> trend_;  // [time_s, [command, pressure, displacement, reference], ...]
   std::string news_;

@@ -1,27 +1,29 @@
 #include "tools/web/recordings.h"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
+#include <cerrno>
+#include <memory>
 #include <utility>
-#include <vector>
 
 #include <nlohmann/json.hpp>
-
-#include "base/descriptor.h"
-#include "base/files.h"
 
 namespace softgrip::web {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace fs = std::filesystem;
 
 constexpr std::size_t longest_file_name = 128;
 constexpr std::size_t most_files = 50;
+/// File systems stamp a change with a time that may be several milliseconds old (FAT: two seconds).
+constexpr Nanoseconds stamp_resolution = 2 * ns_per_s;
+/// Entries of a folder between two pauses.
+constexpr std::size_t entries_at_once = 256;
 
 struct Kind {
   std::string_view ending;
@@ -34,17 +36,24 @@ constexpr std::array<Kind, 6> kinds{{{".svg", "image/svg+xml"},
                                      {".json", "application/json"},
                                      {".md", "text/plain; charset=utf-8"}}};
 
-/// Names that are plain, in the order of the alphabet.
-std::vector<std::string> names_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  fs::directory_iterator entry(folder, error);
-  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    std::string name = entry->path().filename().string();
-    if (is_plain_name(name)) names.push_back(std::move(name));
+bool is_shown(std::string_view name) {
+  return is_plain_name(name) && !content_type_of(name).empty();
+}
+
+/// Leaves the `most` names that come first.
+void keep_first(std::vector<std::string>& names, bool last_first, std::size_t most) {
+  const auto before = [last_first](const std::string& one, const std::string& other) {
+    return last_first ? one > other : one < other;
+  };
+  if (names.size() > most) {
+    std::nth_element(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(most), names.end(), before);
+    names.resize(most);
   }
-  std::sort(names.begin(), names.end());
-  return names;
+  std::sort(names.begin(), names.end(), before);
+}
+
+Descriptor open_folder_in(const Descriptor& parent, const std::string& name) {
+  return Descriptor{::openat(parent.get(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)};
 }
 
 }  // namespace
@@ -67,36 +76,77 @@ std::string_view content_type_of(std::string_view name) {
   return found == kinds.end() ? std::string_view() : found->content_type;
 }
 
-Json Recordings::list() const {
+Json Recordings::list(Nanoseconds wall_now, const std::function<void()>& between) {
+  wall_now_ = wall_now;
+  between_ = between;
   Json list = Json::array();
-  if (folder_.empty()) return list;
-  // Their names begin with the time.
-  std::vector<std::string> names = names_in(folder_);
-  std::reverse(names.begin(), names.end());
-  for (const std::string& name : names) {
-    if (list.size() == most_listed) break;
-    Json files = Json::array();
-    for (const std::string& file : names_in(fs::path(folder_) / name)) {
-      if (!content_type_of(file).empty() && files.size() < most_files) files.push_back(file);
-    }
-    if (!files.empty()) list.push_back({{"name", name}, {"files", std::move(files)}});
+  const Descriptor top{folder_.empty() ? -1 : ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  if (!top) {
+    newest_ = {};
+    files_.clear();
+    return list;
   }
+  // Their names begin with the time.
+  bring_up_to_date(newest_, top, ".", {is_plain_name, true, most_considered});
+  std::map<std::string, Names> files;
+  for (const std::string& name : newest_.names) {
+    if (list.size() == most_listed) break;
+    pause();
+    Names& shown = files[name];
+    if (const auto known = files_.find(name); known != files_.end()) shown = std::move(known->second);
+    bring_up_to_date(shown, top, name, {is_shown, false, most_files});
+    if (!shown.names.empty()) list.push_back({{"name", name}, {"files", shown.names}});
+  }
+  files_ = std::move(files);
   return list;
 }
 
-std::optional<std::string> Recordings::read(std::string_view recording, std::string_view file) const {
-  if (folder_.empty() || !is_plain_name(recording) || !is_plain_name(file) || content_type_of(file).empty())
-    return std::nullopt;
+void Recordings::bring_up_to_date(Names& known, const Descriptor& parent, const std::string& name,
+                                  const Choice& choice) {
+  struct stat about {};
+  const auto stamp = [&about] {
+    return Stamp{about.st_dev, about.st_ino, about.st_ctim.tv_sec * ns_per_s + about.st_ctim.tv_nsec};
+  };
+  if (::fstatat(parent.get(), name.c_str(), &about, AT_SYMLINK_NOFOLLOW) == 0 && known.settled &&
+      known.stamp == stamp()) {
+    return;
+  }
+  known = {};
+  Descriptor folder = open_folder_in(parent, name);
+  if (!folder || ::fstat(folder.get(), &about) != 0) return;
+  known.stamp = stamp();
+  const bool complete = read_names(std::move(folder), choice, known.names);
+  known.settled = complete && wall_now_ - known.stamp.changed_at > stamp_resolution;
+}
+
+/// True: all of them were read.
+bool Recordings::read_names(Descriptor folder, const Choice& choice, std::vector<std::string>& names) {
+  ++folders_read_;
+  const std::unique_ptr<DIR, int (*)(DIR*)> entries(::fdopendir(folder.get()), &::closedir);
+  if (!entries) return false;
+  static_cast<void>(folder.release());  // closedir() closes it
+  std::size_t count = 0;
+  errno = 0;
+  while (const dirent* const entry = ::readdir(entries.get())) {
+    if (choice.is_wanted(entry->d_name)) names.emplace_back(entry->d_name);
+    if (names.size() >= 2 * choice.most) keep_first(names, choice.last_first, choice.most);
+    if (++count % entries_at_once == 0) pause();
+    errno = 0;
+  }
+  const bool complete = errno == 0;
+  keep_first(names, choice.last_first, choice.most);
+  return complete;
+}
+
+std::optional<RegularFile> Recordings::open(std::string_view recording, std::string_view file) const {
+  if (folder_.empty() || !is_plain_name(recording) || !is_shown(file)) return std::nullopt;
   const Descriptor top{::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (!top) return std::nullopt;
-  const Descriptor folder{
-      ::openat(top.get(), std::string(recording).c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)};
+  const Descriptor folder = open_folder_in(top, std::string(recording));
   if (!folder) return std::nullopt;
-  const auto opened = open_regular_in(folder, std::string(file));
+  auto opened = open_regular_in(folder, std::string(file));
   if (!opened || opened->size > largest_file) return std::nullopt;
-  auto bytes = read_start(*opened, opened->size);
-  if (!bytes) return std::nullopt;
-  return std::move(*bytes);
+  return std::move(*opened);
 }
 
 }  // namespace softgrip::web

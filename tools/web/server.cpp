@@ -1,13 +1,14 @@
 #include "tools/web/server.h"
 
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <string_view>
 #include <utility>
 
-#include "drivers/modbus_server/listener.h"
 #include "tools/web/request_frame.h"
 
 namespace softgrip::web {
@@ -17,64 +18,111 @@ namespace {
 /// The daemon, deadlines and sessions are looked after at least so often.
 constexpr Nanoseconds longest_pause = ns_per_s / 20;
 constexpr Nanoseconds check_period = ns_per_s;
-/// Who is still asking after this time loses its place to one that comes, if there is no other.
-constexpr Nanoseconds quick_question = ns_per_s / 2;
 /// Taken from the queue of those who wait, in one turn: the others have theirs.
 constexpr int most_accepted = 32;
 constexpr int no_place = 503;
+/// After this time a collector gets the metrics with the health that was read last.
+constexpr Nanoseconds patience_for_health = ns_per_s;
+constexpr Nanoseconds patience_for_disk = 8 * ns_per_s;
+
+/// The system would keep megabytes for who does not read. It doubles the number, and the unit's memory counts
+/// these buffers too.
 constexpr int kept_by_system = 65536;
+constexpr std::size_t most_connections = 512;  // of the file
+constexpr std::size_t own_memory = std::size_t{20} << 20U;
+constexpr std::size_t memory_of_unit = std::size_t{128} << 20U;  // systemd/softgrip-web.service.in
+static_assert(own_memory + most_unsent +
+                      most_connections * (2 * std::size_t{kept_by_system} + longest_head + longest_body) <
+                  memory_of_unit,
+              "clients that do not read must not exhaust the memory of the unit");
 
 using Phase = Client::Phase;
 
 }  // namespace
 
+std::size_t descriptor_limit() noexcept {
+  rlimit limit{};
+  constexpr std::size_t usual = 1024;
+  return ::getrlimit(RLIMIT_NOFILE, &limit) == 0 ? std::size_t{limit.rlim_cur} : usual;
+}
+
 Server::Server(const Settings& settings, Tokens tokens, std::string chart_js, Descriptor listener,
                Descriptor signals)
     : settings_(settings),
+      places_(places_for(settings.max_connections, descriptor_limit())),
       gate_(settings, std::move(tokens)),
       site_(settings, gate_, state_, counts_, std::move(chart_js)),
       watch_(settings.look_socket, state_),
       commander_(settings.operate_socket),
-      listener_(std::move(listener)),
+      archive_(settings.recordings),
+      entrance_(std::move(listener)),
       signals_(std::move(signals)) {}
 
 void Server::run() {
   std::vector<pollfd> watched;
-  constexpr std::size_t others = 4;
+  constexpr std::size_t others = 5;
   const timespec pause{0, longest_pause};
   for (;;) {
     watched.assign({{signals_.get(), POLLIN, 0},
-                    {listener_.get(), POLLIN, 0},
+                    {entrance_.descriptor(clock_.now()), POLLIN, 0},
                     {watch_.descriptor(), POLLIN, 0},
-                    {commander_.descriptor(), POLLIN, 0}});
+                    {commander_.descriptor(), POLLIN, 0},
+                    {archive_.descriptor(), POLLIN, 0}});
     for (const Visitor& visitor : visitors_) {
-      const int events = visitor.client.has_to_send() ? POLLIN | POLLOUT : POLLIN;
-      watched.push_back({visitor.client.descriptor(), static_cast<short>(events), 0});
+      const int reads = visitor.client.said_all() ? 0 : POLLIN;
+      const int writes = visitor.client.has_to_send() ? POLLOUT : 0;
+      watched.push_back({visitor.client.descriptor(), static_cast<short>(reads | writes), 0});
     }
-    if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) return;
+    if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) {
+      if (errno == EINVAL && give_up_places()) continue;
+      return;
+    }
     if (watched[0].revents != 0) return;
     const Nanoseconds now = clock_.now();
     watch_.look_after(now);
     commander_.look_after();
+    if (watched[4].revents != 0) archive_.hear();
     auto found = watched.begin() + others;
-    std::erase_if(visitors_, [&](Visitor& visitor) { return !look_after(visitor, (found++)->revents, now); });
+    for (Visitor& visitor : visitors_) {
+      const short events = (found++)->revents;
+      if (!visitor.leaves) look_after(visitor, events, now);
+    }
     tell_news(now);
+    remove_leaving();
     if (watched[1].revents != 0) accept(now);
-    counts_.connections = visitors_.size();
-    counts_.followers = static_cast<std::size_t>(
-        std::count_if(visitors_.begin(), visitors_.end(),
-                      [](const Visitor& visitor) { return visitor.client.phase() == Phase::following; }));
+    count();
   }
+}
+
+/// poll() watches no more descriptors than the process may have. False: that was not the reason.
+bool Server::give_up_places() {
+  const std::size_t before = visitors_.size();
+  places_ = places_for(settings_.max_connections, descriptor_limit());
+  std::size_t number = 0;
+  for (Visitor& visitor : visitors_) visitor.leaves = visitor.leaves || ++number > lingering_places(places_);
+  remove_leaving();
+  return visitors_.size() < before;
+}
+
+void Server::count() {
+  const Crowd crowd = crowd_beside(nullptr);
+  counts_.connections = visitors_.size();
+  counts_.unsent = unsent_of(crowd.guests);
+  counts_.followers =
+      static_cast<std::size_t>(std::count_if(visitors_.begin(), visitors_.end(), [](const Visitor& visitor) {
+        return visitor.client.phase() == Phase::following;
+      }));
 }
 
 void Server::accept(Nanoseconds now) {
   for (int i = 0; i < most_accepted; ++i) {
-    Descriptor socket = modbus::accept_client(listener_);
+    Descriptor socket = entrance_.accept(now);
+    // Its own descriptor is the one that the next client gets.
+    if (entrance_.short_of_descriptors()) static_cast<void>(make_place(now));
     if (!socket) return;
-    // The system would keep megabytes for who does not read.
     ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kept_by_system, sizeof kept_by_system);
-    if (visitors_.size() < settings_.max_connections || make_place(now)) {
-      visitors_.push_back({Client(std::move(socket), now), {}});
+    if (visitors_.size() < places_ || make_place(now)) {
+      visitors_.push_back({Client(std::move(socket), now), {}, {}, {}, 0, {}, 0, false});
       continue;
     }
     ++counts_.turned_away;
@@ -85,25 +133,22 @@ void Server::accept(Nanoseconds now) {
   }
 }
 
-bool Server::make_place(Nanoseconds now) {
-  const auto slow = std::find_if(visitors_.begin(), visitors_.end(), [now](const Visitor& visitor) {
-    return visitor.client.phase() == Phase::asking && now - visitor.client.came_at() > quick_question;
-  });
-  if (slow == visitors_.end()) return false;
-  ++counts_.turned_away;
-  visitors_.erase(slow);
-  return true;
-}
-
-bool Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
+void Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
   Client& client = visitor.client;
   if ((events & (POLLIN | POLLHUP | POLLERR)) != 0) {
-    if (!client.receive()) return false;
-    if (client.phase() == Phase::asking) serve(visitor, now);
+    visitor.leaves = !client.receive();
+    if (!visitor.leaves && client.phase() == Phase::asking) {
+      serve(visitor, now);
+      // Nothing completes a request whose sender says no more.
+      if (client.phase() == Phase::asking && client.said_all()) visitor.leaves = true;
+    }
   }
-  if (client.phase() == Phase::waiting) take_answer(visitor, now);
-  const bool speaks = client.phase() == Phase::answering || client.phase() == Phase::following;
-  return (!speaks || client.send_on(now)) && !client.late(now);
+  if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
+  if (client.phase() == Phase::loading) take_piece(visitor);
+  if (visitor.leaves) return;
+  const bool speaks = client.phase() != Phase::asking && client.phase() != Phase::waiting;
+  visitor.leaves = (speaks && !client.send_on(now)) || client.late(now);
+  if (client.phase() == Phase::loading) ask_for_piece(visitor);
 }
 
 void Server::serve(Visitor& visitor, Nanoseconds now) {
@@ -112,33 +157,76 @@ void Server::serve(Visitor& visitor, Nanoseconds now) {
   if (frame.state == Frame::State::incomplete) return;
   if (frame.state == Frame::State::refused) return refuse(visitor, frame.status, now);
   Outcome outcome = site_.serve(std::string_view(request).substr(0, frame.size), now);
+  visitor.role = outcome.role;
+  if (outcome.disk_request) return ask_disk(visitor, std::move(*outcome.disk_request), now);
   if (!outcome.command) return answer(visitor, std::move(outcome), now);
   const auto sent = commander_.send(std::move(*outcome.command), now);
-  if (sent) return visitor.client.wait_for(*sent);
-  answer(visitor, site_.serve(request, now, &sent.error()), now);
+  if (!sent) return answer(visitor, site_.serve(request, now, {.daemon = &sent.error()}), now);
+  visitor.command = *sent;
+  visitor.client.wait();
+}
+
+void Server::ask_disk(Visitor& visitor, DiskRequest disk_request, Nanoseconds now) {
+  const bool is_brief = disk_request.kind == DiskRequest::Kind::health;
+  if (!is_brief && !make_lingering_place(visitor, now)) return refuse(visitor, no_place, now);
+  visitor.task = archive_.ask(std::move(disk_request));
+  visitor.gives_up_at = now + (is_brief ? patience_for_health : patience_for_disk);
+  visitor.client.wait();
 }
 
 void Server::answer(Visitor& visitor, Outcome outcome, Nanoseconds now) {
-  const bool follows = outcome.follower.has_value();
-  // Pages that stay open leave room for those that ask.
-  if (follows && counts_.followers >= settings_.max_connections * 3 / 4)
-    return refuse(visitor, no_place, now);
-  if (follows) {
-    ++counts_.followers;
-    visitor.follower = std::move(*outcome.follower);
-  }
+  Client& client = visitor.client;
+  const Phase next = outcome.follower ? Phase::following : outcome.file ? Phase::loading : Phase::answering;
+  if (next != Phase::answering && !make_lingering_place(visitor, now)) return refuse(visitor, no_place, now);
+  if (outcome.follower) visitor.follower = std::move(*outcome.follower);
+  visitor.download = {std::move(outcome.file), 0, nullptr};
   ++counts_.answers[outcome.status];
-  visitor.client.answer(std::move(outcome.bytes), follows, now);
+  client.answer(std::move(outcome.bytes), next, now);
+  visitor.leaves = !client.send_on(now);
+  if (visitor.leaves || client.unsent() == 0) return;
+  // The socket did not take all: the rest must have a place.
+  visitor.leaves = !make_lingering_place(visitor, now) || !make_room(&visitor, visitor.role);
 }
 
 void Server::refuse(Visitor& visitor, int status, Nanoseconds now) {
-  ++counts_.answers[status];
-  visitor.client.answer(Site::refusal(status), false, now);
+  Outcome outcome;
+  outcome.bytes = Site::refusal(status);
+  outcome.status = status;
+  answer(visitor, std::move(outcome), now);
 }
 
-void Server::take_answer(Visitor& visitor, Nanoseconds now) {
-  const auto said = commander_.take_answer(visitor.client.command(), now);
-  if (said) answer(visitor, site_.serve(visitor.client.request(), now, &*said), now);
+void Server::take_reply(Visitor& visitor, Nanoseconds now) {
+  const std::string& request = visitor.client.request();
+  if (!visitor.task) {
+    const auto said = commander_.take_answer(visitor.command, now);
+    if (said) answer(visitor, site_.serve(request, now, {.daemon = &*said}), now);
+    return;
+  }
+  const bool done = visitor.task->done();
+  if (!done && now < visitor.gives_up_at) return;
+  const auto task = std::exchange(visitor.task, nullptr);
+  if (done && task->request().kind == DiskRequest::Kind::health) state_.take_health(task->health());
+  answer(visitor, site_.serve(request, now, {.disk = task.get()}), now);
+}
+
+void Server::take_piece(Visitor& visitor) {
+  Download& download = visitor.download;
+  if (!download.piece || !download.piece->done()) return;
+  const auto piece = std::exchange(download.piece, nullptr);
+  const auto bytes = std::string_view(piece->text()).substr(0, download.file->size - download.read);
+  download.read += bytes.size();
+  // Of a file that has become shorter, the promised length cannot be sent.
+  visitor.leaves = bytes.empty() || !visitor.client.add(bytes);
+  if (download.read == download.file->size) visitor.client.finish();
+}
+
+/// One at a time, when the one before it is sent, and only while there is room: a download waits, others do
+/// not have to go for it.
+void Server::ask_for_piece(Visitor& visitor) {
+  Download& download = visitor.download;
+  if (download.piece || visitor.client.has_to_send() || counts_.unsent + Archive::piece > most_unsent) return;
+  counts_.unsent += Archive::piece;
+  download.piece = archive_.ask({.kind = DiskRequest::Kind::piece, .from = download.file});
 }
 
 /// Whether somebody who reads along may still do what he might when he began.
@@ -152,13 +240,85 @@ void Server::tell_news(Nanoseconds now) {
   const bool check = now - checked_at_ > check_period;
   if (check) checked_at_ = now;
   if (news.empty() && !check) return;
-  std::erase_if(visitors_, [&](Visitor& visitor) {
+  for (Visitor& visitor : visitors_) {
     Client& client = visitor.client;
-    if (client.phase() != Phase::following) return false;
-    if (!check || still_may(visitor.follower, now)) return !client.add(news) || !client.send_on(now);
-    client.finish();
-    return !client.add("event: ended\ndata: null\n\n");
+    if (client.phase() != Phase::following || visitor.leaves) continue;
+    if (!check || still_may(visitor.follower, now)) {
+      visitor.leaves = !client.add(news) || !client.send_on(now);
+    } else {
+      client.finish();
+      visitor.leaves = !client.add("event: ended\ndata: null\n\n");
+    }
+  }
+  static_cast<void>(make_room(nullptr, Role::operate));
+}
+
+void Server::remove_leaving() {
+  std::erase_if(visitors_, [this](const Visitor& visitor) {
+    if (visitor.leaves && visitor.command != 0) commander_.forget(visitor.command);
+    return visitor.leaves;
   });
+}
+
+Guest Server::guest_of(const Visitor& visitor) {
+  const Client& client = visitor.client;
+  const std::size_t unsent = client.unsent() + (visitor.download.piece ? Archive::piece : 0);
+  Guest guest{Guest::Stay::lingering, visitor.role, client.moved_at(), unsent};
+  if (client.phase() == Phase::asking) {
+    guest.stay = Guest::Stay::asking;
+    guest.moved_at = client.came_at();
+  } else if (client.phase() == Phase::waiting) {
+    const bool is_brief = !visitor.task || visitor.task->request().kind == DiskRequest::Kind::health;
+    if (is_brief) guest.stay = Guest::Stay::brief;
+  } else if (client.phase() == Phase::answering && unsent == 0) {
+    guest.stay = Guest::Stay::brief;
+  }
+  return guest;
+}
+
+Server::Crowd Server::crowd_beside(const Visitor* visitor) {
+  Crowd crowd;
+  for (Visitor& other : visitors_) {
+    if (&other == visitor || other.leaves) continue;
+    crowd.guests.push_back(guest_of(other));
+    crowd.visitors.push_back(&other);
+  }
+  return crowd;
+}
+
+bool Server::make_place(Nanoseconds now) {
+  const Crowd crowd = crowd_beside(nullptr);
+  const Victim victim = gives_way_to_newcomer(crowd.guests, now);
+  if (!victim) return false;
+  crowd.visitors[*victim]->leaves = true;
+  ++counts_.turned_away;
+  remove_leaving();
+  return true;
+}
+
+bool Server::make_lingering_place(const Visitor& visitor, Nanoseconds now) {
+  const Crowd crowd = crowd_beside(&visitor);
+  const auto lingering = std::count_if(crowd.guests.begin(), crowd.guests.end(), [](const Guest& guest) {
+    return guest.stay == Guest::Stay::lingering;
+  });
+  if (static_cast<std::size_t>(lingering) < lingering_places(places_)) return true;
+  const Victim victim = gives_way_to_lingering(crowd.guests, visitor.role, now);
+  if (!victim) return false;
+  crowd.visitors[*victim]->leaves = true;
+  ++counts_.turned_away;
+  return true;
+}
+
+bool Server::make_room(const Visitor* visitor, Role role) {
+  for (;;) {
+    const Crowd crowd = crowd_beside(visitor);
+    const std::size_t unsent = unsent_of(crowd.guests) + (visitor != nullptr ? visitor->client.unsent() : 0);
+    if (unsent <= most_unsent) return true;
+    const Victim victim = gives_way_for_bytes(crowd.guests, role);
+    if (!victim) return false;
+    crowd.visitors[*victim]->leaves = true;
+    ++counts_.turned_away;
+  }
 }
 
 }  // namespace softgrip::web

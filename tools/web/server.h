@@ -1,15 +1,20 @@
 #pragma once
-// Browsers on the network, in one thread that never waits for any of them.
+// Browsers on the network, in one thread that never waits for any of them, nor for the disk.
 
+#include <cstdint>
 #include <list>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/clock.h"
 #include "base/descriptor.h"
+#include "drivers/modbus_server/entrance.h"
+#include "tools/web/archive.h"
 #include "tools/web/client.h"
 #include "tools/web/commander.h"
 #include "tools/web/daemon_watch.h"
+#include "tools/web/places.h"
 #include "tools/web/site.h"
 
 namespace softgrip::web {
@@ -23,35 +28,70 @@ class Server {
   void run();
 
  private:
+  /// A file on its way to a client.
+  struct Download {
+    std::shared_ptr<const RegularFile> file;
+    std::size_t read = 0;                   // of its bytes
+    std::shared_ptr<const DiskTask> piece;  // the next one, while it is read
+  };
   struct Visitor {
     Client client;
-    Follower follower;  // while it follows
+    Role role = Role::none;                // of its request
+    Follower follower;                     // while it follows
+    Download download;                     // while it loads
+    std::uint64_t command = 0;             // its number at the daemon; 0: none
+    std::shared_ptr<const DiskTask> task;  // of the disk, while it waits
+    Nanoseconds gives_up_at = 0;           // waiting for the disk
+    bool leaves = false;                   // at the end of this turn
+  };
+  /// Visitors that stay, with what decides who gives way.
+  struct Crowd {
+    std::vector<Guest> guests;
+    std::vector<Visitor*> visitors;
   };
 
+  /// The limit of descriptors was lowered: the last visitors go.
+  [[nodiscard]] bool give_up_places();
   void accept(Nanoseconds now);
-  [[nodiscard]] bool make_place(Nanoseconds now);
-  /// False: he has gone, or is to be shown out.
-  [[nodiscard]] bool look_after(Visitor& visitor, short events, Nanoseconds now);
+  void look_after(Visitor& visitor, short events, Nanoseconds now);
   void serve(Visitor& visitor, Nanoseconds now);
+  void ask_disk(Visitor& visitor, DiskRequest disk_request, Nanoseconds now);
   void answer(Visitor& visitor, Outcome outcome, Nanoseconds now);
   void refuse(Visitor& visitor, int status, Nanoseconds now);
-  void take_answer(Visitor& visitor, Nanoseconds now);
+  void take_reply(Visitor& visitor, Nanoseconds now);
+  static void take_piece(Visitor& visitor);
+  void ask_for_piece(Visitor& visitor);
   [[nodiscard]] bool still_may(const Follower& follower, Nanoseconds now);
   /// Who follows hears what is new, as long as he may.
   void tell_news(Nanoseconds now);
+  void remove_leaving();
+  void count();
+
+  [[nodiscard]] static Guest guest_of(const Visitor& visitor);
+  [[nodiscard]] Crowd crowd_beside(const Visitor* visitor);
+  /// True: a place is free. Another may have to go for it.
+  [[nodiscard]] bool make_place(Nanoseconds now);
+  [[nodiscard]] bool make_lingering_place(const Visitor& visitor, Nanoseconds now);
+  /// True: all unsent bytes are within the limit. Others may have to go for it.
+  [[nodiscard]] bool make_room(const Visitor* visitor, Role role);
 
   const Settings& settings_;
+  std::size_t places_;
   LiveState state_;
   OwnCounts counts_;
   Gate gate_;
   Site site_;
   DaemonWatch watch_;
   Commander commander_;
-  Descriptor listener_;
+  Archive archive_;
+  modbus::Entrance entrance_;
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Visitor> visitors_;
   Nanoseconds checked_at_ = 0;  // whether followers still may
 };
+
+/// Number of descriptors that the process may have.
+[[nodiscard]] std::size_t descriptor_limit() noexcept;
 
 }  // namespace softgrip::web

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "tools/client/last_health.h"
 #include "tools/web/access/origin.h"
 #include "tools/web/commander.h"
 #include "tools/web/metrics/daemon_metrics.h"
@@ -22,6 +21,7 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr const char* json_type = "application/json";
+constexpr const char* disk_is_silent = "the disk of the recordings does not answer";
 /// Nothing but the page's own files, no frames, no forms that leave.
 constexpr const char* page_policy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
@@ -71,12 +71,7 @@ std::string_view name_of(Role role) noexcept {
 
 Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const OwnCounts& counts,
            std::string chart_js)
-    : settings_(settings),
-      gate_(gate),
-      state_(state),
-      counts_(counts),
-      chart_js_(std::move(chart_js)),
-      recordings_(settings.recordings) {
+    : settings_(settings), gate_(gate), state_(state), counts_(counts), chart_js_(std::move(chart_js)) {
   engine_.set_default_headers({{"Cache-Control", "no-store"},
                                {"Content-Security-Policy", page_policy},
                                {"Cross-Origin-Opener-Policy", "same-origin"},
@@ -101,13 +96,14 @@ Site::Site(const Settings& settings, Gate& gate, const LiveState& state, const O
   add_commands();
 }
 
-Outcome Site::serve(std::string_view request, Nanoseconds now, const Json* answer) {
+Outcome Site::serve(std::string_view request, Nanoseconds now, const Reply& reply) {
   now_ = now;
-  answer_ = answer;
+  reply_ = reply;
   role_ = Role::none;
   outcome_ = {};
   outcome_.bytes = engine_.answer(request);
   outcome_.status = status_in(outcome_.bytes);
+  outcome_.role = role_;
   if (outcome_.follower) outcome_.bytes += state_.greeting();
   return std::move(outcome_);
 }
@@ -188,8 +184,12 @@ void Site::add_sessions() {
 
 void Site::add_data() {
   engine_.Get("/metrics", [this](const Request&, Response& response) {
-    if (need(Role::look, response))
+    if (!need(Role::look, response)) return;
+    if (reply_.disk == nullptr && !settings_.recordings.empty()) {
+      outcome_.disk_request = DiskRequest{.kind = DiskRequest::Kind::health};
+    } else {
       response.set_content(metrics(), "text/plain; version=0.0.4; charset=utf-8");
+    }
   });
   engine_.Get("/api/status", [this](const Request&, Response& response) {
     if (!need(Role::look, response)) return;
@@ -210,12 +210,14 @@ void Site::greet(Response& response) {
 std::string Site::metrics() const {
   MetricText metrics;
   tell_daemon(state_.status(), state_.statistics(), metrics);
-  tell_health(tools::last_health(recordings_.folder()), metrics);
+  tell_health(state_.health(), metrics);
   using enum MetricText::Type;
   metrics.family("softgrip_web_connections", gauge, "Connections of browsers and collectors.");
   metrics.sample(static_cast<double>(counts_.connections));
   metrics.family("softgrip_web_pages", gauge, "Pages that are open.");
   metrics.sample(static_cast<double>(counts_.followers));
+  metrics.family("softgrip_web_unsent_bytes", gauge, "Bytes that the program keeps for slow readers.");
+  metrics.sample(static_cast<double>(counts_.unsent));
   metrics.family("softgrip_web_turned_away_total", counter, "Connections for which there was no place.");
   metrics.sample(static_cast<double>(counts_.turned_away));
   metrics.family("softgrip_web_answers_total", counter, "Answers by their status.");
@@ -225,18 +227,40 @@ std::string Site::metrics() const {
 }
 
 void Site::add_recordings() {
-  engine_.Get("/api/recordings", [this](const Request&, Response& response) {
-    if (need(Role::look, response)) put_json(response, {{"recordings", recordings_.list()}});
-  });
+  engine_.Get("/api/recordings", [this](const Request&, Response& response) { list(response); });
   engine_.Get(R"(/recordings/([A-Za-z0-9._-]+)/([A-Za-z0-9._-]+))",
-              [this](const Request& request, Response& response) {
-                if (!need(Role::look, response)) return;
-                const std::string file = request.matches[2];
-                auto bytes = recordings_.read(request.matches[1].str(), file);
-                if (!bytes) return put_error(response, 404, "there is no such file");
-                replace_header(response, "Content-Security-Policy", recording_policy);
-                response.set_content(*bytes, std::string(content_type_of(file)));
-              });
+              [this](const Request& request, Response& response) { show(request, response); });
+}
+
+void Site::list(Response& response) {
+  if (!need(Role::look, response)) return;
+  if (reply_.disk == nullptr) {
+    outcome_.disk_request = DiskRequest{.kind = DiskRequest::Kind::listing};
+  } else if (!reply_.disk->done()) {
+    put_error(response, 503, disk_is_silent);
+  } else {
+    response.set_content(reply_.disk->text(), json_type);
+  }
+}
+
+/// The library writes the head alone: the file follows it in pieces, and is never in memory as a whole.
+void Site::show(const Request& request, Response& response) {
+  if (!need(Role::look, response)) return;
+  const std::string name = request.matches[2];
+  if (reply_.disk == nullptr) {
+    outcome_.disk_request =
+        DiskRequest{.kind = DiskRequest::Kind::file, .recording = request.matches[1], .name = name};
+    return;
+  }
+  if (!reply_.disk->done()) return put_error(response, 503, disk_is_silent);
+  const auto& file = reply_.disk->file();
+  if (!file) return put_error(response, 404, "there is no such file");
+  replace_header(response, "Content-Security-Policy", recording_policy);
+  const std::string type(content_type_of(name));
+  if (file->size == 0) return response.set_content("", type);
+  response.set_content_provider(file->size, type,
+                                [](std::size_t, std::size_t, httplib::DataSink&) { return false; });
+  if (request.method == "GET") outcome_.file = file;
 }
 
 void Site::add_commands() {
@@ -250,12 +274,13 @@ void Site::command(const Request& request, Response& response) {
     return put_error(response, 415, "the body is JSON, and says so");
   auto command = command_in(request.body);
   if (!command) return put_error(response, 400, command.error());
-  if (answer_ == nullptr) {
+  if (reply_.daemon == nullptr) {
     outcome_.command = std::move(*command);
     return;
   }
-  if (answer_->value("ok", false)) return put_json(response, answer_->value("result", Json::object()));
-  const Json& error = answer_->contains("error") ? (*answer_)["error"] : *answer_;
+  const Json& answer = *reply_.daemon;
+  if (answer.value("ok", false)) return put_json(response, answer.value("result", Json::object()));
+  const Json& error = answer.contains("error") ? answer["error"] : answer;
   const std::string code = error.value("code", "");
   const bool gone = code == "no_daemon" || code == "no_answer";
   put_json(response, {{"error", error.value("message", "")}, {"code", code}, {"details", error}},

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,9 +13,9 @@
 #include "base/time.h"
 #include "rig/web_file/settings.h"
 #include "tools/web/access/gate.h"
+#include "tools/web/archive.h"
 #include "tools/web/http_engine.h"
 #include "tools/web/live_state.h"
-#include "tools/web/recordings.h"
 
 namespace softgrip::web {
 
@@ -22,6 +23,7 @@ namespace softgrip::web {
 struct OwnCounts {
   std::size_t connections = 0;
   std::size_t followers = 0;             ///< of them, open pages
+  std::size_t unsent = 0;                ///< bytes that wait for their readers
   std::uint64_t turned_away = 0;         ///< connections for which there was no place
   std::map<int, std::uint64_t> answers;  ///< by status
 };
@@ -36,10 +38,21 @@ struct Follower {
 struct Outcome {
   std::string bytes;  ///< for the client
   int status = 0;
+  Role role = Role::none;  ///< what the client may do
   /// The bytes begin a stream of messages that goes on, as long as its reader may do what he might at first.
   std::optional<Follower> follower;
+  /// The bytes are followed by this file.
+  std::shared_ptr<const RegularFile> file;
   /// This is to be asked of the daemon, and the request is to be served again with its answer.
   std::optional<nlohmann::ordered_json> command;
+  /// This is to be asked of the disk, and the request is to be served again with its answer.
+  std::optional<DiskRequest> disk_request;
+};
+
+/// The answer to what an earlier outcome asked for: one of both.
+struct Reply {
+  const nlohmann::ordered_json* daemon = nullptr;
+  const DiskTask* disk = nullptr;  ///< not done: it was given up
 };
 
 class Site {
@@ -49,8 +62,7 @@ class Site {
        std::string chart_js);
 
   /// `request`: a complete one, as frame_of() says.
-  [[nodiscard]] Outcome serve(std::string_view request, Nanoseconds now,
-                              const nlohmann::ordered_json* answer = nullptr);
+  [[nodiscard]] Outcome serve(std::string_view request, Nanoseconds now, const Reply& reply = {});
   /// The answer to what frame_of() refused, and to whom there is no place.
   [[nodiscard]] static std::string refusal(int status);
 
@@ -66,6 +78,8 @@ class Site {
   bool need(Role role, httplib::Response& response) const;
   void greet(httplib::Response& response);
   void command(const httplib::Request& request, httplib::Response& response);
+  void list(httplib::Response& response);
+  void show(const httplib::Request& request, httplib::Response& response);
   [[nodiscard]] std::string metrics() const;
 
   const Settings& settings_;
@@ -73,11 +87,10 @@ class Site {
   const LiveState& state_;
   const OwnCounts& counts_;
   std::string chart_js_;
-  Recordings recordings_;
   HttpEngine engine_;
   // Of the request that is served.
   Nanoseconds now_ = 0;
-  const nlohmann::ordered_json* answer_ = nullptr;
+  Reply reply_;
   Credentials credentials_;
   Role role_ = Role::none;
   Outcome outcome_;

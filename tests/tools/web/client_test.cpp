@@ -1,6 +1,7 @@
 #include "tools/web/client.h"
 
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -41,14 +42,63 @@ TEST_F(ClientTest, AsksInPiecesAndGetsOneAnswer) {
   say("HTTP/1.1\r\n\r\n");
   EXPECT_TRUE(client_.receive());
   EXPECT_EQ(client_.request(), "GET / HTTP/1.1\r\n\r\n");
-  client_.answer("good", false, 1);
+  client_.answer("good", Phase::answering, 1);
   EXPECT_FALSE(client_.send_on(1)) << "that is all";
   EXPECT_EQ(heard(), "good");
 }
 
 TEST_F(ClientTest, WhoHasGoneIsNoticed) {
+  client_.answer("hello", Phase::following, 0);
   other_.reset();
   EXPECT_FALSE(client_.receive());
+}
+
+TEST_F(ClientTest, WhoSaysNoMoreStillGetsHisAnswer) {
+  say("GET / HTTP/1.1\r\n\r\n");
+  ASSERT_EQ(::shutdown(other_.get(), SHUT_WR), 0);
+  EXPECT_TRUE(client_.receive());
+  client_.wait();
+  EXPECT_TRUE(client_.receive());
+  EXPECT_TRUE(client_.said_all());
+  client_.answer("good", Phase::answering, 1);
+  EXPECT_FALSE(client_.send_on(1));
+  EXPECT_EQ(heard(), "good");
+  EXPECT_FALSE(client_.receive()) << "a second end is a connection that broke";
+}
+
+TEST_F(ClientTest, WhoNeverStopsSendingHasATurnThatEnds) {
+  const int large = 1 << 22;
+  ::setsockopt(other_.get(), SOL_SOCKET, SO_SNDBUF, &large, sizeof large);
+  std::size_t said = 0;
+  const std::string flood(4096, 'x');
+  for (ssize_t count = 0; (count = ::send(other_.get(), flood.data(), flood.size(), 0)) > 0;)
+    said += static_cast<std::size_t>(count);
+  ASSERT_GT(said, 100'000U);
+  EXPECT_TRUE(client_.receive());
+  int left = 0;
+  ASSERT_EQ(::ioctl(client_.descriptor(), FIONREAD, &left), 0);
+  EXPECT_GT(left, 0) << "the rest is for the next turn";
+}
+
+TEST_F(ClientTest, AFileIsSentInPieces) {
+  client_.answer("head", Phase::loading, 0);
+  EXPECT_TRUE(client_.send_on(0)) << "pieces follow";
+  EXPECT_FALSE(client_.has_to_send());
+  EXPECT_TRUE(client_.add("-one"));
+  EXPECT_TRUE(client_.send_on(0));
+  EXPECT_TRUE(client_.late(Client::longest_pause + 1)) << "of a disk that does not answer, too";
+  EXPECT_TRUE(client_.add("-two"));
+  client_.finish();
+  EXPECT_FALSE(client_.send_on(0));
+  EXPECT_EQ(heard(), "head-one-two");
+}
+
+TEST_F(ClientTest, WhoReadsFastLeavesTheOthersTheirTurn) {
+  const int large = 1 << 22;
+  ::setsockopt(client_.descriptor(), SOL_SOCKET, SO_SNDBUF, &large, sizeof large);
+  client_.answer(std::string(2 * Client::most_at_once, 'x'), Phase::answering, 0);
+  EXPECT_TRUE(client_.send_on(0));
+  EXPECT_GE(client_.unsent(), Client::most_at_once);
 }
 
 TEST_F(ClientTest, KeepsNoMoreOfAQuestionThanThereMayBe) {
@@ -62,17 +112,17 @@ TEST_F(ClientTest, KeepsNoMoreOfAQuestionThanThereMayBe) {
 TEST_F(ClientTest, WhoIsSlowIsLate) {
   EXPECT_FALSE(client_.late(Client::longest_question));
   EXPECT_TRUE(client_.late(Client::longest_question + 1));
-  client_.wait_for(7);
+  client_.wait();
   EXPECT_EQ(client_.phase(), Phase::waiting);
   EXPECT_FALSE(client_.late(100 * ns_per_s)) << "the daemon's time is not his";
-  client_.answer(std::string(1U << 22U, 'x'), false, 0);
+  client_.answer(std::string(1U << 22U, 'x'), Phase::answering, 0);
   EXPECT_TRUE(client_.send_on(0));
   EXPECT_TRUE(client_.has_to_send());
   EXPECT_TRUE(client_.late(Client::longest_pause + 1));
 }
 
 TEST_F(ClientTest, WhoTakesATrickleIsLateInTheEnd) {
-  client_.answer(std::string(1U << 24U, 'x'), false, 0);
+  client_.answer(std::string(1U << 24U, 'x'), Phase::answering, 0);
   Nanoseconds now = 0;
   for (; !client_.late(now) && now < 200 * ns_per_s; now += ns_per_s) {
     ASSERT_TRUE(client_.send_on(now));
@@ -84,7 +134,7 @@ TEST_F(ClientTest, WhoTakesATrickleIsLateInTheEnd) {
 }
 
 TEST_F(ClientTest, AStreamThatIsNotReadHasABound) {
-  client_.answer("hello", true, 0);
+  client_.answer("hello", Phase::following, 0);
   EXPECT_EQ(client_.phase(), Phase::following);
   EXPECT_TRUE(client_.send_on(0));
   const std::string message(10000, 'm');
@@ -95,7 +145,7 @@ TEST_F(ClientTest, AStreamThatIsNotReadHasABound) {
 }
 
 TEST_F(ClientTest, AStreamEndsBehindWhatStillWaits) {
-  client_.answer("hello", true, 0);
+  client_.answer("hello", Phase::following, 0);
   client_.finish();
   EXPECT_TRUE(client_.add("!"));
   EXPECT_FALSE(client_.send_on(0));

@@ -4,13 +4,21 @@
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "drivers/modbus_server/listener.h"
 #include "tools/web/page/page_files.h"
@@ -18,12 +26,18 @@
 namespace softgrip::web::server_test {
 namespace {
 
+namespace fs = std::filesystem;
+
 class ServerTest : public ::testing::Test {
  protected:
   ServerTest() {
+    fs::create_directories(folder_ / "runs" / "one");
+    std::ofstream(folder_ / "runs" / "one" / "run.csv") << large_;
     settings_.max_connections = 8;
     settings_.without_token = Role::operate;
-    settings_.look_socket = settings_.operate_socket = "/nowhere/softgripd.sock";
+    settings_.look_socket = "/nowhere/softgripd.sock";
+    settings_.operate_socket = folder_ / "softgripd.sock";
+    settings_.recordings = folder_ / "runs";
     auto listener = modbus::listen_tcp("127.0.0.1", 0);
     port_ = listener->port;
     Descriptor signals{::eventfd(0, 0)};
@@ -36,6 +50,7 @@ class ServerTest : public ::testing::Test {
   ~ServerTest() override {
     ::eventfd_write(end_.get(), 1);
     thread_.join();
+    fs::remove_all(folder_);
   }
   ServerTest(const ServerTest&) = delete;
   ServerTest& operator=(const ServerTest&) = delete;
@@ -44,6 +59,9 @@ class ServerTest : public ::testing::Test {
 
   Descriptor connect() const {
     Descriptor socket{::socket(AF_INET, SOCK_STREAM, 0)};
+    // One who does not read leaves the most to the server.
+    const int small = 4096;
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port_);
@@ -60,18 +78,38 @@ class ServerTest : public ::testing::Test {
       text.append(bytes.data(), static_cast<std::size_t>(count));
     return text;
   }
+  static void say(const Descriptor& socket, const std::string& request) {
+    EXPECT_GT(::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL), 0);
+  }
   std::string ask(const std::string& request) const {
     const Descriptor socket = connect();
-    EXPECT_GT(::send(socket.get(), request.data(), request.size(), MSG_NOSIGNAL), 0);
+    say(socket, request);
     return all_from(socket);
   }
+  /// Tries again while there is no place.
+  std::string ask_patiently(const std::string& request) const {
+    std::string answer;
+    for (int attempt = 0; attempt < 100 && (answer.empty() || answer.starts_with(turned_away)); ++attempt) {
+      if (attempt > 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      answer = ask(request);
+    }
+    return answer;
+  }
 
+  static constexpr const char* turned_away = "HTTP/1.1 503 Refused";
+  fs::path folder_ = fs::temp_directory_path() / ("server_" + std::to_string(::getpid()));
+  std::string large_ = std::string(3'000'000, 'r') + "end";
   Settings settings_;
   std::uint16_t port_ = 0;
   Descriptor end_;
   std::thread thread_;
 };
 
+const std::string get_file = "GET /recordings/one/run.csv HTTP/1.1\r\nHost: localhost\r\n\r\n";
+const std::string get_stream = "GET /api/stream HTTP/1.1\r\nHost: localhost\r\n\r\n";
+const std::string post_stop =
+    "POST /api/command HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n"
+    "Content-Type: application/json\r\nContent-Length: 18\r\n\r\n{\"command\":\"stop\"}";
 const std::string get_page = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
 
 TEST_F(ServerTest, AnswersAndEndsTheConnection) {
@@ -86,19 +124,110 @@ TEST_F(ServerTest, AnswersAndEndsTheConnection) {
 TEST_F(ServerTest, WhoSaysNothingGivesWayToWhoAsks) {
   std::vector<Descriptor> silent;
   for (std::size_t i = 0; i < settings_.max_connections; ++i) silent.push_back(connect());
-  std::string answer;
-  for (int attempt = 0; attempt < 100 && !answer.starts_with("HTTP/1.1 200"); ++attempt) {
-    answer = ask(get_page);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  const std::string answer = ask_patiently(get_page);
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer;
 }
 
 TEST_F(ServerTest, ACommandWithoutADaemonSaysSo) {
-  const std::string answer =
-      ask("POST /api/command HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost\r\n"
-          "Content-Type: application/json\r\nContent-Length: 18\r\n\r\n{\"command\":\"stop\"}");
+  const std::string answer = ask(post_stop);
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 503")) << answer;
+  EXPECT_NE(answer.find("no_daemon"), std::string::npos) << answer;
+}
+
+TEST_F(ServerTest, AFileArrivesWhole) {
+  const std::string answer = ask(get_file);
+  EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer.substr(0, 200);
+  EXPECT_NE(answer.find("Content-Length: " + std::to_string(large_.size()) + "\r\n"), std::string::npos);
+  EXPECT_TRUE(answer.ends_with("\r\n\r\n" + large_));
+}
+
+TEST_F(ServerTest, WhoSaysNoMoreGetsWhatTheDiskHas) {
+  for (const std::string& request :
+       {get_file, std::string("GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        std::string("GET /api/recordings HTTP/1.1\r\nHost: localhost\r\n\r\n")}) {
+    const Descriptor socket = connect();
+    say(socket, request);
+    ASSERT_EQ(::shutdown(socket.get(), SHUT_WR), 0);
+    EXPECT_TRUE(all_from(socket).starts_with("HTTP/1.1 200")) << request;
+  }
+}
+
+TEST_F(ServerTest, DownloadsThatAreNotReadLeavePlacesForCommands) {
+  std::vector<Descriptor> unread;
+  for (std::size_t i = 0; i < 3 * settings_.max_connections; ++i) {
+    unread.push_back(connect());
+    say(unread.back(), get_file);
+    const std::string answer = ask_patiently(post_stop);
+    ASSERT_NE(answer.find("no_daemon"), std::string::npos) << i << ": " << answer;
+  }
+  const std::string file = ask_patiently(get_file);
+  EXPECT_TRUE(file.ends_with(large_)) << "one who reads gets the place of one who does not";
+}
+
+TEST_F(ServerTest, AFileThatBecomesShorterEndsItsAnswer) {
+  const Descriptor socket = connect();
+  say(socket, get_file);
+  char first = 0;
+  ASSERT_EQ(::recv(socket.get(), &first, 1, 0), 1);
+  fs::resize_file(folder_ / "runs" / "one" / "run.csv", 10);
+  EXPECT_LT(all_from(socket).size(), large_.size());
+  EXPECT_TRUE(ask(get_page).starts_with("HTTP/1.1 200"));
+}
+
+/// A daemon that answers when the test wants it.
+class ScriptedDaemon {
+ public:
+  explicit ScriptedDaemon(const std::string& path) : listener_(std::move(*modbus::listen_unix(path))) {}
+  /// The next command that comes; null if none does.
+  nlohmann::json next_command() {
+    for (;;) {
+      const std::size_t end = text_.find('\n');
+      if (end != std::string::npos) {
+        auto request = nlohmann::json::parse(text_.substr(0, end));
+        text_.erase(0, end + 1);
+        if (request["command"] != "hello") return request;
+        continue;
+      }
+      pollfd watched{socket_ ? socket_.get() : listener_.get(), POLLIN, 0};
+      if (::poll(&watched, 1, 10'000) != 1) return nullptr;
+      if (!socket_) {
+        socket_ = modbus::accept_client(listener_);
+        continue;
+      }
+      std::array<char, 4096> bytes;
+      const ssize_t count = ::recv(socket_.get(), bytes.data(), bytes.size(), 0);
+      if (count <= 0) return nullptr;
+      text_.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+  }
+  void answer(const nlohmann::json& command) {
+    const nlohmann::json reply{{"id", command["id"]}, {"ok", true}, {"result", {{"heard", true}}}};
+    const std::string line = reply.dump() + "\n";
+    EXPECT_GT(::send(socket_.get(), line.data(), line.size(), MSG_NOSIGNAL), 0);
+  }
+
+ private:
+  Descriptor listener_;
+  Descriptor socket_;
+  std::string text_;
+};
+
+TEST_F(ServerTest, WhoLeavesBeforeTheAnswerTakesNoCommandFromOthers) {
+  ScriptedDaemon daemon(settings_.operate_socket);
+  for (std::size_t i = 0; i < 3 * Commander::most_waiting; ++i) {
+    Descriptor leaving = connect();
+    say(leaving, post_stop);
+    ASSERT_FALSE(daemon.next_command().is_null()) << i;
+    const linger at_once{1, 0};
+    ::setsockopt(leaving.get(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+    leaving.reset();
+  }
+  const Descriptor waiting = connect();
+  say(waiting, post_stop);
+  const auto command = daemon.next_command();
+  ASSERT_FALSE(command.is_null());
+  daemon.answer(command);
+  EXPECT_NE(all_from(waiting).find("heard"), std::string::npos);
 }
 
 }  // namespace

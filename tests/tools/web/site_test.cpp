@@ -3,6 +3,7 @@
 #include "tools/web/site.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -41,7 +42,31 @@ class SiteTest : public ::testing::Test {
     if (!body.empty()) {
       request += "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n";
     }
-    return site_.serve(request + "\r\n" + body, 0, answer);
+    request += "\r\n" + body;
+    Outcome outcome = site_.serve(request, 0, {.daemon = answer});
+    if (!outcome.disk_request) return outcome;
+    const auto task = archive_.ask(*outcome.disk_request);
+    wait_for(*task);
+    outcome = site_.serve(request, 0, {.disk = task.get()});
+    if (outcome.file) outcome.bytes += all_of(outcome.file);
+    return outcome;
+  }
+  void wait_for(const DiskTask& task) {
+    pollfd watched{archive_.descriptor(), POLLIN, 0};
+    while (!task.done()) {
+      ASSERT_EQ(::poll(&watched, 1, 30'000), 1);
+      archive_.hear();
+    }
+  }
+  std::string all_of(const std::shared_ptr<const RegularFile>& file) {
+    std::string bytes;
+    while (bytes.size() < file->size) {
+      const auto piece = archive_.ask({.kind = DiskRequest::Kind::piece, .from = file});
+      wait_for(*piece);
+      if (piece->text().empty()) break;
+      bytes += piece->text();
+    }
+    return bytes;
   }
 
   static Settings settings_of(const fs::path& folder) {
@@ -56,6 +81,7 @@ class SiteTest : public ::testing::Test {
   Settings settings_ = settings_of(folder_);
   Gate gate_{settings_, *Tokens::parse("look " + look + "\noperate " + operate)};
   LiveState state_;
+  Archive archive_{folder_};
   OwnCounts counts_;
   Site site_{settings_, gate_, state_, counts_, "draw()"};
 };
@@ -114,6 +140,46 @@ TEST_F(SiteTest, OnlyTheFilesOfARecordingThatAreShown) {
   EXPECT_NE(
       get("/api/recordings", look).bytes.find(R"([{"name":"run-1","files":["link.svg","picture.svg"]}])"),
       std::string::npos);
+}
+
+TEST_F(SiteTest, TheHeadTellsTheLengthOfAFileThatFollows) {
+  const std::string whole(100'000, 'x');
+  std::ofstream(folder_ / "run-1" / "long.csv") << whole;
+  std::ofstream(folder_ / "run-1" / "empty.csv");
+  const Outcome file = get("/recordings/run-1/long.csv", look);
+  ASSERT_TRUE(file.file);
+  EXPECT_NE(file.bytes.find("Content-Length: 100000\r\n"), std::string::npos);
+  EXPECT_NE(file.bytes.find("Content-Type: text/csv"), std::string::npos);
+  EXPECT_TRUE(file.bytes.ends_with("\r\n\r\n" + whole));
+  const Outcome head = ask("HEAD", "/recordings/run-1/long.csv", look);
+  EXPECT_FALSE(head.file);
+  EXPECT_NE(head.bytes.find("Content-Length: 100000\r\n"), std::string::npos);
+  const Outcome empty = get("/recordings/run-1/empty.csv", look);
+  EXPECT_EQ(empty.status, 200);
+  EXPECT_NE(empty.bytes.find("Content-Length: 0\r\n"), std::string::npos);
+}
+
+TEST_F(SiteTest, ADiskThatDoesNotAnswerIsSaid) {
+  const DiskTask silent{DiskRequest{}};
+  for (const char* path : {"/api/recordings", "/recordings/run-1/picture.svg"}) {
+    const std::string request = std::string("GET ") + path + " HTTP/1.1\r\nHost: localhost:1\r\n" +
+                                "Authorization: Bearer " + look + "\r\n\r\n";
+    EXPECT_TRUE(site_.serve(request, 0).disk_request) << path;
+    const Outcome given_up = site_.serve(request, 0, {.disk = &silent});
+    EXPECT_EQ(given_up.status, 503) << path;
+    EXPECT_NE(given_up.bytes.find("does not answer"), std::string::npos) << path;
+  }
+}
+
+TEST_F(SiteTest, MetricsDoWithoutADiskThatDoesNotAnswer) {
+  state_.take_health({{"made_unix_s", 7}, {"fingers", Json::array()}});
+  const DiskTask silent{DiskRequest{}};
+  const std::string request =
+      "GET /metrics HTTP/1.1\r\nHost: localhost:1\r\nAuthorization: Bearer " + look + "\r\n\r\n";
+  EXPECT_TRUE(site_.serve(request, 0).disk_request);
+  const Outcome metrics = site_.serve(request, 0, {.disk = &silent});
+  EXPECT_EQ(metrics.status, 200);
+  EXPECT_NE(metrics.bytes.find("softgrip_health_timestamp_seconds 7\n"), std::string::npos) << metrics.bytes;
 }
 
 TEST_F(SiteTest, AStreamBeginsWithAllThatThereIs) {

@@ -186,10 +186,10 @@ function linkTo(recording, file) {
 }
 
 async function showRecordings() {
-  const {recordings} = await ask("/api/recordings").catch(() => ({recordings: []}));
+  const {recordings, error} = await ask("/api/recordings").catch((reason) => ({recordings: [], error: reason.message}));
   const list = $("recordings");
   list.replaceChildren();
-  if (!recordings.length) list.append(make("li", "none"));
+  if (!recordings.length) list.append(make("li", error || "none"));
   for (const {name, files} of recordings) {
     const line = make("li");
     line.append(make("div", name), ...files.map((file) => linkTo(name, file)));

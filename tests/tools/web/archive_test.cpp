@@ -1,0 +1,113 @@
+#include "tools/web/archive.h"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace softgrip::web::archive_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ArchiveTest : public ::testing::Test {
+ protected:
+  ArchiveTest() {
+    fs::create_directories(folder_ / "one");
+    std::ofstream(folder_ / "one" / "run.csv") << contents_;
+  }
+  ~ArchiveTest() override { fs::remove_all(folder_); }
+  ArchiveTest(const ArchiveTest&) = delete;
+  ArchiveTest& operator=(const ArchiveTest&) = delete;
+  ArchiveTest(ArchiveTest&&) = delete;
+  ArchiveTest& operator=(ArchiveTest&&) = delete;
+
+  std::shared_ptr<const DiskTask> done(DiskRequest disk_request) {
+    auto task = archive_.ask(std::move(disk_request));
+    wait_for(*task);
+    return task;
+  }
+  void wait_for(const DiskTask& task) {
+    pollfd watched{archive_.descriptor(), POLLIN, 0};
+    while (!task.done()) {
+      ASSERT_EQ(::poll(&watched, 1, 30'000), 1) << "no answer was signalled";
+      archive_.hear();
+    }
+  }
+
+  std::string contents_ = std::string(Archive::piece, 'a') + std::string(Archive::piece, 'b') + "end";
+  fs::path folder_ = fs::temp_directory_path() / ("archive_" + std::to_string(::getpid()));
+  Archive archive_{folder_};
+};
+
+TEST_F(ArchiveTest, ListsOpensAndReads) {
+  EXPECT_EQ(done({.kind = DiskRequest::Kind::listing})->text(),
+            R"({"recordings":[{"name":"one","files":["run.csv"]}]})");
+  const auto file = done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"})->file();
+  ASSERT_TRUE(file);
+  EXPECT_EQ(file->size, contents_.size());
+  std::string bytes;
+  for (int pieces = 0; pieces < 3; ++pieces) {
+    const auto piece = done({.kind = DiskRequest::Kind::piece, .from = file});
+    EXPECT_LE(piece->text().size(), Archive::piece);
+    bytes += piece->text();
+  }
+  EXPECT_EQ(bytes, contents_);
+  EXPECT_TRUE(done({.kind = DiskRequest::Kind::piece, .from = file})->text().empty());
+  EXPECT_FALSE(done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "none.csv"})->file());
+}
+
+TEST_F(ArchiveTest, TellsTheLastHealth) {
+  EXPECT_TRUE(done({.kind = DiskRequest::Kind::health})->health().is_null());
+  fs::create_directories(folder_ / "health");
+  std::ofstream(folder_ / "health" / "health.json") << R"({"made_unix_s": 7, "fingers": []})";
+  EXPECT_EQ(done({.kind = DiskRequest::Kind::health})->health()["made_unix_s"], 7);
+}
+
+TEST_F(ArchiveTest, AListIsNoOlderThanItsQuestion) {
+  for (int i = 0; i < 5; ++i) {
+    const std::string name = "new-" + std::to_string(i);
+    fs::create_directories(folder_ / name);
+    std::ofstream(folder_ / name / "run.csv") << "x";
+    EXPECT_NE(done({.kind = DiskRequest::Kind::listing})->text().find(name), std::string::npos);
+  }
+}
+
+TEST_F(ArchiveTest, ManyWhoAskAtOnceGetTheSameList) {
+  std::vector<std::shared_ptr<const DiskTask>> asked;
+  for (int i = 0; i < 1000; ++i) asked.push_back(archive_.ask({.kind = DiskRequest::Kind::listing}));
+  std::size_t lists = 0;
+  const std::string* last = nullptr;
+  for (const auto& task : asked) {
+    wait_for(*task);
+    if (&task->text() != last) ++lists;
+    last = &task->text();
+  }
+  EXPECT_LE(lists, 3U) << "each list is made once, however many ask";
+}
+
+TEST_F(ArchiveTest, WhoeverGoesCostsNothing) {
+  for (int i = 0; i < 1000; ++i) {
+    static_cast<void>(archive_.ask({.kind = DiskRequest::Kind::listing}));
+    static_cast<void>(archive_.ask({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"}));
+  }
+  EXPECT_TRUE(done({.kind = DiskRequest::Kind::file, .recording = "one", .name = "run.csv"})->file());
+}
+
+TEST_F(ArchiveTest, EndsWithQuestionsOpen) {
+  std::shared_ptr<const DiskTask> open;
+  {
+    Archive other(folder_);
+    for (int i = 0; i < 100; ++i) open = other.ask({.kind = DiskRequest::Kind::listing});
+  }
+  EXPECT_EQ(open->request().kind, DiskRequest::Kind::listing) << "an answer may come or not";
+}
+
+}  // namespace
+}  // namespace softgrip::web::archive_test

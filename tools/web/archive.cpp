@@ -1,0 +1,171 @@
+#include "tools/web/archive.h"
+
+#include <sys/eventfd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/wall_clock.h"
+#include "tools/client/last_health.h"
+
+namespace softgrip::web {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using SteadyClock = std::chrono::steady_clock;
+
+}  // namespace
+
+DiskTask::DiskTask(DiskRequest disk_request)
+    : request_(std::move(disk_request)),
+      health_(std::make_shared<const Json>()),
+      text_(std::make_shared<const std::string>()) {}
+
+void DiskTask::answer_health(const Json& health) {
+  health_ = std::make_shared<const Json>(health);
+  done_ = true;
+}
+
+void DiskTask::answer_text(std::shared_ptr<const std::string> text) {
+  text_ = std::move(text);
+  done_ = true;
+}
+
+void DiskTask::answer_file(std::shared_ptr<const RegularFile> file) {
+  file_ = std::move(file);
+  done_ = true;
+}
+
+/// The thread keeps it alive: it may outlive the archive in a call that does not return.
+struct Archive::Shared {
+  using DiskTasks = std::deque<std::shared_ptr<DiskTask>>;
+
+  explicit Shared(std::string folder) : recordings(std::move(folder)) {}
+
+  void work();
+  void do_all(DiskTasks tasks);
+  void do_quick_ones();
+  void list(const DiskTasks& tasks);
+  void answer(DiskTask& task) const;
+  void tell() const noexcept;
+  [[nodiscard]] DiskTasks take(DiskTasks& tasks);
+
+  Descriptor told{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+  Recordings recordings;  // of the thread alone
+  std::mutex mutex;
+  std::condition_variable changed;
+  DiskTasks quick;     // everything but lists
+  DiskTasks listings;  // that have not begun
+  bool ends = false;
+  bool ended = false;
+};
+
+void Archive::Shared::work() {
+  SteadyClock::time_point next_listing = SteadyClock::now();
+  std::unique_lock lock(mutex);
+  while (!ends) {
+    if (!quick.empty()) {
+      lock.unlock();
+      do_quick_ones();
+      lock.lock();
+    } else if (listings.empty()) {
+      changed.wait(lock);
+    } else if (SteadyClock::now() < next_listing) {
+      changed.wait_until(lock, next_listing);
+    } else {
+      const DiskTasks asked = std::exchange(listings, {});
+      const SteadyClock::time_point began = SteadyClock::now();
+      lock.unlock();
+      list(asked);
+      lock.lock();
+      next_listing = began + std::max<SteadyClock::duration>(listing_pause, 2 * (SteadyClock::now() - began));
+    }
+  }
+  ended = true;
+  changed.notify_all();
+}
+
+Archive::Shared::DiskTasks Archive::Shared::take(DiskTasks& tasks) {
+  const std::lock_guard lock(mutex);
+  return std::exchange(tasks, {});
+}
+
+void Archive::Shared::do_quick_ones() {
+  for (const std::shared_ptr<DiskTask>& task : take(quick)) {
+    if (task.use_count() == 1) continue;  // its owner has dropped it
+    answer(*task);
+    tell();
+  }
+}
+
+void Archive::Shared::answer(DiskTask& task) const try {
+  const DiskRequest& disk_request = task.request();
+  if (disk_request.kind == DiskRequest::Kind::health) {
+    task.answer_health(tools::last_health(recordings.folder()));
+  } else if (disk_request.kind == DiskRequest::Kind::piece) {
+    const auto bytes = read_start(*disk_request.from, piece);
+    task.answer_text(std::make_shared<const std::string>(bytes.value_or(std::string())));
+  } else {
+    auto opened = recordings.open(disk_request.recording, disk_request.name);
+    task.answer_file(opened ? std::make_shared<const RegularFile>(std::move(*opened)) : nullptr);
+  }
+} catch (const std::exception&) {
+  task.fail();
+}
+
+void Archive::Shared::list(const DiskTasks& tasks) {
+  if (std::all_of(tasks.begin(), tasks.end(), [](const auto& task) { return task.use_count() == 1; })) return;
+  const Json list = recordings.list(wall_time_now(), [this] { do_quick_ones(); });
+  const auto text = std::make_shared<const std::string>(
+      Json{{"recordings", list}}.dump(-1, ' ', false, Json::error_handler_t::replace));
+  for (const std::shared_ptr<DiskTask>& task : tasks) task->answer_text(text);
+  tell();
+}
+
+void Archive::Shared::tell() const noexcept {
+  // It fails only where it is readable anyway.
+  [[maybe_unused]] const int result = ::eventfd_write(told.get(), 1);
+}
+
+Archive::Archive(std::string folder)
+    : shared_(std::make_shared<Shared>(std::move(folder))), thread_([shared = shared_] { shared->work(); }) {}
+
+Archive::~Archive() {
+  std::unique_lock lock(shared_->mutex);
+  shared_->ends = true;
+  shared_->changed.notify_all();
+  const bool ended = shared_->changed.wait_for(lock, farewell, [this] { return shared_->ended; });
+  lock.unlock();
+  if (ended) {
+    thread_.join();
+  } else {
+    thread_.detach();
+  }
+}
+
+std::shared_ptr<const DiskTask> Archive::ask(DiskRequest disk_request) {
+  auto task = std::make_shared<DiskTask>(std::move(disk_request));
+  const std::lock_guard lock(shared_->mutex);
+  (task->request().kind == DiskRequest::Kind::listing ? shared_->listings : shared_->quick).push_back(task);
+  shared_->changed.notify_all();
+  return task;
+}
+
+int Archive::descriptor() const noexcept {
+  return shared_->told.get();
+}
+
+void Archive::hear() const noexcept {
+  eventfd_t count = 0;
+  [[maybe_unused]] const int result = ::eventfd_read(shared_->told.get(), &count);
+}
+
+}  // namespace softgrip::web
