@@ -1,10 +1,10 @@
 #pragma once
-// Time that only passes when somebody sleeps, for commands that drive a board by hand.
+// Time that only passes when somebody sleeps, for commands that move a rig by hand.
 
 #include <limits>
 
 #include "base/clock.h"
-#include "tools/commissioning/hand_drive.h"
+#include "tools/commissioning/motion_session.h"
 
 namespace softgrip::tools::testing {
 

@@ -103,7 +103,7 @@ std::optional<ExitCode> refuse_beside_daemon(const CalibrateOptions& options, co
 }
 
 calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const CalibrateOptions& options,
-                                                const calibrate::Settings& settings, HandDrive& drive,
+                                                const calibrate::Settings& settings, MotionSession& session,
                                                 calibrate::TerminalOperator& terminal) {
   calibrate::Results results;
   results.channel = settings.channel;
@@ -112,18 +112,18 @@ calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const C
     terminal.prepare(spread(options.manometer_kpa, settings.repeats));
     const bool by_monitor = !options.manometer && options.manometer_kpa.empty() &&
                             rig.settings.channels[settings.channel].pressure_measured;
-    auto valve = calibrate::calibrate_valve(rig, drive, terminal, settings, by_monitor);
+    auto valve = calibrate::calibrate_valve(rig, session, terminal, settings, by_monitor);
     if (!valve) return tl::unexpected(valve.error());
     results.valve = std::move(*valve);
   }
   if (options.dead_zone) {
-    auto zone = calibrate::search_dead_zone(rig, drive, terminal, settings);
+    auto zone = calibrate::search_dead_zone(rig, session, terminal, settings);
     if (!zone) return tl::unexpected(zone.error());
     results.dead_zone = *zone;
   }
   if (options.sensor) {
     terminal.prepare(spread(options.gauge_mm, settings.repeats));
-    auto sensor = calibrate::calibrate_sensor(rig, drive, terminal, settings);
+    auto sensor = calibrate::calibrate_sensor(rig, session, terminal, settings);
     if (!sensor) return tl::unexpected(sensor.error());
     results.sensor = std::move(*sensor);
     if (settings.may_move) {
@@ -231,13 +231,13 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   const MonotonicClock clock;
   const auto board = daemon::make_board(rig, clock);
   RealPace pace;
-  HandDrive drive(rig, *board, pace);
-  if (const auto connected = drive.connect(); !connected) return fail(ExitCode::io, connected.error().text);
+  MotionSession session(rig, *board, pace);
+  if (const auto connected = session.connect(); !connected) return fail(ExitCode::io, connected.error().text);
   std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),
                rig.settings.channels[settings.channel].name.c_str());
   calibrate::TerminalOperator terminal;
-  const auto results = measure(rig, options, settings, drive, terminal);
-  const bool safe = drive.leave();
+  const auto results = measure(rig, options, settings, session, terminal);
+  const bool safe = session.leave();
   if (!safe)
     std::fprintf(stderr, "the board did NOT confirm the lowest pressures: look before you reach in\n");
   if (!results) return fail(results.error().code, results.error().text);

@@ -9,7 +9,7 @@
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
 #include "tools/client/daemon_client.h"
-#include "tools/commissioning/hand_drive.h"
+#include "tools/commissioning/motion_session.h"
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/terminal_operator.h"
 
@@ -41,14 +41,14 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     const MonotonicClock clock;
     const auto board = daemon::make_board(rig.rig, clock);
     RealPace pace;
-    HandDrive drive(rig.rig, *board, pace);
-    if (const auto connected = drive.connect(); !connected) return failed(connected.error().text);
+    MotionSession session(rig.rig, *board, pace);
+    if (const auto connected = session.connect(); !connected) return failed(connected.error().text);
     calibrate::TerminalOperator terminal;
     terminal.tell("Enter: the target is there; a number: it is there instead [mm]; -: leave it out");
     calibrate::Settings settings;
     settings.channel = rig.channel;
-    const auto visits = calibrate::read_positions(drive, terminal, settings, positions_mm);
-    const bool safe = drive.leave();
+    const auto visits = calibrate::read_positions(session, terminal, settings, positions_mm);
+    const bool safe = session.leave();
     if (!visits)
       return tl::unexpected(NotPlayed{visits.error().code == ExitCode::failed, visits.error().text});
     if (!safe) return failed("the board did not confirm the lowest pressures: look before you reach in");

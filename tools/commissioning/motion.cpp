@@ -98,30 +98,32 @@ void judge_model(const control::ChannelSettings& channel, const Motion& motion, 
 
 }  // namespace
 
-HandDrive::Expected<Motion> move_and_watch(const rig::RigFile& rig, HandDrive& drive, std::size_t channel,
-                                           const ChannelSample& rest, const MoveSettings& settings) {
+MotionSession::Expected<Motion> move_and_watch(const rig::RigFile& rig, MotionSession& session,
+                                               std::size_t channel, const ChannelSample& rest,
+                                               const MoveSettings& settings) {
   const control::ChannelSettings& of = rig.settings.channels[channel];
   const double lowest = of.limits.pressure_min_kpa;
   const double step = settings.share * (of.limits.pressure_max_kpa - lowest);
   const double speed = step / settings.duration_s;
-  Beside beside(of, seconds(drive.period()), rest.displacement_mm.mean);
-  const HandDrive::Watch watch = [&](const std::vector<double>& commands,
-                                     const std::vector<model::Reading>& readings) {
+  Beside beside(of, seconds(session.period()), rest.displacement_mm.mean);
+  const MotionSession::Watch watch = [&](const std::vector<double>& commands,
+                                         const std::vector<model::Reading>& readings) {
     beside.take(readings[channel], commands[channel]);
   };
   Motion motion;
   motion.command_kpa = lowest + step;
-  if (const auto up = drive.ramp(channel, motion.command_kpa, speed, watch); !up)
+  if (const auto up = session.ramp(channel, motion.command_kpa, speed, watch); !up)
     return tl::unexpected(up.error());
-  const auto settling = drive.sample(settings.settle_s / 2, watch);
+  const auto settling = session.sample(settings.settle_s / 2, watch);
   if (!settling) return tl::unexpected(settling.error());
   beside.begin_mean();
-  const auto there = drive.sample(settings.settle_s / 2, watch);
+  const auto there = session.sample(settings.settle_s / 2, watch);
   if (!there) return tl::unexpected(there.error());
   motion.up = *there;
   motion.model_mm = beside.mean_mm();
-  if (const auto down = drive.ramp(channel, lowest, speed, watch); !down) return tl::unexpected(down.error());
-  const auto after = drive.sample(settings.settle_s, watch);
+  if (const auto down = session.ramp(channel, lowest, speed, watch); !down)
+    return tl::unexpected(down.error());
+  const auto after = session.sample(settings.settle_s, watch);
   if (!after) return tl::unexpected(after.error());
   motion.residual_rms_mm = beside.rms_mm();
   return motion;

@@ -13,9 +13,9 @@ struct Motion {
   double residual_rms_mm = 0;     ///< of reading minus model, less what it was at rest; over the whole motion
 };
 
-[[nodiscard]] HandDrive::Expected<Motion> move_and_watch(const rig::RigFile& rig, HandDrive& drive,
-                                                         std::size_t channel, const ChannelSample& rest,
-                                                         const MoveSettings& settings);
+[[nodiscard]] MotionSession::Expected<Motion> move_and_watch(const rig::RigFile& rig, MotionSession& session,
+                                                             std::size_t channel, const ChannelSample& rest,
+                                                             const MoveSettings& settings);
 /// True of a sensor that went far enough from its rest: beyond its noise, and for a good part of what the
 /// model of the finger that was moved went.
 [[nodiscard]] bool has_moved(const Sample& rest, const Sample& seen, double model_mm);

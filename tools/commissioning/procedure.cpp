@@ -28,32 +28,32 @@ Refusal nonsense(std::string text) {
   return {ExitCode::not_acceptable, std::move(text)};
 }
 
-Refusal refusal_of(const DriveFailure& failure) {
+Refusal refusal_of(const MotionFailure& failure) {
   switch (failure.kind) {
-    case DriveFailure::Kind::stopped:
+    case MotionFailure::Kind::stopped:
       return {ExitCode::failed, failure.text};
-    case DriveFailure::Kind::bus:
+    case MotionFailure::Kind::bus:
       return {ExitCode::io, failure.text};
-    case DriveFailure::Kind::beyond:
+    case MotionFailure::Kind::beyond:
       return {ExitCode::not_acceptable, failure.text};
   }
   return {};
 }
 
 /// Asks; meanwhile the board is talked to, or its watchdog would trip.
-Expected<std::string> ask(HandDrive& drive, Operator& person, const std::string& question) {
+Expected<std::string> ask(MotionSession& session, Operator& person, const std::string& question) {
   person.ask(question);
   std::optional<std::string> answer;
-  const auto waited = drive.wait([&] { return (answer = person.answer()).has_value() || person.gone(); });
+  const auto waited = session.wait([&] { return (answer = person.answer()).has_value() || person.gone(); });
   if (!waited) return tl::unexpected(refusal_of(waited.error()));
   if (!answer) return tl::unexpected(Refusal{ExitCode::input_refused, "no answer to: " + question});
   return *answer;
 }
 
 /// Asks until a number comes.
-Expected<double> ask_number(HandDrive& drive, Operator& person, const std::string& question) {
+Expected<double> ask_number(MotionSession& session, Operator& person, const std::string& question) {
   for (int i = 0; person.patient() || i < questions_at_most; ++i) {
-    const auto answer = ask(drive, person, question);
+    const auto answer = ask(session, person, question);
     if (!answer) return tl::unexpected(answer.error());
     if (const auto value = typed_number(*answer)) return *value;
     person.tell("`" + *answer + "` is no number: once more, please, like 12.34");
@@ -62,10 +62,10 @@ Expected<double> ask_number(HandDrive& drive, Operator& person, const std::strin
 }
 
 /// Enter says that the target is where it was asked for, a number where it is instead, `-` leaves it out.
-Expected<std::optional<double>> ask_position(HandDrive& drive, Operator& person, const std::string& question,
-                                             double asked_mm) {
+Expected<std::optional<double>> ask_position(MotionSession& session, Operator& person,
+                                             const std::string& question, double asked_mm) {
   for (int i = 0; person.patient() || i < questions_at_most; ++i) {
-    const auto answer = ask(drive, person, question);
+    const auto answer = ask(session, person, question);
     if (!answer) return tl::unexpected(answer.error());
     const auto first = answer->find_first_not_of(" \t\r");
     if (first == std::string::npos) return std::optional<double>(asked_mm);
@@ -78,15 +78,15 @@ Expected<std::optional<double>> ask_position(HandDrive& drive, Operator& person,
   return tl::unexpected(Refusal{ExitCode::input_refused, "no position was given: " + question});
 }
 
-Expected<void> move_to(const rig::RigFile& rig, HandDrive& drive, Operator& person, const Settings& settings,
-                       double kpa) {
-  if (drive.command_kpa(settings.channel) == kpa) return {};  // and it rests there
+Expected<void> move_to(const rig::RigFile& rig, MotionSession& session, Operator& person,
+                       const Settings& settings, double kpa) {
+  if (session.command_kpa(settings.channel) == kpa) return {};  // and it rests there
   const double speed = ramp_speed_kpa_per_s(rig, settings.channel);
   person.tell(fmt::format("moving `{}` to {:.4g} kPa", rig.settings.channels[settings.channel].name, kpa));
-  if (const auto moved = drive.ramp(settings.channel, kpa, speed); !moved) {
+  if (const auto moved = session.ramp(settings.channel, kpa, speed); !moved) {
     return tl::unexpected(refusal_of(moved.error()));
   }
-  if (const auto settled = drive.sample(settings.settle_s); !settled) {
+  if (const auto settled = session.sample(settings.settle_s); !settled) {
     return tl::unexpected(refusal_of(settled.error()));
   }
   return {};
@@ -98,10 +98,10 @@ struct Halves {
   ChannelSample second;
 };
 
-Expected<Halves> average(HandDrive& drive, const Settings& settings) {
-  const auto first = drive.sample(settings.average_s / 2);
+Expected<Halves> average(MotionSession& session, const Settings& settings) {
+  const auto first = session.sample(settings.average_s / 2);
   if (!first) return tl::unexpected(refusal_of(first.error()));
-  const auto second = drive.sample(settings.average_s / 2);
+  const auto second = session.sample(settings.average_s / 2);
   if (!second) return tl::unexpected(refusal_of(second.error()));
   return Halves{(*first)[settings.channel], (*second)[settings.channel]};
 }
@@ -134,24 +134,24 @@ std::optional<std::string> at_an_end(const Visit& visit, const drivers::InputWir
                      visit.electrical, drivers::name_of(wiring.unit), wiring.valid_min, wiring.valid_max);
 }
 
-Expected<Visit> visit_sensor(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+Expected<Visit> visit_sensor(const rig::RigFile& rig, MotionSession& session, Operator& person,
                              const Settings& settings, bool upper) {
   const drivers::InputWiring& wiring = rig.wiring[settings.channel].displacement;
   if (settings.may_move) {
     // Always from below: the hysteresis of the finger must not become one of the sensor.
     for (const double kpa : {rig.settings.channels[settings.channel].limits.pressure_min_kpa,
                              upper ? settings.high_kpa : settings.low_kpa}) {
-      if (const auto moved = move_to(rig, drive, person, settings, kpa); !moved)
+      if (const auto moved = move_to(rig, session, person, settings, kpa); !moved)
         return tl::unexpected(moved.error());
     }
   }
   const std::string place = upper ? "second" : "first";
   const auto reference = ask_number(
-      drive, person,
+      session, person,
       settings.may_move ? fmt::format("gauge at the {} position, mm", place)
                         : fmt::format("put the target at the {} position; gauge there, mm", place));
   if (!reference) return tl::unexpected(reference.error());
-  const auto halves = average(drive, settings);
+  const auto halves = average(session, settings);
   if (!halves) return tl::unexpected(halves.error());
   for (const Sample* half : {&halves->first.displacement_mm, &halves->second.displacement_mm}) {
     if (const auto why = invalid(*half)) return tl::unexpected(nonsense(*why));
@@ -179,22 +179,22 @@ struct ValveVisit {
   std::optional<Visit> monitor;
 };
 
-Expected<ValveVisit> visit_valve(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+Expected<ValveVisit> visit_valve(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                  const Settings& settings, bool by_monitor, bool upper) {
   const drivers::ChannelWiring& wiring = rig.wiring[settings.channel];
   const double lowest = rig.settings.channels[settings.channel].limits.pressure_min_kpa;
   for (const double kpa : {lowest, upper ? settings.high_kpa : settings.low_kpa}) {
-    if (const auto moved = move_to(rig, drive, person, settings, kpa); !moved)
+    if (const auto moved = move_to(rig, session, person, settings, kpa); !moved)
       return tl::unexpected(moved.error());
   }
   double reference = 0;
   if (!by_monitor) {
     const auto shown = ask_number(
-        drive, person, fmt::format("manometer at the {} pressure, kPa", upper ? "second" : "first"));
+        session, person, fmt::format("manometer at the {} pressure, kPa", upper ? "second" : "first"));
     if (!shown) return tl::unexpected(shown.error());
     reference = *shown;
   }
-  const auto halves = average(drive, settings);
+  const auto halves = average(session, settings);
   if (!halves) return tl::unexpected(halves.error());
   ValveVisit visit;
   const Sample& first = halves->first.pressure_kpa;
@@ -204,7 +204,7 @@ Expected<ValveVisit> visit_valve(const rig::RigFile& rig, HandDrive& drive, Oper
     visit.monitor->reference = reference;
   }
   visit.valve.upper = upper;
-  visit.valve.electrical = wiring.valve.scaling.x_at(drive.command_kpa(settings.channel));
+  visit.valve.electrical = wiring.valve.scaling.x_at(session.command_kpa(settings.channel));
   visit.valve.reference = by_monitor ? (first.mean + second.mean) / 2 : reference;
   visit.valve.count = 1;
   if (by_monitor) {
@@ -234,12 +234,12 @@ std::optional<double> typed_number(std::string text) {
   return value;
 }
 
-Expected<Line> calibrate_sensor(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+Expected<Line> calibrate_sensor(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                 const Settings& settings) {
   std::vector<Visit> visits;
   for (std::size_t i = 0; i < settings.repeats; ++i) {
     for (const bool upper : {false, true}) {
-      auto visit = visit_sensor(rig, drive, person, settings, upper);
+      auto visit = visit_sensor(rig, session, person, settings, upper);
       if (!visit) return tl::unexpected(visit.error());
       visits.push_back(*visit);
     }
@@ -251,17 +251,18 @@ Expected<Line> calibrate_sensor(const rig::RigFile& rig, HandDrive& drive, Opera
   return *line;
 }
 
-Expected<std::vector<GaugeVisit>> read_positions(HandDrive& drive, Operator& person, const Settings& settings,
+Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operator& person,
+                                                 const Settings& settings,
                                                  const std::vector<double>& positions_mm) {
   std::vector<GaugeVisit> visits;
   for (std::size_t i = 0; i < positions_mm.size(); ++i) {
     const auto where = ask_position(
-        drive, person,
+        session, person,
         fmt::format("{} of {}: target at {:g} mm, then Enter", i + 1, positions_mm.size(), positions_mm[i]),
         positions_mm[i]);
     if (!where) return tl::unexpected(where.error());
     if (!*where) continue;
-    const auto halves = average(drive, settings);
+    const auto halves = average(session, settings);
     if (!halves) return tl::unexpected(halves.error());
     const Sample& first = halves->first.displacement_mm;
     const Sample& second = halves->second.displacement_mm;
@@ -280,14 +281,14 @@ Expected<std::vector<GaugeVisit>> read_positions(HandDrive& drive, Operator& per
   return visits;
 }
 
-Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                       const Settings& settings, bool by_monitor) {
   const drivers::ChannelWiring& wiring = rig.wiring[settings.channel];
   std::vector<Visit> of_valve;
   std::vector<Visit> of_monitor;
   for (std::size_t i = 0; i < settings.repeats; ++i) {
     for (const bool upper : {false, true}) {
-      const auto visit = visit_valve(rig, drive, person, settings, by_monitor, upper);
+      const auto visit = visit_valve(rig, session, person, settings, by_monitor, upper);
       if (!visit) return tl::unexpected(visit.error());
       of_valve.push_back(visit->valve);
       if (visit->monitor) of_monitor.push_back(*visit->monitor);
@@ -309,11 +310,11 @@ Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, HandDrive& drive,
   return result;
 }
 
-Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, HandDrive& drive, Operator& person,
+Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                           const Settings& settings) {
   const control::ChannelSettings& channel = rig.settings.channels[settings.channel];
   const double lowest = channel.limits.pressure_min_kpa;
-  if (const auto moved = move_to(rig, drive, person, settings, lowest); !moved)
+  if (const auto moved = move_to(rig, session, person, settings, lowest); !moved)
     return tl::unexpected(moved.error());
   DeadZoneResult result;
   result.by_pressure = channel.pressure_measured;
@@ -330,7 +331,7 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, HandDrive& dr
     response.push_back(value);
   };
   const double speed = (result.highest_kpa - lowest) / settings.ramp_s;
-  if (const auto up = drive.ramp(settings.channel, result.highest_kpa, speed, watch); !up) {
+  if (const auto up = session.ramp(settings.channel, result.highest_kpa, speed, watch); !up) {
     return tl::unexpected(refusal_of(up.error()));
   }
   result.zone = find_dead_zone(command, response);

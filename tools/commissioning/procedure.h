@@ -8,8 +8,8 @@
 #include <tl/expected.hpp>
 
 #include "base/exit_code.h"
-#include "tools/commissioning/hand_drive.h"
 #include "tools/commissioning/line_fit.h"
+#include "tools/commissioning/motion_session.h"
 
 namespace softgrip::rig {
 struct RigFile;
@@ -63,8 +63,8 @@ using Expected = tl::expected<T, Refusal>;
 
 /// The displacement sensor against a gauge: the finger is moved to both places, or, without `may_move`,
 /// somebody puts the target there.
-[[nodiscard]] Expected<Line> calibrate_sensor(const rig::RigFile& rig, HandDrive& drive, Operator& person,
-                                              const Settings& settings);
+[[nodiscard]] Expected<Line> calibrate_sensor(const rig::RigFile& rig, MotionSession& session,
+                                              Operator& person, const Settings& settings);
 
 /// What the sensor read while its target was held at a position.
 struct GaugeVisit {
@@ -74,7 +74,7 @@ struct GaugeVisit {
 };
 /// Somebody holds the target at each of these positions in turn, or says where else it is, or leaves one out;
 /// nothing moves by itself. Positions where the sensor cannot measure are left out.
-[[nodiscard]] Expected<std::vector<GaugeVisit>> read_positions(HandDrive& drive, Operator& person,
+[[nodiscard]] Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operator& person,
                                                                const Settings& settings,
                                                                const std::vector<double>& positions_mm);
 
@@ -84,7 +84,7 @@ struct ValveResult {
   bool by_monitor = false;      ///< the pressure monitor was the reference
 };
 /// The valve against a manometer, or against the rig's own pressure monitor (`by_monitor`).
-[[nodiscard]] Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, HandDrive& drive,
+[[nodiscard]] Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, MotionSession& session,
                                                     Operator& person, const Settings& settings,
                                                     bool by_monitor);
 
@@ -94,7 +94,7 @@ struct DeadZoneResult {
   double highest_kpa = 0;        ///< how far the ramp went
 };
 /// A slow ramp up from the lowest command.
-[[nodiscard]] Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, HandDrive& drive,
+[[nodiscard]] Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession& session,
                                                         Operator& person, const Settings& settings);
 
 /// Share of the valve's range that the limits use; below a fifth resolution and linearity suffer.

@@ -125,14 +125,14 @@ void judge_rest(const control::ChannelSettings& channel, const drivers::ChannelW
   }
 }
 
-void failed(const DriveFailure& failure, const rig::RigFile& rig, const std::string& name,
+void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::string& name,
             Findings& findings) {
   switch (failure.kind) {
-    case DriveFailure::Kind::stopped:
+    case MotionFailure::Kind::stopped:
       return findings.fail(name, failure.text, "run it again to the end");
-    case DriveFailure::Kind::bus:
+    case MotionFailure::Kind::bus:
       return findings.fail(name, failure.text, advice_for_silence(rig));
-    case DriveFailure::Kind::beyond:
+    case MotionFailure::Kind::beyond:
       return findings.fail(name, failure.text,
                            "look at the finger; calibrate the sensor; compare with the limits");
   }
@@ -162,12 +162,12 @@ NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings,
 }
 
 /// Every finger by itself, all sensors watched: only together do they show which wires are swapped.
-void move_all(const rig::RigFile& rig, HandDrive& drive, const std::vector<ChannelSample>& rest,
+void move_all(const rig::RigFile& rig, MotionSession& session, const std::vector<ChannelSample>& rest,
               const MoveSettings& settings, Findings& findings) {
   std::vector<Motion> motions;
   while (motions.size() < rest.size()) {
     const std::size_t i = motions.size();
-    auto motion = move_and_watch(rig, drive, i, rest[i], settings);
+    auto motion = move_and_watch(rig, session, i, rest[i], settings);
     if (!motion) {
       failed(motion.error(), rig, "motion " + rig.settings.channels[i].name, findings);
       break;
@@ -214,8 +214,8 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
 
 void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, bool move,
                  const MoveSettings& settings, Findings& findings) {
-  HandDrive drive(rig, board, pace);
-  if (const auto connected = drive.connect(); !connected) {
+  MotionSession session(rig, board, pace);
+  if (const auto connected = session.connect(); !connected) {
     findings.fail("board", connected.error().text, advice_for_silence(rig));
     return leave_channels(rig, "the board does not answer", findings);
   }
@@ -225,19 +225,19 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, boo
                          "not read: that writes the lowest pressures, and a part may still be held",
                          "take the part out, then run it with --move");
   }
-  const auto rest = drive.sample(settings.look_s);
+  const auto rest = session.sample(settings.look_s);
   if (!rest) {
     failed(rest.error(), rig, "board", findings);
     return leave_channels(rig, "see `board`", findings);
   }
   findings.ok("board", board.describe() + " answers");
-  judge_bus(rig, drive.exchange_times_s(), findings);
+  judge_bus(rig, session.exchange_times_s(), findings);
   for (std::size_t i = 0; i < rest->size(); ++i) {
-    judge_rest(rig.settings.channels[i], rig.wiring[i], rig.settings.faults, (*rest)[i], drive.command_kpa(i),
-               findings);
+    judge_rest(rig.settings.channels[i], rig.wiring[i], rig.settings.faults, (*rest)[i],
+               session.command_kpa(i), findings);
   }
-  if (move) move_all(rig, drive, *rest, settings, findings);
-  if (!drive.leave()) {
+  if (move) move_all(rig, session, *rest, settings, findings);
+  if (!session.leave()) {
     findings.fail("safe state", "the board did not confirm the lowest pressures",
                   "look at the fingers before you reach in; vent by hand");
   } else if (move) {

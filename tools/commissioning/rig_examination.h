@@ -2,7 +2,7 @@
 // What the board, the sensors and the valves of a rig say to somebody who asks without a daemon.
 
 #include "tools/commissioning/finding.h"
-#include "tools/commissioning/hand_drive.h"
+#include "tools/commissioning/motion_session.h"
 
 namespace softgrip::rig {
 struct RigFile;

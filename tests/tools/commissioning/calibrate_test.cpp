@@ -144,8 +144,8 @@ class CalibrateTest : public ::testing::Test {
   }
   void make() {
     board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
-    drive_ = std::make_unique<HandDrive>(rig_, *board_, pace_);
-    ASSERT_TRUE(drive_->connect());
+    session_ = std::make_unique<MotionSession>(rig_, *board_, pace_);
+    ASSERT_TRUE(session_->connect());
   }
   [[nodiscard]] std::string truth_mm() { return std::to_string(board_->plant(0).displacement_mm()); }
   [[nodiscard]] std::string truth_kpa() { return std::to_string(board_->plant(0).pressure_kpa()); }
@@ -154,7 +154,7 @@ class CalibrateTest : public ::testing::Test {
   testing::VirtualPace pace_;
   Settings settings_;
   std::unique_ptr<simulation::SimulatedBoard> board_;
-  std::unique_ptr<HandDrive> drive_;
+  std::unique_ptr<MotionSession> session_;
 };
 
 TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
@@ -164,7 +164,7 @@ TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
     rig_.wiring[0].displacement.scaling = truth;
     make();
     KnowingOperator person([this] { return truth_mm(); });
-    const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+    const auto line = calibrate_sensor(rig_, *session_, person, settings_);
     ASSERT_TRUE(line) << line.error().text;
     EXPECT_EQ(line->slope > 0, truth.y1 > truth.y0);
     for (const double x : {line->points.x0, line->points.x1}) {
@@ -172,7 +172,7 @@ TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
     }
     EXPECT_LT(line->error, 0.5) << "and the statement is worth something";
     EXPECT_EQ(person.asked.size(), 4U);
-    drive_.reset();
+    session_.reset();
     EXPECT_EQ(board_->plant(0).held_command_kpa(), 0) << "left safely";
   }
 }
@@ -181,7 +181,7 @@ TEST_F(CalibrateTest, RecoversTheValveAgainstTheMonitorAndAgainstAManometer) {
   make();
   KnowingOperator person([this] { return truth_kpa(); });
   for (const bool by_monitor : {true, false}) {
-    const auto result = calibrate_valve(rig_, *drive_, person, settings_, by_monitor);
+    const auto result = calibrate_valve(rig_, *session_, person, settings_, by_monitor);
     ASSERT_TRUE(result) << result.error().text;
     for (const double x : {result->valve.points.x0, result->valve.points.x1}) {
       EXPECT_NEAR(result->valve.points.y_at(x), rig_.wiring[0].valve.scaling.y_at(x),
@@ -195,7 +195,7 @@ TEST_F(CalibrateTest, RecoversTheValveAgainstTheMonitorAndAgainstAManometer) {
 TEST_F(CalibrateTest, FindsNoDeadZoneWhereThereIsNone) {
   make();
   KnowingOperator person([] { return ""; });
-  const auto result = search_dead_zone(rig_, *drive_, person, settings_);
+  const auto result = search_dead_zone(rig_, *session_, person, settings_);
   ASSERT_TRUE(result) << result.error().text;
   EXPECT_TRUE(result->by_pressure);
   EXPECT_LT(result->zone->end, 1);
@@ -208,7 +208,7 @@ TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
   simulated().events.push_back(blind);
   make();
   KnowingOperator person([this] { return truth_mm(); });
-  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
   ASSERT_FALSE(line);
   EXPECT_EQ(line.error().code, ExitCode::not_acceptable);
   EXPECT_NE(line.error().text.find("not valid (out_of_range)"), std::string::npos) << line.error().text;
@@ -221,7 +221,7 @@ TEST_F(CalibrateTest, RefusesASensorThatDoesNotFollow) {
   simulated().events.push_back(stuck);
   make();
   KnowingOperator person([this] { return truth_mm(); });
-  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
   ASSERT_FALSE(line);
   EXPECT_NE(line.error().text.find("does not follow"), std::string::npos) << line.error().text;
 }
@@ -229,10 +229,10 @@ TEST_F(CalibrateTest, RefusesASensorThatDoesNotFollow) {
 TEST_F(CalibrateTest, AnAnswerThatIsNoNumberIsRefusedAndTheRigIsSafe) {
   make();
   KnowingOperator person([] { return "about ten"; });
-  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
   ASSERT_FALSE(line);
   EXPECT_EQ(line.error().code, ExitCode::input_refused);
-  drive_.reset();
+  session_.reset();
   EXPECT_EQ(board_->plant(0).held_command_kpa(), 0);
 }
 
@@ -240,11 +240,11 @@ TEST_F(CalibrateTest, StoppedOnTheWayItVents) {
   pace_.stop_at = 4'000'000'000;
   make();
   KnowingOperator person([this] { return truth_mm(); });
-  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
   ASSERT_FALSE(line);
   EXPECT_EQ(line.error().text, "stopped by the user");
   EXPECT_GT(board_->plant(0).held_command_kpa(), 1) << "it was on its way";
-  EXPECT_TRUE(drive_->leave());
+  EXPECT_TRUE(session_->leave());
   EXPECT_EQ(board_->plant(0).held_command_kpa(), 0);
 }
 
@@ -253,8 +253,8 @@ TEST_F(CalibrateTest, NeverCommandsBeyondTheLimits) {
   make();
   double highest = 0;
   KnowingOperator person([this] { return truth_mm(); });
-  (void)drive_->ramp(0, 500, 1e9,
-                     [&](const auto& commands, const auto&) { highest = std::max(highest, commands[0]); });
+  (void)session_->ramp(0, 500, 1e9,
+                       [&](const auto& commands, const auto&) { highest = std::max(highest, commands[0]); });
   EXPECT_LE(highest, 60);
 }
 
@@ -266,7 +266,7 @@ TEST_F(CalibrateTest, ByHandNothingMoves) {
     // A target put there by hand: the simulated finger stays, the scaling plays the target.
     return std::to_string(place += 10);
   });
-  const auto line = calibrate_sensor(rig_, *drive_, person, settings_);
+  const auto line = calibrate_sensor(rig_, *session_, person, settings_);
   EXPECT_FALSE(line) << "the signal did not follow the gauge";
   EXPECT_EQ(board_->plant(0).pressure_kpa(), 0);
   EXPECT_NE(person.asked.front().find("put the target"), std::string::npos);
@@ -279,7 +279,7 @@ TEST_F(CalibrateTest, ReadsThePositionsOfAGaugeByHandAndNothingMoves) {
     const std::vector<std::string> answers{"", "12,5", "-", ""};
     return answers[static_cast<std::size_t>(answered++)];
   });
-  const auto visits = read_positions(*drive_, person, settings_, {0, 10, 20, 30});
+  const auto visits = read_positions(*session_, person, settings_, {0, 10, 20, 30});
   ASSERT_TRUE(visits) << visits.error().text;
   ASSERT_EQ(visits->size(), 3U) << "one was left out";
   EXPECT_EQ((*visits)[0].position_mm, 0) << "Enter: it is where it was asked for";
@@ -300,7 +300,7 @@ TEST_F(CalibrateTest, AGaugePositionThatTheSensorDoesNotSeeIsLeftOut) {
   simulated().events.push_back(blind);
   make();
   KnowingOperator person([] { return ""; });
-  const auto visits = read_positions(*drive_, person, settings_, {0, 10});
+  const auto visits = read_positions(*session_, person, settings_, {0, 10});
   ASSERT_TRUE(visits) << visits.error().text;
   EXPECT_TRUE(visits->empty());
   EXPECT_NE(person.told.front().find("left out"), std::string::npos);
@@ -310,7 +310,7 @@ TEST_F(CalibrateTest, AGaugeCheckStopsWhenAsked) {
   pace_.stop_at = 4'000'000'000;
   make();
   KnowingOperator person([] { return ""; });
-  const auto visits = read_positions(*drive_, person, settings_, {0, 10, 20, 30});
+  const auto visits = read_positions(*session_, person, settings_, {0, 10, 20, 30});
   ASSERT_FALSE(visits);
   EXPECT_EQ(visits.error().text, "stopped by the user");
 }
@@ -320,9 +320,9 @@ TEST_F(CalibrateTest, TheSnippetIsReadByTheRigFilesReader) {
   KnowingOperator person([this] { return truth_mm(); });
   Results results;
   results.date = "2026-11-20";
-  results.sensor = calibrate_sensor(rig_, *drive_, person, settings_).value();
-  results.valve = calibrate_valve(rig_, *drive_, person, settings_, true).value();
-  results.dead_zone = search_dead_zone(rig_, *drive_, person, settings_).value();
+  results.sensor = calibrate_sensor(rig_, *session_, person, settings_).value();
+  results.valve = calibrate_valve(rig_, *session_, person, settings_, true).value();
+  results.dead_zone = search_dead_zone(rig_, *session_, person, settings_).value();
   const std::string text = snippet(rig_, results);
   EXPECT_EQ(text.find("# softgrip calibrate, 2026-11-20: rig simulated, channel left"), 0U) << text;
   EXPECT_NE(text.find("the signal rises"), std::string::npos);

@@ -1,4 +1,4 @@
-#include "tools/commissioning/hand_drive.h"
+#include "tools/commissioning/motion_session.h"
 
 #include <algorithm>
 #include <chrono>
@@ -13,7 +13,7 @@ namespace softgrip::tools {
 namespace {
 
 using drivers::BusStatus;
-using FailureKind = DriveFailure::Kind;
+using FailureKind = MotionFailure::Kind;
 
 /// How long the board may take to confirm that everything is down, beyond the way there.
 constexpr double confirmation_s = 1;
@@ -74,7 +74,7 @@ Nanoseconds period_of(const rig::RigFile& rig, const drivers::Board& board) {
 
 }  // namespace
 
-HandDrive::HandDrive(const rig::RigFile& rig, drivers::Board& board, Pace& pace)
+MotionSession::MotionSession(const rig::RigFile& rig, drivers::Board& board, Pace& pace)
     : rig_(rig), board_(board), pace_(pace), period_(period_of(rig, board)), readings_(board.channels()) {
   for (const control::ChannelSettings& channel : rig.settings.channels) {
     commands_.push_back(channel.limits.pressure_min_kpa);
@@ -82,20 +82,20 @@ HandDrive::HandDrive(const rig::RigFile& rig, drivers::Board& board, Pace& pace)
   targets_ = commands_;
 }
 
-HandDrive::~HandDrive() {
+MotionSession::~MotionSession() {
   if (moved_) leave();
 }
 
-HandDrive::Expected<void> HandDrive::connect() {
+MotionSession::Expected<void> MotionSession::connect() {
   const BusStatus status = board_.connect(rig_.reconnect.connect_deadline);
   connected_ = status == BusStatus::ok;
   if (connected_) return {};
   const std::string detail = board_.detail();
-  return tl::unexpected(DriveFailure{
+  return tl::unexpected(MotionFailure{
       FailureKind::bus, board_.describe() + ": " + (detail.empty() ? drivers::name_of(status) : detail)});
 }
 
-BusStatus HandDrive::exchange() noexcept {
+BusStatus MotionSession::exchange() noexcept {
   if (!connected_) {
     connected_ = board_.connect(rig_.reconnect.connect_deadline) == BusStatus::ok;
     if (!connected_) return BusStatus::disconnected;
@@ -111,8 +111,8 @@ BusStatus HandDrive::exchange() noexcept {
 }
 
 /// Waits for the next point of the grid, exchanges, and judges what it means to go on.
-HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
-  if (pace_.stopped()) return tl::unexpected(DriveFailure{FailureKind::stopped, "stopped by the user"});
+MotionSession::Expected<void> MotionSession::step(const Watch& watch) {
+  if (pace_.stopped()) return tl::unexpected(MotionFailure{FailureKind::stopped, "stopped by the user"});
   const Nanoseconds now = pace_.now();
   due_ = due_ == 0 || now > due_ + period_ ? now : due_ + period_;
   pace_.sleep_until(due_);
@@ -129,10 +129,11 @@ HandDrive::Expected<void> HandDrive::step(const Watch& watch) {
   failures_ += 1 + static_cast<std::uint32_t>((pace_.now() - began) / period_);
   if (!said_by_board && failures_ < patience) return {};
   const std::string detail = board_.detail();
-  return tl::unexpected(DriveFailure{FailureKind::bus, detail.empty() ? drivers::name_of(status) : detail});
+  return tl::unexpected(MotionFailure{FailureKind::bus, detail.empty() ? drivers::name_of(status) : detail});
 }
 
-HandDrive::Expected<std::vector<ChannelSample>> HandDrive::sample(double duration_s, const Watch& watch) {
+MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double duration_s,
+                                                                          const Watch& watch) {
   std::vector<ChannelGathering> gathering(commands_.size());
   const Nanoseconds end = pace_.now() + nanoseconds(duration_s);
   while (pace_.now() < end) {
@@ -151,7 +152,7 @@ HandDrive::Expected<std::vector<ChannelSample>> HandDrive::sample(double duratio
   return samples;
 }
 
-void HandDrive::follow_targets(double speed_kpa_per_s) noexcept {
+void MotionSession::follow_targets(double speed_kpa_per_s) noexcept {
   const double elapsed_s = seconds(period_);
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const double furthest = speed_kpa_per_s * elapsed_s;
@@ -161,19 +162,19 @@ void HandDrive::follow_targets(double speed_kpa_per_s) noexcept {
   }
 }
 
-std::optional<DriveFailure> HandDrive::beyond() const {
+std::optional<MotionFailure> MotionSession::beyond() const {
   for (std::size_t i = 0; i < readings_.size(); ++i) {
     const control::ChannelSettings& channel = rig_.settings.channels[i];
     const bool seen = channel.displacement_used && readings_[i].validity == model::Validity::valid;
     if (!seen || !control::displacement_beyond(channel.limits, readings_[i].displacement_mm)) continue;
-    return DriveFailure{FailureKind::beyond,
-                        "the finger `" + channel.name + "` left its displacement limits"};
+    return MotionFailure{FailureKind::beyond,
+                         "the finger `" + channel.name + "` left its displacement limits"};
   }
   return std::nullopt;
 }
 
-HandDrive::Expected<void> HandDrive::ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
-                                          const Watch& watch) {
+MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
+                                                  const Watch& watch) {
   const control::LimitSettings& limits = rig_.settings.channels[channel].limits;
   targets_[channel] = std::clamp(to_kpa, limits.pressure_min_kpa, limits.pressure_max_kpa);
   moved_ = true;
@@ -188,14 +189,14 @@ HandDrive::Expected<void> HandDrive::ramp(std::size_t channel, double to_kpa, do
   return {};
 }
 
-HandDrive::Expected<void> HandDrive::wait(const std::function<bool()>& done) {
+MotionSession::Expected<void> MotionSession::wait(const std::function<bool()>& done) {
   while (!done()) {
     if (auto stepped = step({}); !stepped) return stepped;
   }
   return {};
 }
 
-bool HandDrive::leave() noexcept {
+bool MotionSession::leave() noexcept {
   double fastest = 0;
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     targets_[i] = rig_.settings.channels[i].limits.pressure_min_kpa;

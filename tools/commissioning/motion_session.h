@@ -1,5 +1,5 @@
 #pragma once
-// A rig in the hands of one command: no loop, no controller, one thread. `softgrip doctor` and `softgrip
+// Manual motion of a rig by one command: no loop, no controller, one thread. `softgrip doctor` and `softgrip
 // calibrate` move and read with it.
 
 #include <cstddef>
@@ -57,7 +57,7 @@ struct ChannelSample {
 };
 
 /// Why something was not done.
-struct DriveFailure {
+struct MotionFailure {
   enum class Kind : std::uint8_t {
     stopped,  ///< by the user
     bus,      ///< the board did not answer
@@ -69,21 +69,21 @@ struct DriveFailure {
 
 /// Writes the lowest pressures from the first exchange on; every command passes the rig's limits. On
 /// destruction everything is at its lowest again, whatever happened, or safe() says that nobody confirmed it.
-class HandDrive {
+class MotionSession {
  public:
   template <class T>
-  using Expected = tl::expected<T, DriveFailure>;
+  using Expected = tl::expected<T, MotionFailure>;
   /// Called after every exchange with the commands that were written and what was read.
   using Watch = std::function<void(const std::vector<double>& commands_kpa,
                                    const std::vector<model::Reading>& readings)>;
 
   /// `board` may be connected already; rig, board and pace outlive it.
-  HandDrive(const rig::RigFile& rig, drivers::Board& board, Pace& pace);
-  HandDrive(const HandDrive&) = delete;
-  HandDrive& operator=(const HandDrive&) = delete;
-  HandDrive(HandDrive&&) = delete;
-  HandDrive& operator=(HandDrive&&) = delete;
-  ~HandDrive();
+  MotionSession(const rig::RigFile& rig, drivers::Board& board, Pace& pace);
+  MotionSession(const MotionSession&) = delete;
+  MotionSession& operator=(const MotionSession&) = delete;
+  MotionSession(MotionSession&&) = delete;
+  MotionSession& operator=(MotionSession&&) = delete;
+  ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
   /// Keeps the commands for so long; what was read of every channel meanwhile.
@@ -107,7 +107,7 @@ class HandDrive {
   [[nodiscard]] Expected<void> step(const Watch& watch);
   [[nodiscard]] drivers::BusStatus exchange() noexcept;
   void follow_targets(double speed_kpa_per_s) noexcept;
-  [[nodiscard]] std::optional<DriveFailure> beyond() const;
+  [[nodiscard]] std::optional<MotionFailure> beyond() const;
 
   const rig::RigFile& rig_;
   drivers::Board& board_;
