@@ -25,6 +25,7 @@
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/rig_update.h"
 #include "tools/commissioning/snippet.h"
+#include "tools/commissioning/stop_signals.h"
 #include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
@@ -136,13 +137,14 @@ calibrate::Expected<calibrate::Results> measure(const rig::RigFile& rig, const C
 }
 
 /// Yes or no, asked until it is one of them.
-bool confirmed(calibrate::TerminalOperator& terminal, Pace& pace, const std::string& question) {
+bool confirmed(calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop,
+               const std::string& question) {
   constexpr Nanoseconds look_ns = 50'000'000;
   for (;;) {
     terminal.ask(question + " [yes/no]");
     std::optional<std::string> answer;
-    while (!(answer = terminal.answer()) && !terminal.gone() && !pace.stopped()) {
-      pace.sleep_until(pace.now() + look_ns);
+    while (!(answer = terminal.answer()) && !terminal.gone() && !stop()) {
+      clock.sleep_until(clock.now() + look_ns);
     }
     if (!answer) return false;
     if (*answer == "yes" || *answer == "y") return true;
@@ -153,11 +155,11 @@ bool confirmed(calibrate::TerminalOperator& terminal, Pace& pace, const std::str
 
 /// What is odd about the results; true if they may be written all the same.
 bool accepted(const rig::RigFile& rig, const calibrate::Results& results, const CalibrateOptions& options,
-              calibrate::TerminalOperator& terminal, Pace& pace) {
+              calibrate::TerminalOperator& terminal, const Clock& clock, const StopRequest& stop) {
   const std::vector<std::string> odd = calibrate::doubts(rig, results);
   for (const std::string& sentence : odd) std::fprintf(stderr, "doubtful: %s\n", sentence.c_str());
   if (odd.empty() || !options.write || options.yes) return true;
-  return confirmed(terminal, pace, "write it into " + rig.path + " all the same?");
+  return confirmed(terminal, clock, stop, "write it into " + rig.path + " all the same?");
 }
 
 ExitCode write_into_rig(const rig::RigFile& rig, const calibrate::Results& results) {
@@ -230,8 +232,9 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   if (!lock) return fail(ExitCode::state_refused, lock.error());
   const MonotonicClock clock;
   const auto board = daemon::make_board(rig, clock);
-  RealPace pace;
-  MotionSession session(rig, *board, pace);
+  StopSignals signals;
+  const StopRequest stop = [&signals] { return signals.came(); };
+  MotionSession session(rig, *board, clock, stop);
   if (const auto connected = session.connect(); !connected) return fail(ExitCode::io, connected.error().text);
   std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),
                rig.settings.channels[settings.channel].name.c_str());
@@ -242,7 +245,7 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
     std::fprintf(stderr, "the board did NOT confirm the lowest pressures: look before you reach in\n");
   if (!results) return fail(results.error().code, results.error().text);
   ExitCode code = write_results(rig, *results, options);
-  if (!accepted(rig, *results, options, terminal, pace)) {
+  if (!accepted(rig, *results, options, terminal, clock, stop)) {
     return fail(ExitCode::not_acceptable,
                 "not written: " + rig.path + " is what it was; --yes writes without asking");
   }

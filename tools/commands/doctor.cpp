@@ -21,6 +21,7 @@
 #include "tools/commissioning/gateway_examination.h"
 #include "tools/commissioning/machine.h"
 #include "tools/commissioning/rig_examination.h"
+#include "tools/commissioning/stop_signals.h"
 
 namespace softgrip::tools {
 namespace {
@@ -86,8 +87,9 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   const auto board = daemon::make_board(rig, clock);
   doctor::examine_description(rig, *board, findings);
   doctor::examine_gpio(rig, findings);
-  RealPace pace;
-  doctor::examine_rig(rig, *board, pace, move, {}, findings);
+  StopSignals signals;
+  doctor::examine_rig(
+      rig, *board, clock, [&signals] { return signals.came(); }, move, {}, findings);
 }
 
 ExitCode conclude(const DoctorOptions& options, const doctor::Examination& examination,

@@ -1,30 +1,23 @@
 #include "tools/commissioning/motion_session.h"
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
+#include <span>
+#include <utility>
 
-#include "base/grid.h"
+#include "control/elements/fault.h"
+#include "control/elements/limits.h"
 #include "daemon/loop/bus.h"
-#include "daemon/service/signals.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools {
 namespace {
 
-using drivers::BusStatus;
 using FailureKind = MotionFailure::Kind;
 
 /// How long the board may take to confirm that everything is down, beyond the way there.
 constexpr double confirmation_s = 1;
-/// How long the board may be silent on the way; nothing moves meanwhile.
-constexpr double silence_s = 1;
-constexpr std::size_t times_kept = 100'000;
-
-bool loses_session(BusStatus status) {
-  return status == BusStatus::disconnected || status == BusStatus::timed_out ||
-         status == BusStatus::bad_reply;
-}
 
 /// Mean and spread while it goes (Welford, Technometrics 4, 1962).
 class Gathering {
@@ -72,73 +65,130 @@ Nanoseconds period_of(const rig::RigFile& rig, const drivers::Board& board) {
   return std::max(nanoseconds(1 / rig.settings.rate_hz), nanoseconds(board.budget().exchange_s));
 }
 
+/// A person waits for the end: attempts do not become rarer.
+rig::ReconnectSettings steady(rig::ReconnectSettings reconnect) {
+  reconnect.longest_pause = reconnect.first_pause;
+  return reconnect;
+}
+
 }  // namespace
 
-MotionSession::MotionSession(const rig::RigFile& rig, drivers::Board& board, Pace& pace)
-    : rig_(rig), board_(board), pace_(pace), period_(period_of(rig, board)), readings_(board.channels()) {
-  for (const control::ChannelSettings& channel : rig.settings.channels) {
-    commands_.push_back(channel.limits.pressure_min_kpa);
+struct MotionSession::Line {
+  Line(const rig::RigFile& rig, drivers::Board& board, const Clock& clock)
+      : reconnect(steady(rig.reconnect)),
+        bus(board, rig.settings, rig.loop, reconnect, clock, wires, statistics) {}
+
+  rig::ReconnectSettings reconnect;
+  daemon::Wires wires{1, 1};
+  daemon::BusStatistics statistics;
+  daemon::BusEvent failed;  ///< the newest failure that the bus has reported
+  daemon::Bus bus;
+
+  [[nodiscard]] const daemon::BusReport& report() const noexcept { return wires.bus.value(); }
+  void take_events() noexcept {
+    for (daemon::BusEvent event; wires.bus_events.pop(event);) {
+      if (event.kind == daemon::BusEvent::Kind::failed) failed = event;
+    }
   }
-  targets_ = commands_;
+};
+
+MotionSession::MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock,
+                             StopRequest stop)
+    : rig_(rig),
+      board_(board),
+      clock_(clock),
+      stop_(std::move(stop)),
+      line_(std::make_unique<Line>(rig, board, clock)),
+      grid_(clock.now(), period_of(rig, board)),
+      readings_(board.channels()) {
+  for (const control::ChannelSettings& channel : rig.settings.channels) {
+    lowest_.push_back(channel.limits.pressure_min_kpa);
+  }
+  commands_ = targets_ = lowest_;
 }
 
 MotionSession::~MotionSession() {
   if (moved_) leave();
 }
 
+const daemon::Histogram& MotionSession::exchange_times() const noexcept {
+  return line_->statistics.exchange;
+}
+
 MotionSession::Expected<void> MotionSession::connect() {
-  const BusStatus status = board_.connect(rig_.reconnect.connect_deadline);
-  connected_ = status == BusStatus::ok;
-  if (connected_) return {};
-  const std::string detail = board_.detail();
-  return tl::unexpected(MotionFailure{
-      FailureKind::bus, board_.describe() + ": " + (detail.empty() ? drivers::name_of(status) : detail)});
+  const bool open = line_->bus.open();
+  line_->take_events();
+  grid_ = Grid(clock_.now(), grid_.period());
+  if (open) return {};
+  return tl::unexpected(MotionFailure{FailureKind::bus, board_.describe() + ": " + complaint()});
 }
 
-BusStatus MotionSession::exchange() noexcept {
-  if (!connected_) {
-    connected_ = board_.connect(rig_.reconnect.connect_deadline) == BusStatus::ok;
-    if (!connected_) return BusStatus::disconnected;
-  }
-  const Nanoseconds began = pace_.now();
-  const BusStatus status = board_.exchange(
-      commands_, readings_, std::chrono::nanoseconds(nanoseconds(rig_.loop.exchange_deadline_s)));
-  if (status == BusStatus::ok && exchange_times_s_.size() < times_kept) {
-    exchange_times_s_.push_back(seconds(pace_.now() - began));
-  }
-  if (loses_session(status)) connected_ = false;
-  return status;
+/// Publishes the commands as the loop does, and steps the bus once, at the next point of the grid.
+void MotionSession::exchange(bool may_rise, bool last) noexcept {
+  clock_.sleep_until(grid_.due());
+  daemon::Commands& commands = line_->wires.commands.draft();
+  commands = {};
+  commands.at = clock_.now();
+  std::copy(commands_.begin(), commands_.end(), commands.command_kpa.begin());
+  std::copy(lowest_.begin(), lowest_.end(), commands.safe_kpa.begin());
+  commands.may_rise = may_rise;
+  commands.inhibit = line_->report().health.inhibit;
+  commands.last = last;
+  line_->wires.commands.publish();
+  line_->bus.step(grid_.due());
+  take_report(grid_.advance(clock_.now()));
 }
 
-/// Waits for the next point of the grid, exchanges, and judges what it means to go on.
-MotionSession::Expected<void> MotionSession::step(const Watch& watch) {
-  if (pace_.stopped()) return tl::unexpected(MotionFailure{FailureKind::stopped, "stopped by the user"});
-  const Nanoseconds now = pace_.now();
-  due_ = due_ == 0 || now > due_ + period_ ? now : due_ + period_;
-  pace_.sleep_until(due_);
-  const Nanoseconds began = pace_.now();
-  const BusStatus status = exchange();
-  if (status == BusStatus::ok) {
-    failures_ = 0;
-    if (watch) watch(commands_, readings_);
-    return {};
+/// Cycles that an exchange has overrun count as silent, as in the loop (daemon/loop/loop.cpp).
+void MotionSession::take_report(std::uint64_t skipped_cycles) noexcept {
+  line_->wires.bus.fetch();
+  line_->take_events();
+  const daemon::BusReport& report = line_->report();
+  silent_cycles_ = report.health.consecutive_failures == 0 ? 0 : silent_cycles_ + 1 + skipped_cycles;
+  std::copy_n(report.readings.begin(), readings_.size(), readings_.begin());
+  for (std::size_t i = 0; i < commands_.size(); ++i) {
+    commands_[i] = std::min(commands_[i], report.outputs_kpa[i]);
   }
-  const bool said_by_board = control::inhibits(daemon::fault_of(status));
-  const double patience =
-      std::max<double>(rig_.settings.faults.bus_down_cycles, silence_s / seconds(period_));
-  failures_ += 1 + static_cast<std::uint32_t>((pace_.now() - began) / period_);
-  if (!said_by_board && failures_ < patience) return {};
-  const std::string detail = board_.detail();
-  return tl::unexpected(MotionFailure{FailureKind::bus, detail.empty() ? drivers::name_of(status) : detail});
+}
+
+/// The bus alone knows a gap; the board has the newest detail of all other failures.
+std::string MotionSession::complaint() const {
+  const bool gap = line_->failed.status == drivers::BusStatus::watchdog_tripped;
+  const std::string text = gap ? line_->failed.detail.data() : board_.detail();
+  return text.empty() ? drivers::name_of(line_->failed.status) : text;
+}
+
+std::optional<MotionFailure> MotionSession::bus_failure() const {
+  const control::FaultCode fault = line_->report().health.fault;
+  if (fault == control::FaultCode::board_watchdog_tripped) {
+    return MotionFailure{FailureKind::bus, complaint() + ". The board has vented, so the motion has ended"};
+  }
+  const bool down = silent_cycles_ >= rig_.settings.faults.bus_down_cycles;
+  if (!down && !control::inhibits(fault)) return std::nullopt;
+  return MotionFailure{FailureKind::bus, complaint()};
+}
+
+tl::unexpected<MotionFailure> MotionSession::end(MotionFailure failure) {
+  ended_ = std::move(failure);
+  return tl::unexpected(*ended_);
+}
+
+MotionSession::Expected<void> MotionSession::step(bool may_rise, const Watch& watch) {
+  if (ended_) return tl::unexpected(*ended_);
+  if (stop_()) return end({FailureKind::stopped, "stopped by the user"});
+  exchange(may_rise, false);
+  if (auto failure = bus_failure()) return end(std::move(*failure));
+  if (silent_cycles_ == 0 && watch) watch(commands_, readings_);
+  return {};
 }
 
 MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double duration_s,
                                                                           const Watch& watch) {
   std::vector<ChannelGathering> gathering(commands_.size());
-  const Nanoseconds end = pace_.now() + nanoseconds(duration_s);
-  while (pace_.now() < end) {
+  const Nanoseconds end = clock_.now() + nanoseconds(duration_s);
+  while (clock_.now() < end) {
     const auto done =
-        step([&](const std::vector<double>& commands, const std::vector<model::Reading>& readings) {
+        step(false, [&](const std::vector<double>& commands, const std::vector<model::Reading>& readings) {
           for (std::size_t i = 0; i < gathering.size(); ++i) gathering[i].take(readings[i]);
           if (watch) watch(commands, readings);
         });
@@ -153,7 +203,7 @@ MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double
 }
 
 void MotionSession::follow_targets(double speed_kpa_per_s) noexcept {
-  const double elapsed_s = seconds(period_);
+  const double elapsed_s = seconds(grid_.period());
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     const double furthest = speed_kpa_per_s * elapsed_s;
     const double wanted = std::clamp(targets_[i], commands_[i] - furthest, commands_[i] + furthest);
@@ -176,69 +226,42 @@ std::optional<MotionFailure> MotionSession::beyond() const {
 MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                                   const Watch& watch) {
   const control::LimitSettings& limits = rig_.settings.channels[channel].limits;
-  targets_[channel] = std::clamp(to_kpa, limits.pressure_min_kpa, limits.pressure_max_kpa);
+  targets_[channel] = control::in_range(limits, to_kpa);
   moved_ = true;
-  while (commands_[channel] != targets_[channel]) {
-    const std::vector<double> before = commands_;
-    follow_targets(speed_kpa_per_s);
-    if (auto done = step(watch); !done) return done;
-    // What was not written has not moved anything: no jump when the board is back.
-    if (failures_ > 0) commands_ = before;
-    if (const auto failure = beyond()) return tl::unexpected(*failure);
+  while (commands_[channel] != targets_[channel] || silent_cycles_ > 0) {
+    // Without a confirmation the same commands are written again: no jump when the board is back.
+    if (silent_cycles_ == 0) follow_targets(speed_kpa_per_s);
+    if (auto done = step(true, watch); !done) return done;
+    if (auto failure = beyond()) return end(std::move(*failure));
   }
   return {};
 }
 
 MotionSession::Expected<void> MotionSession::wait(const std::function<bool()>& done) {
   while (!done()) {
-    if (auto stepped = step({}); !stepped) return stepped;
+    if (auto stepped = step(false, {}); !stepped) return stepped;
   }
   return {};
 }
 
 bool MotionSession::leave() noexcept {
+  if (!ended_) ended_ = MotionFailure{FailureKind::stopped, "the motion has ended"};
+  targets_ = lowest_;
   double fastest = 0;
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    targets_[i] = rig_.settings.channels[i].limits.pressure_min_kpa;
-    fastest = std::max(fastest, rig_.settings.channels[i].limits.slew_down_kpa_per_s);
+  for (const control::ChannelSettings& channel : rig_.settings.channels) {
+    fastest = std::max(fastest, channel.limits.slew_down_kpa_per_s);
   }
   Nanoseconds give_up = 0;
   // Down in any case: a board that comes back late gets the end of the way, which is what is wanted of it.
-  while (true) {
+  while (!line_->wires.left_safely.load(std::memory_order_relaxed)) {
     follow_targets(fastest);
     const bool down = commands_ == targets_;
-    if (down && give_up == 0) give_up = pace_.now() + nanoseconds(confirmation_s);
-    due_ = std::max(due_ + period_, pace_.now());
-    pace_.sleep_until(due_);
-    const BusStatus status = exchange();
-    if (down && status == BusStatus::ok) {
-      moved_ = false;
-      return true;
-    }
-    if (give_up != 0 && pace_.now() >= give_up) return false;
+    if (down && give_up == 0) give_up = clock_.now() + nanoseconds(confirmation_s);
+    if (give_up != 0 && clock_.now() > give_up) return false;
+    exchange(false, down);
   }
-}
-
-struct RealPace::Parts {
-  daemon::Signals signals;
-  MonotonicClock clock;
-  bool stopped = false;
-};
-
-RealPace::RealPace() : parts_(std::make_unique<Parts>()) {}
-RealPace::~RealPace() = default;
-
-Nanoseconds RealPace::now() noexcept {
-  return parts_->clock.now();
-}
-
-void RealPace::sleep_until(Nanoseconds due) noexcept {
-  softgrip::sleep_until(due);
-}
-
-bool RealPace::stopped() noexcept {
-  parts_->stopped = parts_->stopped || parts_->signals.wait(0) != 0;
-  return parts_->stopped;
+  moved_ = false;
+  return true;
 }
 
 }  // namespace softgrip::tools

@@ -12,10 +12,10 @@
 
 #include <tl/expected.hpp>
 
-#include "control/elements/limits.h"
+#include "base/clock.h"
+#include "base/grid.h"
+#include "daemon/loop/histogram.h"
 #include "drivers/board/board.h"
-#include "drivers/board/channel_wiring.h"
-#include "rig/loop_settings.h"
 
 namespace softgrip::rig {
 struct RigFile;
@@ -23,20 +23,8 @@ struct RigFile;
 
 namespace softgrip::tools {
 
-/// Where the time comes from, and whether somebody wants an end.
-class Pace {
- public:
-  Pace() = default;
-  Pace(const Pace&) = delete;
-  Pace& operator=(const Pace&) = delete;
-  Pace(Pace&&) = delete;
-  Pace& operator=(Pace&&) = delete;
-  virtual ~Pace() = default;
-  [[nodiscard]] virtual Nanoseconds now() noexcept = 0;
-  virtual void sleep_until(Nanoseconds due) noexcept = 0;
-  /// True once Ctrl-C came, or whatever else ends a command.
-  [[nodiscard]] virtual bool stopped() noexcept = 0;
-};
+/// True once the user has asked the command to end.
+using StopRequest = std::function<bool()>;
 
 /// Mean and spread of what was read in a while.
 struct Sample {
@@ -56,29 +44,42 @@ struct ChannelSample {
   Sample readback_kpa;  ///< count 0 if the board does not read its outputs back
 };
 
-/// Why something was not done.
+/// Why a motion has ended.
 struct MotionFailure {
   enum class Kind : std::uint8_t {
     stopped,  ///< by the user
-    bus,      ///< the board did not answer
+    bus,      ///< the board did not answer, or its outputs are not those of the session
     beyond,   ///< the finger left its displacement limits
   };
   Kind kind = Kind::bus;
   std::string text;
 };
 
-/// Writes the lowest pressures from the first exchange on; every command passes the rig's limits. On
-/// destruction everything is at its lowest again, whatever happened, or safe() says that nobody confirmed it.
+/// Drives a board by the daemon's own bus (daemon/loop/bus.h), in the place of the loop, with the same rule
+/// for gaps. After a gap as long as the board's watchdog time the board has vented. Then the bus writes the
+/// lowest pressures.
+///
+/// - Outputs rise only in ramp(), from what the board has confirmed, and no faster than the slew limits. A
+/// gap
+///   does not make the next step larger.
+/// - The session ends if a gap reaches the watchdog time.
+/// - It ends if the board reports a trip, refuses a write or is written by another client.
+/// - It ends if the board does not answer for `bus_down_cycles`.
+/// - A session that has ended moves nothing. Every later call returns the same failure. Only leave() writes,
+///   and nothing above the present outputs.
+/// - It writes the lowest pressures from the first exchange on. On destruction everything is at its lowest
+///   again, or leave() returned false.
 class MotionSession {
  public:
   template <class T>
   using Expected = tl::expected<T, MotionFailure>;
-  /// Called after every exchange with the commands that were written and what was read.
+  /// Called after every good exchange with the commands that were written and what was read.
   using Watch = std::function<void(const std::vector<double>& commands_kpa,
                                    const std::vector<model::Reading>& readings)>;
 
-  /// `board` may be connected already; rig, board and pace outlive it.
-  MotionSession(const rig::RigFile& rig, drivers::Board& board, Pace& pace);
+  /// `board` is not connected yet. It sleeps and measures gaps by `clock` alone. All references outlive the
+  /// session.
+  MotionSession(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop);
   MotionSession(const MotionSession&) = delete;
   MotionSession& operator=(const MotionSession&) = delete;
   MotionSession(MotionSession&&) = delete;
@@ -89,52 +90,46 @@ class MotionSession {
   /// Keeps the commands for so long; what was read of every channel meanwhile.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});
   /// Moves one channel to a command, no faster than `speed_kpa_per_s` and the limits. A finger beyond its
-  /// limits, and Ctrl-C, end it; then leave() is due.
+  /// limits ends the session, too.
   [[nodiscard]] Expected<void> ramp(std::size_t channel, double to_kpa, double speed_kpa_per_s,
                                     const Watch& watch = {});
   /// Keeps everything as it is and talks to the board until `done` says so: while a person is asked
   /// something.
   [[nodiscard]] Expected<void> wait(const std::function<bool()>& done);
-  /// Everything down to its lowest pressure, at the limits' slew. True if the board confirmed it.
+  /// Everything down to its lowest pressure, at the limits' slew, and the end of the session. True if the
+  /// board confirmed it.
   bool leave() noexcept;
 
   [[nodiscard]] double command_kpa(std::size_t channel) const { return commands_[channel]; }
-  [[nodiscard]] Nanoseconds period() const noexcept { return period_; }
-  /// Durations of the exchanges so far [s].
-  [[nodiscard]] const std::vector<double>& exchange_times_s() const noexcept { return exchange_times_s_; }
+  [[nodiscard]] Nanoseconds period() const noexcept { return grid_.period(); }
+  /// Durations of the good exchanges so far.
+  [[nodiscard]] const daemon::Histogram& exchange_times() const noexcept;
 
  private:
-  [[nodiscard]] Expected<void> step(const Watch& watch);
-  [[nodiscard]] drivers::BusStatus exchange() noexcept;
+  struct Line;  // the bus, and the wires on which the session speaks to it as the loop does
+
+  [[nodiscard]] Expected<void> step(bool may_rise, const Watch& watch);
+  void exchange(bool may_rise, bool last) noexcept;
+  void take_report(std::uint64_t skipped_cycles) noexcept;
+  [[nodiscard]] std::optional<MotionFailure> bus_failure() const;
+  [[nodiscard]] std::string complaint() const;
+  [[nodiscard]] tl::unexpected<MotionFailure> end(MotionFailure failure);
   void follow_targets(double speed_kpa_per_s) noexcept;
   [[nodiscard]] std::optional<MotionFailure> beyond() const;
 
   const rig::RigFile& rig_;
   drivers::Board& board_;
-  Pace& pace_;
-  Nanoseconds period_;
-  Nanoseconds due_ = 0;
-  bool connected_ = false;
+  const Clock& clock_;
+  StopRequest stop_;
+  std::unique_ptr<Line> line_;
+  Grid grid_;
   bool moved_ = false;
-  std::vector<double> commands_;
+  std::optional<MotionFailure> ended_;
+  std::vector<double> commands_;  // the present outputs, then the next write
   std::vector<double> targets_;
+  std::vector<double> lowest_;
   std::vector<model::Reading> readings_;
-  std::vector<double> exchange_times_s_;
-  std::uint32_t failures_ = 0;
-};
-
-/// CLOCK_BOOTTIME, and SIGINT, SIGTERM and SIGHUP as the wish to end.
-class RealPace final : public Pace {
- public:
-  RealPace();
-  ~RealPace() override;
-  [[nodiscard]] Nanoseconds now() noexcept override;
-  void sleep_until(Nanoseconds due) noexcept override;
-  [[nodiscard]] bool stopped() noexcept override;
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  std::uint64_t silent_cycles_ = 0;  // since the last good exchange
 };
 
 }  // namespace softgrip::tools

@@ -35,20 +35,17 @@ bool may_hold_a_part(const rig::RigFile& rig) {
   return holds && !safety.board_vents_when_silent;
 }
 
-void judge_bus(const rig::RigFile& rig, std::vector<double> times_s, Findings& findings) {
-  if (times_s.empty()) return;
-  std::sort(times_s.begin(), times_s.end());
-  const auto at = [&](double q) {
-    return times_s[std::min(times_s.size() - 1,
-                            static_cast<std::size_t>(q * static_cast<double>(times_s.size())))];
-  };
+void judge_bus(const rig::RigFile& rig, const daemon::Histogram::Summary& times, Findings& findings) {
+  if (times.count == 0) return;
+  const double median_s = seconds(times.p50_ns);
+  const double slow_s = seconds(times.p99_ns);
   const double period_s = 1 / rig.settings.rate_hz;
   const std::string text =
-      fmt::format("{} exchanges: p50 {:.3g} ms, p99 {:.3g} ms, a cycle is {:.3g} ms", times_s.size(),
-                  at(0.5) * ms_per_s, at(0.99) * ms_per_s, period_s * ms_per_s);
-  if (at(0.5) > period_s) {
+      fmt::format("{} exchanges: p50 {:.3g} ms, p99 {:.3g} ms, a cycle is {:.3g} ms", times.count,
+                  median_s * ms_per_s, slow_s * ms_per_s, period_s * ms_per_s);
+  if (median_s > period_s) {
     findings.fail("bus time", text, "the bus is slower than the loop: lower rate_hz");
-  } else if (at(0.99) > 0.8 * period_s) {
+  } else if (slow_s > 0.8 * period_s) {
     findings.warn("bus time", text,
                   "late exchanges leave cycles without one: lower rate_hz, or find what delays");
   } else {
@@ -212,9 +209,9 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
   }
 }
 
-void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, bool move,
-                 const MoveSettings& settings, Findings& findings) {
-  MotionSession session(rig, board, pace);
+void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
+                 bool move, const MoveSettings& settings, Findings& findings) {
+  MotionSession session(rig, board, clock, std::move(stop));
   if (const auto connected = session.connect(); !connected) {
     findings.fail("board", connected.error().text, advice_for_silence(rig));
     return leave_channels(rig, "the board does not answer", findings);
@@ -231,7 +228,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, boo
     return leave_channels(rig, "see `board`", findings);
   }
   findings.ok("board", board.describe() + " answers");
-  judge_bus(rig, session.exchange_times_s(), findings);
+  judge_bus(rig, session.exchange_times().summary(), findings);
   for (std::size_t i = 0; i < rest->size(); ++i) {
     judge_rest(rig.settings.channels[i], rig.wiring[i], rig.settings.faults, (*rest)[i],
                session.command_kpa(i), findings);

@@ -20,8 +20,8 @@ struct MoveSettings {
 
 /// Board, watchdog, bus budget, sensors; with `move` each finger is moved a little and must follow, as its
 /// model does. Leaves the lowest pressures. What the user stopped is a failure.
-void examine_rig(const rig::RigFile& rig, drivers::Board& board, Pace& pace, bool move,
-                 const MoveSettings& settings, Findings& findings);
+void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& clock, StopRequest stop,
+                 bool move, const MoveSettings& settings, Findings& findings);
 
 /// The digital lines: requested, read, given back. Outputs are inactive meanwhile.
 void examine_gpio(const rig::RigFile& rig, Findings& findings);

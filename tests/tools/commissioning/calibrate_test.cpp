@@ -12,7 +12,7 @@
 #include "simulation/plant/simulated_board.h"
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/temporary_folder.h"
-#include "tests/tools/virtual_pace.h"
+#include "tests/tools/virtual_time.h"
 #include "tools/commissioning/line_fit.h"
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/snippet.h"
@@ -143,15 +143,15 @@ class CalibrateTest : public ::testing::Test {
     return std::get<simulation::SimulatedBoardSettings>(rig_.board);
   }
   void make() {
-    board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
-    session_ = std::make_unique<MotionSession>(rig_, *board_, pace_);
+    board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
+    session_ = std::make_unique<MotionSession>(rig_, *board_, time_.clock, time_.stop());
     ASSERT_TRUE(session_->connect());
   }
   [[nodiscard]] std::string truth_mm() { return std::to_string(board_->plant(0).displacement_mm()); }
   [[nodiscard]] std::string truth_kpa() { return std::to_string(board_->plant(0).pressure_kpa()); }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
-  testing::VirtualPace pace_;
+  testing::VirtualTime time_;
   Settings settings_;
   std::unique_ptr<simulation::SimulatedBoard> board_;
   std::unique_ptr<MotionSession> session_;
@@ -160,7 +160,7 @@ class CalibrateTest : public ::testing::Test {
 TEST_F(CalibrateTest, RecoversTheSensorsLineWithinItsStatedError) {
   for (const drivers::TwoPoints& truth :
        {drivers::TwoPoints{0, -5, 10, 45}, drivers::TwoPoints{0.5, 45, 9.5, -5}}) {
-    pace_.clock.set(1'000'000'000);
+    time_.clock.set(1'000'000'000);
     rig_.wiring[0].displacement.scaling = truth;
     make();
     KnowingOperator person([this] { return truth_mm(); });
@@ -237,7 +237,7 @@ TEST_F(CalibrateTest, AnAnswerThatIsNoNumberIsRefusedAndTheRigIsSafe) {
 }
 
 TEST_F(CalibrateTest, StoppedOnTheWayItVents) {
-  pace_.stop_at = 4'000'000'000;
+  time_.stop_at = 4'000'000'000;
   make();
   KnowingOperator person([this] { return truth_mm(); });
   const auto line = calibrate_sensor(rig_, *session_, person, settings_);
@@ -307,7 +307,7 @@ TEST_F(CalibrateTest, AGaugePositionThatTheSensorDoesNotSeeIsLeftOut) {
 }
 
 TEST_F(CalibrateTest, AGaugeCheckStopsWhenAsked) {
-  pace_.stop_at = 4'000'000'000;
+  time_.stop_at = 4'000'000'000;
   make();
   KnowingOperator person([] { return ""; });
   const auto visits = read_positions(*session_, person, settings_, {0, 10, 20, 30});

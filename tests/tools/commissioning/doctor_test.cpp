@@ -13,7 +13,7 @@
 #include "simulation/plant/simulated_board.h"
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/temporary_folder.h"
-#include "tests/tools/virtual_pace.h"
+#include "tests/tools/virtual_time.h"
 #include "tools/commissioning/daemon_examination.h"
 #include "tools/commissioning/machine.h"
 #include "tools/commissioning/motion.h"
@@ -75,9 +75,9 @@ class DoctorTest : public ::testing::Test {
     at_once(event);
   }
   const Findings& examine(bool move) {
-    board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
+    board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
     examine_description(rig_, *board_, findings_);
-    examine_rig(rig_, *board_, pace_, move, {}, findings_);
+    examine_rig(rig_, *board_, time_.clock, time_.stop(), move, {}, findings_);
     return findings_;
   }
   [[nodiscard]] Finding finding(const std::string& name) const {
@@ -103,7 +103,7 @@ class DoctorTest : public ::testing::Test {
   [[nodiscard]] double output_kpa(std::size_t channel) { return board_->plant(channel).held_command_kpa(); }
 
   rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
-  tools::testing::VirtualPace pace_;
+  tools::testing::VirtualTime time_;
   std::unique_ptr<simulation::SimulatedBoard> board_;
   Findings findings_;
 };
@@ -134,9 +134,9 @@ TEST_F(DoctorTest, WithoutConsentNothingMoves) {
 TEST_F(DoctorTest, ABoardThatIsAwayIsAllThatIsSaid) {
   Event lost;
   lost.kind = Event::Kind::bus_lost;
-  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   board_->happen(lost);
-  examine_rig(rig_, *board_, pace_, true, {}, findings_);
+  examine_rig(rig_, *board_, time_.clock, time_.stop(), true, {}, findings_);
   expect("board", Verdict::fail, "the simulated bus is down");
   EXPECT_EQ(findings_.count(Verdict::fail), 1U);
   expect_not_judged("sensor left", "the board does not answer");
@@ -166,7 +166,7 @@ TEST_F(DoctorTest, WithoutAWatchdogAPartThatMayBeHeldIsNotDropped) {
   rig_.settings.safety.board_vents_when_silent = false;
   examine(false);
   expect("sensors", Verdict::warn, "a part may still be held");
-  EXPECT_TRUE(pace_.clock.now() < 2'000'000'000) << "no exchange";
+  EXPECT_TRUE(time_.clock.now() < 2'000'000'000) << "no exchange";
 }
 
 TEST_F(DoctorTest, ASensorThatSeesNothing) {
@@ -191,9 +191,9 @@ TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsValveIsJudgedAllTheSa
 }
 
 TEST_F(DoctorTest, AMonitorWithoutAValidReadingIsNamedAndTheFingerJudgedAlone) {
-  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), pace_.clock);
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
   BlindMonitor board(*board_);
-  examine_rig(rig_, board, pace_, true, {}, findings_);
+  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
   expect("pressure left", Verdict::fail, "no reading");
   expect_not_judged("valve left", "see `pressure left`");
   expect("finger left", Verdict::ok, "moved");
@@ -288,7 +288,7 @@ TEST_F(DoctorTest, ARateBeyondTheBusBudget) {
 }
 
 TEST_F(DoctorTest, StoppedByTheUserTheOutputsAreSafe) {
-  pace_.stop_at = 2'500'000'000;  // on the way up
+  time_.stop_at = 2'500'000'000;  // on the way up
   examine(true);
   expect("motion left", Verdict::fail, "stopped by the user");
   EXPECT_EQ(output_kpa(0), 0);

@@ -1,0 +1,140 @@
+"""Commands that move a rig without a daemon keep the daemon's rule: behind a gap in which the board has vented, nothing
+rises. They end with an exit code that says so."""
+
+import json
+import signal
+import time
+
+import bench
+
+WATCHDOG_S = 0.5  # of the board map
+PAUSE_S = 1.2
+NOISE_KPA = 0.05  # the board's resolution
+# The fault file of all tests here; each fault is begun by the test.
+FAULTS = """faults:
+  - {name: requests_lost, kind: lost_request, for_s: 0.7}
+  - {name: replies_lost, kind: no_reply, for_s: 0.7}
+"""
+CALIBRATE = ("calibrate", "--channel", "left", "--average-s", "0.3")
+# Commands that move the left finger, each with its exit code when the board had vented, and what it then says.
+MOTIONS = {
+    "calibrate": ((*CALIBRATE, "--valve", "--move", "--settle-s", "1"), 4),
+    "doctor": (("doctor", "--move", "--json"), 6),
+    "run": (("run", "config/sequences/pick_stone.yaml", "--no-socket"), 6),
+}
+
+
+class MotionTest(bench.BenchTest):
+    def setUp(self):
+        super().setUp()
+        self.board = self.emulator("--faults", self.write("faults.yaml", FAULTS))
+        self.rig_path = self.rig(self.board.port)
+
+    def begin(self, command):
+        child = bench.Process(f"softgrip-{command[0]}", [bench.SOFTGRIP, command[0], *command[1:], "--rig", self.rig_path],
+                              self.folder)
+        self.processes.append(child)
+        return child
+
+    def wait_for_pressure(self, child, kpa):
+        def reached():
+            self.assertTrue(child.running(), f"it ended before it moved: {child.errors()}\n{child.output()}")
+            return self.board.commands_kpa()[0] > kpa
+        bench.wait_for(f"{kpa} kPa", reached, pause_s=0.005)
+
+    def outputs_to_the_end(self, child):
+        """What stood at the outputs until the command has ended."""
+        samples = []
+        while child.running():
+            samples.append(self.board.commands_kpa())
+            time.sleep(0.001)
+        return samples + [self.board.commands_kpa()]
+
+    def check_vented(self, samples):
+        self.assertLessEqual(max(max(sample) for sample in samples), NOISE_KPA, samples[:50])
+        self.assertEqual(self.board.status()["watchdog_trips"], 1, "it is about a board that has vented")
+
+    def check_end(self, name, child, expected):
+        code = child.wait()
+        told = child.errors() + child.output()
+        self.assertEqual(code, expected, told)
+        if name == "calibrate":
+            self.assertEqual(child.output(), "", "no lines for the rig file")
+        if name == "doctor":
+            findings = {finding["name"]: finding for finding in json.loads(child.output())["findings"]}
+            self.assertEqual(findings["motion left"]["verdict"], "fail")
+            self.assertEqual(findings["safe state"]["verdict"], "ok")
+            told = findings["motion left"]["text"]
+        self.assertRegex(told, r"F303|no good exchange for \d\.\d+ s: the board's own watchdog acts after 0\.500 s")
+
+    def pause(self, child):
+        child.send(signal.SIGSTOP)
+        time.sleep(PAUSE_S)
+        child.send(signal.SIGCONT)
+
+
+class Paused(MotionTest):
+    """The whole process stands still (SIGSTOP) for longer than the board's watchdog waits."""
+
+    def check(self, name):
+        command, code = MOTIONS[name]
+        child = self.begin(command)
+        self.wait_for_pressure(child, 5)
+        self.pause(child)
+        samples = self.outputs_to_the_end(child)
+        self.check_end(name, child, code)
+        self.check_vented(samples)
+
+    def test_calibrate(self):
+        self.check("calibrate")
+
+    def test_doctor(self):
+        self.check("doctor")
+
+    def test_run(self):
+        self.check("run")
+
+    def test_calibrate_while_it_asks(self):
+        child = self.begin((*CALIBRATE, "--sensor", "--move", "--settle-s", "0.3"))
+        # Standard input is closed there: the pause is before the question, at pressure.
+        self.wait_for_pressure(child, 9.9)
+        self.pause(child)
+        samples = self.outputs_to_the_end(child)
+        self.check_end("calibrate", child, 4)
+        self.check_vented(samples)
+
+
+class Silent(MotionTest):
+    """The line loses what is sent for 0.7 s."""
+
+    def check(self, name, fault, expected, kpa=5):
+        child = self.begin(MOTIONS[name][0])
+        self.wait_for_pressure(child, kpa)
+        highest = max(self.board.commands_kpa())
+        self.board.ask(f"fault {fault}")
+        samples = self.outputs_to_the_end(child)
+        self.assertEqual(child.wait(), expected, child.errors() + child.output())
+        return highest, samples
+
+    def check_nothing_rises_again(self, samples):
+        left = [sample[0] for sample in samples]
+        vented = left.index(min(left))
+        self.assertLessEqual(max(left[vented:]), NOISE_KPA, left[:200])
+
+    def test_calibrate_without_its_requests(self):
+        _, samples = self.check("calibrate", "requests_lost", 4)
+        self.check_nothing_rises_again(samples)
+
+    def test_doctor_without_its_requests(self):
+        _, samples = self.check("doctor", "requests_lost", 6)
+        self.check_nothing_rises_again(samples)
+
+    def test_calibrate_without_the_replies(self):
+        """The board is fed and holds: what it was sent last may stand there, and nothing more."""
+        highest, samples = self.check("calibrate", "replies_lost", 4)
+        self.assertLess(max(sample[0] for sample in samples), highest + 2, "one step of a cycle, and the noise")
+        self.assertLessEqual(samples[-1][0], NOISE_KPA)
+
+
+if __name__ == "__main__":
+    bench.main()

@@ -1,0 +1,337 @@
+// Manual motion against a board that vents by its own watchdog: pauses, lost requests, refusals.
+
+#include "tools/commissioning/motion_session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rig/rig_file.h"
+#include "tests/daemon/rig_under_test.h"
+
+namespace softgrip::tools::motion_session_test {
+namespace {
+
+using drivers::BusStatus;
+using Kind = MotionFailure::Kind;
+
+constexpr Nanoseconds never = std::numeric_limits<Nanoseconds>::max();
+constexpr Nanoseconds ms = ns_per_s / 1000;
+constexpr Nanoseconds watchdog = 500 * ms;
+constexpr Nanoseconds deadline = 50 * ms;
+constexpr double pressure_kpa = 30;
+constexpr double speed_kpa_per_s = 12;
+/// A float's worth.
+constexpr double equal_kpa = 1e-9;
+
+/// Passes only in sleeps. Once, at `pause_at`, a sleep takes `pause` longer: the process was stopped.
+class StoppableClock final : public Clock {
+ public:
+  [[nodiscard]] Nanoseconds now() const noexcept override { return now_; }
+  void sleep_until(Nanoseconds due) const noexcept override {
+    now_ = std::max(now_, due);
+    if (now_ < pause_at) return;
+    now_ += pause;
+    pause_at = never;
+  }
+  void pass(Nanoseconds duration) const noexcept { now_ += duration; }
+
+  mutable Nanoseconds pause_at = never;
+  Nanoseconds pause = 0;
+
+ private:
+  mutable Nanoseconds now_ = ns_per_s;
+};
+
+/// Keeps its outputs. Any request feeds its watchdog; any write ends a trip.
+class VentingBoard final : public drivers::Board {
+ public:
+  explicit VentingBoard(const StoppableClock& clock) : clock_(clock) {}
+
+  [[nodiscard]] std::size_t channels() const noexcept override { return 2; }
+  [[nodiscard]] BusStatus connect(std::chrono::nanoseconds) noexcept override {
+    ++sessions;
+    return next_connect;
+  }
+  [[nodiscard]] BusStatus exchange(std::span<const double> commands_kpa, std::span<model::Reading> readings,
+                                   std::chrono::nanoseconds limit) noexcept override {
+    if (on_exchange) on_exchange();
+    const bool lost = clock_.now() >= lost_from && clock_.now() < lost_until;
+    const BusStatus status = lost ? how : BusStatus::ok;
+    if (!lost || request_arrives) take(commands_kpa);
+    if (status == BusStatus::timed_out) clock_.pass(limit.count());
+    if (status != BusStatus::ok) return status;
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      readings[i].sampled_at = clock_.now();
+      readings[i].validity = validity;
+      readings[i].displacement_mm = outputs_kpa[i] / 3;
+      readings[i].pressure_kpa = outputs_kpa[i];
+      ++readings[i].sequence;
+    }
+    return BusStatus::ok;
+  }
+  [[nodiscard]] const char* detail() const noexcept override { return "scripted"; }
+  [[nodiscard]] std::string describe() const override { return "a board that vents"; }
+  [[nodiscard]] Budget budget() const override { return {}; }
+  [[nodiscard]] bool has_watchdog() const noexcept override { return watchdog_ns > 0; }
+  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
+    return std::chrono::nanoseconds(watchdog_ns);
+  }
+  /// Lets the watchdog act.
+  void advance() noexcept {
+    if (watchdog_ns == 0 || fed_at_ == 0 || clock_.now() - fed_at_ < watchdog_ns) return;
+    std::fill(outputs_kpa.begin(), outputs_kpa.end(), 0.0);
+    vented = true;
+  }
+
+  Nanoseconds watchdog_ns = watchdog;
+  BusStatus next_connect = BusStatus::ok;
+  std::function<void()> on_exchange;  ///< before what was sent arrives
+  Nanoseconds lost_from = never;      ///< exchanges fail from here ...
+  Nanoseconds lost_until = never;     ///< ... to here ...
+  BusStatus how = BusStatus::timed_out;
+  bool request_arrives = false;  ///< ... though the requests may arrive
+  model::Validity validity = model::Validity::valid;
+
+  std::vector<double> outputs_kpa{0, 0};
+  double largest_rise_kpa = 0;  ///< of one write, over the output before it
+  double highest_after_vent_kpa = 0;
+  bool vented = false;
+  int sessions = 0;
+
+ private:
+  void take(std::span<const double> commands_kpa) noexcept {
+    advance();
+    fed_at_ = clock_.now();
+    for (std::size_t i = 0; i < outputs_kpa.size(); ++i) {
+      largest_rise_kpa = std::max(largest_rise_kpa, commands_kpa[i] - outputs_kpa[i]);
+      if (vented) highest_after_vent_kpa = std::max(highest_after_vent_kpa, commands_kpa[i]);
+      outputs_kpa[i] = commands_kpa[i];
+    }
+  }
+
+  const StoppableClock& clock_;
+  Nanoseconds fed_at_ = 0;
+};
+
+class MotionSessionTest : public ::testing::Test {
+ protected:
+  MotionSessionTest() {
+    rig_.loop.exchange_deadline_s = seconds(deadline);
+    // Patient below the watchdog's time, so that the gap alone decides.
+    rig_.settings.faults.bus_down_cycles = 80;
+  }
+  [[nodiscard]] StopRequest stop() {
+    return [this] { return clock_.now() >= stop_at_; };
+  }
+  /// Up, a while there, and down again, as calibrate moves.
+  MotionSession::Expected<void> move(MotionSession& session) {
+    if (auto connected = session.connect(); !connected) return connected;
+    if (auto up = session.ramp(0, pressure_kpa, speed_kpa_per_s); !up) return up;
+    if (auto there = session.sample(1); !there) return tl::unexpected(there.error());
+    return session.ramp(0, 0, speed_kpa_per_s);
+  }
+  /// The largest step that the limits and the asked speed allow in one cycle.
+  [[nodiscard]] double step_kpa() const { return speed_kpa_per_s / rig_.settings.rate_hz + equal_kpa; }
+
+  rig::RigFile rig_ = daemon::testing::example_rig("rig.yaml");
+  StoppableClock clock_;
+  VentingBoard board_{clock_};
+  Nanoseconds stop_at_ = never;
+};
+
+TEST_F(MotionSessionTest, MovesWithinTheSlewAndLeavesTheLowestPressures) {
+  {
+    MotionSession session(rig_, board_, clock_, stop());
+    ASSERT_TRUE(session.connect());
+    ASSERT_TRUE(session.ramp(0, pressure_kpa, 1e9));
+    EXPECT_DOUBLE_EQ(board_.outputs_kpa[0], pressure_kpa);
+    EXPECT_EQ(board_.outputs_kpa[1], 0);
+    EXPECT_EQ(session.command_kpa(0), board_.outputs_kpa[0]);
+    const control::LimitSettings& limits = rig_.settings.channels[0].limits;
+    EXPECT_LE(board_.largest_rise_kpa, limits.slew_up_kpa_per_s / rig_.settings.rate_hz + equal_kpa);
+  }
+  EXPECT_EQ(board_.outputs_kpa[0], 0) << "on destruction";
+}
+
+/// At any time of the motion, and for any duration from the watchdog's time on.
+TEST_F(MotionSessionTest, APauseAsLongAsTheWatchdogEndsTheMotionAndNothingRisesBehindIt) {
+  const Nanoseconds begin = clock_.now();
+  for (const Nanoseconds pause : {500 * ms, 501 * ms, 800 * ms, 1200 * ms, 60'000 * ms}) {
+    for (Nanoseconds at = 40 * ms; at < 5500 * ms; at += 173 * ms) {
+      SCOPED_TRACE("pause of " + std::to_string(pause / ms) + " ms after " + std::to_string(at / ms) + " ms");
+      StoppableClock clock;
+      VentingBoard board(clock);
+      MotionSession session(rig_, board, clock, [] { return false; });
+      clock.pause = pause;
+      clock.pause_at = begin + at;
+      const auto moved = move(session);
+      ASSERT_FALSE(moved);
+      EXPECT_EQ(moved.error().kind, Kind::bus);
+      EXPECT_NE(moved.error().text.find("the board's own watchdog acts after 0.500 s"), std::string::npos)
+          << moved.error().text;
+      EXPECT_TRUE(board.vented);
+      EXPECT_EQ(board.highest_after_vent_kpa, 0);
+      EXPECT_LE(board.largest_rise_kpa, step_kpa());
+      EXPECT_FALSE(session.ramp(0, pressure_kpa, speed_kpa_per_s))
+          << "a session that has ended moves nothing";
+      EXPECT_FALSE(session.sample(0.1));
+      EXPECT_TRUE(session.leave());
+      EXPECT_EQ(board.highest_after_vent_kpa, 0);
+    }
+  }
+}
+
+TEST_F(MotionSessionTest, AShorterPauseIsRiddenThroughWithoutALargerStep) {
+  const Nanoseconds begin = clock_.now();
+  for (Nanoseconds at = 40 * ms; at < 5500 * ms; at += 173 * ms) {
+    SCOPED_TRACE(at / ms);
+    StoppableClock clock;
+    VentingBoard board(clock);
+    MotionSession session(rig_, board, clock, [] { return false; });
+    clock.pause = 440 * ms;
+    clock.pause_at = begin + at;
+    EXPECT_TRUE(move(session));
+    EXPECT_FALSE(board.vented);
+    EXPECT_LE(board.largest_rise_kpa, step_kpa());
+  }
+}
+
+/// No program can see a pause between its last reading of the clock and its write: it is taken back at once.
+TEST_F(MotionSessionTest, APauseInTheMiddleOfAnExchangeIsFoundOutAfterItAndEndsTheMotion) {
+  MotionSession session(rig_, board_, clock_, stop());
+  ASSERT_TRUE(session.connect());
+  bool paused = false;
+  double before_kpa = 0;
+  board_.on_exchange = [&] {
+    if (paused || clock_.now() < 2 * ns_per_s) return;
+    paused = true;
+    before_kpa = board_.outputs_kpa[0];
+    clock_.pass(1200 * ms);
+  };
+  const auto moved = session.ramp(0, pressure_kpa, speed_kpa_per_s);
+  ASSERT_FALSE(moved);
+  EXPECT_NE(moved.error().text.find("no good exchange for 1.20"), std::string::npos) << moved.error().text;
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+  EXPECT_LE(board_.highest_after_vent_kpa, before_kpa + step_kpa()) << "the next step and no more";
+}
+
+TEST_F(MotionSessionTest, RequestsThatAreLostForLongerThanTheWatchdogEndTheMotionAndNothingRises) {
+  for (const BusStatus how : {BusStatus::timed_out, BusStatus::disconnected, BusStatus::bad_reply}) {
+    for (Nanoseconds at = 40 * ms; at < 5000 * ms; at += 171 * ms) {
+      SCOPED_TRACE(std::string(drivers::name_of(how)) + " after " + std::to_string(at / ms) + " ms");
+      StoppableClock clock;
+      VentingBoard board(clock);
+      board.how = how;
+      board.lost_from = clock.now() + at;
+      board.lost_until = board.lost_from + 700 * ms;
+      MotionSession session(rig_, board, clock, [] { return false; });
+      const auto moved = move(session);
+      ASSERT_FALSE(moved);
+      EXPECT_EQ(moved.error().kind, Kind::bus);
+      EXPECT_TRUE(session.leave()) << "the board is back";
+      EXPECT_EQ(board.highest_after_vent_kpa, 0);
+      EXPECT_EQ(board.outputs_kpa[0], 0);
+      EXPECT_LE(board.largest_rise_kpa, step_kpa());
+    }
+  }
+}
+
+/// The board is fed and holds, but the session cannot know that.
+TEST_F(MotionSessionTest, RepliesThatAreLostForLongerThanTheWatchdogEndTheMotion) {
+  board_.lost_from = clock_.now() + 1500 * ms;
+  board_.lost_until = board_.lost_from + 700 * ms;
+  board_.request_arrives = true;
+  MotionSession session(rig_, board_, clock_, stop());
+  const auto moved = move(session);
+  ASSERT_FALSE(moved);
+  EXPECT_EQ(moved.error().kind, Kind::bus);
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+  EXPECT_LE(board_.largest_rise_kpa, step_kpa());
+}
+
+TEST_F(MotionSessionTest, ShortLossesMoveNothingFurtherAndNoStepIsLargerBehindThem) {
+  for (const bool arrives : {false, true}) {
+    StoppableClock clock;
+    VentingBoard board(clock);
+    board.request_arrives = arrives;
+    board.lost_from = clock.now() + 1500 * ms;
+    board.lost_until = board.lost_from + 160 * ms;
+    MotionSession session(rig_, board, clock, [] { return false; });
+    ASSERT_TRUE(move(session)) << arrives;
+    EXPECT_GT(board.sessions, 1) << "a session was opened again";
+    EXPECT_LE(board.largest_rise_kpa, step_kpa());
+    EXPECT_FALSE(board.vented);
+  }
+}
+
+TEST_F(MotionSessionTest, ABoardWithoutAWatchdogThatIsSilentForTooLongEndsTheMotion) {
+  board_.watchdog_ns = 0;
+  rig_.settings.faults.bus_down_cycles = 20;
+  board_.lost_from = clock_.now() + 1500 * ms;
+  MotionSession session(rig_, board_, clock_, stop());
+  const auto moved = move(session);
+  ASSERT_FALSE(moved);
+  EXPECT_EQ(moved.error().text, "scripted");
+  const Nanoseconds before = clock_.now();
+  EXPECT_FALSE(session.leave()) << "the board did not confirm it";
+  EXPECT_LT(clock_.now() - before, 3 * ns_per_s) << "and the command ends";
+}
+
+TEST_F(MotionSessionTest, APauseOnABoardWithoutAWatchdogMakesNoLargerStep) {
+  board_.watchdog_ns = 0;
+  clock_.pause_at = clock_.now() + 1500 * ms;
+  clock_.pause = 60 * ns_per_s;
+  MotionSession session(rig_, board_, clock_, stop());
+  EXPECT_TRUE(move(session)) << "it holds its outputs through any gap";
+  EXPECT_LE(board_.largest_rise_kpa, step_kpa());
+}
+
+TEST_F(MotionSessionTest, WhatTheBoardSaysOfItsOutputsEndsTheMotionAtOnce) {
+  for (const BusStatus said :
+       {BusStatus::write_refused, BusStatus::overwritten, BusStatus::watchdog_tripped}) {
+    SCOPED_TRACE(drivers::name_of(said));
+    StoppableClock clock;
+    VentingBoard board(clock);
+    board.how = said;
+    board.lost_from = clock.now() + 1500 * ms;
+    board.lost_until = board.lost_from + 1;
+    MotionSession session(rig_, board, clock, [] { return false; });
+    const auto moved = move(session);
+    ASSERT_FALSE(moved);
+    EXPECT_EQ(moved.error().kind, Kind::bus);
+    EXPECT_NE(moved.error().text.find("scripted"), std::string::npos) << moved.error().text;
+    EXPECT_TRUE(session.leave());
+    EXPECT_EQ(board.outputs_kpa[0], 0);
+  }
+}
+
+TEST_F(MotionSessionTest, StoppedByTheUserItGoesDownWithinTheSlew) {
+  stop_at_ = clock_.now() + 1500 * ms;
+  MotionSession session(rig_, board_, clock_, stop());
+  const auto moved = move(session);
+  ASSERT_FALSE(moved);
+  EXPECT_EQ(moved.error().kind, Kind::stopped);
+  EXPECT_GT(board_.outputs_kpa[0], 1) << "it was on its way";
+  EXPECT_TRUE(session.leave());
+  EXPECT_EQ(board_.outputs_kpa[0], 0);
+}
+
+TEST_F(MotionSessionTest, ABoardThatIsAwayIsNamed) {
+  board_.next_connect = BusStatus::disconnected;
+  MotionSession session(rig_, board_, clock_, stop());
+  const auto connected = session.connect();
+  ASSERT_FALSE(connected);
+  EXPECT_EQ(connected.error().text, "a board that vents: scripted");
+}
+
+}  // namespace
+}  // namespace softgrip::tools::motion_session_test

@@ -1,0 +1,22 @@
+#pragma once
+// Time that only passes in sleeps, for commands that move a rig without a daemon.
+
+#include <limits>
+
+#include "base/clock.h"
+#include "tools/commissioning/motion_session.h"
+
+namespace softgrip::tools::testing {
+
+struct VirtualTime {
+  VirtualTime() { clock.set(1'000'000'000); }
+  /// True from `stop_at` on.
+  [[nodiscard]] StopRequest stop() {
+    return [this] { return clock.now() >= stop_at; };
+  }
+
+  VirtualClock clock;
+  Nanoseconds stop_at = std::numeric_limits<Nanoseconds>::max();
+};
+
+}  // namespace softgrip::tools::testing
