@@ -242,6 +242,12 @@ Outcome Daemon::run() {
   return outcome;
 }
 
+tl::expected<Outcome, std::string> run_daemon(rig::RigFile rig, DaemonOptions options) {
+  const auto daemon = Daemon::create(std::move(rig), std::move(options));
+  if (!daemon) return tl::unexpected(daemon.error());
+  return (*daemon)->run();
+}
+
 const LoopStatistics& Daemon::loop_statistics() const noexcept {
   return parts_->loop_statistics;
 }

@@ -112,4 +112,10 @@ class Daemon {
   std::unique_ptr<DaemonParts> parts_;
 };
 
+/// Creates a daemon and runs it to its end. The error is that of Daemon::create().
+[[nodiscard]] tl::expected<Outcome, std::string> run_daemon(rig::RigFile rig, DaemonOptions options);
+/// run_daemon(), or what a test has in its place.
+using DaemonRunner =
+    std::function<tl::expected<Outcome, std::string>(rig::RigFile rig, DaemonOptions options)>;
+
 }  // namespace softgrip::daemon

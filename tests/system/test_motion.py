@@ -21,6 +21,7 @@ MOTIONS = {
     "calibrate": ((*CALIBRATE, "--valve", "--move", "--settle-s", "1"), 4),
     "doctor": (("doctor", "--move", "--json"), 6),
     "run": (("run", "config/sequences/pick_stone.yaml", "--no-socket"), 6),
+    "baseline": (("baseline", "--rig-channel", "left", "--out", "base", "--yes"), 6),
 }
 
 
@@ -93,6 +94,9 @@ class Paused(MotionTest):
 
     def test_run(self):
         self.check("run")
+
+    def test_baseline(self):
+        self.check("baseline")
 
     def test_calibrate_while_it_asks(self):
         child = self.begin((*CALIBRATE, "--sensor", "--move", "--settle-s", "0.3"))

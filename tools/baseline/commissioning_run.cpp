@@ -193,7 +193,7 @@ class Commissioning {
                     " kPa, " + significant(waveform.duration_s(), 3) + " s");
     auto log = played_on(rig_.at(++motions_), waveform.name,
                          sysid::sequence_yaml(waveform, rig_.channel_name()), folder);
-    if (!log) return fails(ExitCode::failed, log.error().why);
+    if (!log) return fails(log.error().code, log.error().why);
     runs_.minutes += waveform.duration_s() / 60;
     if (const auto why = broken_promise(waveform, *log)) return fails(ExitCode::not_acceptable, *why);
     return std::move(*log);

@@ -44,8 +44,8 @@ struct NotCommissioned {
 /// limits, and no further than 90 % of the way to displacement_max_mm as the model says, scaled by what the
 /// gentle pressure did. Then the finger is loaded twice to the largest pressure of all, so that both runs
 /// find it in the same state. Every log is judged as it comes: a finger that hardly moves, that touches
-/// something, or a rig that plays something else ends it with ExitCode::not_acceptable; a refusal, Ctrl-C or
-/// a fault of the rig with ExitCode::failed. The model that the rig file has for the channel says what a free
+/// something, a rig that plays something else or has a fault ends it with ExitCode::not_acceptable; a refusal
+/// or Ctrl-C with ExitCode::failed. The model that the rig file has for the channel says what a free
 /// way looks like. Signals are held back while it runs.
 [[nodiscard]] tl::expected<CommissioningRuns, NotCommissioned> play_commissioning(
     const ExperimentRig& rig, const CommissioningOptions& options);

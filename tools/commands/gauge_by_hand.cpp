@@ -51,7 +51,8 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     const auto visits = calibrate::read_positions(session, terminal, settings, positions_mm);
     const bool safe = session.leave();
     if (!visits)
-      return tl::unexpected(NotPlayed{visits.error().code == ExitCode::failed, visits.error().text});
+      return tl::unexpected(
+          NotPlayed{visits.error().code == ExitCode::failed, visits.error().text, visits.error().code});
     if (!safe) return failed("the board did not confirm the lowest pressures: look before you reach in");
     std::vector<sysid::GaugeReading> readings;
     for (const calibrate::GaugeVisit& visit : *visits)

@@ -146,8 +146,9 @@ ExitCode exit_code_of(const Investigation& investigation) {
     case InvestigationEnd::settled:
       return ExitCode::done;
     case InvestigationEnd::stopped:
-    case InvestigationEnd::failed:
       return fail(ExitCode::failed, investigation.why);
+    case InvestigationEnd::failed:
+      return fail(investigation.code, investigation.why);
     case InvestigationEnd::contact:
     case InvestigationEnd::not_as_asked:
     case InvestigationEnd::unexplained:

@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 constexpr double known_range_share = 0.95;
 constexpr double predicted_range_share = 0.85;
 
-tl::unexpected<NotPlayed> failed(std::string why) {
-  return tl::unexpected(NotPlayed{false, std::move(why)});
+tl::unexpected<NotPlayed> failed(std::string why, ExitCode code = ExitCode::failed) {
+  return tl::unexpected(NotPlayed{false, std::move(why), code});
 }
 tl::unexpected<NotPlayed> stopped(std::string why) {
   return tl::unexpected(NotPlayed{true, std::move(why)});
@@ -139,17 +139,17 @@ tl::expected<std::string, NotPlayed> run_on(const ExperimentRig& rig, const std:
   options.on_event = [&fault](const daemon::EventEntry& event) {
     if (fault.empty() && event.severity == daemon::Severity::error) fault = event.text;
   };
-  auto daemon = daemon::Daemon::create(rig.rig, options);
-  if (!daemon) return failed(daemon.error());
-  const daemon::Outcome outcome = (*daemon)->run();
+  const auto outcome = rig.run(rig.rig, options);
+  if (!outcome) return failed(outcome.error());
   // A signal that came in the last moment of the experiment must keep the next one from moving the finger.
-  if (outcome.signal != 0) return stopped("stopped by the user; the rig is vented");
-  if (outcome.ending != daemon::Ending::sequence_ended || !outcome.sequence_end ||
-      *outcome.sequence_end != control::SequenceEnd::done) {
-    const std::string& why = outcome.message.empty() ? fault : outcome.message;
-    return failed("the experiment did not run to its end" + (why.empty() ? std::string() : ": " + why));
+  if (outcome->signal != 0) return stopped("stopped by the user; the rig is vented");
+  if (outcome->ending != daemon::Ending::sequence_ended || !outcome->sequence_end ||
+      *outcome->sequence_end != control::SequenceEnd::done) {
+    const std::string& why = outcome->message.empty() ? fault : outcome->message;
+    return failed("the experiment did not run to its end" + (why.empty() ? std::string() : ": " + why),
+                  daemon::exit_code_of(*outcome));
   }
-  if (!outcome.left_safely) return failed("the board did not confirm the safe outputs");
+  if (!outcome->left_safely) return failed("the board did not confirm the safe outputs", ExitCode::io);
   return options.record_folder;
 }
 

@@ -8,6 +8,7 @@
 
 #include <tl/expected.hpp>
 
+#include "daemon/service/daemon.h"
 #include "document/problem.h"
 #include "rig/rig_file.h"
 #include "sysid/diagnosis/experiments/waveform.h"
@@ -20,6 +21,8 @@ struct ExperimentRig {
   rig::RigFile rig;
   std::size_t channel = 0;
   bool simulated = false;  ///< in process: nothing moves, time is virtual
+  /// Plays the sequences. A test may give one with another clock and another board.
+  daemon::DaemonRunner run = daemon::run_daemon;
 
   [[nodiscard]] const std::string& channel_name() const { return rig.settings.channels[channel].name; }
   /// The same rig on another occasion: a simulated one draws other noise, a real one does so by itself.

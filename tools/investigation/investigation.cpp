@@ -92,6 +92,10 @@ class Investigator {
     result_.why = why;
     return false;
   }
+  bool end(const NotPlayed& why) {
+    result_.code = why.code;
+    return end(why.stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, why.why);
+  }
 
   /// Nothing separates the rivals: within the budget, or at all?
   bool end_without_experiment(const sysid::NextExperiment& none) {
@@ -112,9 +116,7 @@ class Investigator {
     tell("playing " + best.waveform.name + ", " + significant(best.minutes, 2) + " minutes: " +
          significant(experiment.predicted_separation_sigma, 3) + " standard deviations are predicted");
     auto log = options_.play(experiment, folder);
-    if (!log) {
-      return end(log.error().stopped ? InvestigationEnd::stopped : InvestigationEnd::failed, log.error().why);
-    }
+    if (!log) return end(log.error());
     if (options_.diagnosis.record.drive == sysid::Drive::measured && log->pressure_kpa.empty())
       return end(InvestigationEnd::failed, "the rig measured no pressure, which drives the model here");
     step.experiment = best.waveform.name;
@@ -153,10 +155,7 @@ class Investigator {
     tell("the sensor against a gauge: " + std::to_string(check.positions_mm.size()) + " readings, " +
          significant(check.minutes, 2) + " minutes");
     auto gauge = options_.take_gauge(check.positions_mm, folder);
-    if (!gauge) {
-      return end(gauge.error().stopped ? InvestigationEnd::stopped : InvestigationEnd::failed,
-                 gauge.error().why);
-    }
+    if (!gauge) return end(gauge.error());
     InvestigationStep& step = result_.steps.back();
     step.experiment = gauge_check_name;
     step.minutes = check.minutes;

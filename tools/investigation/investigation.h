@@ -10,6 +10,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <tl/expected.hpp>
 
+#include "base/exit_code.h"
 #include "model/model.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "sysid/identification/validate.h"
@@ -22,6 +23,9 @@ namespace softgrip::tools {
 struct NotPlayed {
   bool stopped = false;  ///< by the user: consent refused, Ctrl-C
   std::string why;       ///< a sentence
+  /// not_acceptable: the rig had a fault on the way, and its outputs are safe. io: the board is away or
+  /// taken.
+  ExitCode code = ExitCode::failed;
 };
 
 /// Plays one experiment on whatever there is. `folder` exists; what is recorded belongs into it.
@@ -79,7 +83,8 @@ struct InvestigationStep {
 
 struct Investigation {
   InvestigationEnd end = InvestigationEnd::failed;
-  std::string why;  ///< a sentence where it did not settle
+  std::string why;                   ///< a sentence where it did not settle
+  ExitCode code = ExitCode::failed;  ///< of `failed`
   std::vector<InvestigationStep> steps;
   double budget_minutes = 0;
   double spent_minutes = 0;

@@ -280,12 +280,13 @@ TEST_F(GaugeStepTest, ARefusalStopsAndAFailureFails) {
   for (const bool stops : {true, false}) {
     options_.take_gauge = [&](const std::vector<double>&,
                               const std::string&) -> tl::expected<sysid::GaugeFile, NotPlayed> {
-      return tl::unexpected(NotPlayed{stops, "because"});
+      return tl::unexpected(NotPlayed{stops, "because", ExitCode::io});
     };
     const auto result = investigate(options_);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->end, stops ? InvestigationEnd::stopped : InvestigationEnd::failed);
     EXPECT_EQ(result->why, "because");
+    EXPECT_EQ(result->code, ExitCode::io);
     EXPECT_EQ(result->spent_minutes, 0);
   }
 }

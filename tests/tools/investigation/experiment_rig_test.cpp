@@ -1,0 +1,80 @@
+// How an experiment's daemon ended, and the exit code that this gives the command.
+
+#include "tools/investigation/experiment_rig.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "document/problem.h"
+#include "sysid/diagnosis/experiments/experiment.h"
+#include "tests/daemon/temporary_folder.h"
+#include "tools/baseline/commissioning_run.h"
+
+namespace softgrip::tools::experiment_rig_test {
+namespace {
+
+using control::SequenceEnd;
+using daemon::Ending;
+
+/// A rig whose daemon ends as it is told, with a fault on the way.
+ExperimentRig rig_that_ends(const daemon::Outcome& outcome) {
+  document::Problems problems;
+  rig::RigFile file = rig::load_rig(SOFTGRIP_SOURCE_DIR "/config/rig.yaml", problems).value();
+  ExperimentRig rig = experiment_rig(std::move(file), "left").value();
+  rig.run = [outcome](const rig::RigFile&, const daemon::DaemonOptions& options) {
+    daemon::EventEntry event;
+    event.severity = daemon::Severity::error;
+    event.text = "Fault F303";
+    if (options.on_event) options.on_event(event);
+    return outcome;
+  };
+  return rig;
+}
+
+daemon::Outcome outcome_of(Ending ending, std::optional<SequenceEnd> end, bool left_safely) {
+  daemon::Outcome outcome;
+  outcome.ending = ending;
+  outcome.sequence_end = end;
+  outcome.left_safely = left_safely;
+  return outcome;
+}
+
+NotPlayed refused(const daemon::Outcome& outcome) {
+  const daemon::testing::TemporaryFolder folder;
+  const ExperimentRig rig = rig_that_ends(outcome);
+  const sysid::Waveform waveform = sysid::experiment_menu(rig.limits(0, 0)).front();
+  const auto played = run_on(rig, "one", sysid::sequence_yaml(waveform, rig.channel_name()), folder.path());
+  EXPECT_FALSE(played);
+  return played ? NotPlayed{} : played.error();
+}
+
+TEST(ExperimentRig, AFaultOnTheWayIsNotAcceptableAndIsNamed) {
+  const NotPlayed faulted = refused(outcome_of(Ending::sequence_ended, SequenceEnd::faulted, true));
+  EXPECT_FALSE(faulted.stopped);
+  EXPECT_EQ(faulted.code, ExitCode::not_acceptable);
+  EXPECT_EQ(faulted.why, "the experiment did not run to its end: Fault F303");
+  EXPECT_EQ(refused(outcome_of(Ending::sequence_ended, SequenceEnd::faulted, false)).code, ExitCode::failed)
+      << "and the outputs are not known to be safe";
+  EXPECT_EQ(refused(outcome_of(Ending::board_taken, std::nullopt, false)).code, ExitCode::io);
+  EXPECT_EQ(refused(outcome_of(Ending::sequence_ended, SequenceEnd::done, false)).code, ExitCode::io)
+      << "the board did not confirm the safe outputs";
+  daemon::Outcome interrupted = outcome_of(Ending::interrupted, std::nullopt, true);
+  interrupted.signal = SIGINT;
+  EXPECT_TRUE(refused(interrupted).stopped);
+}
+
+TEST(ExperimentRig, ACommissioningEndsWithTheCodeOfItsExperiment) {
+  CommissioningOptions options;
+  options.experiments = {"sharp_steps"};
+  const auto runs = play_commissioning(
+      rig_that_ends(outcome_of(Ending::sequence_ended, SequenceEnd::faulted, true)), options);
+  ASSERT_FALSE(runs);
+  EXPECT_EQ(runs.error().code, ExitCode::not_acceptable);
+}
+
+}  // namespace
+}  // namespace softgrip::tools::experiment_rig_test
