@@ -1,7 +1,8 @@
-"""Commands that move a rig without a daemon keep the daemon's rule: behind a gap in which the board has vented, nothing
-rises. They end with an exit code that says so."""
+"""Commands that move a rig without a daemon keep the daemon's rule: behind a gap in which the board has vented, and
+without a sensor that the motion needs, nothing rises. They end with an exit code that says so."""
 
 import json
+import re
 import signal
 import time
 
@@ -14,6 +15,7 @@ NOISE_KPA = 0.05  # the board's resolution
 FAULTS = """faults:
   - {name: requests_lost, kind: lost_request, for_s: 0.7}
   - {name: replies_lost, kind: no_reply, for_s: 0.7}
+  - {name: blind, kind: sensor_out_of_range, channel: left}
 """
 CALIBRATE = ("calibrate", "--channel", "left", "--average-s", "0.3")
 # Commands that move the left finger, each with its exit code when the board had vented, and what it then says.
@@ -138,6 +140,38 @@ class Silent(MotionTest):
         highest, samples = self.check("calibrate", "replies_lost", 4)
         self.assertLess(max(sample[0] for sample in samples), highest + 2, "one step of a cycle, and the noise")
         self.assertLessEqual(samples[-1][0], NOISE_KPA)
+
+
+class Blind(MotionTest):
+    """The displacement sensor of the finger that is moved is out."""
+
+    def test_nothing_rises_without_the_sensor(self):
+        self.board.ask("fault blind")
+        for what in (("--move",), ("--valve", "--move"), ("--dead-zone", "--move"), ("--sensor", "--move")):
+            with self.subTest(what):
+                child = self.begin((*CALIBRATE, "--settle-s", "0.3", *what))
+                samples = self.outputs_to_the_end(child)
+                self.assertEqual(child.wait(), 6, child.errors())
+                self.assertRegex(child.errors(), r"the displacement sensor of `left`: \d+ readings in a row are not valid "
+                                                 r"\(\w+\)")
+                self.assertLessEqual(max(max(sample) for sample in samples), NOISE_KPA)
+                self.assertEqual(child.output(), "", "no lines for the rig file")
+
+    def test_a_cable_that_comes_out_on_the_way_ends_the_motion(self):
+        child = self.begin((*CALIBRATE, "--valve", "--move", "--settle-s", "1"))
+        self.wait_for_pressure(child, 12)  # on the way to 40
+        self.board.ask("fault blind")
+        samples = self.outputs_to_the_end(child)
+        self.assertEqual(child.wait(), 6, child.errors())
+        self.assertIn("are not valid", child.errors())
+        self.assertLess(max(sample[0] for sample in samples), 30)
+        self.assertEqual(self.board.commands_kpa(), [0, 0])
+
+    def test_by_hand_the_target_may_be_out_of_range_on_its_way(self):
+        self.board.ask("fault blind")
+        done = self.softgrip("calibrate", "--rig", self.rig_path, *CALIBRATE[1:], "--sensor", "--gauge-mm", "1", "20",
+                             expect=6)
+        self.assertTrue(re.search(r"\d+ of \d+ readings are not valid", done.stderr), done.stderr)
 
 
 if __name__ == "__main__":

@@ -322,7 +322,7 @@ void add_calibrate(CLI::App& program, ExitCode& outcome) {
       "Questions go to the standard error, answers come line by line from the standard input.\nExit codes: 0 "
       "done, 2 usage, 3 input refused, 4 the board or a file, 5 the daemon runs,\n6 what was measured "
       "makes no "
-      "calibration.");
+      "calibration, or a sensor that the motion needs gave no valid readings.");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -6,9 +6,12 @@
 #include <span>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "control/elements/fault.h"
 #include "control/elements/limits.h"
 #include "daemon/loop/bus.h"
+#include "daemon/recording/csv_row.h"
 #include "rig/rig_file.h"
 
 namespace softgrip::tools {
@@ -178,8 +181,37 @@ MotionSession::Expected<void> MotionSession::step(bool may_rise, const Watch& wa
   if (stop_()) return end({FailureKind::stopped, "stopped by the user"});
   exchange(may_rise, false);
   if (auto failure = bus_failure()) return end(std::move(*failure));
-  if (silent_cycles_ == 0 && watch) watch(commands_, readings_);
+  if (silent_cycles_ > 0) return {};
+  blind_cycles_ = seen() ? 0 : blind_cycles_ + 1;
+  if (blind_cycles_ == 0) may_rise_ = true;
+  if (blind_cycles_ >= rig_.settings.faults.invalid_reading_cycles) return end(blind());
+  if (watch) watch(commands_, readings_);
   return {};
+}
+
+void MotionSession::require(Sight sight) {
+  required_ = sight;
+  blind_cycles_ = 0;
+  may_rise_ = false;
+}
+
+bool MotionSession::seen() const {
+  if (!required_) return true;
+  const model::Reading& reading = readings_[required_->channel];
+  const bool displacement = !required_->displacement || reading.validity == model::Validity::valid;
+  const bool pressure = !required_->pressure || std::isfinite(reading.pressure_kpa);
+  return displacement && pressure;
+}
+
+MotionFailure MotionSession::blind() const {
+  const model::Validity validity = readings_[required_->channel].validity;
+  const bool of_displacement = required_->displacement && validity != model::Validity::valid;
+  return {FailureKind::blind,
+          fmt::format("the {} of `{}`: {} readings in a row are not valid{}. Nothing is raised without them: "
+                      "check its cable, its supply and its target",
+                      of_displacement ? "displacement sensor" : "pressure monitor",
+                      rig_.settings.channels[required_->channel].name, blind_cycles_,
+                      of_displacement ? fmt::format(" ({})", daemon::name_of(validity)) : "")};
 }
 
 MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double duration_s,
@@ -227,6 +259,9 @@ MotionSession::Expected<void> MotionSession::ramp(std::size_t channel, double to
                                                   const Watch& watch) {
   const control::LimitSettings& limits = rig_.settings.channels[channel].limits;
   targets_[channel] = control::in_range(limits, to_kpa);
+  while (!may_rise_) {
+    if (auto done = step(false, watch); !done) return done;
+  }
   moved_ = true;
   while (commands_[channel] != targets_[channel] || silent_cycles_ > 0) {
     // Without a confirmation the same commands are written again: no jump when the board is back.

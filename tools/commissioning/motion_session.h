@@ -50,9 +50,17 @@ struct MotionFailure {
     stopped,  ///< by the user
     bus,      ///< the board did not answer, or its outputs are not those of the session
     beyond,   ///< the finger left its displacement limits
+    blind,    ///< a sensor that the motion needs gives no valid readings
   };
   Kind kind = Kind::bus;
   std::string text;
+};
+
+/// The sensors of a channel that must give valid readings while it moves.
+struct Sight {
+  std::size_t channel = 0;
+  bool displacement = false;
+  bool pressure = false;  ///< by the pressure monitor
 };
 
 /// Drives a board by the daemon's own bus (daemon/loop/bus.h), in the place of the loop, with the same rule
@@ -87,6 +95,9 @@ class MotionSession {
   ~MotionSession();
 
   [[nodiscard]] Expected<void> connect();
+  /// From now on nothing rises before these sensors have given a valid reading. After
+  /// `invalid_reading_cycles` readings in a row that are not valid the session ends.
+  void require(Sight sight);
   /// Keeps the commands for so long; what was read of every channel meanwhile.
   [[nodiscard]] Expected<std::vector<ChannelSample>> sample(double duration_s, const Watch& watch = {});
   /// Moves one channel to a command, no faster than `speed_kpa_per_s` and the limits. A finger beyond its
@@ -116,6 +127,8 @@ class MotionSession {
   [[nodiscard]] tl::unexpected<MotionFailure> end(MotionFailure failure);
   void follow_targets(double speed_kpa_per_s) noexcept;
   [[nodiscard]] std::optional<MotionFailure> beyond() const;
+  [[nodiscard]] bool seen() const;
+  [[nodiscard]] MotionFailure blind() const;
 
   const rig::RigFile& rig_;
   drivers::Board& board_;
@@ -130,6 +143,9 @@ class MotionSession {
   std::vector<double> lowest_;
   std::vector<model::Reading> readings_;
   std::uint64_t silent_cycles_ = 0;  // since the last good exchange
+  std::optional<Sight> required_;
+  std::uint32_t blind_cycles_ = 0;  // since the required sensors were all seen
+  bool may_rise_ = true;            // they were seen since they are required
 };
 
 }  // namespace softgrip::tools

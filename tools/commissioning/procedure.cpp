@@ -35,6 +35,7 @@ Refusal refusal_of(const MotionFailure& failure) {
     case MotionFailure::Kind::bus:
       return {ExitCode::io, failure.text};
     case MotionFailure::Kind::beyond:
+    case MotionFailure::Kind::blind:
       return {ExitCode::not_acceptable, failure.text};
   }
   return {};
@@ -236,6 +237,8 @@ std::optional<double> typed_number(std::string text) {
 
 Expected<Line> calibrate_sensor(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                 const Settings& settings) {
+  // By hand the target may leave the sensor's range on its way.
+  if (settings.may_move) session.require({settings.channel, true, false});
   std::vector<Visit> visits;
   for (std::size_t i = 0; i < settings.repeats; ++i) {
     for (const bool upper : {false, true}) {
@@ -284,6 +287,7 @@ Expected<std::vector<GaugeVisit>> read_positions(MotionSession& session, Operato
 Expected<ValveResult> calibrate_valve(const rig::RigFile& rig, MotionSession& session, Operator& person,
                                       const Settings& settings, bool by_monitor) {
   const drivers::ChannelWiring& wiring = rig.wiring[settings.channel];
+  session.require({settings.channel, rig.settings.channels[settings.channel].displacement_used, by_monitor});
   std::vector<Visit> of_valve;
   std::vector<Visit> of_monitor;
   for (std::size_t i = 0; i < settings.repeats; ++i) {
@@ -314,6 +318,7 @@ Expected<DeadZoneResult> search_dead_zone(const rig::RigFile& rig, MotionSession
                                           const Settings& settings) {
   const control::ChannelSettings& channel = rig.settings.channels[settings.channel];
   const double lowest = channel.limits.pressure_min_kpa;
+  session.require({settings.channel, channel.displacement_used, channel.pressure_measured});
   if (const auto moved = move_to(rig, session, person, settings, lowest); !moved)
     return tl::unexpected(moved.error());
   DeadZoneResult result;

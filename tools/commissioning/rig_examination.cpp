@@ -129,6 +129,8 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
       return findings.fail(name, failure.text, "run it again to the end");
     case MotionFailure::Kind::bus:
       return findings.fail(name, failure.text, advice_for_silence(rig));
+    case MotionFailure::Kind::blind:
+      return findings.fail(name, failure.text, "check the sensor's display and its wire");
     case MotionFailure::Kind::beyond:
       return findings.fail(name, failure.text,
                            "look at the finger; calibrate the sensor; compare with the limits");

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -12,6 +15,7 @@
 #include "simulation/plant/simulated_board.h"
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/temporary_folder.h"
+#include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
 #include "tools/commissioning/line_fit.h"
 #include "tools/commissioning/procedure.h"
@@ -130,6 +134,23 @@ class KnowingOperator final : public Operator {
   int waited_ = 0;
 };
 
+/// Keeps the highest command.
+class WatchedBoard final : public testing::PassingBoard {
+ public:
+  using PassingBoard::PassingBoard;
+  [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
+                                            std::span<model::Reading> readings,
+                                            std::chrono::nanoseconds deadline) noexcept override {
+    highest_kpa = std::max(highest_kpa, *std::max_element(commands_kpa.begin(), commands_kpa.end()));
+    const drivers::BusStatus status = PassingBoard::exchange(commands_kpa, readings, deadline);
+    if (!monitored) readings[0].pressure_kpa = std::numeric_limits<double>::quiet_NaN();
+    return status;
+  }
+
+  double highest_kpa = 0;
+  bool monitored = true;  ///< the left pressure monitor gives readings
+};
+
 class CalibrateTest : public ::testing::Test {
  protected:
   CalibrateTest() {
@@ -212,6 +233,49 @@ TEST_F(CalibrateTest, RefusesASensorThatIsSaturatedOrOutOfRange) {
   ASSERT_FALSE(line);
   EXPECT_EQ(line.error().code, ExitCode::not_acceptable);
   EXPECT_NE(line.error().text.find("not valid (out_of_range)"), std::string::npos) << line.error().text;
+}
+
+/// No procedure moves a finger without the sensor that shows its motion.
+TEST_F(CalibrateTest, NothingRisesWithoutASensorThatTheMotionNeeds) {
+  using Procedure = std::function<std::optional<Refusal>(MotionSession&, Operator&)>;
+  const auto refusal = [](const auto& result) {
+    return result ? std::nullopt : std::optional<Refusal>(result.error());
+  };
+  const std::vector<Procedure> all{[&](MotionSession& session, Operator& person) {
+                                     return refusal(calibrate_valve(rig_, session, person, settings_, true));
+                                   },
+                                   [&](MotionSession& session, Operator& person) {
+                                     return refusal(search_dead_zone(rig_, session, person, settings_));
+                                   },
+                                   [&](MotionSession& session, Operator& person) {
+                                     return refusal(calibrate_valve(rig_, session, person, settings_, false));
+                                   },
+                                   [&](MotionSession& session, Operator& person) {
+                                     return refusal(calibrate_sensor(rig_, session, person, settings_));
+                                   }};
+  KnowingOperator person([] { return "1"; });
+  for (const bool monitor : {false, true}) {
+    // The last two do not read the pressure monitor.
+    for (std::size_t i = 0; i < (monitor ? 2 : all.size()); ++i) {
+      SCOPED_TRACE(std::to_string(i) + (monitor ? " without the monitor" : " without the sensor"));
+      simulation::SimulatedEvent blind;
+      blind.kind = simulation::SimulatedEvent::Kind::sensor_fault;
+      blind.sensor.kind = simulation::SensorFault::Kind::out_of_range;
+      simulated().events.clear();
+      if (!monitor) simulated().events.push_back(blind);
+      time_.clock.set(1'000'000'000);
+      simulation::SimulatedBoard plants(simulated(), time_.clock);
+      WatchedBoard board(plants);
+      board.monitored = !monitor;
+      MotionSession session(rig_, board, time_.clock, time_.stop());
+      ASSERT_TRUE(session.connect());
+      const auto why = all[i](session, person);
+      ASSERT_TRUE(why.has_value());
+      EXPECT_EQ(why->code, ExitCode::not_acceptable);
+      EXPECT_NE(why->text.find("are not valid"), std::string::npos) << why->text;
+      EXPECT_EQ(board.highest_kpa, 0);
+    }
+  }
 }
 
 TEST_F(CalibrateTest, RefusesASensorThatDoesNotFollow) {

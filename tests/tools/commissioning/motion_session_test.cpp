@@ -71,7 +71,7 @@ class VentingBoard final : public drivers::Board {
       readings[i].sampled_at = clock_.now();
       readings[i].validity = validity;
       readings[i].displacement_mm = outputs_kpa[i] / 3;
-      readings[i].pressure_kpa = outputs_kpa[i];
+      readings[i].pressure_kpa = monitored ? outputs_kpa[i] : std::nan("");
       ++readings[i].sequence;
     }
     return BusStatus::ok;
@@ -98,6 +98,7 @@ class VentingBoard final : public drivers::Board {
   BusStatus how = BusStatus::timed_out;
   bool request_arrives = false;  ///< ... though the requests may arrive
   model::Validity validity = model::Validity::valid;
+  bool monitored = true;  ///< the pressure monitors give readings
 
   std::vector<double> outputs_kpa{0, 0};
   double largest_rise_kpa = 0;  ///< of one write, over the output before it
@@ -312,6 +313,60 @@ TEST_F(MotionSessionTest, WhatTheBoardSaysOfItsOutputsEndsTheMotionAtOnce) {
     EXPECT_TRUE(session.leave());
     EXPECT_EQ(board.outputs_kpa[0], 0);
   }
+}
+
+TEST_F(MotionSessionTest, NothingRisesBeforeWhatIsRequiredWasSeen) {
+  for (const Sight sight : {Sight{0, true, false}, Sight{0, false, true}, Sight{0, true, true}}) {
+    StoppableClock clock;
+    VentingBoard board(clock);
+    board.validity = model::Validity::sensor_error;
+    board.monitored = false;
+    MotionSession session(rig_, board, clock, [] { return false; });
+    session.require(sight);
+    const auto moved = move(session);
+    ASSERT_FALSE(moved);
+    EXPECT_EQ(moved.error().kind, Kind::blind);
+    EXPECT_NE(moved.error().text.find("of `left`"), std::string::npos) << moved.error().text;
+    EXPECT_NE(moved.error().text.find("are not valid"), std::string::npos) << moved.error().text;
+    EXPECT_EQ(board.largest_rise_kpa, 0);
+  }
+}
+
+TEST_F(MotionSessionTest, WhatIsRequiredAndLostOnTheWayEndsTheMotionWithinItsCycles) {
+  for (const bool displacement : {true, false}) {
+    StoppableClock clock;
+    VentingBoard board(clock);
+    const Nanoseconds lost_at = clock.now() + 1500 * ms;
+    double stood_kpa = 0;  // after the last exchange with both sensors
+    bool sighted = true;
+    board.on_exchange = [&] {
+      if (clock.now() < lost_at) return;
+      if (std::exchange(sighted, false)) stood_kpa = board.outputs_kpa[0];
+      if (displacement) board.validity = model::Validity::out_of_range;
+      board.monitored = displacement;
+    };
+    MotionSession session(rig_, board, clock, [] { return false; });
+    session.require({0, displacement, !displacement});
+    const auto moved = move(session);
+    ASSERT_FALSE(moved);
+    EXPECT_EQ(moved.error().kind, Kind::blind);
+    EXPECT_NE(moved.error().text.find(displacement ? "displacement sensor" : "pressure monitor"),
+              std::string::npos)
+        << moved.error().text;
+    EXPECT_LE(board.outputs_kpa[0], stood_kpa + rig_.settings.faults.invalid_reading_cycles * step_kpa());
+    EXPECT_TRUE(session.leave());
+    EXPECT_EQ(board.outputs_kpa[0], 0);
+  }
+}
+
+TEST_F(MotionSessionTest, SingleReadingsThatAreNotValidAreRiddenThrough) {
+  int exchanges = 0;
+  board_.on_exchange = [&] {
+    board_.validity = ++exchanges % 7 == 0 ? model::Validity::out_of_range : model::Validity::valid;
+  };
+  MotionSession session(rig_, board_, clock_, stop());
+  session.require({0, true, false});
+  EXPECT_TRUE(move(session));
 }
 
 TEST_F(MotionSessionTest, StoppedByTheUserItGoesDownWithinTheSlew) {
