@@ -234,6 +234,14 @@ class BoardReader {
     return state;
   }
 
+  drivers::BoardWatchdog::ClientCount client_count(const Node& node) {
+    MapReader in(document_, node, problems_, "the count of clients");
+    drivers::BoardWatchdog::ClientCount count;
+    count.function = function(in, {3, 4}, "a register is read by");
+    count.address = address(in, 1);
+    return count;
+  }
+
   void watchdog(const Node& node) {
     MapReader in(document_, node, problems_, "the watchdog");
     drivers::BoardWatchdog& watchdog = map_.watchdog;
@@ -257,6 +265,7 @@ class BoardReader {
     if (const Node* write = in.child("clear", false)) {
       watchdog.clear = fixed_writes(*write, "the write that clears the watchdog");
     }
+    if (const Node* count = in.child("clients", false)) watchdog.clients = client_count(*count);
   }
 
   /// The daemon sends nothing but what an exchange needs: one of those functions must be there.

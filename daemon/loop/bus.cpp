@@ -127,6 +127,7 @@ bool Bus::ensure_session() noexcept {
   if (status == BusStatus::ok) {
     session_ = Session::opened;
     statistics_.sessions.add();
+    told_clients_ = false;
     tell(BusEvent::Kind::connected, status);
     return true;
   }
@@ -188,6 +189,18 @@ void Bus::note_success(Nanoseconds duration) noexcept {
   report_.health.consecutive_failures = silent() ? unheard_ : 0;
   if (told_failed_) tell(BusEvent::Kind::recovered, BusStatus::ok);
   told_failed_ = false;
+  note_clients();
+}
+
+/// Once a session: a client that comes and goes must not fill the log. Where only writes feed the watchdog
+/// another client that writes is found at the outputs.
+void Bus::note_clients() noexcept {
+  const unsigned clients = board_.clients();
+  if (clients < 2 || told_clients_ || !board_.fed_by_readers()) return;
+  told_clients_ = true;
+  std::array<char, 12> count{};
+  std::snprintf(count.data(), count.size(), "%u", clients);
+  tell(BusEvent::Kind::another_client, BusStatus::ok, count.data());
 }
 
 void Bus::note_failure(BusStatus status) noexcept {

@@ -61,6 +61,7 @@ class Bus {
   void choose_outputs() noexcept;
   void note_success(Nanoseconds duration) noexcept;
   void note_failure(drivers::BusStatus status) noexcept;
+  void note_clients() noexcept;
   void judge_gap(Nanoseconds now, Nanoseconds margin) noexcept;
   void take_down_outputs() noexcept;
   void tell(BusEvent::Kind kind, drivers::BusStatus status, const char* detail = "") noexcept;
@@ -93,7 +94,8 @@ class Bus {
   std::uint32_t unheard_ = 0;                                // steps since the loop's last commands
   std::optional<Nanoseconds> last_good_;                     // when the last good exchange began
   bool told_failed_ = false;                                 // the log knows about the present failure
-  Nanoseconds pause_ = 0;                                    // before the attempt after the next
+  bool told_clients_ = false;  // the log knows, of this session, that the board has another client
+  Nanoseconds pause_ = 0;      // before the attempt after the next
   Nanoseconds next_attempt_ = 0;
 };
 

@@ -44,11 +44,12 @@ struct BusReport {
 /// From the bus to the log: something changed.
 struct BusEvent {
   enum class Kind : std::uint8_t {
-    connected,    ///< a session was opened
-    failed,       ///< the first failure after a good exchange; `status` and `detail` say what
-    recovered,    ///< the first good exchange after failures
-    loop_silent,  ///< no new commands from the loop: the safe outputs are written
-    loop_back,    ///< the loop's commands are written again
+    connected,       ///< a session was opened
+    failed,          ///< the first failure after a good exchange; `status` and `detail` say what
+    recovered,       ///< the first good exchange after failures
+    loop_silent,     ///< no new commands from the loop: the safe outputs are written
+    loop_back,       ///< the loop's commands are written again
+    another_client,  ///< another client feeds the board's watchdog; `detail`: number of clients
   };
   Kind kind = Kind::connected;
   Nanoseconds at = 0;

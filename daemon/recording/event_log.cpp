@@ -29,14 +29,15 @@ struct Words {
 using enum Severity;
 
 /// In the order of BusEvent::Kind.
-constexpr std::array<Words, 5> bus_words{{
+constexpr std::array<Words, 6> bus_words{{
     {"bus_connected", information, "A session with the board is up."},
     {"bus_failed", error, ""},
     {"bus_recovered", information, "The board answers again."},
     {"loop_silent", error, "No commands from the loop: the safe outputs are written."},
     {"loop_back", information, "The loop's commands are written again."},
+    {"another_client", warning, ""},
 }};
-static_assert(static_cast<std::size_t>(BusEvent::Kind::loop_back) + 1 == bus_words.size());
+static_assert(static_cast<std::size_t>(BusEvent::Kind::another_client) + 1 == bus_words.size());
 
 /// In the order of PanelEvent::Kind.
 constexpr std::array<Words, 8> panel_words{{
@@ -284,8 +285,14 @@ std::string sentences_of(control::RefusalCode refusal, const control::Fault& cau
 
 EventEntry describe(const BusEvent& event) {
   EventEntry entry = entry_of(bus_words, event.kind);
-  if (event.kind != BusEvent::Kind::failed) return entry;
   const std::string_view detail(event.detail.data());
+  if (event.kind == BusEvent::Kind::another_client) {
+    entry.text = fmt::format(
+        "The board counts {} clients. Another client feeds the board's watchdog, too: if softgripd ends "
+        "without venting, the board does not vent while that client sends requests.",
+        detail);
+  }
+  if (event.kind != BusEvent::Kind::failed) return entry;
   entry.code = drivers::name_of(event.status);
   entry.text = fmt::format("The exchange with the board failed: {}{}{}.", entry.code,
                            detail.empty() ? "" : ": ", detail);

@@ -66,6 +66,14 @@ class Board {
   /// After so long without a request that feeds it, the first of its outputs goes to its safe value by
   /// itself; 0: none ever does.
   [[nodiscard]] virtual std::chrono::nanoseconds watchdog_time() const noexcept = 0;
+
+  /// True if another client that only reads feeds the watchdog as well. Then the outputs keep their value
+  /// after this program has ended, as long as the other client sends requests.
+  [[nodiscard]] virtual bool fed_by_readers() const noexcept { return false; }
+
+  /// Number of clients that the board counted in the last good exchange, this program included; 0: it does
+  /// not count them.
+  [[nodiscard]] virtual unsigned clients() const noexcept { return 0; }
 };
 
 }  // namespace softgrip::drivers

@@ -3,6 +3,7 @@
 // Plain values; read by load_board_map() in rig/board_map_file.h, used by the Modbus board and by the
 // emulator. docs/reference/board-map.md is the manual of the file.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -100,14 +101,29 @@ struct BoardWatchdog {
     std::uint16_t count = 1;      ///< ... in any of so many (one per output)
   };
 
+  /// A register.
+  struct ClientCount {
+    std::uint8_t function = 0;  ///< 3 or 4
+    std::uint16_t address = 0;
+  };
+
   Kind kind = Kind::none;
   double timeout_s = 0;                 ///< as set in the board (by `setup` or by its own utility)
   std::vector<double> safe_electrical;  ///< what each output goes to, in the outputs' unit
   Feed feed = Feed::any_request;
   std::vector<std::uint8_t> functions;
   std::optional<FixedWrite> feed_write;
-  std::optional<Tripped> tripped;  ///< where the board says that it tripped
-  std::vector<FixedWrite> clear;   ///< what ends the tripped state, in this order; empty: any write does
+  std::optional<Tripped> tripped;      ///< where the board says that it tripped
+  std::vector<FixedWrite> clear;       ///< what ends the tripped state, in this order; empty: any write does
+  std::optional<ClientCount> clients;  ///< where the board counts its clients, this program included
+
+  /// True if requests of a client that only reads feed it, too.
+  [[nodiscard]] bool fed_by_reading() const noexcept {
+    constexpr std::uint8_t last_that_reads = 4;
+    const bool reads = std::any_of(functions.begin(), functions.end(),
+                                   [](std::uint8_t function) { return function <= last_that_reads; });
+    return kind != Kind::none && (feed == Feed::any_request || (feed == Feed::functions && reads));
+  }
 };
 
 /// A board file.

@@ -116,6 +116,10 @@ std::vector<ReadStep> plan_reads(const BoardMap& map, const std::vector<std::siz
       ranges.push_back(
           {tripped.function, tripped.address, static_cast<std::uint32_t>(tripped.address) + tripped.count});
     }
+    if (const auto& clients = map.watchdog.clients) {
+      ranges.push_back(
+          {clients->function, clients->address, static_cast<std::uint32_t>(clients->address) + 1});
+    }
   }
   return merged(map, std::move(ranges));
 }
@@ -191,6 +195,9 @@ ExchangePlan plan_exchange(const BoardMap& map, const std::vector<ChannelWiring>
   }
   if (map.watchdog.tripped.has_value() && !outputs.empty()) {
     plan.tripped = slot_of(plan.reads, map.watchdog.tripped->function, map.watchdog.tripped->address);
+  }
+  if (map.watchdog.clients.has_value() && !outputs.empty()) {
+    plan.clients = slot_of(plan.reads, map.watchdog.clients->function, map.watchdog.clients->address);
   }
   if (!inputs.empty()) plan.sampling_read = slot(map.inputs.registers, inputs.front()).step;
   if (map.has_fc23 && !inputs.empty() && !outputs.empty()) plan.combined_read = plan.sampling_read;

@@ -58,6 +58,7 @@ struct ExchangePlan {
   std::vector<ReadStep> reads;
   std::vector<ChannelSlots> channels;
   std::optional<Slot> tripped;  ///< the first, if the watchdog has several
+  std::optional<Slot> clients;
   /// The read with which the first write is done in one transaction by function code 23.
   std::optional<std::size_t> combined_read;
   /// The read that carries the inputs: its moment is the readings' `sampled_at`. Without wired inputs the

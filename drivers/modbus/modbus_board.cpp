@@ -262,4 +262,16 @@ std::chrono::nanoseconds ModbusBoard::watchdog_time() const noexcept {
   return std::chrono::nanoseconds(nanoseconds(first_s));
 }
 
+bool ModbusBoard::fed_by_readers() const noexcept {
+  return std::any_of(parts_->modules.begin(), parts_->modules.end(), [](const ModbusModule& module) {
+    return module.drives_outputs() && module.settings().map.watchdog.fed_by_reading();
+  });
+}
+
+unsigned ModbusBoard::clients() const noexcept {
+  unsigned most = 0;
+  for (const ModbusModule& module : parts_->modules) most = std::max(most, module.clients());
+  return most;
+}
+
 }  // namespace softgrip::drivers

@@ -48,6 +48,8 @@ class ModbusBoard final : public Board {
   /// True if every module that drives outputs has one.
   [[nodiscard]] bool has_watchdog() const noexcept override;
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override;
+  [[nodiscard]] bool fed_by_readers() const noexcept override;
+  [[nodiscard]] unsigned clients() const noexcept override;
 
  private:
   struct Parts;

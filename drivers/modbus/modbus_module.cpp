@@ -222,6 +222,10 @@ bool ModbusModule::is_tripped() const noexcept {
                      [&](std::uint16_t word) { return (word & tripped.mask) != 0; });
 }
 
+unsigned ModbusModule::clients() const noexcept {
+  return plan_.clients.has_value() ? replies_[plan_.clients->step][plan_.clients->offset] : 0;
+}
+
 double ModbusModule::raw_at(const Slot& slot, RegisterKind kind) const noexcept {
   const auto words = std::span<const std::uint16_t>(replies_[slot.step]).subspan(slot.offset, words_of(kind));
   return decode(words, kind, settings_.map.word_order);

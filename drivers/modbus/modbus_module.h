@@ -35,6 +35,8 @@ class ModbusModule {
   [[nodiscard]] const ModbusModuleSettings& settings() const noexcept { return settings_; }
   [[nodiscard]] const ExchangePlan& plan() const noexcept { return plan_; }
   [[nodiscard]] bool drives_outputs() const noexcept { return !plan_.writes.empty(); }
+  /// Number of clients in the last read; 0: the module does not count them.
+  [[nodiscard]] unsigned clients() const noexcept;
 
   /// After the link was opened: the map's setup, unless a tripped watchdog comes first.
   [[nodiscard]] BusStatus set_up(Nanoseconds deadline) noexcept;

@@ -73,6 +73,10 @@ void EmulatedBoard::define_registers() {
       }
     }
   }
+  if (const auto& clients = map_.watchdog.clients) {
+    define_block({clients->function, clients->address, 1, drivers::RegisterKind::uint16},
+                 Registers::Access::read_only);
+  }
   // Last: where a read-back or a flag lies on the outputs themselves, they stay writable.
   define_block(map_.outputs.registers, Registers::Access::read_write);
   fill_readable_gaps();
@@ -178,6 +182,13 @@ void EmulatedBoard::note_clearing(std::span<const std::uint8_t> pdu, bool wrote_
 std::optional<Nanoseconds> EmulatedBoard::watchdog_due() const noexcept {
   if (map_.watchdog.kind == BoardWatchdog::Kind::none || !watchdog_awake_ || tripped_) return std::nullopt;
   return fed_at_ + static_cast<Nanoseconds>(map_.watchdog.timeout_s * nanoseconds_per_second);
+}
+
+void EmulatedBoard::count_clients(std::size_t clients) {
+  const auto& count = map_.watchdog.clients;
+  if (!count) return;
+  put_raw({count->function, count->address, 1, drivers::RegisterKind::uint16}, 0,
+          static_cast<double>(clients));
 }
 
 void EmulatedBoard::set_input(std::size_t terminal, double electrical) {

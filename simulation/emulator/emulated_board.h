@@ -34,6 +34,8 @@ class EmulatedBoard {
 
   /// What an output terminal delivers [V or mA].
   [[nodiscard]] double output(std::size_t terminal) const { return outputs_.at(terminal); }
+  /// Shows the number of connected clients, if the map has a register for it.
+  void count_clients(std::size_t clients);
   /// While true, writes are answered as usual and have no effect.
   void ignore_writes(bool ignored) noexcept { writes_ignored_ = ignored; }
 

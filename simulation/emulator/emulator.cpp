@@ -106,6 +106,12 @@ Reply Emulator::serve(Nanoseconds now, const Request& request, std::size_t link)
                : good_reply(wire_, request, pdu);
 }
 
+void Emulator::count_clients(std::size_t clients, std::size_t link) {
+  for (std::size_t i = 0; i < boards_.size(); ++i) {
+    if (places_[i].link == link) boards_[i].count_clients(clients);
+  }
+}
+
 bool Emulator::trigger(std::string_view name, Nanoseconds now) {
   advance(now);
   const bool found = faults_.trigger(name, now);

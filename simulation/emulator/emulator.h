@@ -47,6 +47,8 @@ class Emulator {
   void advance(Nanoseconds now);
   /// A request that arrives at `now` on a link, and what becomes of it.
   [[nodiscard]] Reply serve(Nanoseconds now, const Request& request, std::size_t link = 0);
+  /// Sets the number of clients that are connected to a link.
+  void count_clients(std::size_t clients, std::size_t link);
   /// Whether new connections are let in.
   [[nodiscard]] bool reachable() const { return !faults_.first_active(FaultKind::disconnect); }
 

@@ -73,6 +73,7 @@ void Server::run(const std::function<void()>& idle) {
     for (std::size_t link = 0; link < entrances_.size(); ++link) {
       if (watched[2 + link].revents != 0) accept_modbus(link);
     }
+    count_clients();
     idle();
   }
 }
@@ -119,6 +120,14 @@ void Server::accept_modbus(std::size_t link) {
   // While the cable is cut, and beyond what poll() should watch, a client is let in and shown out.
   if (client && emulator_.reachable() && clients_.size() < max_modbus_clients) {
     clients_.push_back({Connection(std::move(client)), link});
+  }
+}
+
+void Server::count_clients() {
+  for (std::size_t link = 0; link < std::max<std::size_t>(sockets_.modbus.size(), 1); ++link) {
+    const auto clients = std::count_if(clients_.begin(), clients_.end(),
+                                       [link](const Client& client) { return client.link == link; });
+    emulator_.count_clients(static_cast<std::size_t>(clients), link);
   }
 }
 

@@ -44,6 +44,7 @@ class Server {
   [[nodiscard]] Nanoseconds now() const;
   [[nodiscard]] std::chrono::nanoseconds timeout() const;
   void accept_modbus(std::size_t link);
+  void count_clients();
   void plug_line();
   void accept_control();
   void take_signal();

@@ -19,6 +19,8 @@ class ScriptedBoard final : public drivers::Board {
   drivers::BusStatus next_exchange = drivers::BusStatus::ok;
   std::vector<std::vector<double>> written;  ///< by good exchanges
   std::chrono::nanoseconds watchdog{0};
+  bool readers_feed = false;
+  unsigned counted_clients = 0;
   std::function<void()> on_connect;           ///< while it connects
   std::function<void()> on_exchange;          ///< before what was sent arrives
   std::vector<Nanoseconds> connect_attempts;  ///< when
@@ -47,6 +49,8 @@ class ScriptedBoard final : public drivers::Board {
   [[nodiscard]] Budget budget() const override { return {}; }
   [[nodiscard]] bool has_watchdog() const noexcept override { return watchdog.count() > 0; }
   [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override { return watchdog; }
+  [[nodiscard]] bool fed_by_readers() const noexcept override { return readers_feed; }
+  [[nodiscard]] unsigned clients() const noexcept override { return counted_clients; }
 
  private:
   std::size_t channels_;

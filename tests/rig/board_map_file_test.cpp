@@ -231,6 +231,35 @@ TEST(BoardMapFile, SeveralFlagsAndSeveralClearingWrites) {
   EXPECT_EQ(result.map->watchdog.clear[1].address, 41) << "counted from 1";
 }
 
+TEST(BoardMapFile, TheCountOfClientsIsARegister) {
+  const std::string clear = "clear: {function: 5, address: 33, value: 1}";
+  const auto with = [&](const std::string& count) {
+    return read(changed(clear, clear + "\n  clients: " + count));
+  };
+  const Result result = with("{function: 4, address: 51}");
+  ASSERT_TRUE(result.map.has_value()) << result.problems.format();
+  ASSERT_TRUE(result.map->watchdog.clients.has_value());
+  EXPECT_EQ(result.map->watchdog.clients->function, 4);
+  EXPECT_EQ(result.map->watchdog.clients->address, 50) << "counted from 1";
+  EXPECT_FALSE(with("{function: 1, address: 51}").map.has_value());
+  EXPECT_FALSE(with("{function: 3}").map.has_value());
+  EXPECT_FALSE(read(valid).map->watchdog.clients.has_value());
+}
+
+TEST(BoardMapFile, AWatchdogIsFedByReadersUnlessOnlyWritesFeedIt) {
+  const auto fed = [](const std::string& by) {
+    const Result result = read(changed("fed_by: functions\n  functions: [16]", "fed_by: " + by));
+    EXPECT_TRUE(result.map.has_value()) << result.problems.format();
+    return result.map.has_value() && result.map->watchdog.fed_by_reading();
+  };
+  EXPECT_TRUE(fed("any_request"));
+  EXPECT_TRUE(fed("functions\n  functions: [4, 16]"));
+  EXPECT_FALSE(fed("functions\n  functions: [16, 23]"));
+  EXPECT_FALSE(fed("feed_write\n  feed_write: {function: 6, address: 61, value: 1}"));
+  BoardWatchdog none;
+  EXPECT_FALSE(none.fed_by_reading());
+}
+
 /// The trap of couplers whose watchdog is fed by the functions of a mask: the mask is made of what the file
 /// promises, and what the file promises is checked against the function that writes.
 TEST(BoardMapFile, AMaskOfFunctionsIsMadeOfThem) {

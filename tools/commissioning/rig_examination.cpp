@@ -137,6 +137,21 @@ void failed(const MotionFailure& failure, const rig::RigFile& rig, const std::st
   }
 }
 
+/// Warns of other clients of a board that counts its clients.
+void judge_clients(const drivers::Board& board, Findings& findings) {
+  const unsigned clients = board.clients();
+  if (clients > 1 && board.fed_by_readers()) {
+    findings.warn(
+        "clients",
+        fmt::format("the board counts {} clients, one of them is this command. The others feed its "
+                    "watchdog: the board does not vent while they send requests",
+                    clients),
+        "find the other program and disconnect it; a connection that was cut may count for a while");
+  } else if (clients > 0) {
+    findings.ok("clients", fmt::format("the board counts {}, this command included", clients));
+  }
+}
+
 void leave_channels(const rig::RigFile& rig, const std::string& because, Findings& findings) {
   for (const control::ChannelSettings& channel : rig.settings.channels) {
     findings.not_judged("sensor " + channel.name, because);
@@ -202,7 +217,14 @@ void examine_description(const rig::RigFile& rig, const drivers::Board& board, F
   } else {
     findings.ok("bus budget", text);
   }
-  if (rig.settings.safety.board_vents_when_silent) {
+  if (rig.settings.safety.board_vents_when_silent && board.fed_by_readers()) {
+    findings.warn(
+        "watchdog",
+        "the board vents by itself, but only if no Modbus client sends requests: a client that only "
+        "reads feeds the watchdog, too",
+        "let no other program connect to the board: ask softgripd instead, or let only writes feed "
+        "the watchdog if the board can");
+  } else if (rig.settings.safety.board_vents_when_silent) {
     findings.ok("watchdog", "the board vents by itself when nobody talks to it");
   } else {
     findings.warn(
@@ -231,6 +253,7 @@ void examine_rig(const rig::RigFile& rig, drivers::Board& board, const Clock& cl
   }
   findings.ok("board", board.describe() + " answers");
   judge_bus(rig, session.exchange_times().summary(), findings);
+  judge_clients(board, findings);
   for (std::size_t i = 0; i < rest->size(); ++i) {
     judge_rest(rig.settings.channels[i], rig.wiring[i], rig.settings.faults, (*rest)[i],
                session.command_kpa(i), findings);

@@ -208,6 +208,37 @@ TEST_F(WatchedBusTest, AnExchangeThatWasStoppedOnItsWayIsFoundOutAfterwards) {
   EXPECT_EQ(last_written(), 1);
 }
 
+/// A client that comes and goes does not fill the log.
+TEST_F(BusTest, AnotherClientThatFeedsTheWatchdogIsToldOnceASession) {
+  const std::vector<BusEvent::Kind> none;
+  command(12, 0, true);
+  board_.counted_clients = 2;
+  step();
+  (void)events();
+  step();
+  EXPECT_EQ(events(), none) << "only writes feed it: another one that writes is found at the outputs";
+  board_.readers_feed = true;
+  board_.counted_clients = 1;
+  step();
+  EXPECT_EQ(events(), none) << "this one";
+  for (const unsigned clients : {3U, 1U, 2U}) {
+    board_.counted_clients = clients;
+    step();
+    BusEvent event;
+    EXPECT_EQ(wires_.bus_events.pop(event), clients == 3U);
+    if (clients != 3U) continue;
+    EXPECT_EQ(event.kind, BusEvent::Kind::another_client);
+    EXPECT_STREQ(event.detail.data(), "3");
+  }
+  board_.next_exchange = BusStatus::timed_out;
+  step();
+  board_.next_exchange = BusStatus::ok;
+  (void)events();
+  step();
+  EXPECT_EQ(events(), (std::vector<BusEvent::Kind>{BusEvent::Kind::connected, BusEvent::Kind::recovered,
+                                                   BusEvent::Kind::another_client}));
+}
+
 TEST_F(BusTest, OutputsRiseOnlyWhileASequenceRuns) {
   command(12, 0, true);
   step();

@@ -31,6 +31,16 @@ TEST(EventLog, AStartIsToldWithWhatItWasAskedFor) {
   EXPECT_EQ(entry.request, 7U);
 }
 
+TEST(EventLog, AnotherClientOfTheBoardIsAWarningWithTheirNumber) {
+  BusEvent event;
+  event.kind = BusEvent::Kind::another_client;
+  event.detail = {'2'};
+  const EventEntry entry = describe(event);
+  EXPECT_EQ(entry.kind, "another_client");
+  EXPECT_EQ(entry.severity, Severity::warning);
+  EXPECT_NE(entry.text.find("counts 2 clients"), std::string::npos) << entry.text;
+}
+
 TEST(EventLog, IdsHaveNoGapsAndTheOldestGo) {
   EventLog log(3);
   EXPECT_EQ(log.oldest(), 0U);

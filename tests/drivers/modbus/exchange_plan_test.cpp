@@ -79,6 +79,18 @@ TEST(ExchangePlan, FunctionsAreNotMixed) {
   EXPECT_EQ(plan.sampling_read, 1U);
 }
 
+TEST(ExchangePlan, TheCountOfClientsIsReadByWhatWritesTheOutputs) {
+  BoardMap map = plain_map();
+  map.watchdog.clients = BoardWatchdog::ClientCount{.function = 3, .address = 2};
+  const ExchangePlan beside = plan_exchange(map, test::two_fingers(false));
+  EXPECT_EQ(beside.reads, (std::vector<ReadStep>{{3, 0, 3}})) << "next to the inputs: no request more";
+  EXPECT_EQ(beside.clients, (Slot{0, 2}));
+  map.watchdog.clients = BoardWatchdog::ClientCount{.function = 4, .address = 40};
+  EXPECT_EQ(plan_exchange(map, test::two_fingers(false)).reads,
+            (std::vector<ReadStep>{{3, 0, 2}, {4, 40, 1}}));
+  EXPECT_FALSE(plan_exchange(map, test::two_fingers(false), 1).clients.has_value()) << "of another module";
+}
+
 TEST(ExchangePlan, WritesSplitWhereAnOutputIsNotWired) {
   std::vector<ChannelWiring> wiring = test::two_fingers(false);
   wiring[0].valve.output = 3;

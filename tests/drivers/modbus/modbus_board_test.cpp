@@ -284,6 +284,26 @@ TEST_F(ModbusBoardTest, AWrongNumberOfChannelsIsRefused) {
   EXPECT_TRUE(server_.take_requests().empty());
 }
 
+TEST_F(ModbusBoardTest, SaysHowManyClientsTheBoardCounts) {
+  BoardMap map = shipped("adam-6024.yaml");
+  connect(map);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(board_->clients(), 0U) << "it does not count them";
+  EXPECT_TRUE(board_->fed_by_readers());
+  map.watchdog.clients = BoardWatchdog::ClientCount{.function = 4, .address = 30};
+  server_.set_input(30, 1);
+  connect(map);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(board_->clients(), 1U);
+  server_.set_input(30, 3);
+  ASSERT_EQ(exchange(10, 10), BusStatus::ok) << board_->detail();
+  EXPECT_EQ(board_->clients(), 3U);
+  map.watchdog.feed = BoardWatchdog::Feed::functions;
+  map.watchdog.functions = {16};
+  connect(map);
+  EXPECT_FALSE(board_->fed_by_readers());
+}
+
 /// A board with a latching watchdog: tripped shows in coil 32, writing 1 to coil 33 clears it, and while it
 /// is tripped writes are confirmed but the outputs (holding 256...) stay at 0.
 class WatchdogTest : public ModbusBoardTest {

@@ -50,6 +50,20 @@ TEST(EmulatedBoard, ARawNumberBeyondTheConverterIsItsEnd) {
   EXPECT_EQ(read_one(board, 0, 0x04, 10), 4095);
 }
 
+TEST(EmulatedBoard, ShowsHowManyClientsItHasWhereTheMapHasARegisterForIt) {
+  drivers::BoardMap map = adam();
+  EmulatedBoard silent(map);
+  silent.count_clients(2);
+  EXPECT_EQ(silent.answer(0, Bytes{0x04, 0, 30, 0, 1}).pdu, (Bytes{0x84, 2})) << "no such register";
+  for (const std::uint8_t function : {std::uint8_t{3}, std::uint8_t{4}}) {
+    map.watchdog.clients = drivers::BoardWatchdog::ClientCount{.function = function, .address = 30};
+    EmulatedBoard board(map);
+    EXPECT_EQ(read_one(board, 0, function, 30), 0);
+    board.count_clients(2);
+    EXPECT_EQ(read_one(board, 0, function, 30), 2);
+  }
+}
+
 TEST(EmulatedBoard, InputsShowVoltsAndTheirStatus) {
   EmulatedBoard board(adam());
   board.set_input(0, 5);

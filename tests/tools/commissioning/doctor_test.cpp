@@ -13,6 +13,7 @@
 #include "simulation/plant/simulated_board.h"
 #include "tests/daemon/rig_under_test.h"
 #include "tests/daemon/temporary_folder.h"
+#include "tests/tools/passing_board.h"
 #include "tests/tools/virtual_time.h"
 #include "tools/commissioning/daemon_examination.h"
 #include "tools/commissioning/machine.h"
@@ -27,29 +28,27 @@ using simulation::SensorFault;
 using Event = simulation::SimulatedEvent;
 
 /// A board whose left pressure monitor says nothing.
-class BlindMonitor final : public drivers::Board {
+class BlindMonitor final : public tools::testing::PassingBoard {
  public:
-  explicit BlindMonitor(drivers::Board& board) : board_(board) {}
-  [[nodiscard]] std::size_t channels() const noexcept override { return board_.channels(); }
-  [[nodiscard]] drivers::BusStatus connect(std::chrono::nanoseconds deadline) noexcept override {
-    return board_.connect(deadline);
-  }
+  using PassingBoard::PassingBoard;
   [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
                                             std::span<model::Reading> readings,
                                             std::chrono::nanoseconds deadline) noexcept override {
-    const drivers::BusStatus status = board_.exchange(commands_kpa, readings, deadline);
+    const drivers::BusStatus status = PassingBoard::exchange(commands_kpa, readings, deadline);
     readings[0].pressure_kpa = std::numeric_limits<double>::quiet_NaN();
     return status;
   }
-  [[nodiscard]] std::string describe() const override { return board_.describe(); }
-  [[nodiscard]] Budget budget() const override { return board_.budget(); }
-  [[nodiscard]] bool has_watchdog() const noexcept override { return board_.has_watchdog(); }
-  [[nodiscard]] std::chrono::nanoseconds watchdog_time() const noexcept override {
-    return board_.watchdog_time();
-  }
+};
 
- private:
-  drivers::Board& board_;
+/// A board with a watchdog, other clients, and a count of them.
+class SharedBoard final : public tools::testing::PassingBoard {
+ public:
+  using PassingBoard::PassingBoard;
+  [[nodiscard]] bool fed_by_readers() const noexcept override { return readers_feed; }
+  [[nodiscard]] unsigned clients() const noexcept override { return counted; }
+
+  bool readers_feed = true;
+  unsigned counted = 0;
 };
 
 class DoctorTest : public ::testing::Test {
@@ -160,6 +159,30 @@ TEST_F(DoctorTest, AWatchdogThatIsMissing) {
   rig_.accept_no_watchdog = rig::no_watchdog_words;
   examine(true);
   expect("watchdog", Verdict::warn, "the outputs keep their last pressure");
+}
+
+/// Requests of any client keep this board from venting; it may count its clients.
+TEST_F(DoctorTest, AWatchdogThatReadersFeedIsWarnedOfAndOtherClientsAreFound) {
+  rig_.settings.safety.board_vents_when_silent = true;
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
+  SharedBoard board(*board_);
+  const auto again = [&](bool readers_feed, unsigned counted) {
+    findings_ = {};
+    board.readers_feed = readers_feed;
+    board.counted = counted;
+    examine_description(rig_, board, findings_);
+    examine_rig(rig_, board, time_.clock, time_.stop(), false, {}, findings_);
+  };
+  again(true, 0);
+  expect("watchdog", Verdict::warn, "a client that only reads feeds the watchdog");
+  EXPECT_EQ(finding("clients").name, "no clients");
+  again(true, 1);
+  expect("clients", Verdict::ok, "the board counts 1");
+  again(true, 2);
+  expect("clients", Verdict::warn, "the board counts 2 clients");
+  again(false, 2);
+  expect("watchdog", Verdict::ok, "vents by itself");
+  expect("clients", Verdict::ok, "the board counts 2");
 }
 
 TEST_F(DoctorTest, WithoutAWatchdogAPartThatMayBeHeldIsNotDropped) {
