@@ -83,6 +83,23 @@ tl::expected<std::string, std::string> read_start(const RegularFile& file, std::
   return contents;
 }
 
+bool is_there(const std::string& path) noexcept {
+  struct ::stat about {};
+  return ::stat(path.c_str(), &about) == 0;
+}
+
+bool is_folder(const std::string& path) noexcept {
+  struct ::stat about {};
+  return ::stat(path.c_str(), &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+bool same_file(const std::string& one, const std::string& other) noexcept {
+  struct ::stat first {};
+  struct ::stat second {};
+  return ::stat(one.c_str(), &first) == 0 && ::stat(other.c_str(), &second) == 0 &&
+         first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
 tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound) {
   const auto file = open_regular(path);
   if (!file) return Failure("cannot open " + path + ": " + file.error());
@@ -92,32 +109,6 @@ tl::expected<std::string, std::string> read_file(const std::string& path, std::s
   if (!contents) return Failure("cannot read " + path + ": " + contents.error());
   if (contents->size() > bound) return too_large;
   return contents;
-}
-
-tl::expected<void, std::string> write_file(const std::string& path, std::string_view contents) {
-  namespace fs = std::filesystem;
-  const fs::path target(path);
-  std::error_code error;
-  if (target.has_parent_path()) fs::create_directories(target.parent_path(), error);
-  if (error) return tl::unexpected("cannot create " + target.parent_path().string() + ": " + error.message());
-  const std::string temporary = path + ".part" + std::to_string(::getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
-    file.close();
-    if (!file) {
-      const std::string reason = std::strerror(errno);
-      fs::remove(temporary, error);
-      return tl::unexpected("cannot write " + path + ": " + reason);
-    }
-  }
-  fs::rename(temporary, target, error);
-  if (error) {
-    const std::string reason = error.message();
-    fs::remove(temporary, error);
-    return tl::unexpected("cannot write " + path + ": " + reason);
-  }
-  return {};
 }
 
 }  // namespace softgrip

@@ -5,12 +5,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "base/files.h"
 
 namespace softgrip::daemon {
 
@@ -28,18 +29,6 @@ std::string csv_in(const std::string& path) {
 
 std::string there_already(const std::string& csv) {
   return csv + " exists already; a recording is never overwritten";
-}
-
-/// All of `text`, or the errno of what stopped it.
-int write_all(int descriptor, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = write(descriptor, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    if (written == 0) return ENOSPC;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return 0;
 }
 
 }  // namespace
@@ -122,21 +111,9 @@ bool RunFolder::sync() {
 }
 
 bool RunFolder::replace_json(std::string_view text) {
-  const std::string file = path_ + "/run.json";
-  const std::string temporary = file + ".tmp";
-  // What lies there is a killed daemon's, or somebody's link to a file of ours: never written through.
-  unlink(temporary.c_str());
-  const int descriptor =
-      open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, file_mode);
-  int error = descriptor < 0 ? errno : write_all(descriptor, text);
-  // Without this a power failure may leave the new name with the old file's absence: an empty run.json.
-  if (error == 0 && durable_ && fdatasync(descriptor) != 0) error = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (error == 0 && std::rename(temporary.c_str(), file.c_str()) != 0) error = errno;
-  if (error == 0) return true;
-  fail(file, error);
-  unlink(temporary.c_str());
-  return false;
+  const auto written = write_file(path_ + "/run.json", text, durable_ ? Sync::disk : Sync::none);
+  if (!written && error_.empty()) error_ = written.error();
+  return written.has_value();
 }
 
 }  // namespace softgrip::daemon

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +13,8 @@
 
 #include "base/ending_signal.h"
 #include "base/exit_code.h"
+#include "base/files.h"
+#include "base/standard_output.h"
 #include "base/version.h"
 #include "daemon/service/daemon.h"
 #include "daemon/service/event_printer.h"
@@ -144,22 +145,25 @@ ExitCode safe_outputs(const Arguments& arguments) {
   return end_of_safe_outputs(report);
 }
 
-/// False if the file cannot be written.
-bool write_histograms(const std::string& path, const daemon::Daemon& daemon) {
+tl::expected<void, std::string> write_histograms(const std::string& path, const daemon::Daemon& daemon) {
   const daemon::LoopStatistics& loop = daemon.loop_statistics();
   const daemon::BusStatistics& bus = daemon.bus_statistics();
-  std::ofstream file(path);
-  file << loop.wake_up.cyclictest_text("loop wake-up, us") << loop.compute.cyclictest_text("loop compute, us")
-       << loop.reading_age.cyclictest_text("reading age, us")
-       << bus.wake_up.cyclictest_text("bus wake-up, us") << bus.exchange.cyclictest_text("exchange, us");
-  file << "# Ticks: " << loop.ticks.value() << "\n# Slips, woken late: " << loop.slips_woken_late.value()
-       << "\n# Slips, took long: " << loop.slips_took_long.value()
-       << "\n# Exchanges: " << bus.exchanges.value() << "\n# Failed exchanges: " << bus.failures.value()
-       << "\n";
-  return file.flush().good();
+  return write_file(
+      path,
+      fmt::format(
+          "{}{}{}{}{}# Ticks: {}\n# Slips, woken late: {}\n# Slips, took long: {}\n# Exchanges: {}\n"
+          "# Failed exchanges: {}\n",
+          loop.wake_up.cyclictest_text("loop wake-up, us"), loop.compute.cyclictest_text("loop compute, us"),
+          loop.reading_age.cyclictest_text("reading age, us"), bus.wake_up.cyclictest_text("bus wake-up, us"),
+          bus.exchange.cyclictest_text("exchange, us"), loop.ticks.value(), loop.slips_woken_late.value(),
+          loop.slips_took_long.value(), bus.exchanges.value(), bus.failures.value()));
 }
 
 ExitCode run(const Arguments& arguments) {
+  if (same_file(arguments.config, arguments.histograms)) {
+    complain(fmt::format("{} is the rig file: it is not overwritten", arguments.histograms));
+    return ExitCode::usage;
+  }
   document::Problems problems;
   auto rig = rig::load_rig(arguments.config, problems);
   if (!rig || !problems.empty()) return refuse(problems);
@@ -191,11 +195,13 @@ ExitCode run(const Arguments& arguments) {
   }
   const daemon::Outcome outcome = (*daemon)->run();
   printer.print_end(outcome);
-  if (!arguments.histograms.empty() && !write_histograms(arguments.histograms, **daemon)) {
-    complain(fmt::format("{} cannot be written", arguments.histograms));
-    return ExitCode::io;
+  ExitCode code = daemon::exit_code_of(outcome);
+  if (arguments.histograms.empty()) return code;
+  if (const auto written = write_histograms(arguments.histograms, **daemon); !written) {
+    complain(written.error());
+    if (code == ExitCode::done) code = ExitCode::io;  // the end of the run matters more
   }
-  return daemon::exit_code_of(outcome);
+  return code;
 }
 
 }  // namespace
@@ -210,8 +216,9 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
       return program.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
     }
+    // The result of the others is the state of the board, not what they print.
     const ExitCode code = arguments.safe_outputs      ? safe_outputs(arguments)
-                          : arguments.check           ? check(arguments)
+                          : arguments.check           ? with_output_checked(check(arguments), "softgripd")
                           : !arguments.device.empty() ? say_whether_named(arguments)
                                                       : run(arguments);
     // A signal is the usual end of a daemon, but it interrupts a run that has an end of its own.

@@ -7,8 +7,10 @@
 // FAIL_TOLD is created; as long as that file appears, there is an Nth call, and a test goes on with N+1 until
 // it does not, as SQLite's do.
 //
+// FAIL_CREATED=FILE appends the path of every file that a call may create to FILE, a line each.
+//
 // FAIL_HANG=NAME never returns from opening a file whose path ends in NAME, as a mount without its server
-// does.
+// does. FAIL_TOLD is created then, too.
 
 #undef _FORTIFY_SOURCE  // its wrappers of recv and others would be second definitions
 
@@ -40,6 +42,7 @@ struct Order {
   long nth = std::getenv("FAIL_NTH") != nullptr ? std::atol(std::getenv("FAIL_NTH")) : 0;
   bool from = std::getenv("FAIL_FROM") != nullptr;
   const char* hang = std::getenv("FAIL_HANG");
+  const char* created = std::getenv("FAIL_CREATED");
 };
 
 const Order& order() noexcept {
@@ -84,12 +87,27 @@ bool fails(const char* call, int error) noexcept {
   return true;
 }
 
+/// Notes the path if this call may create a file, by calls that are not counted.
+void note_created(const char* path, bool creates) noexcept {
+  if (!creates || order().created == nullptr) return;
+  using Open = int (*)(const char*, int, ...);
+  static const auto open_file = real<Open>("open");
+  using Write = ssize_t (*)(int, const void*, size_t);
+  static const auto write_file = real<Write>("write");
+  const int list = open_file(order().created, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (list < 0) return;
+  const ssize_t noted = write_file(list, path, std::strlen(path)) + write_file(list, "\n", 1);
+  ::close(list);
+  if (noted <= 0) std::abort();
+}
+
 /// Does not return if the file of this path is to hang.
 void hang_at(const char* path) noexcept {
   if (order().hang == nullptr) return;
   const std::size_t end = std::strlen(order().hang);
   const std::size_t size = std::strlen(path);
   if (size < end || std::strcmp(path + size - end, order().hang) != 0) return;
+  tell();
   while (true) ::pause();
 }
 
@@ -134,6 +152,7 @@ int open(const char* path, int flags, ...) {
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
   hang_at(path);
+  note_created(path, (flags & O_CREAT) != 0);
   if (fails("open", EMFILE)) return -1;
   static const auto next = real<int (*)(const char*, int, ...)>("open");
   return next(path, flags, mode);
@@ -145,6 +164,7 @@ int open64(const char* path, int flags, ...) {
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
   hang_at(path);
+  note_created(path, (flags & O_CREAT) != 0);
   if (fails("open", EMFILE)) return -1;
   static const auto next = real<int (*)(const char*, int, ...)>("open64");
   return next(path, flags, mode);
@@ -156,13 +176,30 @@ int openat(int folder, const char* path, int flags, ...) {
   const mode_t mode = va_arg(more, mode_t);
   va_end(more);
   hang_at(path);
+  note_created(path, (flags & O_CREAT) != 0);
   if (fails("open", EMFILE)) return -1;
   static const auto next = real<int (*)(int, const char*, int, ...)>("openat");
   return next(folder, path, flags, mode);
 }
 
+// What open() and openat() of a hardened program become where the flags are no constant.
+int __open_2(const char* path, int flags) {
+  hang_at(path);
+  if (fails("open", EMFILE)) return -1;
+  static const auto next = real<int (*)(const char*, int)>("__open_2");
+  return next(path, flags);
+}
+
+int __openat_2(int folder, const char* path, int flags) {
+  hang_at(path);
+  if (fails("open", EMFILE)) return -1;
+  static const auto next = real<int (*)(int, const char*, int)>("__openat_2");
+  return next(folder, path, flags);
+}
+
 FILE* fopen(const char* path, const char* mode) {
   hang_at(path);
+  note_created(path, std::strpbrk(mode, "wa") != nullptr);
   if (fails("open", EMFILE)) return nullptr;
   static const auto next = real<FILE* (*)(const char*, const char*)>("fopen");
   return next(path, mode);
@@ -170,6 +207,7 @@ FILE* fopen(const char* path, const char* mode) {
 
 FILE* fopen64(const char* path, const char* mode) {
   hang_at(path);
+  note_created(path, std::strpbrk(mode, "wa") != nullptr);
   if (fails("open", EMFILE)) return nullptr;
   static const auto next = real<FILE* (*)(const char*, const char*)>("fopen64");
   return next(path, mode);
@@ -218,6 +256,13 @@ int rename(const char* from, const char* to) {
   if (fails("rename", EACCES)) return -1;
   static const auto next = real<int (*)(const char*, const char*)>("rename");
   return next(from, to);
+}
+
+int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
+  if (fails("rename", EACCES)) return -1;
+  using Rename = int (*)(int, const char*, int, const char*, unsigned);
+  static const auto next = real<Rename>("renameat2");
+  return next(from_folder, from, to_folder, to, flags);
 }
 
 int mkdir(const char* path, mode_t mode) {

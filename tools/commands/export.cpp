@@ -99,9 +99,7 @@ bool is_yaml(const std::string& path) {
 
 /// What was asked for and makes no sense.
 std::optional<ExitCode> refused(const ExportOptions& options, const std::string& format) {
-  std::error_code error;
-  if (std::filesystem::equivalent(options.input, options.out, error))
-    return fail(ExitCode::usage, options.out + " is the file that is exported: it is not written over");
+  if (const auto code = refuse_overwriting({options.out}, {options.input})) return code;
   if (format == "c") return std::nullopt;
   if (is_yaml(options.input))
     return fail(ExitCode::usage, options.input + " is no recording, log or series: a model becomes .c");
@@ -124,9 +122,10 @@ ExitCode run(const ExportOptions& options) {
   std::vector<std::string> left_out;
   tl::expected<void, std::string> written;
   if (format == "mat") {
-    auto texts = write_mat(options.out, wide(*groups));
-    if (!texts) return fail(ExitCode::io, texts.error());
-    left_out = std::move(*texts);
+    auto mat = mat_bytes(wide(*groups));
+    if (!mat) return fail(ExitCode::io, options.out + ": " + mat.error());
+    left_out = std::move(mat->left_out);
+    written = write_output(options.out, mat->bytes);
   } else if (format == "mcap") {
     written = write_output(options.out, mcap_bytes(*groups, "softgrip " + std::string(software_version())));
   } else {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "base/kept_file.h"
+#include "base/files.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
 #include "tools/commands/commands.h"

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "base/files.h"
-#include "base/kept_file.h"
 #include "document/edit.h"
 #include "rig/rig_file.h"
 

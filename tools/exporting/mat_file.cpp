@@ -1,17 +1,24 @@
 #include "tools/exporting/mat_file.h"
 
 #include <matio.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
-#include <filesystem>
+#include <cstring>
 #include <memory>
 #include <set>
+#include <utility>
+
+#include "base/descriptor.h"
 
 namespace softgrip::tools {
 namespace {
 
+using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
 using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
 
 bool put(mat_t* file, const std::string& name, const std::vector<double>& values) {
@@ -23,11 +30,14 @@ bool put(mat_t* file, const std::string& name, const std::vector<double>& values
   return variable && Mat_VarWrite(file, variable.get(), MAT_COMPRESSION_ZLIB) == 0;
 }
 
-bool put_all(const std::string& path, const SignalGroup& group, std::vector<std::string>& left_out) {
-  // Its own header would hold the time of day.
-  mat_t* const file = Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, softgrip export", MAT_FT_MAT5);
-  if (file == nullptr) return false;
-  bool good = put(file, "time_s", group.time_s);
+struct Column {
+  std::string name;
+  const std::vector<double>* values;
+};
+
+/// The columns under names that MATLAB takes; texts are left out.
+std::vector<Column> columns_of(const SignalGroup& group, std::vector<std::string>& left_out) {
+  std::vector<Column> columns{{"time_s", &group.time_s}};
   std::set<std::string> used{"time_s"};
   for (const Signal& signal : group.signals) {
     if (!signal.texts.empty()) {
@@ -36,9 +46,47 @@ bool put_all(const std::string& path, const SignalGroup& group, std::vector<std:
     }
     std::string name = matlab_name(signal.name);
     while (!used.insert(name).second) name = matlab_name(name.substr(0, 60) + "_2");
-    good = good && put(file, name, signal.values);
+    columns.push_back({std::move(name), &signal.values});
   }
-  return Mat_Close(file) == 0 && good;
+  return columns;
+}
+
+bool put_all(const std::string& path, const std::vector<Column>& columns) {
+  // The default header of libmatio contains the time of day.
+  const MatFile file{Mat_CreateVer(path.c_str(), "MATLAB 5.0 MAT-file, softgrip export", MAT_FT_MAT5),
+                     Mat_Close};
+  return file && std::all_of(columns.begin(), columns.end(), [&](const Column& column) {
+           return put(file.get(), column.name, *column.values);
+         });
+}
+
+/// True if the file holds these values in this order and nothing else. libmatio 1.5 does not check its
+/// writes.
+bool holds(const std::string& path, const std::vector<Column>& columns) {
+  const MatFile file{Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close};
+  if (!file) return false;
+  for (const Column& column : columns) {
+    const MatVariable read{Mat_VarReadNext(file.get()), Mat_VarFree};
+    const std::size_t bytes = column.values->size() * sizeof(double);
+    if (!read || column.name != read->name || read->data_type != MAT_T_DOUBLE || read->nbytes != bytes ||
+        (bytes > 0 && std::memcmp(read->data, column.values->data(), bytes) != 0))
+      return false;
+  }
+  return MatVariable{Mat_VarReadNext(file.get()), Mat_VarFree} == nullptr;
+}
+
+/// All bytes of a file in memory; empty if they cannot be read.
+std::string bytes_of(int file) {
+  struct ::stat about {};
+  if (::fstat(file, &about) != 0) return {};
+  std::string bytes(static_cast<std::size_t>(about.st_size), '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count = ::pread(file, bytes.data() + done, bytes.size() - done, static_cast<::off_t>(done));
+    if (count <= 0) return {};
+    done += static_cast<std::size_t>(count);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -51,20 +99,15 @@ std::string matlab_name(const std::string& name) {
   return valid.substr(0, longest);
 }
 
-tl::expected<std::vector<std::string>, std::string> write_mat(const std::string& path,
-                                                              const SignalGroup& group) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  if (fs::path(path).has_parent_path()) fs::create_directories(fs::path(path).parent_path(), error);
-  const std::string temporary = path + ".part" + std::to_string(::getpid());
-  std::vector<std::string> left_out;
-  if (put_all(temporary, group, left_out)) {
-    fs::rename(temporary, path, error);
-    if (!error) return left_out;
-  }
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  return tl::unexpected("cannot write " + path + (error ? ": " + error.message() : std::string()));
+tl::expected<MatBytes, std::string> mat_bytes(const SignalGroup& group) {
+  MatBytes mat;
+  const std::vector<Column> columns = columns_of(group, mat.left_out);
+  // libmatio writes only to a path, and does not check its writes: it gets a file in memory.
+  const Descriptor memory(::memfd_create("softgrip-export", MFD_CLOEXEC));
+  const std::string path = "/proc/self/fd/" + std::to_string(memory.get());
+  if (memory && put_all(path, columns) && holds(path, columns)) mat.bytes = bytes_of(memory.get());
+  if (mat.bytes.empty()) return tl::unexpected(std::string("libmatio cannot make the .mat file in memory"));
+  return mat;
 }
 
 }  // namespace softgrip::tools

@@ -1,0 +1,134 @@
+// The one place that creates files; base/files.h has the contract.
+
+#include <fcntl.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "base/errno_text.h"
+#include "base/files.h"
+
+namespace softgrip {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// 0, or the errno of a call that failed.
+using Error = int;
+
+constexpr mode_t new_file_mode = 0666;  // less what the umask takes
+constexpr mode_t private_mode = 0600;
+constexpr mode_t permissions = 0777;
+
+Error error_of(int result) {
+  return result == 0 ? 0 : errno;
+}
+
+/// A name in the folder of `target` that no other process has and none can guess.
+std::string temporary_name(const fs::path& target) {
+  std::uint64_t number = 0;
+  // Where the kernel gives none, O_EXCL still keeps two writers apart.
+  if (::getrandom(&number, sizeof number, GRND_NONBLOCK) < 0) number = static_cast<std::uint64_t>(::getpid());
+  char name[48];
+  (void)std::snprintf(name, sizeof name, ".softgrip-%016llx.part", static_cast<unsigned long long>(number));
+  return (target.parent_path() / name).string();
+}
+
+/// Gives the new file the owner and the permissions of the one that it replaces. A user who may not give it
+/// away stays its owner.
+Error take_over(int file, const struct ::stat& old) {
+  [[maybe_unused]] const int given = ::fchown(file, old.st_uid, old.st_gid);
+  return error_of(::fchmod(file, old.st_mode & permissions));
+}
+
+/// A new file with all of `contents`; `old` is the file that it will replace, if there is one.
+Error write_new(const std::string& path, std::string_view contents, const struct ::stat* old, Sync sync) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+                         old == nullptr ? new_file_mode : private_mode));
+  if (!file) return errno;
+  Error error = write_all(file.get(), contents);
+  if (error == 0 && old != nullptr) error = take_over(file.get(), *old);
+  if (error == 0 && sync == Sync::disk) error = error_of(::fsync(file.get()));
+  // A network file system can report here that it has no space.
+  const Error closed = error_of(::close(file.release()));
+  return error != 0 ? error : closed;
+}
+
+/// rename() that fails with EEXIST where there is a file of the new name.
+Error rename_to_new(const char* from, const char* to) {
+  const Error error = error_of(::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE));
+  if (error != EINVAL) return error;
+  // NFS: a second name does the same, if the first is removed.
+  const Error linked = error_of(::link(from, to));
+  return linked != 0 ? linked : error_of(::unlink(from));
+}
+
+/// Makes the name itself survive a power failure, as far as the file system promises.
+void sync_folder(const fs::path& folder) {
+  const Descriptor opened(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened) ::fsync(opened.get());
+}
+
+enum class Existing { replaced, refused };
+
+Error put(const fs::path& target, std::string_view contents, Existing existing, Sync sync) {
+  struct ::stat about {};
+  const bool replaces = ::lstat(target.c_str(), &about) == 0 && S_ISREG(about.st_mode);
+  const std::string temporary = temporary_name(target);
+  Error error = write_new(temporary, contents, replaces ? &about : nullptr, sync);
+  if (error == 0) {
+    error = existing == Existing::replaced ? error_of(std::rename(temporary.c_str(), target.c_str()))
+                                           : rename_to_new(temporary.c_str(), target.c_str());
+  }
+  if (error != 0) {
+    ::unlink(temporary.c_str());
+  } else if (sync == Sync::disk) {
+    sync_folder(target.parent_path());
+  }
+  return error;
+}
+
+tl::expected<void, std::string> ended(Error error, const char* verb, const std::string& path) {
+  if (error == 0) return {};
+  return tl::unexpected(std::string("cannot ") + verb + " " + path + ": " + text_of_errno(error));
+}
+
+}  // namespace
+
+int write_all(int descriptor, std::string_view bytes) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno;
+    if (count == 0) return ENOSPC;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return 0;
+}
+
+tl::expected<void, std::string> write_file(const std::string& path, std::string_view contents, Sync sync) {
+  const fs::path target(path);
+  std::error_code error;
+  if (target.has_parent_path()) fs::create_directories(target.parent_path(), error);
+  if (error) return tl::unexpected("cannot create " + target.parent_path().string() + ": " + error.message());
+  return ended(put(target, contents, Existing::replaced, sync), "write", path);
+}
+
+tl::expected<void, std::string> replace_file(const std::string& path, std::string_view contents) {
+  std::error_code error;
+  const fs::path target = fs::canonical(path, error);
+  if (error) return tl::unexpected("cannot replace " + path + ": " + error.message());
+  return ended(put(target, contents, Existing::replaced, Sync::disk), "write", path);
+}
+
+tl::expected<void, std::string> create_file(const std::string& path, std::string_view contents) {
+  return ended(put(path, contents, Existing::refused, Sync::disk), "create", path);
+}
+
+}  // namespace softgrip
