@@ -158,7 +158,7 @@ class Signals(bench.BenchTest):
         self.assertIn("a model becomes .c", self.export("m.csv", source=MODEL, expect=2).stderr)
         self.assertIn("keep their own times", self.export("run.mat", "--rate-hz", "100", expect=2).stderr)
         before = (self.folder / "run/run.csv").read_bytes()
-        self.assertIn("not written over", self.export("run/run.csv", source="run/run.csv", expect=2).stderr)
+        self.assertIn("not overwritten", self.export("run/run.csv", source="run/run.csv", expect=2).stderr)
         self.assertEqual((self.folder / "run/run.csv").read_bytes(), before)
         self.write("nothing.csv", "a,b\n1,2\n2,3\n")
         self.assertIn("neither a log nor a series", self.export("x.csv", source="nothing.csv", expect=3).stderr)

@@ -97,7 +97,7 @@ class Import(bench.BenchTest):
         self.imported("absent.csv", "--out", "log.csv", expect=4)
         self.imported(path, "--map", "absent.yaml", "--out", "log.csv", expect=4)
         done = self.imported(path, "--out", path, "--yes", expect=2)
-        self.assertIn("not written over", done.stderr)
+        self.assertIn("not overwritten", done.stderr)
         done = self.imported(path, "--out", "log.csv", "--time", "Zeit", "--yes", expect=3)
         self.assertIn("no column 'Zeit'", done.stderr)
         self.assertEqual(list(self.folder.glob("log*")), [])

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/json_text.h"
 #include "base/numbers.h"
 #include "base/wall_clock.h"
 #include "tools/client/json_fields.h"
@@ -39,7 +40,7 @@ Json last_health(const std::string& recordings) {
   const auto path = std::filesystem::path(recordings) / health_folder / "health.json";
   const auto text = read_file(path.string(), largest_result);
   if (!text) return nullptr;
-  Json health = Json::parse(*text, nullptr, false);
+  Json health = parse_json<Json>(*text);
   if (!health.is_object() || !health.contains("made_unix_s") || !health["made_unix_s"].is_number() ||
       !health.contains("fingers") || !health["fingers"].is_array())
     return nullptr;

@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 
 #include "base/errno_text.h"
 #include "base/files.h"
@@ -24,17 +23,16 @@ ExitCode refuse(const document::Problems& problems) {
   return ExitCode::input_refused;
 }
 
-std::optional<ExitCode> unreadable(const std::string& path) {
-  const auto cannot_read = [&](const std::string& reason) {
-    return fail(ExitCode::io, "cannot read " + path + ": " + reason);
-  };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    if (::access(path.c_str(), R_OK) == 0) return std::nullopt;
-    return cannot_read(text_of_errno(errno));
-  }
+std::string why_unreadable(const std::string& path) {
+  if (is_folder(path)) return ::access(path.c_str(), R_OK) == 0 ? std::string() : text_of_errno(errno);
   const auto file = open_regular(path);
-  return file ? std::nullopt : std::optional(cannot_read(file.error()));
+  return file ? std::string() : file.error();
+}
+
+std::optional<ExitCode> unreadable(const std::string& path) {
+  const std::string why = why_unreadable(path);
+  if (why.empty()) return std::nullopt;
+  return fail(ExitCode::io, "cannot read " + path + ": " + why);
 }
 
 }  // namespace softgrip::tools

@@ -31,8 +31,10 @@ ExitCode fail(ExitCode code, std::string_view message);
 /// Returns ExitCode::input_refused.
 ExitCode refuse(const document::Problems& problems);
 
-/// ExitCode::io, and a sentence on the standard error, if `path` is neither a folder nor a regular file that
-/// can be opened for reading.
+/// Empty if `path` is a folder or a regular file that can be opened for reading; else the reason.
+[[nodiscard]] std::string why_unreadable(const std::string& path);
+
+/// ExitCode::io, and a sentence on the standard error, if there is such a reason.
 [[nodiscard]] std::optional<ExitCode> unreadable(const std::string& path);
 
 }  // namespace softgrip::tools

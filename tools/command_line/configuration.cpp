@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/files.h"
+
 namespace softgrip::tools {
 
 std::string configuration_path(const std::string& name) {
   std::string here = "config/" + name;
-  return std::filesystem::exists(here) ? here : SOFTGRIP_CONFIG_DIR "/" + name;
+  return is_there(here) ? here : SOFTGRIP_CONFIG_DIR "/" + name;
 }
 
 std::string installed_configuration() {

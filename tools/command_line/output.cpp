@@ -1,13 +1,16 @@
 #include "tools/command_line/output.h"
 
+#include <fnmatch.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 
 #include "base/files.h"
+#include "tools/command_line/command.h"
 
 namespace softgrip::tools {
 namespace {
@@ -16,7 +19,45 @@ bool put(std::FILE* file, std::string_view text) {
   return std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
 }
 
+namespace fs = std::filesystem;
+
+/// The files that are read when `input` is named.
+std::vector<std::string> files_of(const std::string& input) {
+  if (!is_folder(input)) return {input};
+  return {input + "/run.csv", input + "/run.json"};
+}
+
 }  // namespace
+
+std::optional<ExitCode> refuse_overwriting(const std::vector<std::string>& outputs,
+                                           const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    for (const std::string& file : files_of(input)) {
+      for (const std::string& output : outputs) {
+        if (!is_stream(output) && same_file(output, file))
+          return fail(ExitCode::usage, output + " is an input of this command (" + input +
+                                           "): it is not overwritten. Name another output");
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> files_in(const std::string& folder, const std::vector<std::string>& patterns) {
+  std::vector<std::string> found;
+  std::error_code error;
+  if (folder.empty()) return found;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    if (entry.depth() > 0) entry.disable_recursion_pending();
+    const std::string name = entry->path().lexically_relative(folder).string();
+    const bool matches = std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) {
+      return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PATHNAME) == 0;
+    });
+    if (matches) found.push_back(entry->path().string());
+  }
+  return found;
+}
 
 // A rename would replace it instead of writing into it.
 bool is_stream(const std::string& path) {

@@ -23,6 +23,7 @@
 #include "tools/command_line/call.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
+#include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/baseline_folder.h"
 #include "tools/commands/commands.h"
@@ -240,6 +241,10 @@ ExitCode run(const BaselineOptions& options, const std::vector<std::string>& cal
                 "a baseline needs --rig or --data; --check DIR alone looks at one that is there");
   }
   if (options.out.empty()) return fail(ExitCode::usage, "--out is required: the folder of the baseline");
+  std::vector<std::string> inputs = options.data;
+  inputs.insert(inputs.end(), options.check.begin(), options.check.end());
+  inputs.insert(inputs.end(), {options.rig, options.gauge, options.model});
+  if (const auto code = refuse_overwriting(files_in(options.out, baseline_files()), inputs)) return *code;
   auto runs = options.rig.empty() ? recorded(options) : played(options);
   if (!runs) return runs.error();
   return keep(options, std::move(*runs), call);

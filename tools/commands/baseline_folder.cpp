@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/files.h"
+#include "base/json_text.h"
 #include "base/sha256.h"
 #include "daemon/service/signals.h"
 #include "model/file/model_file.h"
@@ -22,7 +23,7 @@ constexpr std::size_t largest_log = std::size_t{512} * 1024 * 1024;
 constexpr std::size_t largest_json = std::size_t{16} * 1024 * 1024;
 
 std::string file_of(const sysid::Log& log) {
-  return fs::is_directory(log.path) ? (fs::path(log.path) / "run.csv").string() : log.path;
+  return is_folder(log.path) ? (fs::path(log.path) / "run.csv").string() : log.path;
 }
 
 /// Writes files one by one and keeps what baseline.json says of them, up to the first failure.
@@ -70,6 +71,10 @@ tl::expected<std::string, std::string> write_into(const std::string& folder, con
 
 }  // namespace
 
+std::vector<std::string> baseline_files() {
+  return {"healthy_*.csv", "second_*.csv", "gauge.csv", "model.yaml", "baseline.json"};
+}
+
 tl::expected<BaselineFile, std::string> baseline_file(const std::string& path) {
   auto bytes = read_file(path, largest_log);
   if (!bytes) return Failure(bytes.error());
@@ -105,7 +110,7 @@ tl::expected<Baseline, std::string> read_baseline(const std::string& folder) {
   const std::string path = (fs::path(folder) / "baseline.json").string();
   const auto text = read_file(path, largest_json);
   if (!text) return Failure(folder + " is no baseline: " + text.error());
-  const Json json = Json::parse(*text, nullptr, false);
+  const Json json = parse_json<Json>(*text);
   if (!json.is_object() || !json.contains("logs") || !json["logs"].is_array() || !json.contains("model"))
     return Failure(path + " is not what softgrip baseline writes");
   Baseline baseline;

@@ -40,6 +40,9 @@ struct BaselineContents {
 /// Any one file.
 [[nodiscard]] tl::expected<BaselineFile, std::string> baseline_file(const std::string& path);
 
+/// Names of the files that write_baseline() writes or replaces; `*` is a number.
+[[nodiscard]] std::vector<std::string> baseline_files();
+
 /// Writes the folder. One that was not there appears whole or not at all, and Ctrl-C waits for it. Returns
 /// the text of baseline.json.
 /// @param about  what baseline.json says besides.

@@ -218,6 +218,9 @@ tl::expected<calibrate::Settings, ExitCode> prepare(CalibrateOptions& options, c
   if (const auto code = set_pressures(options, rig.settings.channels[*channel].limits, settings)) {
     return tl::unexpected(*code);
   }
+  std::vector<std::string> inputs;
+  for (const auto& input : rig.inputs) inputs.push_back(input.path);
+  if (const auto code = refuse_overwriting({options.out}, inputs)) return tl::unexpected(*code);
   for (const std::string& path : {options.out, options.write ? rig.path : std::string("-")}) {
     if (const auto ready = prepare_parent(path); !ready)
       return tl::unexpected(fail(ExitCode::io, ready.error()));

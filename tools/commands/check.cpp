@@ -2,8 +2,6 @@
 
 #include "rig/check.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -78,9 +76,8 @@ ExitCode run(const CheckOptions& options) {
   if (!arguments) return arguments.error();
   const rig::CheckReport report = rig::check_files(options.files, *arguments);
   options.json ? print_report_json(report) : print_report_text(report);
-  const bool all_there = std::all_of(options.files.begin(), options.files.end(), [](const std::string& path) {
-    return ::access(path.c_str(), R_OK) == 0;
-  });
+  const bool all_there = std::all_of(options.files.begin(), options.files.end(),
+                                     [](const std::string& path) { return why_unreadable(path).empty(); });
   if (!all_there) return ExitCode::io;
   return report.accepted() ? ExitCode::done : ExitCode::input_refused;
 }

@@ -18,6 +18,7 @@
 #include "tools/command_line/call.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
+#include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/baseline_folder.h"
@@ -164,6 +165,14 @@ ExitCode changed(const DiagnoseOptions& options, const model::Model& model,
   return run_change(std::move(question));
 }
 
+std::optional<ExitCode> refuse_own_inputs(const DiagnoseOptions& options) {
+  std::vector<std::string> inputs = options.data;
+  inputs.insert(inputs.end(), options.healthy.begin(), options.healthy.end());
+  inputs.insert(inputs.end(), {options.model, options.gauge});
+  if (!options.baseline.empty()) inputs.push_back(options.baseline + "/baseline.json");
+  return refuse_overwriting(replaced_by_report(options.out, options.figures, diagnosis_files()), inputs);
+}
+
 ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
   if (!options.baseline.empty()) {
     const auto baseline = read_baseline(options.baseline);
@@ -172,6 +181,7 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
     if (options.model.empty()) options.model = baseline->model;
   }
   if (options.model.empty()) return fail(ExitCode::usage, "--model is required where there is no --baseline");
+  if (const auto code = refuse_own_inputs(options)) return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);

@@ -64,7 +64,7 @@ class Baselines {
   }
   [[nodiscard]] std::string folder_of(const std::string& finger) const {
     const fs::path own = fs::path(folder_) / finger;
-    return !finger.empty() && fs::exists(own / "baseline.json") ? own.string() : folder_;
+    return !finger.empty() && is_there(own / "baseline.json") ? own.string() : folder_;
   }
   /// Why a baseline that is there was refused.
   [[nodiscard]] std::optional<ExitCode> refused() const { return refused_; }
@@ -100,7 +100,7 @@ tl::expected<std::vector<health::Note>, ExitCode> notes_of(const HealthOptions& 
   std::string path = options.notes;
   if (path.empty() && !options.out.empty()) {
     const fs::path beside = fs::path(options.out) / "notes.yaml";
-    if (fs::exists(beside)) path = beside.string();
+    if (is_there(beside)) path = beside.string();
   }
   if (path.empty()) return std::vector<health::Note>{};
   const auto text = read_file(path, largest_file);
@@ -225,6 +225,11 @@ tl::expected<void, std::string> write_results(const std::string& out, const Json
 }
 
 ExitCode run(HealthOptions options) {
+  std::vector<std::string> inputs = options.runs;
+  inputs.insert(inputs.end(), {options.notes, options.baseline + "/baseline.json"});
+  if (const auto code = refuse_overwriting(
+          files_in(options.out, {health::scores_file, health::health_file, "health*.html"}), inputs))
+    return *code;
   options.judge.by_day = options.points == "day";
   const auto notes = notes_of(options);
   if (!notes) return notes.error();
@@ -233,7 +238,11 @@ ExitCode run(HealthOptions options) {
   std::string kept;
   if (!options.out.empty()) {
     if (const auto ready = prepare_folder(options.out); !ready) return fail(ExitCode::io, ready.error());
-    kept = read_file((fs::path(options.out) / health::scores_file).string(), largest_file).value_or("");
+    const std::string path = (fs::path(options.out) / health::scores_file).string();
+    // A file that exists and cannot be read holds the scores of earlier days: it must not be replaced.
+    auto earlier = is_there(path) ? read_file(path, largest_file) : std::string();
+    if (!earlier) return fail(ExitCode::io, earlier.error());
+    kept = std::move(*earlier);
     if (!kept.empty() && kept.back() != '\n') kept += '\n';
   }
   std::vector<health::ScoredRun> runs = health::read_scores(kept);

@@ -23,6 +23,7 @@
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
@@ -144,6 +145,12 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
 }
 
 ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
+  std::vector<std::string> inputs = options.data;
+  inputs.insert(inputs.end(), options.validate.begin(), options.validate.end());
+  inputs.push_back(options.start);
+  if (const auto code = refuse_overwriting(
+          replaced_by_report(options.out, options.figures, {"model.yaml", "identify.json"}), inputs))
+    return *code;
   LogInput fitted = options.logs;
   fitted.sample_before_command = !question_of(options);
   const auto logs = read_logs(options.data, fitted);

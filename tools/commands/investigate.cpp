@@ -18,11 +18,13 @@
 #include "base/numbers.h"
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
+#include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/gauge_by_hand.h"
 #include "tools/commands/rig_to_move.h"
+#include "tools/investigation/diagnosis_folder.h"
 #include "tools/investigation/experiment_rig.h"
 #include "tools/investigation/investigation.h"
 #include "tools/investigation/investigation_report.h"
@@ -201,6 +203,11 @@ ExitCode run(const InvestigateOptions& options) {
     return fail(ExitCode::usage, "--rig-channel goes with --rig");
   if (!options.gauge_command.empty() && options.rig_command.empty())
     return fail(ExitCode::usage, "--gauge-command goes with --rig-command");
+  std::vector<std::string> inputs = options.data;
+  inputs.insert(inputs.end(), {options.model, options.rig, options.gauge});
+  std::vector<std::string> names = diagnosis_files();
+  names.insert(names.end(), {"investigation.json", "report.html", "step_*/*"});
+  if (const auto code = refuse_overwriting(files_in(options.out, names), inputs)) return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
@@ -238,7 +245,7 @@ ExitCode run(const InvestigateOptions& options) {
     investigation.diagnosis.progress = line.show();
     return investigate(investigation);
   }();
-  if (!result) return fail(ExitCode::input_refused, result.error());
+  if (!result) return fail(result.error().code, result.error().why);
   return conclude(options, *model, *ground, *result);
 }
 

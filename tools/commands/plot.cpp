@@ -74,6 +74,7 @@ ExitCode run(const PlotOptions& options) {
   if (!format)
     return fail(ExitCode::usage, "plot writes " + std::string(picture_formats()) +
                                      ", by the ending: " + options.out + " ends in none of them");
+  if (const auto code = refuse_overwriting({options.out}, options.recordings)) return *code;
   if (!(options.from_s < options.to_s)) return fail(ExitCode::usage, "--from must be below --to");
   std::vector<Recording> recordings;
   for (const std::string& path : options.recordings) {

@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "sysid/fitting/trajectory.h"
+#include "tools/command_line/output.h"
 
 namespace softgrip::tools {
 
@@ -40,6 +41,15 @@ std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
     }
   }
   return all;
+}
+
+std::vector<std::string> replaced_by_report(const std::string& out, const std::string& figures,
+                                            std::vector<std::string> names) {
+  names.emplace_back("report.html");
+  names.emplace_back("*/series.csv");
+  std::vector<std::string> files = files_in(out, names);
+  for (std::string& file : files_in(figures, {"figure-*"})) files.push_back(std::move(file));
+  return files;
 }
 
 void add_figures_option(CLI::App& command, std::string& folder) {

@@ -29,6 +29,11 @@ namespace softgrip::tools {
 [[nodiscard]] std::vector<sysid::LogSeries> series_of(const sysid::Diagnosis& diagnosis,
                                                       const std::vector<sysid::Log>& logs);
 
+/// Returns the files in the folders of --out and --figures that a report with these names, its series and its
+/// figures would replace: for refuse_overwriting().
+[[nodiscard]] std::vector<std::string> replaced_by_report(const std::string& out, const std::string& figures,
+                                                          std::vector<std::string> names);
+
 /// Adds --figures DIR to a command that writes a report; write_figures() (tools/figures) fills the folder.
 void add_figures_option(CLI::App& command, std::string& folder);
 

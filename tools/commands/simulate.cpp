@@ -89,6 +89,7 @@ void report(const SimulateOptions& options, const model::Model& model, const sys
 }
 
 ExitCode run(const SimulateOptions& options) {
+  if (const auto code = refuse_overwriting({options.out}, {options.model, options.input})) return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
   auto log = read_input(options);

@@ -18,6 +18,7 @@
 #include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
+#include "tools/command_line/output.h"
 #include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
@@ -61,6 +62,11 @@ void print_summary(const sysid::Validation& v) {
 }
 
 ExitCode run(const ValidateOptions& options, const std::vector<std::string>& call) {
+  std::vector<std::string> inputs = options.data;
+  inputs.push_back(options.model);
+  if (const auto code =
+          refuse_overwriting(replaced_by_report(options.out, options.figures, {"validate.json"}), inputs))
+    return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);

@@ -78,8 +78,6 @@ tl::expected<std::vector<std::string>, std::string> import_targets(const std::ve
     targets.push_back(folder ? (fs::path(out) / log_name(file)).string() : out);
     if (!seen.insert(targets.back()).second)
       return tl::unexpected("two files would become " + targets.back());
-    if (fs::equivalent(file, targets.back(), error))
-      return tl::unexpected(targets.back() + " is the file that is imported: it is not written over");
   }
   return targets;
 }

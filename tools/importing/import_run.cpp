@@ -191,9 +191,24 @@ void report(const std::vector<Job>& jobs, const ImportOptions& options) {
   }
 }
 
+/// The mapping of an earlier import of the same log is no input here: it is written anew with the same
+/// meaning.
+std::optional<ExitCode> refuse_own_inputs(const ImportOptions& options,
+                                          const std::vector<std::string>& targets) {
+  std::vector<std::string> outputs = targets;
+  for (const std::string& target : targets) {
+    if (target != "-") outputs.push_back(mapping_path(target));
+  }
+  if (const auto code = refuse_overwriting(outputs, options.files)) return code;
+  return refuse_overwriting(targets, {options.map});
+}
+
 }  // namespace
 
 ExitCode run_import(const ImportOptions& options) {
+  const auto targets = import_targets(options.files, options.out);
+  if (!targets) return fail(ExitCode::usage, targets.error());
+  if (const auto code = refuse_own_inputs(options, *targets)) return *code;
   document::Problems problems;
   sysid::Mapping begun;
   if (!options.map.empty()) {
@@ -204,8 +219,6 @@ ExitCode run_import(const ImportOptions& options) {
   }
   const auto mapping = mapping_of(options, std::move(begun));
   if (!mapping) return fail(ExitCode::usage, mapping.error());
-  const auto targets = import_targets(options.files, options.out);
-  if (!targets) return fail(ExitCode::usage, targets.error());
 
   std::vector<Job> jobs(options.files.size());
   bool unreadable_file = false;

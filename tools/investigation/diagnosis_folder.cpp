@@ -60,6 +60,10 @@ Consequences consequences_of(const sysid::Diagnosis& diagnosis, const Consequenc
   return consequences;
 }
 
+std::vector<std::string> diagnosis_files() {
+  return {"diagnosis.json", "model.yaml", experiment_file, feedforward_file};
+}
+
 tl::expected<std::string, std::string> write_diagnosis_folder(const std::string& folder,
                                                               const sysid::Diagnosis& diagnosis,
                                                               const DiagnosisSource& source,

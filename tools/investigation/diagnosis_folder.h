@@ -35,6 +35,9 @@ struct DiagnosisSource {
   std::vector<std::string> call;  ///< the command and what it was given; empty: by no command of its own
 };
 
+/// Names of the files that write_diagnosis_folder() writes, replaces or removes.
+[[nodiscard]] std::vector<std::string> diagnosis_files();
+
 /// Writes the files into `folder` and returns what diagnosis.json says; a next_experiment.yaml or a
 /// feedforward_model.yaml of an earlier diagnosis goes where there is none.
 /// @param channel  for which the experiment is written; "": all of the rig.

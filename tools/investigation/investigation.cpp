@@ -43,7 +43,7 @@ class Investigator {
     result_.gauge = options.diagnosis.gauge;
   }
 
-  tl::expected<Investigation, std::string> run() {
+  tl::expected<Investigation, NotInvestigated> run() {
     while (result_.steps.size() < most_steps) {
       const auto goes_on = step();
       if (!goes_on) return tl::unexpected(goes_on.error());
@@ -55,13 +55,13 @@ class Investigator {
 
  private:
   /// One diagnosis and, where it asks for one, one experiment. False: it is over.
-  tl::expected<bool, std::string> step() {
+  tl::expected<bool, NotInvestigated> step() {
     const std::string name = "step_" + std::to_string(result_.steps.size() + 1);
     sysid::DiagnosisOptions how = options_.diagnosis;
     how.gauge = result_.gauge;
     auto diagnosis = sysid::diagnose(result_.logs, options_.given, how);
     if (how.progress) how.progress("");
-    if (!diagnosis) return tl::unexpected(diagnosis.error());
+    if (!diagnosis) return tl::unexpected(NotInvestigated{ExitCode::input_refused, diagnosis.error()});
     result_.last = std::move(*diagnosis);
     result_.steps.push_back(step_of(result_.last, name));
     tell(name + ": " + result_.steps.back().sentence);
@@ -73,7 +73,7 @@ class Investigator {
     const DiagnosisSource source{result_.logs, options_.given, {}};
     if (auto written = write_diagnosis_folder(folder, result_.last, source, consequences, options_.channel);
         !written)
-      return tl::unexpected(written.error());
+      return tl::unexpected(NotInvestigated{ExitCode::io, written.error()});
     if (result_.last.verdict == Verdict::unexplained)
       return end(InvestigationEnd::unexplained, "structure is left that no cause of the library explains");
     if (result_.last.verdict == Verdict::partly_explained)
@@ -198,7 +198,7 @@ const char* name_of(InvestigationEnd end) {
   return "failed";
 }
 
-tl::expected<Investigation, std::string> investigate(const InvestigationOptions& options) {
+tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOptions& options) {
   return Investigator(options).run();
 }
 

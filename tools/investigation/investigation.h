@@ -93,8 +93,14 @@ struct Investigation {
   sysid::Diagnosis last;
 };
 
-/// Fails with a sentence where the given logs cannot be judged or a file cannot be written.
-[[nodiscard]] tl::expected<Investigation, std::string> investigate(const InvestigationOptions& options);
+/// Why an investigation has no result: input_refused, the given logs cannot be judged; io, a file cannot be
+/// written.
+struct NotInvestigated {
+  ExitCode code = ExitCode::failed;
+  std::string why;  ///< a sentence
+};
+
+[[nodiscard]] tl::expected<Investigation, NotInvestigated> investigate(const InvestigationOptions& options);
 
 /// investigation.json. `rig`: what the experiments were played on.
 [[nodiscard]] nlohmann::ordered_json json_of(const Investigation& investigation, const std::string& rig);

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/files.h"
 #include "drivers/modbus/serial_port.h"
 #include "drivers/modbus_server/listener.h"
 #include "model/file/model_file.h"
@@ -11,6 +12,7 @@
 #include "simulation/emulator/wiring.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/configuration.h"
+#include "tools/command_line/output.h"
 
 namespace softgrip::tools {
 namespace {
@@ -117,7 +119,7 @@ tl::expected<Setup, ExitCode> setup_of_boards(const Options& options) {
   std::vector<drivers::BoardMap> maps;
   for (const std::string& board : options.boards) {
     const std::string path = board_path(board);
-    if (!std::filesystem::exists(path)) return tl::unexpected{no_such_board(board, path)};
+    if (!is_there(path)) return tl::unexpected{no_such_board(board, path)};
     if (const auto code = unreadable(path)) return tl::unexpected{*code};
     document::Problems problems;
     auto map = rig::load_board_map(path, problems);
@@ -177,6 +179,10 @@ tl::expected<Setup, ExitCode> make_setup(const Options& options) {
              "--object takes stone, screw or POSITION_MM[:YIELDING], not '" + options.object + "'")};
   }
   if (const auto code = any_unreadable(options)) return tl::unexpected{*code};
+  std::vector<std::string> inputs = options.models;
+  inputs.insert(inputs.end(), {options.faults, options.rig});
+  for (const std::string& board : options.boards) inputs.push_back(board_path(board));
+  if (const auto code = refuse_overwriting({options.truth}, inputs)) return tl::unexpected{*code};
   auto setup = options.rig.empty() ? setup_of_boards(options) : setup_of_rig(options.rig);
   if (!setup) return setup;
   if (const auto code = place(options, *setup)) return tl::unexpected{*code};

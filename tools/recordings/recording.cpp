@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
+#include "base/json_text.h"
 #include "base/numbers.h"
 #include "tools/command_line/command.h"
 
@@ -38,7 +39,7 @@ std::string recipe_of(const json& sequence) {
 void read_story(const std::string& path, Recording& recording) {
   const auto text = read_file(path, longest_story);
   if (!text) return;
-  const json story = json::parse(*text, nullptr, false);
+  const json story = parse_json<json>(*text);
   if (!story.is_object()) return;
   recording.software_version = text_at(story, "software_version");
   recording.started_at = text_at(story, "started_at");
@@ -59,7 +60,7 @@ void read_story(const std::string& path, Recording& recording) {
 }  // namespace
 
 tl::expected<Recording, ExitCode> read_recording(const std::string& path, document::Problems& problems) {
-  const bool folder = fs::is_directory(path);
+  const bool folder = is_folder(path);
   const std::string csv = folder ? (fs::path(path) / "run.csv").string() : path;
   const auto text = read_file(csv, longest_log);
   if (!text) return tl::unexpected{fail(ExitCode::io, text.error())};

@@ -81,7 +81,7 @@ class InvestigationTest : public ::testing::Test {
 
 TEST_F(InvestigationTest, SettlesOnTheTruthAndRecordsEveryStep) {
   const auto result = investigate(options_);
-  ASSERT_TRUE(result) << result.error();
+  ASSERT_TRUE(result) << result.error().why;
   EXPECT_EQ(result->end, InvestigationEnd::settled) << result->why;
   ASSERT_EQ(result->last.causes.size(), 1U);
   EXPECT_EQ(result->last.causes[0].cause.id, "stress_softening");
@@ -102,7 +102,7 @@ TEST_F(InvestigationTest, SettlesOnTheTruthAndRecordsEveryStep) {
 TEST_F(InvestigationTest, MovesNothingWithoutBudget) {
   options_.budget_minutes = 0.1;
   const auto result = investigate(options_);
-  ASSERT_TRUE(result) << result.error();
+  ASSERT_TRUE(result) << result.error().why;
   EXPECT_EQ(plays_, 0);
   EXPECT_EQ(result->spent_minutes, 0);
   if (result->last.verdict == sysid::Verdict::ambiguous) {
@@ -229,7 +229,7 @@ class GaugeStepTest : public InvestigationTest {
 
 TEST_F(GaugeStepTest, AStraightSensorSettlesOnTheFinger) {
   const auto result = investigate(options_);
-  ASSERT_TRUE(result) << result.error();
+  ASSERT_TRUE(result) << result.error().why;
   EXPECT_EQ(result->end, InvestigationEnd::settled) << result->why;
   ASSERT_EQ(result->last.causes.size(), 1U);
   EXPECT_EQ(result->last.causes[0].cause.id, "stiffening");
