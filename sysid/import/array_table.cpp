@@ -18,6 +18,7 @@ double finite_or_none(double value) {
 
 void ArrayCollector::add(const std::string& name, const std::string& unit, std::size_t rows,
                          std::size_t columns, const std::vector<double>& values) {
+  if (!has_room(rows, columns)) return pass_over(name, too_large);
   if (values.size() != rows * columns || values.size() < 2) return;
   values_ += values.size();
   const bool is_vector = rows == 1 || columns == 1;

@@ -11,8 +11,8 @@
 
 namespace softgrip::sysid {
 
-/// A binary file holds no more than this in all its arrays.
-inline constexpr std::size_t most_values = std::size_t{1} << 27;
+/// What is said of an array that does not fit within most_values.
+inline constexpr const char* too_large = "with it the file has more than 134217728 values";
 
 /// Collects the arrays of a file and keeps those that are as long as most others.
 class ArrayCollector {
@@ -26,8 +26,10 @@ class ArrayCollector {
            const std::vector<double>& values);
   /// Something in the file that is no array of numbers.
   void pass_over(const std::string& name, const std::string& what);
-  /// True when the file holds more than can be meant.
-  [[nodiscard]] bool full() const { return values_ > most_values; }
+  /// True if an array of this size still fits within most_values. Ask before its values are read.
+  [[nodiscard]] bool has_room(std::size_t rows, std::size_t columns) const {
+    return columns == 0 || rows <= (most_values - values_) / columns;
+  }
 
   /// The table, or a problem where there is none.
   [[nodiscard]] std::optional<ForeignTable> table(const std::string& format,

@@ -9,6 +9,7 @@
 #include "base/sha256.h"
 #include "sysid/import/array_table.h"
 #include "sysid/import/hdf5_table.h"
+#include "sysid/import/mat_elements.h"
 #include "sysid/import/mat_table.h"
 #include "sysid/import/text_table.h"
 
@@ -16,6 +17,7 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{1} << 30;
+constexpr const char* too_long_hint = "split it into several files";
 constexpr std::string_view hdf5_signature{"\x89HDF\r\n\x1a\n"};
 
 /// HDF5 begins at 0 or behind a block of 512, 1024, ... bytes of somebody else's.
@@ -54,11 +56,24 @@ std::string_view known_but_unread(std::string_view bytes) {
   return {};
 }
 
-std::optional<ForeignTable> read_bytes(const std::string& path, std::string_view bytes,
-                                       const TableOptions& options, document::Problems& problems) {
-  if (bytes.starts_with("MATLAB 5.0")) return read_mat_table(path, problems);
-  if (is_hdf5(bytes)) return read_hdf5_table(path, bytes.starts_with("MATLAB 7.3"), problems);
-  if (is_matlab_4(bytes)) return read_mat_table(path, problems);
+/// `opened`: a path to the file that `bytes` were read from, whatever has replaced it meanwhile.
+std::optional<ForeignTable> read_bytes(const std::string& path, const std::string& opened,
+                                       std::string_view bytes, const TableOptions& options,
+                                       document::Problems& problems) {
+  if (bytes.starts_with("MATLAB 5.0")) {
+    constexpr std::size_t most_parts = 100'000;
+    if (mat_elements_within(bytes, most_parts, most_values * sizeof(double)))
+      return read_mat_table(path, opened, problems);
+    problems.add({path,
+                  {1, 1},
+                  {},
+                  "its cells, structures and objects have more than " + std::to_string(most_parts) +
+                      " parts, or more than 1 GiB",
+                  "save only arrays of numbers"});
+    return std::nullopt;
+  }
+  if (is_hdf5(bytes)) return read_hdf5_table(path, opened, bytes.starts_with("MATLAB 7.3"), problems);
+  if (is_matlab_4(bytes)) return read_mat_table(path, opened, problems);
   if (const std::string_view known = known_but_unread(bytes); !known.empty()) {
     problems.add({path, {1, 1}, {}, "this is " + std::string(known), "export it as CSV"});
     return std::nullopt;
@@ -88,7 +103,7 @@ tl::expected<std::string, std::string> gunzipped(std::string_view bytes, std::si
   }
   inflateEnd(&stream);
   if (text.size() > bound)
-    return tl::unexpected("unpacked it is larger than " + std::to_string(bound) + " bytes");
+    return tl::unexpected("after decompression it has more than " + std::to_string(bound) + " bytes");
   if (state == Z_BUF_ERROR) return tl::unexpected(std::string("the gzip file is cut off"));
   if (state != Z_STREAM_END) return tl::unexpected(std::string("the gzip file is broken"));
   return text;
@@ -99,15 +114,20 @@ std::optional<ForeignTable> read_foreign_file(const std::string& given, const Ta
   namespace fs = std::filesystem;
   std::error_code error;
   const std::string path = fs::is_directory(given, error) ? (fs::path(given) / "run.csv").string() : given;
-  const auto bytes = read_file(path, most_bytes);
+  const auto file = open_regular(path);
+  const auto bytes = file ? read_start(*file, most_bytes + 1) : tl::unexpected(file.error());
   if (!bytes) {
     unreadable = true;
-    problems.add({path, {1, 1}, {}, bytes.error(), {}});
+    problems.add({path, {1, 1}, {}, "cannot open " + path + ": " + bytes.error(), {}});
+    return std::nullopt;
+  }
+  if (bytes->size() > most_bytes) {
+    problems.add({path, {1, 1}, {}, "larger than " + std::to_string(most_bytes) + " bytes", too_long_hint});
     return std::nullopt;
   }
   std::optional<ForeignTable> table;
   if (bytes->starts_with("\x1f\x8b")) {
-    const auto text = gunzipped(*bytes, most_bytes);
+    const auto text = gunzipped(*bytes, most_text_bytes);
     if (!text) {
       problems.add({path, {1, 1}, {}, text.error(), {}});
       return std::nullopt;
@@ -115,7 +135,8 @@ std::optional<ForeignTable> read_foreign_file(const std::string& given, const Ta
     table = parse_text_table(path, *text, options, problems);
     if (table) table->format = "gzip, " + table->format;
   } else {
-    table = read_bytes(path, *bytes, options, problems);
+    const std::string opened = "/proc/self/fd/" + std::to_string(file->descriptor.get());
+    table = read_bytes(path, opened, *bytes, options, problems);
   }
   if (table) table->sha256 = sha256(*bytes);
   return table;

@@ -13,6 +13,9 @@ namespace {
 
 constexpr int deepest_group = 8;
 constexpr std::size_t longest_unit = 64;
+constexpr int most_objects = 100'000;
+constexpr std::size_t most_type_bytes = std::size_t{1} << 20U;
+constexpr std::size_t most_chunk_bytes = std::size_t{256} << 20U;
 
 /// An identifier of libhdf5 that closes itself.
 class Handle {
@@ -96,6 +99,10 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
                                                           H5free_memory);
     const Handle kind(H5Tget_member_type(type, static_cast<unsigned>(i)), H5Tclose);
     if (!member || !is_number(kind.get())) continue;
+    if (!arrays.has_room(rows, 1)) {
+      arrays.pass_over(name + "." + member.get(), too_large);
+      continue;
+    }
     const Handle one(H5Tcreate(H5T_COMPOUND, sizeof(double)), H5Tclose);
     H5Tinsert(one.get(), member.get(), 0, H5T_NATIVE_DOUBLE);
     std::vector<double> values(rows);
@@ -107,6 +114,17 @@ void collect_members(hid_t dataset, hid_t type, const std::string& name, std::si
   }
 }
 
+/// Bytes that libhdf5 decompresses at once to read one value; 0 of a dataset without chunks.
+std::size_t chunk_bytes(hid_t dataset, hid_t type) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  std::array<hsize_t, 2> chunk{1, 1};
+  if (H5Pget_layout(creation.get()) != H5D_CHUNKED || H5Pget_chunk(creation.get(), 2, chunk.data()) < 0)
+    return 0;
+  // The library stores both sizes in 32 bits, so the product of three does not overflow where it matters.
+  const hsize_t values = chunk[0] * chunk[1];
+  return values > most_chunk_bytes ? values : values * H5Tget_size(type);
+}
+
 void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arrays) {
   const Handle type(H5Dget_type(dataset), H5Tclose);
   const Handle space(H5Dget_space(dataset), H5Sclose);
@@ -114,7 +132,12 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   const int rank = H5Sget_simple_extent_ndims(space.get());
   if (rank < 1 || rank > 2) return arrays.pass_over(name, std::to_string(rank) + " dimensions");
   H5Sget_simple_extent_dims(space.get(), size.data(), nullptr);
-  if (size[1] == 0 || size[0] > most_values / size[1]) return arrays.pass_over(name, "empty, or too large");
+  if (size[0] == 0 || size[1] == 0) return arrays.pass_over(name, "empty");
+  if (!arrays.has_room(size[0], size[1])) return arrays.pass_over(name, too_large);
+  if (H5Tget_size(type.get()) > most_type_bytes)
+    return arrays.pass_over(name, "one value has more than 1 MiB");
+  if (chunk_bytes(dataset, type.get()) > most_chunk_bytes)
+    return arrays.pass_over(name, "its chunks have more than 256 MiB");
   if (H5Tget_class(type.get()) == H5T_COMPOUND && rank == 1)
     return collect_members(dataset, type.get(), name, size[0], arrays);
   const std::string matlab_class = attribute_text(dataset, "MATLAB_class");
@@ -131,45 +154,92 @@ void collect_dataset(hid_t dataset, const std::string& name, ArrayCollector& arr
   }
 }
 
-struct Visit {
+/// A sentence if the values of a dataset are in other files; else empty.
+std::string foreign_storage(hid_t dataset) {
+  const Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+  if (H5Pget_external_count(creation.get()) > 0) return "its values are in another file (external storage)";
+  if (H5Pget_layout(creation.get()) == H5D_VIRTUAL)
+    return "its values are in other datasets (virtual dataset)";
+  return {};
+}
+
+/// The walk through all groups of a file.
+struct Walk {
   ArrayCollector& arrays;
-  std::string prefix;
   char separator = '/';
+  hid_t access = H5P_DEFAULT;  ///< of links
+  std::string refused{};       ///< why the file is not read
+  int objects = 0;
+};
+
+struct Visit {
+  Walk& walk;
+  std::string prefix;
   int depth = 0;
 };
 
-herr_t visit(hid_t group, const char* name, const H5L_info_t* /*info*/, void* data) {
+herr_t visit(hid_t group, const char* name, const H5L_info_t* info, void* data) {
   auto& where = *static_cast<Visit*>(data);
+  Walk& walk = where.walk;
   if (name[0] == '#') return 0;  // what MATLAB refers to by itself
   const std::string path = where.prefix + name;
-  const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+  // Groups can link to each other in circles.
+  if (++walk.objects > most_objects) {
+    walk.refused = "it has more than " + std::to_string(most_objects) + " objects";
+  } else if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT) {
+    walk.refused = "'" + document::shown(path) + "' is a link to another file (external link)";
+  }
+  if (!walk.refused.empty()) return 1;
+  const Handle object(H5Oopen(group, name, walk.access), H5Oclose);
   if (!object) {
-    where.arrays.pass_over(path, "it cannot be opened");
+    walk.arrays.pass_over(path, "it cannot be opened");
     return 0;
   }
   const H5I_type_t kind = H5Iget_type(object.get());
-  if (kind == H5I_DATASET) collect_dataset(object.get(), path, where.arrays);
+  if (kind == H5I_DATASET) {
+    if (const std::string foreign = foreign_storage(object.get()); !foreign.empty())
+      walk.refused = "'" + document::shown(path) + "': " + foreign;
+    else
+      collect_dataset(object.get(), path, walk.arrays);
+  }
   if (kind == H5I_GROUP && where.depth < deepest_group) {
-    Visit inside{where.arrays, path + where.separator, where.separator, where.depth + 1};
+    Visit inside{walk, path + walk.separator, where.depth + 1};
     H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &inside);
   }
-  return where.arrays.full() ? 1 : 0;
+  return walk.refused.empty() ? 0 : 1;
+}
+
+/// Soft links are followed, but not through an external link into another file.
+herr_t refuse_external_link(const char* /*parent_file*/, const char* /*parent_group*/, const char* /*file*/,
+                            const char* /*object*/, unsigned* /*flags*/, hid_t /*access*/, void* /*data*/) {
+  return -1;
 }
 
 }  // namespace
 
-std::optional<ForeignTable> read_hdf5_table(const std::string& path, bool matlab,
+std::optional<ForeignTable> read_hdf5_table(const std::string& path, const std::string& opened, bool matlab,
                                             document::Problems& problems) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what it says goes into our own message
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Handle file(H5Fopen(opened.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file) {
     problems.add(
         {path, {1, 1}, {}, "an HDF5 file that cannot be read: broken, cut off, or open for writing", {}});
     return std::nullopt;
   }
   ArrayCollector arrays(path);
-  Visit root{arrays, {}, matlab ? '.' : '/', 0};
+  const Handle access(H5Pcreate(H5P_LINK_ACCESS), H5Pclose);
+  H5Pset_elink_cb(access.get(), refuse_external_link, nullptr);
+  Walk walk{arrays, matlab ? '.' : '/', access.get()};
+  Visit root{walk, {}, 0};
   H5Literate(file.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, visit, &root);
+  if (!walk.refused.empty()) {
+    problems.add({path,
+                  {1, 1},
+                  {},
+                  "not read: " + walk.refused,
+                  "copy the values into one HDF5 file, without references to other files"});
+    return std::nullopt;
+  }
   return arrays.table(matlab ? "MATLAB 7.3" : "HDF5", problems);
 }
 

@@ -76,46 +76,49 @@ const char* what_it_is(const matvar_t& variable) {
   }
 }
 
-void collect(const matvar_t& variable, const std::string& name, int depth, ArrayCollector& arrays) {
+/// Reads the values of an array, and of the fields of a structure. Of all else, and of what is too large,
+/// libmatio reads only the header: a compressed variable of some bytes can hold some gigabytes.
+void collect(mat_t* file, matvar_t& variable, const std::string& name, int depth, ArrayCollector& arrays) {
   const bool flat = variable.rank == 2 && variable.dims != nullptr;
   const std::size_t rows = flat ? variable.dims[0] : 0;
   const std::size_t columns = flat ? variable.dims[1] : 0;
-  if (flat && columns > 0 && rows > most_values / columns) return arrays.pass_over(name, "too large");
-  if (variable.class_type == MAT_C_STRUCT && rows * columns == 1 && depth < deepest_structure) {
+  if (variable.class_type == MAT_C_STRUCT && rows == 1 && columns == 1 && depth < deepest_structure) {
     char* const* fields = Mat_VarGetStructFieldnames(&variable);
-    const unsigned count = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&variable));
+    const unsigned count = Mat_VarGetNumberOfFields(&variable);
     for (unsigned i = 0; i < count && fields != nullptr; ++i) {
-      const matvar_t* field = Mat_VarGetStructFieldByName(const_cast<matvar_t*>(&variable), fields[i], 0);
-      if (field != nullptr) collect(*field, name + "." + fields[i], depth + 1, arrays);
+      matvar_t* field = Mat_VarGetStructFieldByName(&variable, fields[i], 0);
+      if (field != nullptr) collect(file, *field, name + "." + fields[i], depth + 1, arrays);
     }
     return;
   }
-  const std::vector<double> values =
-      is_numeric(variable) ? values_of(variable, rows * columns) : std::vector<double>{};
-  if (values.empty() && !(is_numeric(variable) && flat && rows * columns == 0)) {
-    arrays.pass_over(name, what_it_is(variable));
-  } else {
-    arrays.add(name, {}, rows, columns, values);
-  }
+  if (!is_numeric(variable) || !flat || variable.isComplex != 0)
+    return arrays.pass_over(name, what_it_is(variable));
+  if (rows == 0 || columns == 0) return;
+  if (!arrays.has_room(rows, columns)) return arrays.pass_over(name, too_large);
+  const bool read = Mat_VarReadDataAll(file, &variable) == 0;
+  const std::vector<double> values = read ? values_of(variable, rows * columns) : std::vector<double>{};
+  if (values.empty()) return arrays.pass_over(name, "it cannot be read");
+  arrays.add(name, {}, rows, columns, values);
 }
 
 }  // namespace
 
-std::optional<ForeignTable> read_mat_table(const std::string& path, document::Problems& problems) {
+std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
+                                           document::Problems& problems) {
   // What it says of broken files goes into our own message. Its text is const on Debian 13 only.
   Mat_LogInitFunc("softgrip", [](int /*level*/, auto* /*message*/) {});
-  const MatFile file{Mat_Open(path.c_str(), MAT_ACC_RDONLY), Mat_Close};
+  const MatFile file{Mat_Open(opened.c_str(), MAT_ACC_RDONLY), Mat_Close};
   if (!file) {
     problems.add({path, {1, 1}, {}, "a MATLAB file that cannot be read: broken, or cut off", {}});
     return std::nullopt;
   }
   const mat_ft version = Mat_GetVersion(file.get());
   ArrayCollector arrays(path);
-  while (!arrays.full()) {
-    const MatVariable variable{Mat_VarReadNext(file.get()), Mat_VarFree};
+  while (true) {
+    const MatVariable variable{Mat_VarReadNextInfo(file.get()), Mat_VarFree};
     if (!variable) break;
     if (variable->name == nullptr || variable->name[0] == '#') continue;  // what MATLAB refers to by itself
-    collect(*variable, variable->name, 0, arrays);
+    collect(file.get(), *variable, variable->name, 0, arrays);
   }
   return arrays.table(version == MAT_FT_MAT4 ? "MATLAB 4" : "MATLAB 5", problems);
 }

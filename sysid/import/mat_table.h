@@ -11,8 +11,8 @@ namespace softgrip::sysid {
 
 /// Variables of real numbers, and fields of single structures as "name.field". Objects (timetable,
 /// timeseries, table, duration), cells and complex numbers are passed over and said: MATLAB alone can read
-/// them.
-[[nodiscard]] std::optional<ForeignTable> read_mat_table(const std::string& path,
+/// them. `path` names the file in messages, `opened` is where libmatio opens it.
+[[nodiscard]] std::optional<ForeignTable> read_mat_table(const std::string& path, const std::string& opened,
                                                          document::Problems& problems);
 
 }  // namespace softgrip::sysid

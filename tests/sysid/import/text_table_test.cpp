@@ -125,5 +125,15 @@ TEST(TextEncoding, AllBecomeUtf8) {
   EXPECT_EQ(utf8_of("1\r2\r"), "1\n2\n");
 }
 
+TEST(TextTable, MoreLinesThanTheBoundAreRefusedBeforeTheyAreSplit) {
+  std::string text = "time_s,tip\n";
+  text.reserve(text.size() + 4 * (most_rows + 1));
+  for (std::size_t i = 0; i <= most_rows; ++i) text += "1,2\n";
+  document::Problems problems;
+  EXPECT_FALSE(parse_text_table("f.csv", text, {}, problems));
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems.list().front().message, "the text has more than 16777216 lines");
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::text_table_test

@@ -1,0 +1,148 @@
+#include "sysid/import/mat_elements.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+namespace softgrip::sysid {
+namespace {
+
+// "MAT-File Format", MathWorks, version 5: types of data elements, and classes of arrays.
+constexpr std::uint32_t type_matrix = 14;
+constexpr std::uint32_t type_compressed = 15;
+constexpr std::uint32_t first_numeric_class = 6;
+constexpr std::uint32_t last_numeric_class = 15;
+constexpr std::size_t header_bytes = 128;
+constexpr std::size_t tag_bytes = 8;
+
+/// The bytes of one element, decompressed as they are read.
+class Source {
+ public:
+  Source(std::string_view bytes, bool compressed, std::size_t& budget)
+      : bytes_(bytes), compressed_(compressed), budget_(budget) {
+    if (!compressed_) return;
+    // The interface of zlib reads through a pointer that is not const.
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream_.avail_in = static_cast<uInt>(bytes.size());
+    good_ = inflateInit(&stream_) == Z_OK;
+  }
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+  Source(Source&&) = delete;
+  Source& operator=(Source&&) = delete;
+  ~Source() {
+    if (compressed_) inflateEnd(&stream_);
+  }
+
+  /// False at the end, and where the budget is spent.
+  bool read(char* to, std::size_t count) {
+    if (count > budget_) count = budget_ = 0;
+    budget_ -= count;
+    if (count == 0 || !good_) return false;
+    if (compressed_) return inflate_to(to, count);
+    if (count > bytes_.size()) return false;
+    std::memcpy(to, bytes_.data(), count);
+    bytes_.remove_prefix(count);
+    return true;
+  }
+  bool skip(std::size_t count) {
+    while (count > 0) {
+      const std::size_t part = std::min(count, scratch_.size());
+      if (!read(scratch_.data(), part)) return false;
+      count -= part;
+    }
+    return true;
+  }
+
+ private:
+  bool inflate_to(char* to, std::size_t count) {
+    stream_.next_out = reinterpret_cast<Bytef*>(to);
+    stream_.avail_out = static_cast<uInt>(count);
+    while (stream_.avail_out > 0 && good_) good_ = inflate(&stream_, Z_NO_FLUSH) == Z_OK;
+    return stream_.avail_out == 0;
+  }
+
+  std::string_view bytes_;
+  bool compressed_;
+  bool good_ = true;
+  std::size_t& budget_;
+  z_stream stream_{};
+  std::array<char, 1U << 16U> scratch_{};
+};
+
+struct Tag {
+  std::uint32_t type = 0;
+  std::uint32_t bytes = 0;  ///< that follow it, without padding
+};
+
+std::uint32_t word(const char* at, bool big_endian) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    value = value << 8U | static_cast<std::uint8_t>(at[big_endian ? i : 3 - i]);
+  return value;
+}
+
+bool read_tag(Source& source, bool big_endian, Tag& tag) {
+  std::array<char, tag_bytes> raw{};
+  if (!source.read(raw.data(), raw.size())) return false;
+  tag = {word(raw.data(), big_endian), word(raw.data() + 4, big_endian)};
+  // A small element holds its data in the tag.
+  if (tag.type >> 16U != 0) tag = {tag.type & 0xffffU, 0};
+  return true;
+}
+
+class Counter {
+ public:
+  Counter(bool big_endian, std::size_t most_parts, std::size_t most_bytes)
+      : big_endian_(big_endian), parts_left_(most_parts), bytes_left_(most_bytes) {}
+
+  /// One element at the top; false where it has too many parts or bytes.
+  bool take(std::string_view bytes, bool compressed) {
+    Source source(bytes, compressed, bytes_left_);
+    Tag tag;
+    if (!read_tag(source, big_endian_, tag) || tag.type != type_matrix) return bytes_left_ > 0;
+    // The flags are the first part of an array; their lowest byte is its class.
+    std::array<char, tag_bytes> flags{};
+    if (!source.skip(tag_bytes) || !source.read(flags.data(), flags.size())) return bytes_left_ > 0;
+    const std::uint32_t kind = word(flags.data(), big_endian_) & 0xffU;
+    if (kind >= first_numeric_class && kind <= last_numeric_class) return true;
+    // The parts of a part follow it without an end mark: a flat walk meets all of them.
+    while (read_tag(source, big_endian_, tag)) {
+      if (parts_left_-- == 0) return false;
+      constexpr std::size_t alignment = 8;
+      const std::size_t padded = (tag.bytes + alignment - 1) / alignment * alignment;
+      if (tag.type != type_matrix && !source.skip(padded)) break;
+    }
+    return bytes_left_ > 0;
+  }
+
+ private:
+  bool big_endian_;
+  std::size_t parts_left_;
+  std::size_t bytes_left_;
+};
+
+}  // namespace
+
+bool mat_elements_within(std::string_view file, std::size_t most_parts, std::size_t most_bytes) {
+  if (file.size() < header_bytes) return true;
+  const bool big_endian = file.substr(header_bytes - 2, 2) == "MI";
+  Counter counter(big_endian, most_parts, most_bytes);
+  file.remove_prefix(header_bytes);
+  while (file.size() >= tag_bytes) {
+    const std::uint32_t type = word(file.data(), big_endian);
+    const bool compressed = type == type_compressed;
+    // A compressed element is not padded; of another one the tag belongs to what is counted.
+    const std::size_t size = word(file.data() + 4, big_endian);
+    if (!counter.take(file.substr(compressed ? tag_bytes : 0, compressed ? size : size + tag_bytes),
+                      compressed))
+      return false;
+    file.remove_prefix(std::min(file.size(), tag_bytes + size));
+  }
+  return true;
+}
+
+}  // namespace softgrip::sysid
