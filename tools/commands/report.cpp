@@ -30,7 +30,7 @@ void print_verification_json(const Verification& v) {
   for (const Difference& d : v.comparison.differences)
     json["differences"].push_back(
         {{"where", d.where}, {"reported", d.reported}, {"recomputed", d.recomputed}});
-  std::printf("%s\n", json.dump(2).c_str());
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void print_verification(const Verification& v, const std::string& folder) {

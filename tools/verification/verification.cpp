@@ -15,6 +15,7 @@
 #include <set>
 
 #include "base/files.h"
+#include "base/json_text.h"
 #include "base/scratch_folder.h"
 #include "base/sha256.h"
 #include "document/problem.h"
@@ -56,6 +57,19 @@ int called(const std::string& program, std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// The member of an object; an empty array where there is none, or no object.
+const Json& member(const Json& json, const char* key) {
+  static const Json none = Json::array();
+  const auto found = json.is_object() ? json.find(key) : json.end();
+  return found != json.end() ? *found : none;
+}
+
+/// The text at a key; empty where there is none.
+std::string text_in(const Json& json, const char* key) {
+  const Json& value = member(json, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
 std::string model_hash_of(const std::string& path) {
   document::Problems problems;
   const auto model = model::load_model(path, problems);
@@ -63,7 +77,7 @@ std::string model_hash_of(const std::string& path) {
 }
 
 std::string sha256_of(const std::string& path) {
-  const auto bytes = read_file(fs::is_directory(path) ? path + "/run.csv" : path, largest_file);
+  const auto bytes = read_file(is_folder(path) ? path + "/run.csv" : path, largest_file);
   return bytes ? sha256(*bytes) : std::string();
 }
 
@@ -89,16 +103,20 @@ class Verifier {
     std::string names;
     for (const Kind& kind : kinds) {
       names += (names.empty() ? "" : ", ") + std::string(kind.json);
-      if (fs::exists(folder_ / kind.json)) kind_ = &kind;
+      if (is_there(folder_ / kind.json)) kind_ = &kind;
     }
     if (kind_ == nullptr) return missing("no report in " + folder_.string() + ": none of " + names);
     const std::string path = (folder_ / kind_->json).string();
     const auto text = read_file(path, largest_file);
-    json_ = text ? Json::parse(*text, nullptr, false) : Json();
+    if (!text) return missing(text.error());
+    json_ = parse_json<Json>(*text);
     if (!json_.is_object()) return missing(path + " cannot be read as JSON");
-    result_.reported_by = json_.value("software", "");
-    const Json call = json_.value("call", Json::array());
-    for (const Json& word : call) call_.push_back(word.is_string() ? word.get<std::string>() : "");
+    result_.reported_by = text_in(json_, "software");
+    const Json& call = member(json_, "call");
+    for (const Json& word : call) {
+      if (!word.is_string()) return missing(path + ": its key call is not a list of texts");
+      call_.push_back(word.get<std::string>());
+    }
     if (call_.empty())
       return missing(path +
                      " does not say how it was made (key call): an older version or an investigation "
@@ -113,20 +131,16 @@ class Verifier {
 
   /// The hash that the report names for a file, by the option that takes it.
   [[nodiscard]] std::string hash_of(const std::string& option, const std::string& path) const {
-    for (const Json* logs : {&at("/logs"), &at("/validation/logs")}) {
+    for (const Json* logs : {&member(json_, "logs"), &member(member(json_, "validation"), "logs")}) {
       for (const Json& log : *logs) {
-        if (log.value("path", "") == path) return log.value("sha256", "");
+        if (text_in(log, "path") == path) return text_in(log, "sha256");
       }
     }
-    if (option == "--gauge") return at("/gauge").value("sha256", "");
-    if (option == "--start") return at("/start").value("hash", "");
-    if (option == "--model") return at(json_.contains("given") ? "/given" : "/model").value("hash", "");
+    if (option == "--gauge") return text_in(member(json_, "gauge"), "sha256");
+    if (option == "--start") return text_in(member(json_, "start"), "hash");
+    if (option == "--model")
+      return text_in(member(json_, json_.contains("given") ? "given" : "model"), "hash");
     return {};
-  }
-  [[nodiscard]] const Json& at(const char* pointer) const {
-    static const Json none = Json::object();
-    const Json::json_pointer place(pointer);
-    return json_.contains(place) ? json_.at(place) : none;
   }
 
   /// Puts every file of the call where it is now.
@@ -149,7 +163,7 @@ class Verifier {
     const fs::path name = fs::path(path).filename();
     std::string other;
     for (const fs::path& candidate : {fs::path(path), folder_ / name, folder_.parent_path() / name}) {
-      if (!fs::exists(candidate)) continue;
+      if (!is_there(candidate)) continue;
       const std::string hash = is_model ? model_hash_of(candidate.string()) : sha256_of(candidate.string());
       if (hash == wanted && !hash.empty()) {
         path = candidate.string();
@@ -171,21 +185,24 @@ class Verifier {
     const int code = scratch.path().empty() ? -1 : called(program_, words);
     const fs::path again(scratch.path());
     const auto text = read_file((again / kind_->json).string(), largest_file);
-    const Json json = text ? Json::parse(*text, nullptr, false) : Json();
+    const Json json = text ? parse_json<Json>(*text) : Json();
     if (!json.is_object()) {
       missing("softgrip " + std::string(kind_->command) + " computed nothing: exit code " +
               std::to_string(code));
       return;
     }
-    result_.recomputed_by = json.value("software", "");
+    result_.recomputed_by = text_in(json, "software");
     compare_json(kind_->json, json_, json, result_.comparison);
     compare_series(again);
     compare_model(again);
   }
 
   void compare_series(const fs::path& again) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(again)) {
-      if (!fs::exists(entry.path() / "series.csv")) continue;
+    std::error_code ended;
+    for (fs::directory_iterator at(again, ended); !ended && at != fs::directory_iterator();
+         at.increment(ended)) {
+      const fs::directory_entry& entry = *at;
+      if (!is_there(entry.path() / "series.csv")) continue;
       const std::string name = entry.path().filename().string() + "/series.csv";
       const auto was = read_file((folder_ / name).string(), largest_file);
       const auto is = read_file((again / name).string(), largest_file);
@@ -198,7 +215,7 @@ class Verifier {
   }
 
   void compare_model(const fs::path& again) {
-    if (!fs::exists(again / "model.yaml")) return;
+    if (!is_there(again / "model.yaml")) return;
     document::Problems problems;
     const auto was = model::load_model((folder_ / "model.yaml").string(), problems);
     const auto is = model::load_model((again / "model.yaml").string(), problems);

@@ -87,5 +87,52 @@ TEST_F(Verification, ACallThatWouldWriteElsewhereIsNotMade) {
   EXPECT_NE(verified(3)["missing"][0].get<std::string>().find("key call"), std::string::npos);
 }
 
+/// A report that another program or an attacker wrote: a sentence and exit code 3, whatever is in it.
+TEST_F(Verification, AMalformedReportIsRefusedWithASentence) {
+  const std::string good = read("report/identify.json");
+  const auto spoilt = [&](const char* pointer, const nlohmann::ordered_json& value) {
+    auto json = nlohmann::ordered_json::parse(good);
+    json[nlohmann::ordered_json::json_pointer(pointer)] = value;
+    return json.dump();
+  };
+  const std::string long_name(5000, 'x');
+  const std::string brackets = std::string(300'000, '[') + std::string(300'000, ']');
+  for (const std::string& text : {std::string(),
+                                  std::string("[]"),
+                                  std::string("3"),
+                                  std::string("{\"call\":["),
+                                  brackets,
+                                  "{\"call\":" + brackets + "}",
+                                  spoilt("/call", 3),
+                                  spoilt("/call", {{"identify", 1}}),
+                                  spoilt("/call", {"identify", 3}),
+                                  spoilt("/call", {"identify", nullptr}),
+                                  spoilt("/logs", 3),
+                                  spoilt("/logs", {{"path", "fit.csv"}}),
+                                  spoilt("/logs/0", "fit.csv"),
+                                  spoilt("/logs/0/sha256", 3),
+                                  spoilt("/logs/0/path", {1}),
+                                  spoilt("/call", {"identify", "--data", long_name}),
+                                  spoilt("/call", {"identify", "--data", "."}),
+                                  spoilt("/call", {"identify", "--data", ""}),
+                                  spoilt("/call", {"identify", "--start", "report"}),
+                                  spoilt("/call", {"validate", "--data", "fit.csv"}),
+                                  spoilt("/start", 3),
+                                  spoilt("/start/hash", {1}),
+                                  spoilt("/call", {"identify", "--nonsense"})}) {
+    write("report/identify.json", text);
+    EXPECT_EQ(run("report --verify report"), 3) << text.substr(0, 200);
+    const std::string said = read("err.txt");
+    EXPECT_NE(said.find("softgrip: "), std::string::npos) << said;
+    EXPECT_EQ(said.find("exception"), std::string::npos) << said;
+    EXPECT_EQ(said.find("filesystem error"), std::string::npos) << said;
+    run("report --verify report --json");
+    EXPECT_TRUE(nlohmann::json::accept(read("out.txt"))) << read("out.txt").substr(0, 200);
+  }
+  // Of another type, but no key that the verification needs.
+  write("report/identify.json", spoilt("/software", {1}));
+  EXPECT_EQ(verified(0)["reported_by"], "");
+}
+
 }  // namespace
 }  // namespace softgrip::tools::verification_test
