@@ -30,8 +30,8 @@ nlohmann::ordered_json health_of(const nlohmann::ordered_json& status) {
 ExitCode run(const DaemonOptions& options) {
   auto status = ask_daemon(options, {{"command", "status"}});
   if (!status) return status.error();
-  const nlohmann::ordered_json health = health_of(*status);
   if (options.json) {
+    const nlohmann::ordered_json health = health_of(*status);
     if (!health.is_null()) (*status)["health"] = health;
     print_json(*status);
     return ExitCode::done;
@@ -39,7 +39,9 @@ ExitCode run(const DaemonOptions& options) {
   const ViewStyle style{on_terminal() ? terminal_columns() : 100, wants_colour(),
                         on_terminal() && has_unicode()};
   for (const std::string& line : view_of(*status, style)) std::printf("%s\n", line.c_str());
-  for (const HealthLine& line : health_lines(health)) std::printf("health       %s\n", line.text.c_str());
+  // The state is shown even where the recordings are on a network mount that does not respond.
+  std::fflush(stdout);
+  for (const HealthLine& line : health_lines(health_of(*status))) std::printf("health       %s\n", line.text.c_str());
   return ExitCode::done;
 }
 

@@ -3,9 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 
 #include "base/ending_signal.h"
+#include "base/exit_code.h"
+#include "base/standard_output.h"
 #include "base/version.h"
 #include "tools/command_line/usage.h"
 #include "tools/commands/commands.h"
@@ -40,7 +43,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    const auto code = static_cast<softgrip::ExitCode>(run(argc, argv));
+    return static_cast<int>(softgrip::with_output_checked(code, "softgrip"));
+  } catch (const std::bad_alloc&) {
+    std::fputs("softgrip: there is not enough memory for this input\n", stderr);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "softgrip: %s\n", error.what());
   }

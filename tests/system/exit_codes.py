@@ -1,0 +1,173 @@
+"""The table of docs/reference/exit-codes.md, and what brings a program to each of its endings."""
+
+import contextlib
+import dataclasses
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+
+import bench
+import fail_nth
+
+PAGE = bench.SOURCE / "docs" / "reference" / "exit-codes.md"
+ENDINGS = ("done", "refused", "signal", "fault", "full disk", "closed pipe")
+STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+IMPOSSIBLE = "-"
+ELSEWHERE = ()
+# Files that a command may create under their own name: base/files.h has no part in them.
+GROWING = re.compile(r"/run\.csv$|^/dev/|^/proc/self/fd/\d+$")
+TEMPORARY = re.compile(r"/\.softgrip-[0-9a-f]{16}\.part$|^\.softgrip-[0-9a-f]{16}\.part$")
+
+
+def table():
+    """{command: {ending: cell}} of the page."""
+    rows = {}
+    for line in PAGE.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if line.startswith("| `") and len(cells) == 1 + len(ENDINGS):
+            rows[cells[0].strip("`")] = dict(zip(ENDINGS, cells[1:]))
+    return rows
+
+
+def each(test, commands, ending, check):
+    """Calls check(name, command, cell) as a part of the test, for every command that can end so."""
+    cells = table()
+    for name, command in commands.items():
+        if cells[name][ending] != IMPOSSIBLE:
+            with test.subTest(name):
+                check(name, command, cells[name][ending])
+
+
+@dataclasses.dataclass
+class Command:
+    """How one row of the table is brought to its endings. `{out}` in the words is the folder of the outputs."""
+
+    done: str
+    refused: str = ""
+    hangs_at: str = ""  # an input that it opens while it works: the end of its path
+    writes: str = ""  # a file that it replaces, within {out}; "": it writes to the standard output only
+    new: bool = False  # it never replaces a file
+    more: tuple = ()  # other forms that write, for the full disk
+
+
+class FullDisk:
+    """A folder on a disk that fill() fills. Without the right to mount, the kernel's limit on the size of files."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        self.folder.mkdir()
+        options = ["mount", "-t", "tmpfs", "-o", "size=1m", "softgrip-test", str(self.folder)]
+        self.mounted = os.geteuid() == 0 and subprocess.run(options, capture_output=True).returncode == 0
+
+    def fill(self):
+        if not self.mounted:
+            return
+        with contextlib.suppress(OSError), open(self.folder / "filler", "wb", buffering=0) as filler:
+            while True:
+                filler.write(bytes(4096))
+
+    def limit(self):
+        """To be called in the child before it runs the program."""
+        if not self.mounted:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1, resource.RLIM_INFINITY))
+
+    def close(self):
+        if self.mounted:
+            subprocess.run(["umount", str(self.folder)], check=True)
+
+
+def code_of(cell, number=None):
+    """What subprocess has as the return code for a cell of the table."""
+    return -number if cell == "signal" else int(cell)
+
+
+class Runner:
+    """Runs softgrip in a folder."""
+
+    def __init__(self, folder, environment=None):
+        self.folder = pathlib.Path(folder)
+        self.environment = {**os.environ, "SOFTGRIP_SOCKET": str(self.folder / "softgripd.sock"), **(environment or {})}
+
+    @staticmethod
+    def words(line, out):
+        return [str(bench.SOFTGRIP), *line.format(out=out).split()]
+
+    def run(self, line, out="out", expect_s=bench.PATIENCE_S * 4, **keys):
+        keys.setdefault("stdout", subprocess.PIPE)
+        keys["env"] = {**self.environment, **keys.get("env", {})}
+        return subprocess.run(self.words(line, out), stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, cwd=self.folder,
+                              timeout=expect_s, **keys)
+
+    def created(self, line, out="out"):
+        """The finished process, and the paths of the files that it created."""
+        with tempfile.NamedTemporaryFile(prefix="softgrip_created_") as noted:
+            done = self.run(line, out, env={"LD_PRELOAD": str(fail_nth.SHIM), "FAIL_CREATED": noted.name})
+            return done, pathlib.Path(noted.name).read_text().splitlines()
+
+    def stopped(self, line, number, hangs_at, out="out"):
+        """The return code after a signal that comes while it opens an input."""
+        told = self.folder / "told"
+        told.unlink(missing_ok=True)
+        child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE, env={**self.environment, "LD_PRELOAD": str(fail_nth.SHIM),
+                                                              "FAIL_HANG": hangs_at, "FAIL_TOLD": str(told)})
+        return self.end_of(child, number, lambda: told.exists() or child.poll() is not None)
+
+    def waiting(self, line, number, out="out", pause_s=0.3):
+        """The return code after a signal that comes while it waits for a daemon or for its own output to be read."""
+        child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE, env=self.environment)
+        time.sleep(pause_s)
+        return self.end_of(child, number, lambda: True)
+
+    def blocked(self, line, number, out="out"):
+        """The return code after a signal that comes while it waits for the reader of its standard output."""
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(writer, bytes(4096))
+        os.set_blocking(writer, True)
+        child = subprocess.Popen(self.words(line, out), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=writer,
+                                 stderr=subprocess.PIPE, env=self.environment)
+        os.close(writer)
+        try:
+            # In the kernel, on the pipe: it sleeps and uses no more processor time.
+            def waits():
+                state, used = self.state_and_ticks(child.pid)
+                time.sleep(0.1)
+                return state == "S" and (state, used) == self.state_and_ticks(child.pid)
+            return self.end_of(child, number, waits)
+        finally:
+            os.close(reader)
+
+    @staticmethod
+    def state_and_ticks(pid):
+        fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+        return fields[0], (fields[11], fields[12])
+
+    @staticmethod
+    def end_of(child, number, ready):
+        with child:
+            try:
+                bench.wait_for("the command to work", ready)
+                child.send_signal(number)
+                return child.wait(bench.PATIENCE_S)
+            finally:
+                child.kill()
+
+    def unread(self, line, ignored, out="out"):
+        """The finished process whose standard output has lost its reader; with SIGPIPE ignored or not."""
+        reader, writer = os.pipe()
+        os.close(reader)
+        try:
+            return self.run(line, out, stdout=writer, restore_signals=not ignored,
+                            preexec_fn=(lambda: signal.signal(signal.SIGPIPE, signal.SIG_IGN)) if ignored else None)
+        finally:
+            os.close(writer)

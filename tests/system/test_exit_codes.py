@@ -1,0 +1,386 @@
+"""Every command in every ending: the exit code is that of docs/reference/exit-codes.md, which this test reads."""
+
+import os
+import re
+import signal
+import subprocess
+import unittest
+
+import bench
+import exit_codes
+import fail_nth
+from exit_codes import Command, ENDINGS, FullDisk, Runner, STOPPING, code_of
+
+TWIN = "config/models/bench_twin.yaml"
+DESK = {
+    "init": Command("init {out}/new.yaml --board simulated", "init config/rig.yaml --board simulated", "bench_twin.yaml",
+                    "new.yaml", new=True),
+    "check": Command("check config/rig.yaml", "check bad.yaml", "config/rig.yaml"),
+    "simulate": Command(f"simulate --model {TWIN} --input tp1 --rate-hz 20 --out {{out}}/log.csv",
+                        "simulate --model bad.yaml --input tp1 --out {out}/log.csv", "bench_twin.yaml", "log.csv"),
+    "import": Command("import raw.csv --yes --out {out}/log.csv", "import bad.csv --yes --out {out}/log.csv", "raw.csv",
+                      "log.csv"),
+    "plot": Command("plot rec --out {out}/plot.svg", "plot bad.csv --out {out}/plot.svg", "run.csv", "plot.svg",
+                    more=("plot rec --out {out}/plot.pdf", "plot rec --out {out}/plot.png", "plot rec --out {out}/plot.html")),
+    "export": Command("export rec --out {out}/run.mat", "export bad.csv --out {out}/run.mat", "run.csv", "run.mat",
+                      more=("export rec --out {out}/run.csv", "export rec --out {out}/run.mcap",
+                            f"export {TWIN} --rate-hz 100 --out {{out}}/model.c")),
+    "identify": Command("identify --data log.csv --starts 1 --threads 1 --out {out}/id --figures {out}/figures",
+                        "identify --data bad.csv --out {out}/id", "log.csv", "id/identify.json"),
+    "validate": Command(f"validate --model {TWIN} --data log.csv --out {{out}}/judged --figures {{out}}/figures",
+                        f"validate --model {TWIN} --data bad.csv", "log.csv", "judged/validate.json"),
+    "tune": Command(f"tune --model {TWIN} --draws 1 --out {{out}}/pid.yaml", "tune --model bad.yaml --out {out}/pid.yaml",
+                    "bench_twin.yaml", "pid.yaml"),
+    "diagnose": Command(f"diagnose --model {TWIN} --data log.csv --no-closed-loop --out {{out}}/di --figures {{out}}/figures",
+                        f"diagnose --model {TWIN} --data bad.csv --out {{out}}/di", "log.csv", "di/diagnosis.json",
+                        more=(f"diagnose --model {TWIN} --healthy log.csv --data other.csv --out {{out}}/change",)),
+    "health": Command("health rec --baseline base --out {out}/health", "health rec --baseline spoilt", "baseline.json",
+                      "health/health.json"),
+    "study": Command("study control --draws 1 --frequencies-hz 0.5 --out {out}/study", "study nothing",
+                     writes="study/control.json"),
+    "report": Command("report --verify judged", "report --verify spoilt", "validate.json"),
+    "completion": Command("completion bash", "completion tcsh"),
+    "baseline": Command(f"baseline --data log.csv --model {TWIN} --out {{out}}/base",
+                        f"baseline --data bad.csv --model {TWIN} --out {{out}}/base", "log.csv", "base/baseline.json"),
+    "investigate": Command(f"investigate --model {TWIN} --data log.csv --rig config/rig.yaml --rig-channel left --yes "
+                           "--no-closed-loop --out {out}/found",
+                           f"investigate --model {TWIN} --data bad.csv --rig config/rig.yaml --rig-channel left --yes "
+                           "--out {out}/found", "log.csv", "found/investigation.json"),
+}
+# What asks the daemon, in the order in which one daemon can answer all of it; with the state that it needs.
+CLIENTS = {
+    "status": Command("status"),
+    "sequences": Command("sequences"),
+    "events": Command("events"),
+    "watch": Command("watch --count 2"),
+    "start": Command("start pick_stone", "start no_such_sequence"),
+    "stop": Command("stop", "stop"),
+    "release": Command("release", "release"),
+    "vent": Command("vent"),
+    "acknowledge": Command("acknowledge", "acknowledge"),
+    "start --wait": Command("start short.yaml --wait", "start short.yaml --wait"),
+}
+# What moves a rig. `{rig}` is the rig file of an emulated board, `{out}` the folder of the outputs.
+MOTION = {
+    "run": Command("run short.yaml --rig {rig} --no-socket --record {out}/rec", "run bad.yaml --rig {rig} --no-socket",
+                   writes="rec"),
+    "calibrate": Command("calibrate --rig {rig} --channel left --move --valve --settle-s 0.3 --average-s 0.3 --out {out}/points.yaml",
+                         "calibrate --rig bad.yaml --channel left --move", writes="points.yaml"),
+    "doctor": Command("doctor --rig {rig} --move", "doctor --rig bad.yaml --move"),
+    "baseline --rig": Command(f"baseline --rig {{rig}} --rig-channel left --model {TWIN} --experiments minor_loops --rest-s 0 --yes "
+                              "--out {out}/base", "baseline --rig bad.yaml --rig-channel left --yes --out {out}/base", writes="base"),
+}
+SHORT = ("name: short\nsteps:\n  - move: {displacement_mm: 5, speed_mm_per_s: 10, settle_s: 0.5}\n"
+         "  - release: {duration_s: 0.2, purge_s: 0.2, timeout_s: 5, on_fail: vent}\n")
+NEEDS_SHIM = unittest.skipUnless(fail_nth.SHIM.exists(), "the shim is not built: a sanitizer's runtime must be loaded first")
+
+
+class Page(unittest.TestCase):
+    def test_the_table_has_every_command_and_every_cell_is_a_code(self):
+        table = exit_codes.table()
+        self.assertEqual(set(table), set(DESK) | set(CLIENTS) | set(exit_codes.ELSEWHERE))
+        for command, cells in table.items():
+            self.assertEqual(set(cells), set(ENDINGS))
+            for cell in cells.values():
+                self.assertRegex(cell, r"^([0-6]|signal|-)$", command)
+
+    def test_the_table_has_every_command_of_the_program(self):
+        told = subprocess.run([bench.SOFTGRIP, "--help"], capture_output=True, text=True, check=True).stdout
+        commands = set(re.findall(r"^  ([a-z]+) ", told.partition("Subcommands:\n")[2], re.M))
+        self.assertGreater(len(commands), 20)
+        self.assertEqual({row.split()[0] for row in exit_codes.table()} & commands, commands)
+
+
+class Desk(bench.BenchTest):
+    """Commands that work on files."""
+
+    def setUp(self):
+        super().setUp()
+        self.table = exit_codes.table()
+        self.runner = Runner(self.folder)
+        self.write("bad.csv", "nothing\nthat,is\na,log\n")
+        self.write("bad.yaml", "name: bad\nvalve: 3\n")
+        for folder in ("spoilt", "out"):
+            (self.folder / folder).mkdir()
+        self.write("spoilt/baseline.json", '{"logs": 3, "model": []}')
+        self.write("spoilt/validate.json", '{"call": {"validate": 1}, "software": []}')
+        for seed, log in ((3, "log.csv"), (4, "other.csv")):
+            self.softgrip("simulate", "--model", TWIN, "--input", "steps", "--rate-hz", "20", "--noise-mm", "0.05", "--seed",
+                          seed, "--out", log)
+        header, *rows = (self.folder / "log.csv").read_text().splitlines()
+        self.write("raw.csv", "\n".join(["t [s];set [kPa];tip [mm]", *(row.replace(",", ";") for row in rows)]) + "\n")
+        self.softgrip("run", "config/sequences/pick_stone.yaml", "--virtual-time", "--record", "rec", "--no-socket")
+        self.softgrip("validate", "--model", TWIN, "--data", "log.csv", "--out", "judged")
+        self.softgrip("baseline", "--data", "log.csv", "--model", TWIN, "--out", "base")
+
+    def each(self, ending, check):
+        exit_codes.each(self, DESK, ending, check)
+
+    def ended(self, done, cell, number=None):
+        said = "" if done.stderr is None else done.stderr.decode(errors="replace")[-1500:]
+        self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{said}")
+
+    @NEEDS_SHIM
+    def test_done_and_the_files_are_written_by_one_function(self):
+        def check(name, command, cell):
+            for line in (command.done, *command.more):
+                done, created = self.runner.created(line)
+                self.ended(done, cell)
+                own = [path for path in created if not exit_codes.TEMPORARY.search(path)]
+                self.assertEqual([path for path in own if not exit_codes.GROWING.search(path)], [], line)
+                if command.writes:
+                    self.assertTrue((self.folder / "out" / command.writes).exists(), line)
+                    self.assertGreater(len(created), len(own), "it has written nothing")
+
+        self.each("done", check)
+        self.assertEqual(list(self.folder.rglob(".softgrip-*")), [])
+
+    def test_refused(self):
+        def check(name, command, cell):
+            done = self.runner.run(command.refused)
+            self.ended(done, cell)
+            said = done.stderr.decode()
+            self.assertGreater(len(said.strip()), 20, "a sentence says why")
+            self.assertNotIn("exception", said)
+            self.assertNotIn("[json", said)
+
+        self.each("refused", check)
+        self.assertEqual(list((self.folder / "out").iterdir()), [])
+
+    @NEEDS_SHIM
+    def test_signal(self):
+        def check(name, command, cell):
+            for number in STOPPING:
+                if command.hangs_at:
+                    code = self.runner.stopped(command.done, number, command.hangs_at)
+                elif command.writes:
+                    code = self.runner.waiting(command.done, number)
+                else:
+                    code = self.runner.blocked(command.done, number)
+                self.assertEqual(code, code_of(cell, number), f"{name}, signal {number}")
+
+        self.each("signal", check)
+        self.assertEqual([path for path in (self.folder / "out").rglob("*") if path.is_file()], [])
+
+    def test_full_disk(self):
+        disk = FullDisk(self.folder / "full")
+        self.addCleanup(disk.close)
+        def put_an_old_file(name, command, _):
+            path = disk.folder / (command.writes or "output")
+            path.parent.mkdir(exist_ok=True)
+            if not command.new:
+                path.write_text("old\n" if command.writes else "")  # the rest of a page would take some output
+
+        self.each("full disk", put_an_old_file)
+        disk.fill()
+        def check(name, command, cell):
+            path = disk.folder / (command.writes or "output")
+            if command.writes:
+                for line in (command.done, *command.more):
+                    done = self.runner.run(line, "full", preexec_fn=disk.limit)
+                    self.ended(done, cell)
+                    self.assertRegex(done.stderr.decode(), "No space left on device|File too large", line)
+                self.assertEqual(path.read_text() if path.exists() else "", "" if command.new else "old\n", name)
+            else:
+                with open(path, "ab") as output:
+                    done = self.runner.run(command.done, stdout=output, preexec_fn=disk.limit)
+                self.ended(done, cell)
+                self.assertIn("cannot write to the standard output: ", done.stderr.decode())
+
+        self.each("full disk", check)
+        self.assertEqual(list(disk.folder.rglob(".softgrip-*")), [], "no part of a file is left")
+
+    def test_closed_pipe(self):
+        def check(name, command, cell):
+            self.ended(self.runner.unread(command.done, ignored=False), cell, signal.SIGPIPE)
+            if name != "study":
+                done = self.runner.unread(command.done.replace("new.yaml", "newer.yaml"), ignored=True)
+                self.ended(done, "4")
+                self.assertIn("standard output", done.stderr.decode())
+
+        self.each("closed pipe", check)
+
+
+class Clients(bench.BenchTest):
+    """Commands that ask the daemon."""
+
+    def setUp(self):
+        super().setUp()
+        self.table = exit_codes.table()
+        self.start_rig()
+        self.runner = Runner(self.folder)
+        self.write("short.yaml", SHORT)
+
+    def ready_for(self, name):
+        """Brings the daemon to the state in which the command does something."""
+        if name in ("stop", "release", "vent"):
+            self.softgripd.start("pick_stone")
+            if name != "stop":
+                self.softgripd.wait_for_event("grip_result", since=self.since, code="HOLDING", channel="left")
+        elif name == "acknowledge":
+            self.softgripd.start("pick_stone")
+            self.softgripd.wait_for_event("grip_result", since=self.since, code="HOLDING", channel="left")
+            self.settle()
+
+    def settle(self):
+        if self.softgripd.status()["state"] != "idle":
+            self.softgripd.ask("vent")
+        self.softgripd.wait_for_state("idle")
+        bench.wait_for("fingers at rest", lambda: max(self.board.pressures_kpa()) < 0.5)
+        self.since = self.softgripd.events()[-1]["id"]
+
+    def each(self, ending, check):
+        exit_codes.each(self, CLIENTS, ending, check)
+
+    def ended(self, done, cell, number=None):
+        self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{done.stderr.decode()[-1500:]}")
+
+    def test_done(self):
+        def check(name, command, cell):
+            self.settle()
+            self.ready_for(name)
+            self.ended(self.runner.run(command.done), cell)
+
+        self.each("done", check)
+
+    def test_refused(self):
+        def check(name, command, cell):
+            self.settle()
+            if name == "start --wait":
+                self.softgripd.start("pick_stone")
+            self.ended(self.runner.run(command.refused), cell)
+
+        self.each("refused", check)
+
+    def test_signal(self):
+        for number in STOPPING:
+            self.settle()
+            for name, line in (("watch", "watch"), ("start --wait", "start pick_stone --wait")):
+                self.assertEqual(self.runner.waiting(line, number, pause_s=1), code_of(self.table[name]["signal"], number), name)
+        self.assertNotEqual(self.softgripd.status()["state"], "faulted", "the rig goes on")
+        self.softgripd.send(signal.SIGSTOP)
+        self.addCleanup(self.softgripd.send, signal.SIGCONT)
+        def check(name, command, cell):
+            if name not in ("watch", "start --wait"):
+                for number in STOPPING:
+                    self.assertEqual(self.runner.waiting(command.done, number), code_of(cell, number), name)
+
+        self.each("signal", check)
+
+    def test_fault(self):
+        self.settle()
+        # The board falls silent while a sequence runs that somebody waits for.
+        child = subprocess.Popen(Runner.words("start pick_stone --wait", ""), cwd=self.folder, stdin=subprocess.DEVNULL,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=self.runner.environment)
+        with child:
+            self.softgripd.wait_for_state("running")
+            self.board.kill()
+            self.assertEqual(child.wait(bench.PATIENCE_S), code_of(self.table["start --wait"]["fault"]))
+        self.softgripd.end()
+        def check(name, command, cell):
+            if name != "start --wait":
+                self.ended(self.runner.run(command.done), cell)
+
+        self.each("fault", check)
+
+    def test_full_disk(self):
+        disk = FullDisk(self.folder / "full")
+        self.addCleanup(disk.close)
+        disk.fill()
+        def check(name, command, cell):
+            self.settle()
+            self.ready_for(name)
+            with open(disk.folder / "output", "ab") as output:
+                done = self.runner.run(command.done, stdout=output, preexec_fn=disk.limit)
+            self.ended(done, cell)
+            self.assertIn("standard output", done.stderr.decode())
+            self.carried_out(name)
+
+        self.each("full disk", check)
+
+    def test_closed_pipe(self):
+        def check(name, command, cell):
+            for ignored in (False, True):
+                self.settle()
+                self.ready_for(name)
+                self.ended(self.runner.unread(command.done, ignored), "4" if ignored else cell, signal.SIGPIPE)
+                self.carried_out(name)
+
+        self.each("closed pipe", check)
+
+    def carried_out(self, name):
+        """What moves the rig was done, wherever the sentence about it went."""
+        if name in ("stop", "vent", "release"):
+            self.softgripd.wait_for_state("idle", "stopping", "holding")
+            self.softgripd.wait_for_event("sequence_finished", since=self.since)
+
+
+class Motion(bench.BenchTest):
+    """Commands that move a rig: whatever ends them, the outputs are safe when they have ended."""
+
+    def setUp(self):
+        super().setUp()
+        self.table = exit_codes.table()
+        self.write("short.yaml", SHORT)
+        self.write("bad.yaml", "name: bad\nvalve: 3\n")
+        (self.folder / "out").mkdir()
+        self.board = self.emulator()
+        self.rig_path = self.rig(self.board.port)
+        self.runner = Runner(self.folder)
+        self.count = 0
+
+    def each(self, ending, check):
+        exit_codes.each(self, MOTION, ending, check)
+
+    def line(self, command, out="out"):
+        """The words of the command, with folders of its own."""
+        self.count += 1
+        (self.folder / out / str(self.count)).mkdir()
+        return command.done.format(rig=self.rig_path, out=f"{out}/{self.count}")
+
+    def ended(self, done, cell, number=None):
+        self.assertEqual(done.returncode, code_of(cell, number), f"{done.args}\n{done.stderr.decode()[-1500:]}")
+
+    def check_safe(self, name):
+        self.assertLess(max(self.board.commands_kpa()), 0.1, f"{name} has ended, and a finger is under pressure")
+
+    def working(self, line, **keys):
+        """The command, after it has raised a pressure."""
+        child = subprocess.Popen(Runner.words(line, ""), cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                 stderr=subprocess.PIPE, env=self.runner.environment, **keys)
+        self.addCleanup(child.kill)
+        bench.wait_for(f"{line} to move the rig", lambda: child.poll() is not None or max(self.board.commands_kpa()) > 2,
+                       pause_s=0.005)
+        return child
+
+    def test_refused(self):
+        def check(name, command, cell):
+            self.ended(self.runner.run(command.refused.format(rig=self.rig_path, out="out")), cell)
+
+        self.each("refused", check)
+
+    def test_signal(self):
+        def check(name, command, cell):
+            for number in STOPPING:
+                child = self.working(self.line(command))
+                child.send_signal(number)
+                said = child.communicate(timeout=bench.PATIENCE_S)[1].decode()
+                self.assertEqual(child.returncode, code_of(cell, number), f"{name}, signal {number}: {said[-1500:]}")
+                self.check_safe(name)
+
+        self.each("signal", check)
+
+    def test_fault(self):
+        def check(name, command, cell):
+            child = self.working(self.line(command))
+            self.board.kill()
+            said = child.communicate(timeout=bench.PATIENCE_S)[1].decode()
+            self.assertEqual(child.returncode, code_of(cell), f"{name}: {said[-1500:]}")
+            self.board.control.close()
+            self.board = self.emulator(port=self.board.port)
+
+        self.each("fault", check)
+
+
+if __name__ == "__main__":
+    bench.main()
