@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "base/errno_text.h"
@@ -40,33 +41,40 @@ std::string temporary_name(const fs::path& target) {
   return (target.parent_path() / name).string();
 }
 
-/// Gives the new file the owner and the permissions of the one that it replaces. A user who may not give it
-/// away stays its owner.
-Error take_over(int file, const struct ::stat& old) {
-  [[maybe_unused]] const int given = ::fchown(file, old.st_uid, old.st_gid);
-  return error_of(::fchmod(file, old.st_mode & permissions));
+/// Who owns a file, and what may be done with it.
+struct Rights {
+  uid_t owner = 0;
+  gid_t group = 0;
+  mode_t mode = 0;
+};
+
+/// A user who may not give the file away stays its owner.
+Error give_rights(int file, const Rights& rights) {
+  [[maybe_unused]] const int given = ::fchown(file, rights.owner, rights.group);
+  return error_of(::fchmod(file, rights.mode));
 }
 
-/// A new file with all of `contents`; `old` is the file that it will replace, if there is one.
-Error write_new(const std::string& path, std::string_view contents, const struct ::stat* old, Sync sync) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
-                         old == nullptr ? new_file_mode : private_mode));
+/// A new file with all of `contents`. Without `rights` it is an ordinary new file of this process.
+Error write_new(int folder, const std::string& name, std::string_view contents,
+                const std::optional<Rights>& rights, Sync sync) {
+  Descriptor file(::openat(folder, name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+                           rights ? private_mode : new_file_mode));
   if (!file) return errno;
   Error error = write_all(file.get(), contents);
-  if (error == 0 && old != nullptr) error = take_over(file.get(), *old);
+  if (error == 0 && rights) error = give_rights(file.get(), *rights);
   if (error == 0 && sync == Sync::disk) error = error_of(::fsync(file.get()));
   // A network file system can report here that it has no space.
   const Error closed = error_of(::close(file.release()));
   return error != 0 ? error : closed;
 }
 
-/// rename() that fails with EEXIST where there is a file of the new name.
-Error rename_to_new(const char* from, const char* to) {
-  const Error error = error_of(::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE));
+/// Renames to a name that must not exist yet; else EEXIST.
+Error rename_to_new(int folder, const char* from, const char* to) {
+  const Error error = error_of(::renameat2(folder, from, folder, to, RENAME_NOREPLACE));
   if (error != EINVAL) return error;
   // NFS: a second name does the same, if the first is removed.
-  const Error linked = error_of(::link(from, to));
-  return linked != 0 ? linked : error_of(::unlink(from));
+  const Error linked = error_of(::linkat(folder, from, folder, to, 0));
+  return linked != 0 ? linked : error_of(::unlinkat(folder, from, 0));
 }
 
 /// Makes the name itself survive a power failure, as far as the file system promises.
@@ -77,20 +85,29 @@ void sync_folder(const fs::path& folder) {
 
 enum class Existing { replaced, refused };
 
-Error put(const fs::path& target, std::string_view contents, Existing existing, Sync sync) {
-  struct ::stat about {};
-  const bool replaces = ::lstat(target.c_str(), &about) == 0 && S_ISREG(about.st_mode);
+/// The only place where a file of a program comes to be. `target` is relative to `folder`, which can be
+/// AT_FDCWD.
+Error put(int folder, const fs::path& target, std::string_view contents, Existing existing,
+          const std::optional<Rights>& rights, Sync sync) {
   const std::string temporary = temporary_name(target);
-  Error error = write_new(temporary, contents, replaces ? &about : nullptr, sync);
+  Error error = write_new(folder, temporary, contents, rights, sync);
   if (error == 0) {
-    error = existing == Existing::replaced ? error_of(std::rename(temporary.c_str(), target.c_str()))
-                                           : rename_to_new(temporary.c_str(), target.c_str());
+    error = existing == Existing::replaced
+                ? error_of(::renameat(folder, temporary.c_str(), folder, target.c_str()))
+                : rename_to_new(folder, temporary.c_str(), target.c_str());
   }
-  if (error != 0) {
-    ::unlink(temporary.c_str());
-  } else if (sync == Sync::disk) {
-    sync_folder(target.parent_path());
-  }
+  if (error != 0) ::unlinkat(folder, temporary.c_str(), 0);
+  return error;
+}
+
+/// put() for a path: a file that it replaces passes on its owner and permissions.
+Error put_at_path(const fs::path& target, std::string_view contents, Existing existing, Sync sync) {
+  struct ::stat old {};
+  std::optional<Rights> rights;
+  if (::lstat(target.c_str(), &old) == 0 && S_ISREG(old.st_mode))
+    rights = Rights{old.st_uid, old.st_gid, old.st_mode & permissions};
+  const Error error = put(AT_FDCWD, target, contents, existing, rights, sync);
+  if (error == 0 && sync == Sync::disk) sync_folder(target.parent_path());
   return error;
 }
 
@@ -117,18 +134,29 @@ tl::expected<void, std::string> write_file(const std::string& path, std::string_
   std::error_code error;
   if (target.has_parent_path()) fs::create_directories(target.parent_path(), error);
   if (error) return tl::unexpected("cannot create " + target.parent_path().string() + ": " + error.message());
-  return ended(put(target, contents, Existing::replaced, sync), "write", path);
+  return ended(put_at_path(target, contents, Existing::replaced, sync), "write", path);
 }
 
 tl::expected<void, std::string> replace_file(const std::string& path, std::string_view contents) {
   std::error_code error;
   const fs::path target = fs::canonical(path, error);
   if (error) return tl::unexpected("cannot replace " + path + ": " + error.message());
-  return ended(put(target, contents, Existing::replaced, Sync::disk), "write", path);
+  return ended(put_at_path(target, contents, Existing::replaced, Sync::disk), "write", path);
 }
 
 tl::expected<void, std::string> create_file(const std::string& path, std::string_view contents) {
-  return ended(put(path, contents, Existing::refused, Sync::disk), "create", path);
+  return ended(put_at_path(path, contents, Existing::refused, Sync::disk), "create", path);
+}
+
+tl::expected<void, std::string> write_private_file(const Descriptor& folder, const std::string& name,
+                                                   std::string_view contents) {
+  struct ::stat owner {};
+  Error error = error_of(::fstat(folder.get(), &owner));
+  if (error == 0) {
+    const Rights rights{owner.st_uid, owner.st_gid, private_mode};
+    error = put(folder.get(), name, contents, Existing::replaced, rights, Sync::none);
+  }
+  return ended(error, "write", name);
 }
 
 }  // namespace softgrip

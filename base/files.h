@@ -33,8 +33,8 @@ struct RegularFile {
 /// The bytes of a regular file of at most `bound` bytes, or a sentence that says why not.
 [[nodiscard]] tl::expected<std::string, std::string> read_file(const std::string& path, std::size_t bound);
 
-/// True if there is a file or folder of this path, through links. Unlike those of std::filesystem these two do
-/// not throw: an unreadable folder or an impossible name is no file.
+/// True if there is a file or folder of this path, through links. Unlike those of std::filesystem these two
+/// do not throw: an unreadable folder or an impossible name is no file.
 [[nodiscard]] bool is_there(const std::string& path) noexcept;
 [[nodiscard]] bool is_folder(const std::string& path) noexcept;
 
@@ -61,6 +61,12 @@ enum class Sync {
 
 /// Writes a file that must not exist yet.
 [[nodiscard]] tl::expected<void, std::string> create_file(const std::string& path, std::string_view contents);
+
+/// Writes the file `name` of an open folder, for its owner alone: mode 0600. It is not forced to the disk,
+/// because such files end with the machine.
+[[nodiscard]] tl::expected<void, std::string> write_private_file(const Descriptor& folder,
+                                                                 const std::string& name,
+                                                                 std::string_view contents);
 
 /// Writes all bytes to an open descriptor. Returns 0, or the errno of the call that failed.
 [[nodiscard]] int write_all(int descriptor, std::string_view bytes) noexcept;

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <string_view>
 #include <utility>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/errno_text.h"
+#include "base/files.h"
 #include "daemon/service/trusted_user.h"
 
 namespace softgrip::daemon {
@@ -98,38 +98,19 @@ tl::expected<Descriptor, std::string> RuntimeFolder::lock_file(const std::string
 
 tl::expected<void, std::string> RuntimeFolder::put(const std::string& name,
                                                    const std::string& contents) const {
-  const std::string temporary = fmt::format("{}.part{}", name, ::getpid());
-  remove(temporary);  // of a process of the same number that was killed
-  const auto file = open_file(temporary, O_WRONLY | O_CREAT | O_EXCL);
-  if (!file) return Failure(file.error());
-  std::string_view rest = contents;
-  bool whole = true;
-  while (whole && !rest.empty()) {
-    const ssize_t count = ::write(file->get(), rest.data(), rest.size());
-    if (count < 0 && errno == EINTR) continue;
-    whole = count >= 0;
-    if (whole) rest.remove_prefix(static_cast<std::size_t>(count));
-  }
-  if (whole && ::renameat(folder_.get(), temporary.c_str(), folder_.get(), name.c_str()) == 0) return {};
-  const auto why = failure(path_ + "/" + name, "cannot be written");
-  remove(temporary);
-  return why;
+  if (auto written = write_private_file(folder_, name, contents); !written)
+    return Failure(fmt::format("{}: {}", path_, written.error()));
+  return {};
 }
 
 tl::expected<std::string, std::string> RuntimeFolder::get(const std::string& name, std::size_t bound) const {
-  const auto file = open_file(name, O_RDONLY);
+  auto file = open_file(name, O_RDONLY);
   if (!file) return Failure(file.error());
-  std::string contents;
-  std::array<char, 65536> chunk{};
-  for (;;) {
-    const ssize_t count = ::read(file->get(), chunk.data(), chunk.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return failure(path_ + "/" + name, "cannot be read");
-    if (count == 0) return contents;
-    contents.append(chunk.data(), static_cast<std::size_t>(count));
-    if (contents.size() > bound)
-      return Failure(fmt::format("{}/{}: has more than {} bytes", path_, name, bound));
-  }
+  auto contents = read_start({std::move(*file), 0}, bound + 1);
+  if (!contents) return Failure(fmt::format("{}/{}: cannot be read: {}", path_, name, contents.error()));
+  if (contents->size() > bound)
+    return Failure(fmt::format("{}/{}: has more than {} bytes", path_, name, bound));
+  return contents;
 }
 
 void RuntimeFolder::remove(const std::string& name) const noexcept {

@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -95,6 +96,20 @@ TEST_F(FileWritingTest, ALinkInThePlaceOfAResultIsReplacedAndNotFollowed) {
   fs::create_symlink("absent", folder_ / "dangling.yaml");
   EXPECT_FALSE(create_file((folder_ / "dangling.yaml").string(), "new"));
   EXPECT_FALSE(fs::exists(folder_ / "absent"));
+}
+
+TEST_F(FileWritingTest, APrivateFileIsForItsOwnerAloneAndReplacesALink) {
+  fs::create_symlink("rig.yaml", folder_ / "kept.json");
+  const Descriptor folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  ASSERT_TRUE(write_private_file(folder, "kept.json", "new"));
+  struct ::stat now {};
+  ASSERT_EQ(::lstat((folder_ / "kept.json").c_str(), &now), 0);
+  EXPECT_TRUE(S_ISREG(now.st_mode));
+  EXPECT_EQ(now.st_mode & 07777U, 0600U);
+  EXPECT_EQ(text(folder_ / "kept.json"), "new");
+  EXPECT_EQ(text(path_), "old");
+  EXPECT_EQ(count(), 2U) << "nothing is left next to it";
+  EXPECT_FALSE(write_private_file(Descriptor(), "kept.json", "newer"));
 }
 
 TEST_F(FileWritingTest, AFolderInThePlaceOfTheFileIsAnError) {

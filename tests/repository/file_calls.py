@@ -17,13 +17,13 @@ from tree import ROOT
 
 LIST = pathlib.Path(__file__).with_name("file_calls.txt")
 THE_PLACES = ("base/files.cpp", "base/file_writing.cpp")
-# By the name under which the list has it. A call of open() is one of the system's if it has a flag of the system's.
+# By the name under which the list has it. open() without :: is the call of the system if it has a flag of the system.
 CALLS = {
     "fstream": r"\bstd::(?:basic_)?[io]?f(?:stream|ilebuf)\b",
     "fopen": r"\b(?:fopen|fopen64|freopen|fdopen|tmpfile)\s*\(",
-    "open": r"(?<![\w.>])(?:::)?open(?:at2?|64)?\s*\((?=[^;]*\bO_[A-Z]+\b)(?![^;]*\bO_DIRECTORY\b)",
+    "open": r"(?:(?<![\w>])::open(?:at2?|64)?\s*\(|(?<![\w.>:])open(?:at2?|64)?\s*\((?=[^;]*\bO_[A-Z]+\b))(?![^;]*\bO_DIRECTORY\b)",
     "mkstemp": r"\b(?:mkstemp|mkostemp|mkstemps|creat|memfd_create)\s*\(",
-    "rename": r"\b(?:std::|::|fs::|filesystem::)rename(?:at2?)?\s*\(",
+    "rename": r"(?:\bstd::|(?<![\w>])::|\bfs::|\bfilesystem::)rename(?:at2?)?\s*\(",
     "copy": r"\b(?:copy_file|copy_options|(?:fs|filesystem)::copy)\b",
     "resize": r"\b(?:resize_file|(?:::)?f?truncate(?:64)?)\s*\(",
     "link": r"\b(?:(?:::)?(?:link|symlink|linkat|symlinkat)|create_(?:hard_link|symlink))\s*\(",
@@ -88,6 +88,7 @@ def check_itself():
         assert list(findings_in([("tools/new.cpp", example)], {}))
         assert list(findings_in([("tools/new.cpp", example + "\n" + example)], {("tools/new.cpp", name): 1}))
     assert set(examples) == set(CALLS)
+    assert list(calls_in("Descriptor file(::openat(folder, name, flags | always, 0600));"))
     assert not list(calls_in("Gate::open(token); board.open(deadline); ::open(folder, O_RDONLY | O_DIRECTORY);"))
     assert list(findings_in([], {("tools/gone.cpp", "open"): 1}))
 

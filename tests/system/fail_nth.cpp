@@ -258,6 +258,12 @@ int rename(const char* from, const char* to) {
   return next(from, to);
 }
 
+int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {
+  if (fails("rename", EACCES)) return -1;
+  static const auto next = real<int (*)(int, const char*, int, const char*)>("renameat");
+  return next(from_folder, from, to_folder, to);
+}
+
 int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
   if (fails("rename", EACCES)) return -1;
   using Rename = int (*)(int, const char*, int, const char*, unsigned);
