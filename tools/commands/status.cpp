@@ -41,7 +41,8 @@ ExitCode run(const DaemonOptions& options) {
   for (const std::string& line : view_of(*status, style)) std::printf("%s\n", line.c_str());
   // The state is shown even where the recordings are on a network mount that does not respond.
   std::fflush(stdout);
-  for (const HealthLine& line : health_lines(health_of(*status))) std::printf("health       %s\n", line.text.c_str());
+  for (const HealthLine& line : health_lines(health_of(*status)))
+    std::printf("health       %s\n", line.text.c_str());
   return ExitCode::done;
 }
 
