@@ -1,17 +1,25 @@
 // softgrip start: lets the daemon run a sequence.
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <chrono>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "base/ending_signal.h"
 #include "base/files.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/event_text.h"
+#include "tools/client/own_start.h"
 #include "tools/client/set_option.h"
+#include "tools/command_line/terminal.h"
 #include "tools/commands/commands.h"
 
 namespace softgrip::tools {
@@ -33,28 +41,142 @@ tl::expected<std::uint64_t, ClientFailure> newest_event(DaemonClient& client) {
   return result->value("newest", std::uint64_t{0});
 }
 
-/// Prints what happens until the sequence that `request` started has ended.
-ExitCode follow(DaemonClient& client, const StartOptions& options, std::uint64_t request,
-                std::uint64_t since) {
-  constexpr std::chrono::milliseconds pause{50};
+/// Its motion may have to be planned first.
+constexpr std::chrono::seconds longest_planning{90};
+
+/// Why a start is not followed any further: a signal, or the daemon or the standard output has failed.
+struct Break {
+  int signal = 0;
+  ClientFailure failure;
+};
+
+/// One start, from the request to the end of its sequence or of the wait. If the wait breaks for any reason,
+/// the start is taken back: its sequence must not continue behind a program that has ended.
+class FollowedStart {
+ public:
+  FollowedStart(const StartOptions& options, DaemonClient& client)
+      : options_(options), client_(client), id_(new_start_id()), signals_(take_ending_signals()) {}
+
+  ExitCode run(Json request, std::uint64_t newest_event);
+
+ private:
+  [[nodiscard]] int signal_within(std::chrono::milliseconds patience, int descriptor = -1);
+  [[nodiscard]] tl::expected<Json, Break> reply(DaemonClient& client, const Json& request,
+                                                std::chrono::milliseconds patience);
+  [[nodiscard]] tl::expected<ExitCode, Break> follow(std::uint64_t request, std::uint64_t since);
+  [[nodiscard]] tl::expected<void, Break> print(const Json& event) const;
+  [[nodiscard]] bool stop_confirmed();
+  ExitCode take_back(const Break& reason);
+
+  const StartOptions& options_;
+  DaemonClient& client_;
+  std::string id_;
+  Descriptor signals_;
+  bool pipe_ends_ = true;  ///< the program that called this one does not ignore SIGPIPE
+};
+
+/// Waits for the descriptor to be readable, or for a signal that ends the program, and returns that; else 0.
+int FollowedStart::signal_within(std::chrono::milliseconds patience, int descriptor) {
+  std::array<pollfd, 2> watched{{{signals_.get(), POLLIN, 0}, {descriptor, POLLIN, 0}}};
+  if (::poll(watched.data(), watched.size(), static_cast<int>(patience.count())) <= 0) return 0;
+  if (watched[0].revents == 0) return 0;
+  const int signal = next_signal(signals_);
+  if (signal == SIGTSTP) ::raise(SIGSTOP);
+  return signal == SIGTSTP || signal == SIGWINCH ? 0 : signal;
+}
+
+tl::expected<Json, Break> FollowedStart::reply(DaemonClient& client, const Json& request,
+                                               std::chrono::milliseconds patience) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + patience;
+  client.send(request);
   while (true) {
-    const auto result = client.ask({{"command", "events"}, {"since", since}, {"limit", 1000}});
-    if (!result) return fail(result.error().code, result.error().message);
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
+    const auto pause = std::max(left, std::chrono::milliseconds{0});
+    if (const int signal = signal_within(pause, client.descriptor()); signal != 0)
+      return tl::unexpected{Break{signal, {}}};
+    auto line = client.next_line(std::chrono::milliseconds{0});
+    if (!line) return tl::unexpected{Break{0, line.error()}};
+    if (*line) return std::move(**line);
+    if (left.count() <= 0) return tl::unexpected{Break{0, {ExitCode::io, "the daemon does not answer"}}};
+  }
+}
+
+tl::expected<void, Break> FollowedStart::print(const Json& event) const {
+  errno = 0;
+  if (options_.daemon.json) {
+    print_json(event);
+  } else {
+    std::printf("%s\n", line_of_event(event).c_str());
+    std::fflush(stdout);
+  }
+  if (std::ferror(stdout) == 0) return {};
+  return tl::unexpected{Break{errno == EPIPE && pipe_ends_ ? SIGPIPE : 0,
+                              {ExitCode::io, "the standard output cannot be written"}}};
+}
+
+/// Prints what happens until the sequence that `request` started has ended.
+tl::expected<ExitCode, Break> FollowedStart::follow(std::uint64_t request, std::uint64_t since) {
+  constexpr std::chrono::milliseconds pause{50};
+  // A closed pipe is seen where the output is flushed, and the sequence is stopped before it ends the
+  // program.
+  pipe_ends_ = std::signal(SIGPIPE, SIG_IGN) != SIG_IGN;
+  while (true) {
+    const auto line = reply(client_, {{"command", "events"}, {"since", since}, {"limit", 1000}},
+                            DaemonClient::longest_answer);
+    if (!line) return tl::unexpected{line.error()};
+    const auto result = DaemonClient::result_of(*line);
+    if (!result) return tl::unexpected{Break{0, result.error()}};
     for (const Json& event : result->value("events", Json::array())) {
       since = event.value("id", since);
-      if (options.daemon.json) {
-        print_json(event);
-      } else {
-        std::printf("%s\n", line_of_event(event).c_str());
-        std::fflush(stdout);
-      }
+      if (const auto printed = print(event); !printed) return tl::unexpected{printed.error()};
       if (event.value("kind", "") == "sequence_finished" &&
           event.value("request", std::uint64_t{0}) == request) {
         return event.value("code", "") == "done" ? ExitCode::done : ExitCode::not_acceptable;
       }
     }
-    std::this_thread::sleep_for(pause);
+    if (const int signal = signal_within(pause); signal != 0) return tl::unexpected{Break{signal, {}}};
   }
+}
+
+/// Over a connection of its own: on the other one the daemon may owe a reply.
+bool FollowedStart::stop_confirmed() {
+  auto client = DaemonClient::connect(options_.daemon.socket);
+  if (!client) return false;
+  const auto line = reply(*client, stop_of(id_), DaemonClient::longest_answer);
+  return line && confirms_stop(*line);
+}
+
+ExitCode FollowedStart::take_back(const Break& reason) {
+  const bool stopped = stop_confirmed();
+  const char* const outcome =
+      stopped ? "sequence stopped"
+              : "the stop was not confirmed: the sequence may still run. `softgrip status` shows it, "
+                "`softgrip stop` stops it";
+  if (reason.signal == 0) return fail(reason.failure.code, reason.failure.message + "; " + outcome);
+  note_ending_signal(reason.signal);
+  return fail(ExitCode::failed, outcome);
+}
+
+ExitCode FollowedStart::run(Json request, std::uint64_t newest_event) {
+  request["start_id"] = id_;
+  const auto line = reply(client_, request, longest_planning);
+  if (!line) return take_back(line.error());
+  const auto accepted = DaemonClient::result_of(*line);
+  if (!accepted && !refuses_start(*line)) return take_back({0, accepted.error()});
+  if (!accepted) return fail(accepted.error().code, accepted.error().message);
+  if (const Json warnings = accepted->value("warnings", Json::array()); !warnings.empty())
+    std::fprintf(stderr, "softgrip: warning:%s\n", listed(warnings).c_str());
+  if (options_.wait) {
+    const auto end = follow(accepted->value("request", std::uint64_t{0}), newest_event);
+    return end ? *end : take_back(end.error());
+  }
+  if (options_.daemon.json) {
+    print_json(*accepted);
+  } else {
+    std::printf("started\n");
+  }
+  return ExitCode::done;
 }
 
 ExitCode run(const StartOptions& options) {
@@ -71,21 +193,10 @@ ExitCode run(const StartOptions& options) {
   }
   auto client = DaemonClient::connect(options.daemon.socket);
   if (!client) return fail(client.error().code, client.error().message);
+  if (const auto failure = cannot_name_starts(*client)) return fail(failure->code, failure->message);
   const auto newest = newest_event(*client);
   if (!newest) return fail(newest.error().code, newest.error().message);
-  // Its motion may have to be planned first.
-  constexpr std::chrono::seconds longest_planning{90};
-  const auto accepted = client->ask(request, longest_planning);
-  if (!accepted) return fail(accepted.error().code, accepted.error().message);
-  if (const Json warnings = accepted->value("warnings", Json::array()); !warnings.empty())
-    std::fprintf(stderr, "softgrip: warning:%s\n", listed(warnings).c_str());
-  if (options.wait) return follow(*client, options, accepted->value("request", std::uint64_t{0}), *newest);
-  if (options.daemon.json) {
-    print_json(*accepted);
-  } else {
-    std::printf("started\n");
-  }
-  return ExitCode::done;
+  return FollowedStart(options, *client).run(std::move(request), *newest);
 }
 
 }  // namespace
@@ -97,7 +208,9 @@ void add_start(CLI::App& program, ExitCode& outcome) {
       ->required();
   add_set_option(*command, options->settings);
   add_daemon_options(*command, options->daemon);
-  command->add_flag("--wait", options->wait, "Follow it to its end; exit code 6 unless every grip went well");
+  command->add_flag("--wait", options->wait,
+                    "Follow it to its end, and stop it if this is interrupted; exit code 6 unless every "
+                    "grip went well");
   command->callback([options, &outcome] { outcome = run(*options); });
 }
 

@@ -120,6 +120,7 @@ class LiveWatch {
   void ask(Json request);
   void ask_for_events();
   void draw();
+  void leave();
   [[nodiscard]] std::string ran() const;
 
   DaemonClient& client_;
@@ -245,6 +246,18 @@ void LiveWatch::draw() {
   screen_->draw(screen_of(state_, style, terminal_rows()));
 }
 
+/// A start that was confirmed with a key and not answered yet may begin after the program has ended.
+void LiveWatch::leave() {
+  screen_.reset();
+  for (const auto& [id, request] : asked_) {
+    if (request.value("command", "") == "start")
+      std::fprintf(stderr,
+                   "softgrip: the daemon has not replied to the start of %s: `softgrip status` shows if it "
+                   "runs, `softgrip stop` stops it\n",
+                   request.value("sequence", "").c_str());
+  }
+}
+
 ExitCode LiveWatch::run(std::uint64_t count) {
   while (count == 0 || updates_ < count) {
     std::array<pollfd, 3> watched{{{client_.descriptor(), POLLIN, 0},
@@ -256,13 +269,14 @@ ExitCode LiveWatch::run(std::uint64_t count) {
     if (watched[1].revents != 0 && !hear_keys()) break;
     if (watched[0].revents != 0) {
       if (const auto failure = hear_daemon()) {
-        screen_.reset();
+        leave();
         return fail(failure->code, failure->message);
       }
     }
     if (dialogue_.lapse(now_s())) state_.said = {"nobody answered: nothing was asked for", Tone::doubtful};
     draw();
   }
+  leave();
   return ExitCode::done;
 }
 
