@@ -16,7 +16,8 @@
 namespace softgrip::modbus {
 namespace {
 
-constexpr int backlog = 16;
+// When it is full, the kernel drops a client's first packet, and the client waits 1 s before it tries again.
+constexpr int backlog = 128;
 
 tl::unexpected<std::string> failure(const std::string& what) {
   return tl::unexpected{"cannot listen on " + what + ": " + std::strerror(errno)};
