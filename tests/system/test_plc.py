@@ -5,6 +5,7 @@ import socket
 import time
 
 import bench
+import pauses
 import plc
 from pymodbus.exceptions import ModbusException
 
@@ -159,6 +160,41 @@ class Gateway(bench.BenchTest):
         self.softgripd.wait_for_state("idle")
         master.beat()
         self.assertEqual(master.command(plc.START, recipe=1)[0], plc.ACCEPTED)
+
+    def test_the_reaction_to_a_silence_is_kept_for_the_next_daemon(self):
+        """The master falls silent, and the daemon is killed before that is noticed."""
+        changes = ((r"silence_s: 2", "silence_s: 0.5"), (r"when_silent: stop", "when_silent: vent"))
+        master = self.master(self.gateway(changes=changes))
+        self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
+        master.beat_until(lambda: master.read("result") == plc.HOLDING)
+        self.softgripd.kill()
+        master.wait("master", 2)
+        time.sleep(0.5)  # the gateway has found no daemon meanwhile
+        master.beat()
+        self.assertEqual(master.read("master"), 2)  # a master that is back does not change it
+        again = self.daemon(self.rig_path)
+        again.wait_for_event("state_changed", client="softgrip-plc")
+        master.beat_until(lambda: master.read("master") == 1)
+        master.beat_until(lambda: master.read("state") == plc.IDLE)
+
+    def test_the_reaction_to_a_silence_waits_for_a_daemon_that_does_not_answer(self):
+        """Master and daemon fall silent within 40 ms; the loop of the daemon runs on meanwhile, with the grip."""
+        for lead_s in (-0.04, -0.02, 0, 0.02, 0.04):
+            with self.subTest(lead_s=lead_s):
+                master = self.master(self.gateway(changes=(("silence_s: [0-9.]+", "silence_s: 1.2"),)))
+                self.assertEqual(master.command(plc.START, recipe=2)[0], plc.ACCEPTED)
+                master.beat_until(lambda: master.read("result") == plc.HOLDING)
+                newest = self.softgripd.events()[-1]["id"]
+                time.sleep(max(0, lead_s))
+                try:
+                    pauses.pause(self.softgripd, "softgrip-serve", 3)
+                except PermissionError as error:
+                    self.skipTest(str(error))
+                ended = self.softgripd.wait_for_event("sequence_finished", since=newest)
+                self.assertEqual(ended["code"], "stopped")
+                self.processes.pop().end()
+                self.assertTrue(self.softgripd.ask("vent")["ok"])
+                self.softgripd.wait_for_state("idle")
 
     def test_without_a_daemon_everything_is_refused_and_with_the_next_one_all_is_well(self):
         master = self.master(self.gateway())

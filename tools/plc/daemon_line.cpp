@@ -26,7 +26,6 @@ void DaemonLine::receive(Nanoseconds now) {
       break;
     }
   }
-  if (gateway_.daemon_is_silent(now)) end();
 }
 
 void DaemonLine::send() {

@@ -16,6 +16,8 @@ constexpr double watch_rate_hz = 25;
 /// A daemon that sends nothing for this time counts as none.
 constexpr Nanoseconds longest_silence = ns_per_s;
 constexpr Nanoseconds beat_period = ns_per_s / 10;
+/// Commands that a silent daemon has not answered. They fit into its socket, so that nothing here waits.
+constexpr std::size_t most_unanswered = 32;
 
 CommandCode command_of(Reaction reaction) {
   switch (reaction) {
@@ -29,6 +31,15 @@ CommandCode command_of(Reaction reaction) {
       break;
   }
   return CommandCode::none;
+}
+
+/// Returns true if the answer to a reaction is final. A daemon that is busy or starting is asked again.
+bool is_final(const Json& line) {
+  if (line.value("ok", false)) return true;
+  const Json error = line.value("error", Json::object());
+  const Reason reason = reason_of(error);
+  constexpr auto starting = static_cast<Reason>(static_cast<int>(Reason::refusal) + 6);
+  return (reason > Reason::refusal && reason != starting) || error.value("code", "") == "owned";
 }
 
 }  // namespace
@@ -50,35 +61,39 @@ modbus::Reply Gateway::serve(Masters::Id id, const modbus::Request& request, Nan
     masters_.drop_halves(id);
     for (std::size_t i = 0; i < master.written.size(); ++i)
       master.written[i] = registers_.holding(map.at(static_cast<Name>(i)));
-    if (writes(request.pdu, map.at(Name::master_heartbeat))) take_heartbeat(master, now);
+    const bool beats = writes(request.pdu, map.at(Name::master_heartbeat)) &&
+                       masters_.take_heartbeat(master, at(master.written, Name::master_heartbeat));
+    if (beats) {
+      notice_silence(now);
+      watch_.beat(now);
+    }
     if (writes(request.pdu, map.at(Name::command_counter))) take_counter(master, now);
   }
+  // A master sends its next request when this one is answered: that one is newer.
+  master.fenced = false;
   modbus::Reply reply;
   reply.pieces.push_back(
       {{}, modbus::frame_on(modbus::Wire::tcp, request.transaction, request.unit, answer.pdu)});
   return reply;
 }
 
-/// A change is one of the same connection: of two masters that have stopped, each writes its last value.
-void Gateway::take_heartbeat(Master& master, Nanoseconds now) {
-  const std::uint16_t value = at(master.written, Name::master_heartbeat);
-  if (value != master.heartbeat) watch_.beat(now);
-  master.heartbeat = value;
-  masters_.remember_heartbeat(master);
-}
-
 void Gateway::take_counter(Master& master, Nanoseconds now) {
-  const Handshake::Entry entry{at(master.written, Name::command_counter), command_in(master.written)};
+  Handshake::Entry entry{at(master.written, Name::command_counter), command_in(master.written)};
+  if (master.fenced && entry.command.is(CommandCode::start)) entry.refusal = Reason::master_silent;
   if (handshake_.write(master.cursor, entry)) execute(entry, now);
   if (!master.cursor.refused) masters_.remember_counter(master);
 }
 
 void Gateway::execute(const Handshake::Entry& entry, Nanoseconds now) {
   const auto refuse = [&](Reason reason) { handshake_.finish(entry.counter, Outcome::refused, reason); };
+  if (entry.refusal != Reason::none) return refuse(entry.refusal);
   auto request = request_of(settings_, entry.command);
   if (!request) return refuse(request.error());
-  if (entry.command.is(CommandCode::start) && watch_.silent(now)) return refuse(Reason::master_silent);
-  if (!connected_) return refuse(Reason::no_daemon);
+  const bool starts = entry.command.is(CommandCode::start);
+  if (starts && (watch_.silent(now) || watch_.owes())) return refuse(Reason::master_silent);
+  // A daemon that is silent may only be paused: a stop or a vent follows what it was sent before.
+  const bool hears = hears_daemon(now) || (connected_ && entry.command.halts());
+  if (!hears || asked_.size() >= most_unanswered) return refuse(Reason::no_daemon);
   asked_[send(std::move(*request))] = entry.counter;
 }
 
@@ -88,15 +103,31 @@ std::uint64_t Gateway::send(Json request) {
   return last_id_;
 }
 
+void Gateway::notice_silence(Nanoseconds now) {
+  if (watch_.look(now)) reaction_confirms_ = false;
+}
+
+/// Repeats the reaction to a silence until a daemon has given a final answer.
 void Gateway::react(Nanoseconds now) {
-  if (!watch_.falls_silent(now) || settings_.when_silent == Reaction::nothing || !connected_) return;
-  send({{"command", command_of(command_of(settings_.when_silent))}});
+  notice_silence(now);
+  if (settings_.when_silent == Reaction::nothing) watch_.confirm();
+  if (!watch_.owes()) return;
+  handshake_.refuse_waiting(Reason::master_silent);
+  masters_.fence();
+  if (!connected_ || reaction_ || now - reacted_at_ < longest_pause) return;
+  reaction_ = send({{"command", command_of(command_of(settings_.when_silent))}});
+  reaction_confirms_ = true;
+  reacted_at_ = now;
 }
 
 void Gateway::look_after(Nanoseconds now) {
   masters_.drop_silent(now, nanoseconds(settings_.idle_s));
-  if (const auto waited = handshake_.take_waiting()) execute(*waited, now);
+  if (!hears_daemon(now)) {
+    handshake_.lose();
+    show_no_daemon(settings_.registers, registers_);
+  }
   react(now);
+  if (const auto waited = handshake_.take_waiting()) execute(*waited, now);
 }
 
 void Gateway::daemon_came(Nanoseconds now) {
@@ -110,12 +141,19 @@ void Gateway::daemon_went() noexcept {
   connected_ = false;
   to_daemon_.clear();
   asked_.clear();
+  reaction_.reset();
   handshake_.lose();
   show_no_daemon(settings_.registers, registers_);
 }
 
-bool Gateway::daemon_is_silent(Nanoseconds now) const noexcept {
-  return connected_ && now - heard_at_ > longest_silence;
+bool Gateway::hears_daemon(Nanoseconds now) const noexcept {
+  return connected_ && now - heard_at_ <= longest_silence;
+}
+
+std::vector<std::uint16_t> Gateway::unanswered() const {
+  std::vector<std::uint16_t> counters;
+  for (const auto& [id, counter] : asked_) counters.push_back(counter);
+  return counters;
 }
 
 std::vector<Json> Gateway::lines_to_daemon() {
@@ -130,6 +168,11 @@ void Gateway::daemon_said(const Json& line, Nanoseconds now) {
   }
   const std::uint64_t id =
       line.contains("id") && line["id"].is_number() ? line["id"].get<std::uint64_t>() : 0;
+  if (reaction_ == id) {
+    reaction_.reset();
+    if (reaction_confirms_ && is_final(line)) watch_.confirm();
+    return;
+  }
   const auto asked = asked_.find(id);
   if (asked == asked_.end()) return;
   const std::uint16_t counter = asked->second;
@@ -151,7 +194,7 @@ void Gateway::show(const Master& master, Nanoseconds now) {
   set(Name::outcome, master.cursor.refused ? Outcome::refused : handshake_.outcome());
   set(Name::reason, master.cursor.refused ? Reason::not_next : handshake_.reason());
   set(Name::heartbeat, now / beat_period);
-  set(Name::master, watch_.silent(now) ? 2 : watch_.watched() ? 1 : 0);
+  set(Name::master, watch_.silent(now) || watch_.owes() ? 2 : watch_.watched() ? 1 : 0);
 }
 
 }  // namespace softgrip::plc

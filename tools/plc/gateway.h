@@ -39,17 +39,23 @@ class Gateway {
   void daemon_said(const nlohmann::ordered_json& line, Nanoseconds now);
   /// The connection with the daemon has ended.
   void daemon_went() noexcept;
-  /// The daemon has sent no state for so long that its connection is to be ended.
-  [[nodiscard]] bool daemon_is_silent(Nanoseconds now) const noexcept;
   /// Returns the lines that go to the daemon, the oldest first, and forgets them.
   [[nodiscard]] std::vector<nlohmann::ordered_json> lines_to_daemon();
 
   [[nodiscard]] const Handshake& handshake() const noexcept { return handshake_; }
+  [[nodiscard]] const MasterWatch& watch() const noexcept { return watch_; }
+  /// A daemon is connected and reports its state.
+  [[nodiscard]] bool hears_daemon(Nanoseconds now) const noexcept;
+  /// Counters of the commands that the daemon has not answered, the oldest first.
+  [[nodiscard]] std::vector<std::uint16_t> unanswered() const;
+  /// The reaction to a silence is on its way to the daemon, and whether its answer confirms all silences.
+  [[nodiscard]] bool reacts() const noexcept { return reaction_.has_value(); }
+  [[nodiscard]] bool reaction_confirms() const noexcept { return reaction_ && reaction_confirms_; }
 
  private:
   void take_counter(Master& master, Nanoseconds now);
-  void take_heartbeat(Master& master, Nanoseconds now);
   void execute(const Handshake::Entry& entry, Nanoseconds now);
+  void notice_silence(Nanoseconds now);
   void react(Nanoseconds now);
   std::uint64_t send(nlohmann::ordered_json request);
   void show(const Master& master, Nanoseconds now);
@@ -64,6 +70,9 @@ class Gateway {
   std::vector<nlohmann::ordered_json> to_daemon_;
   std::uint64_t last_id_ = 0;
   std::map<std::uint64_t, std::uint16_t> asked_;  // counters of commands by the ids of their requests
+  std::optional<std::uint64_t> reaction_;         // the id of its request
+  bool reaction_confirms_ = false;                // no silence has begun since it was sent
+  Nanoseconds reacted_at_ = 0;
 };
 
 }  // namespace softgrip::plc

@@ -17,8 +17,7 @@ bool Handshake::write(Cursor& cursor, const Entry& entry) noexcept {
     if (repeats) cursor.at = entry.counter;
     return false;
   }
-  const std::uint16_t last = newest().counter;
-  const bool follows = entry.counter == static_cast<std::uint16_t>(last + 1) && cursor.at == last;
+  const bool follows = ahead(entry.counter) == 1 && cursor.at == newest().counter;
   const bool halts = entry.command.halts();
   if (!follows || (waiting_ && !halts)) {
     cursor.refused = true;
@@ -43,6 +42,10 @@ void Handshake::store_first(Cursor& cursor, const Entry& entry) noexcept {
   reason_ = asks ? Reason::first_after_start : Reason::none;
 }
 
+int Handshake::ahead(std::uint16_t counter) const noexcept {
+  return done_ ? static_cast<std::int16_t>(counter - newest().counter) : 0;
+}
+
 const Handshake::Entry& Handshake::newest() const noexcept {
   return waiting_ ? *waiting_ : executing_ ? *executing_ : *done_;
 }
@@ -60,6 +63,10 @@ std::optional<Handshake::Entry> Handshake::take_waiting() noexcept {
   waiting_.reset();
   reason_ = Reason::none;
   return executing_;
+}
+
+void Handshake::refuse_waiting(Reason reason) noexcept {
+  if (waiting_) waiting_->refusal = reason;
 }
 
 void Handshake::finish(std::uint16_t counter, Outcome outcome, Reason reason) noexcept {

@@ -44,6 +44,7 @@ class Handshake {
   struct Entry {
     std::uint16_t counter = 0;
     Command command;
+    Reason refusal = Reason::none;  ///< it is refused with this when its turn comes
 
     friend auto operator<=>(const Entry&, const Entry&) = default;
   };
@@ -52,11 +53,15 @@ class Handshake {
   [[nodiscard]] bool write(Cursor& cursor, const Entry& entry) noexcept;
   /// The command that waited and is to be executed now.
   [[nodiscard]] std::optional<Entry> take_waiting() noexcept;
+  /// Refuses the waiting command when its turn comes: a stop that has no counter came after it.
+  void refuse_waiting(Reason reason) noexcept;
   /// A command came to an end. One that a later command has overtaken is not reported.
   void finish(std::uint16_t counter, Outcome outcome, Reason reason = Reason::none) noexcept;
   /// The daemon does not answer: what is under way has an unknown end.
   void lose() noexcept;
 
+  /// How far a counter is ahead of the newest one, from -32768 to 32767; 0 before the first one.
+  [[nodiscard]] int ahead(std::uint16_t counter) const noexcept;
   /// The last counter that came to an end.
   [[nodiscard]] std::uint16_t done_counter() const noexcept { return done_ ? done_->counter : 0; }
   [[nodiscard]] Outcome outcome() const noexcept { return executing_ ? Outcome::executing : outcome_; }

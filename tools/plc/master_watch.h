@@ -1,5 +1,5 @@
 #pragma once
-// Whether the master still lives.
+// Notices that the master has fallen silent, and keeps the reaction to it until it is confirmed.
 
 #include <optional>
 
@@ -14,22 +14,28 @@ class MasterWatch {
 
   /// A heartbeat has changed.
   void beat(Nanoseconds now) noexcept {
+    look(now);  // a silence that ends before the next look is a silence, too
     changed_ = now;
-    told_ = false;
+    noticed_ = false;
+  }
+  /// Returns true once per silence: it is noticed now. To be called often.
+  bool look(Nanoseconds now) noexcept {
+    if (noticed_ || !silent(now)) return false;
+    noticed_ = true;
+    owes_ = true;
+    return true;
   }
   [[nodiscard]] bool watched() const noexcept { return changed_.has_value(); }
   [[nodiscard]] bool silent(Nanoseconds now) const noexcept { return changed_ && now - *changed_ > silence_; }
-  /// True once per silence.
-  [[nodiscard]] bool falls_silent(Nanoseconds now) noexcept {
-    if (told_ || !silent(now)) return false;
-    told_ = true;
-    return true;
-  }
+  /// The reaction to a silence is not confirmed yet. A master that beats again does not change that.
+  [[nodiscard]] bool owes() const noexcept { return owes_; }
+  void confirm() noexcept { owes_ = false; }
 
  private:
   Nanoseconds silence_;
   std::optional<Nanoseconds> changed_;
-  bool told_ = false;
+  bool noticed_ = false;  // this silence
+  bool owes_ = false;
 };
 
 }  // namespace softgrip::plc

@@ -35,7 +35,6 @@ std::optional<Masters::Id> Masters::admit(const std::string& address, Nanosecond
   master.asked_at = now;
   if (const auto past = past_.find(address); past != past_.end()) {
     master.cursor.at = past->second.at;
-    master.heartbeat = past->second.heartbeat;
   }
   return last_id_;
 }
@@ -47,7 +46,7 @@ std::size_t Masters::places_of(const std::string& address) const {
 
 Masters::Place Masters::to_drop_for(const std::string& address, Nanoseconds now) {
   const bool has_none = places_of(address) == 0;
-  // Of the address with the most places: those who never asked first, then those who asked longest ago.
+  // The address with the most places comes first. There, those who never asked go first, then the oldest.
   const auto rank = [&](const Place place) {
     const Master& master = place->second;
     return std::tuple(masters_.size() - places_of(master.address), master.asked, master.asked_at);
@@ -69,6 +68,17 @@ Master* Masters::find(Id id) noexcept {
 
 void Masters::drop_halves(Id except) {
   std::erase_if(masters_, [except](const auto& entry) { return entry.first != except && entry.second.half; });
+}
+
+void Masters::fence() noexcept {
+  for (auto& [id, master] : masters_) master.fenced = true;
+}
+
+bool Masters::take_heartbeat(Master& master, std::uint16_t value) {
+  Past& past = past_[master.address];
+  const bool changed = value != master.heartbeat.value_or(past.heartbeat);
+  master.heartbeat = past.heartbeat = value;
+  return changed;
 }
 
 void Masters::drop_silent(Nanoseconds now, Nanoseconds longest) {

@@ -19,18 +19,20 @@ using Written = std::array<std::uint16_t, static_cast<std::size_t>(Name::master_
 [[nodiscard]] constexpr std::uint16_t& at(Written& written, Name name) {
   return written[static_cast<std::size_t>(name)];
 }
-/// The command that stands in them.
+/// The command in them.
 [[nodiscard]] Command command_in(const Written& written) noexcept;
 
 struct Master {
   std::string address;       ///< numeric
   Nanoseconds asked_at = 0;  ///< last, or when it came
   bool asked = false;        ///< it has sent a whole request
-  bool half = false;         ///< a part of a request is there
+  bool half = false;         ///< a part of a request has arrived
+  /// Its next request may be older than a silence: it starts nothing.
+  bool fenced = false;
   /// Its own copy: what another connection writes, or wrote before it was lost, never becomes part of this
   /// one's command.
   Written written{0, 0, 0, no_value, no_value, no_value, 0};
-  std::uint16_t heartbeat = 0;  ///< last
+  std::optional<std::uint16_t> heartbeat;  ///< the last that it wrote
   Cursor cursor;
 };
 
@@ -51,13 +53,17 @@ class Masters {
 
   /// A connection has written: what others have sent half is older than that, and those are dropped.
   void drop_halves(Id except);
-  /// Drops who has asked nothing for so long.
+  /// The masters were silent: what their connections hold by now may be older than the reaction to that.
+  void fence() noexcept;
+  /// Drops every connection that has asked nothing for the time `longest`.
   void drop_silent(Nanoseconds now, Nanoseconds longest);
-  /// A later connection of the same address begins with this one's counter, and with its heartbeat.
+  /// A later connection of the same address begins with this one's counter.
   void remember_counter(const Master& master) { past_[master.address].at = master.cursor.at; }
-  void remember_heartbeat(const Master& master) { past_[master.address].heartbeat = master.heartbeat; }
+  /// A master has written a heartbeat. Returns true if it has changed: against the last one of the same
+  /// connection, or for the first one of a connection against the last one of the same address.
+  [[nodiscard]] bool take_heartbeat(Master& master, std::uint16_t value);
 
-  /// What is left of an address when its connections are gone. There are as many as the file allows.
+  /// The memory of an address whose connections have ended. There are as many as the file allows.
   struct Past {
     std::optional<std::uint16_t> at;
     std::uint16_t heartbeat = 0;

@@ -72,6 +72,9 @@ class GatewayTest : public ::testing::Test {
     return commands;
   }
   void accept() { gateway_.daemon_said({{"id", last_id_}, {"ok", true}}, now_); }
+  void refuse(const Json& error) {
+    gateway_.daemon_said({{"id", last_id_}, {"ok", false}, {"error", error}}, now_);
+  }
   void say_status() {
     gateway_.daemon_said(Json::parse(R"({"id": 2, "watch": {"state": "idle", "result": "-", "fault": null,
       "sequence": null, "channels": []}})"),
@@ -181,6 +184,8 @@ TEST_F(GatewayTest, TellsAMasterThatBeatsFromOneThatFellSilent) {
   put(plc_, 1, CommandCode::start);
   EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::master_silent));
   write(Name::master_heartbeat, 6);
+  EXPECT_EQ(read(Name::master), 2);  // until the daemon has stopped
+  accept();
   EXPECT_EQ(read(Name::master), 1);
   put(plc_, 2, CommandCode::start);
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
@@ -198,6 +203,103 @@ TEST_F(GatewayTest, LastValuesOfTwoStoppedMastersAreNoHeartbeat) {
   }
   EXPECT_EQ(read(Name::master), 2);
   EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+}
+
+TEST_F(GatewayTest, KeepsTheReactionUntilADaemonHasConfirmedIt) {
+  daemon_comes();
+  write(Name::master_heartbeat, 5);
+  gateway_.daemon_went();  // with the master
+  pass(settings_.silence_s + 0.1);
+  EXPECT_TRUE(sent().empty());
+  daemon_comes();
+  pass(0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  gateway_.daemon_went();  // before it has answered
+  pass(1);
+  daemon_comes();
+  pass(0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  refuse({{"code", "busy"}});
+  pass(0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  refuse({{"code", "refused"}, {"refusal", {{"code", "R07"}}}});  // nothing to stop: that is an answer
+  pass(1);
+  EXPECT_TRUE(sent().empty());
+  EXPECT_FALSE(gateway_.watch().owes());
+}
+
+TEST_F(GatewayTest, TheAnswerToAnEarlierReactionDoesNotConfirmALaterOne) {
+  daemon_comes();
+  write(Name::master_heartbeat, 5);
+  pass(settings_.silence_s + 0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  write(Name::master_heartbeat, 6);
+  pass(settings_.silence_s + 0.1);
+  EXPECT_TRUE(sent().empty());  // one is on its way
+  accept();
+  EXPECT_TRUE(gateway_.watch().owes());
+  pass(0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+  accept();
+  EXPECT_FALSE(gateway_.watch().owes());
+}
+
+TEST_F(GatewayTest, AReleaseIsAskedForAgainOfADaemonThatStarts) {
+  settings_.when_silent = Reaction::release;
+  daemon_comes();
+  write(Name::master_heartbeat, 5);
+  pass(settings_.silence_s + 0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"release"});
+  refuse({{"code", "refused"}, {"refusal", {{"code", "R06"}}}});
+  pass(0.1);
+  EXPECT_EQ(sent(), std::vector<std::string>{"release"});
+  refuse({{"code", "refused"}, {"refusal", {{"code", "R11"}}}});
+  pass(0.1);
+  EXPECT_TRUE(sent().empty());
+}
+
+TEST_F(GatewayTest, WithoutAReactionASilenceOnlyForbidsStarts) {
+  settings_.when_silent = Reaction::nothing;
+  daemon_comes();
+  write(Name::master_heartbeat, 5);
+  pass(settings_.silence_s + 0.1);
+  EXPECT_TRUE(sent().empty());
+  write(Name::master_heartbeat, 6);
+  EXPECT_EQ(read(Name::master), 1);
+}
+
+TEST_F(GatewayTest, ADaemonThatIsPausedIsSentAStopAndAVent) {
+  daemon_comes();
+  put(plc_, 0, CommandCode::none);
+  put(plc_, 1, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+  pass(1.1, false);
+  EXPECT_EQ(read(Name::state), 0);
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::unknown, Reason::no_daemon));
+  put(plc_, 2, CommandCode::start);
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_daemon));
+  put(plc_, 3, CommandCode::vent);
+  EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
+  pass(0.1, false);
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::unknown, Reason::no_daemon));
+  pass(0.1);
+  EXPECT_EQ(read(Name::state), 2);
+  put(plc_, 4, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+}
+
+TEST_F(GatewayTest, ADaemonThatNeverAnswersIsSentSoMuchAndNoMore) {
+  daemon_comes();
+  put(plc_, 0, CommandCode::none);
+  std::size_t lines = 0;
+  for (std::uint16_t counter = 1; counter < 1000; ++counter) {
+    put(plc_, counter, CommandCode::vent);
+    lines += sent().size();
+    pass(0.02, false);
+  }
+  EXPECT_GT(lines, 10U);
+  EXPECT_LT(lines, 100U);
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::no_daemon));
 }
 
 TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {

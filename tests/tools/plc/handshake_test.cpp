@@ -159,6 +159,17 @@ TEST(Handshake, WhatWaitsHasItsTurnOnce) {
   EXPECT_FALSE(handshake.take_waiting());
 }
 
+TEST(Handshake, WhatWaitsIsRefusedAfterAStopThatHasNoCounter) {
+  Handshake handshake;
+  Cursor plc;
+  EXPECT_FALSE(handshake.write(plc, {0, none}));
+  EXPECT_TRUE(handshake.write(plc, {1, release}));
+  EXPECT_FALSE(handshake.write(plc, {2, start}));
+  handshake.refuse_waiting(Reason::master_silent);
+  handshake.finish(1, Outcome::accepted);
+  EXPECT_EQ(handshake.take_waiting()->refusal, Reason::master_silent);
+}
+
 TEST(Handshake, WhatIsUnderWayWhenTheDaemonGoesIsUnknownAndNotSentAgain) {
   Handshake handshake;
   Cursor plc;
@@ -170,6 +181,17 @@ TEST(Handshake, WhatIsUnderWayWhenTheDaemonGoesIsUnknownAndNotSentAgain) {
   EXPECT_EQ(handshake.outcome(), Outcome::unknown);
   EXPECT_EQ(handshake.done_counter(), 1);
   EXPECT_FALSE(handshake.write(plc, {1, start}));
+}
+
+TEST(Handshake, KnowsHowFarACounterIsAhead) {
+  Handshake handshake;
+  Cursor plc;
+  EXPECT_EQ(handshake.ahead(7), 0);
+  EXPECT_FALSE(handshake.write(plc, {65535, none}));
+  EXPECT_EQ(handshake.ahead(65535), 0);
+  EXPECT_EQ(handshake.ahead(0), 1);
+  EXPECT_EQ(handshake.ahead(4), 5);
+  EXPECT_EQ(handshake.ahead(65530), -5);
 }
 
 TEST(Handshake, TheCounterMayWrap) {

@@ -5,18 +5,43 @@
 namespace softgrip::plc::master_watch_test {
 namespace {
 
-TEST(MasterWatch, SilenceCountsFromTheFirstBeatAndIsToldOnce) {
+TEST(MasterWatch, SilenceCountsFromTheFirstBeat) {
   MasterWatch watch(100);
   EXPECT_FALSE(watch.watched());
   EXPECT_FALSE(watch.silent(1000));
+  EXPECT_FALSE(watch.look(1000));
+  EXPECT_FALSE(watch.owes());
   watch.beat(1000);
-  EXPECT_FALSE(watch.falls_silent(1100));
-  EXPECT_TRUE(watch.falls_silent(1101));
-  EXPECT_FALSE(watch.falls_silent(1200));
-  EXPECT_TRUE(watch.silent(1200));
-  watch.beat(1300);
-  EXPECT_FALSE(watch.silent(1400));
-  EXPECT_TRUE(watch.falls_silent(1401));
+  EXPECT_TRUE(watch.watched());
+  EXPECT_FALSE(watch.silent(1100));
+  EXPECT_TRUE(watch.silent(1101));
+}
+
+TEST(MasterWatch, TheReactionIsOwedUntilItIsConfirmedAndOncePerSilence) {
+  MasterWatch watch(100);
+  watch.beat(1000);
+  EXPECT_TRUE(watch.look(1101));
+  EXPECT_TRUE(watch.owes());
+  watch.beat(1200);  // it is back, and the reaction is still owed
+  EXPECT_FALSE(watch.silent(1200));
+  EXPECT_TRUE(watch.owes());
+  watch.confirm();
+  EXPECT_FALSE(watch.owes());
+  EXPECT_FALSE(watch.look(1250));
+  EXPECT_FALSE(watch.owes());
+  EXPECT_TRUE(watch.look(1301));
+  EXPECT_TRUE(watch.owes());
+  watch.confirm();
+  EXPECT_FALSE(watch.look(1400));  // still the same silence
+  EXPECT_FALSE(watch.owes());
+  EXPECT_TRUE(watch.silent(1400));
+}
+
+TEST(MasterWatch, ASilenceThatNobodyLookedAtIsOne) {
+  MasterWatch watch(100);
+  watch.beat(1000);
+  watch.beat(1500);
+  EXPECT_TRUE(watch.owes());
 }
 
 }  // namespace

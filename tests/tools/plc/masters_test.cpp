@@ -138,14 +138,27 @@ TEST_F(Places, ALaterConnectionOfAnAddressBeginsWhereTheLastOneWas) {
   const Masters::Id first = come();
   EXPECT_FALSE(masters_.find(first)->cursor.at);
   masters_.find(first)->cursor.at = 7;
-  masters_.find(first)->heartbeat = 30;
   masters_.remember_counter(*masters_.find(first));
-  masters_.remember_heartbeat(*masters_.find(first));
   masters_.leave(first);
   const Masters::Id again = come();
   EXPECT_EQ(masters_.find(again)->cursor.at, 7);
-  EXPECT_EQ(masters_.find(again)->heartbeat, 30);
   EXPECT_FALSE(masters_.find(come("10.0.0.2"))->cursor.at);
+}
+
+TEST_F(Places, AHeartbeatIsAChangeOnOneConnection) {
+  const Masters::Id first = come();
+  const Masters::Id second = come();
+  const Masters::Id other = come("10.0.0.2");
+  const auto beats = [&](Masters::Id id, std::uint16_t value) {
+    return masters_.take_heartbeat(*masters_.find(id), value);
+  };
+  EXPECT_FALSE(beats(first, 0));  // the register holds it at first
+  EXPECT_TRUE(beats(first, 5));
+  EXPECT_FALSE(beats(second, 5));  // the same master, connected twice
+  EXPECT_TRUE(beats(second, 6));
+  EXPECT_FALSE(beats(first, 5));
+  EXPECT_FALSE(beats(second, 6));
+  EXPECT_TRUE(beats(other, 6));
 }
 
 TEST(Written, HoldsNoCommandAtFirst) {
