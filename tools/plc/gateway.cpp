@@ -80,8 +80,13 @@ modbus::Reply Gateway::serve(Masters::Id id, const modbus::Request& request, Nan
 void Gateway::take_counter(Master& master, Nanoseconds now) {
   Handshake::Entry entry{at(master.written, Name::command_counter), command_in(master.written)};
   if (master.fenced && entry.command.is(CommandCode::start)) entry.refusal = Reason::master_silent;
+  const int ahead = handshake_.ahead(entry.counter);
   if (handshake_.write(master.cursor, entry)) execute(entry, now);
-  if (!master.cursor.refused) masters_.remember_counter(master);
+  if (!master.cursor.refused) {
+    masters_.remember_counter(master);
+  } else if (ahead == 1 || (ahead > 1 && entry.command.halts())) {
+    masters_.lose_step(master.address);
+  }
 }
 
 void Gateway::execute(const Handshake::Entry& entry, Nanoseconds now) {

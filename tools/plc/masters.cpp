@@ -74,6 +74,13 @@ void Masters::fence() noexcept {
   for (auto& [id, master] : masters_) master.fenced = true;
 }
 
+void Masters::lose_step(const std::string& address) {
+  for (auto& [id, master] : masters_) {
+    if (master.address == address) master.cursor.at.reset();
+  }
+  past_[address].at.reset();
+}
+
 bool Masters::take_heartbeat(Master& master, std::uint16_t value) {
   Past& past = past_[master.address];
   const bool changed = value != master.heartbeat.value_or(past.heartbeat);

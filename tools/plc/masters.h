@@ -59,6 +59,9 @@ class Masters {
   void drop_silent(Nanoseconds now, Nanoseconds longest);
   /// A later connection of the same address begins with this one's counter.
   void remember_counter(const Master& master) { past_[master.address].at = master.cursor.at; }
+  /// A command of an address was refused on one of its connections, and another one may hold it, or a start
+  /// that is older. None of them executes anything until it has written the newest counter.
+  void lose_step(const std::string& address);
   /// A master has written a heartbeat. Returns true if it has changed: against the last one of the same
   /// connection, or for the first one of a connection against the last one of the same address.
   [[nodiscard]] bool take_heartbeat(Master& master, std::uint16_t value);

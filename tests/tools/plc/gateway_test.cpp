@@ -151,6 +151,34 @@ TEST_F(GatewayTest, AnOldBlockFromASecondConnectionStartsNothing) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
+TEST_F(GatewayTest, ACommandThatWasRefusedOnOneConnectionIsNotExecutedOnAnother) {
+  daemon_comes();
+  const Masters::Id second = come();
+  put(plc_, 0, CommandCode::none);
+  put(second, 1, CommandCode::start);  // it has not written the newest counter
+  EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
+  put(plc_, 1, CommandCode::start);
+  EXPECT_TRUE(sent().empty());
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::refused, Reason::not_next));
+  put(plc_, 0, CommandCode::none);
+  put(plc_, 1, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+}
+
+TEST_F(GatewayTest, AStartThatIsOlderThanARefusedVentIsNotExecuted) {
+  daemon_comes();
+  const Masters::Id second = come();
+  put(plc_, 0, CommandCode::none);
+  put(second, 0, CommandCode::none);
+  put(second, 2, CommandCode::vent);  // the start before it has not arrived yet
+  EXPECT_EQ(end_of(second), std::pair(Outcome::refused, Reason::not_next));
+  put(plc_, 1, CommandCode::start);
+  EXPECT_TRUE(sent().empty());
+  put(second, 0, CommandCode::none);
+  put(second, 1, CommandCode::vent);
+  EXPECT_EQ(sent(), std::vector<std::string>{"vent"});
+}
+
 TEST_F(GatewayTest, TwoMastersDoNotWriteOneCommandTogether) {
   daemon_comes();
   const Masters::Id second = come("127.0.0.2");

@@ -145,6 +145,22 @@ TEST_F(Places, ALaterConnectionOfAnAddressBeginsWhereTheLastOneWas) {
   EXPECT_FALSE(masters_.find(come("10.0.0.2"))->cursor.at);
 }
 
+TEST_F(Places, AnAddressLosesItsStepOnAllConnections) {
+  const Masters::Id first = come();
+  const Masters::Id other = come("10.0.0.2");
+  for (const Masters::Id id : {first, other}) {
+    masters_.find(id)->cursor.at = 7;
+    masters_.remember_counter(*masters_.find(id));
+  }
+  const Masters::Id second = come();
+  masters_.lose_step("10.0.0.1");
+  EXPECT_FALSE(masters_.find(first)->cursor.at);
+  EXPECT_FALSE(masters_.find(second)->cursor.at);
+  EXPECT_EQ(masters_.find(other)->cursor.at, 7);
+  masters_.leave(second);
+  EXPECT_FALSE(masters_.find(come())->cursor.at);
+}
+
 TEST_F(Places, AHeartbeatIsAChangeOnOneConnection) {
   const Masters::Id first = come();
   const Masters::Id second = come();
