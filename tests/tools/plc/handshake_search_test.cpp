@@ -1,0 +1,629 @@
+// Every order of what two masters, the gateway and the daemon can do, breadth first, until no new state
+// appears. Each can repeat, delay, send half a request, or die. The gateway is the real one, from the bytes
+// of a request to the line for the daemon; masters and daemon are the least that keeps to their protocols.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "base/grid.h"
+#include "tools/plc/gateway.h"
+
+namespace softgrip::plc::handshake_search_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Time passes in steps of this: two make a master silent, one a connection idle and the daemon silent.
+constexpr Nanoseconds step = ns_per_s * 3 / 2;
+constexpr int silent_steps = 2;
+constexpr std::size_t plcs = 2;
+constexpr std::uint16_t start = 1;
+constexpr std::uint16_t vent = 3;
+
+/// How often each thing may happen, so that the search ends.
+struct Budget {
+  std::array<int, plcs> commands{};
+  std::array<int, plcs> connections{};
+  int master_deaths = 0;
+  int gateway_deaths = 0;
+  int daemon_deaths = 0;
+  int pauses = 0;
+  int busy = 0;
+  bool impatient = false;  // masters ask for a start though another command is under way
+  bool time = false;       // it passes, and the first master's heartbeat changes
+};
+
+Settings settings_of_the_search() {
+  document::Problems problems;
+  Settings settings = *load_settings(SOFTGRIP_SOURCE_DIR "/config/plc.yaml", problems);
+  settings.max_masters = plcs;
+  settings.idle_s = 1e6;  // nobody may need it
+  settings.registers.most_fingers = 1;
+  return settings;
+}
+
+/// A block that a master has written, on its way.
+struct Frame {
+  std::array<std::uint16_t, 7> words{};
+  int command = -1;  // which one of World::commands; -1: none
+  int halts = 0;     // how many stops and vents had been executed when it was written
+
+  [[nodiscard]] modbus::Bytes bytes() const {
+    modbus::Bytes pdu{16, 0, 0, 0, 7, 14};
+    for (const std::uint16_t word : words) modbus::append_word(pdu, word);
+    return modbus::frame_on(modbus::Wire::tcp, 1, 1, pdu);
+  }
+};
+
+/// A connection. A master sends its next request when the last one is answered.
+struct Wire {
+  std::size_t plc = 0;
+  Masters::Id id = 0;
+  modbus::RequestStream stream;
+  std::optional<Frame> flying;
+  bool half = false;                       // the first half of it has arrived
+  std::optional<std::uint16_t> heartbeat;  // that has arrived last
+};
+
+enum class Progress { begins, synchronises, ready, waits };
+
+struct Plc {
+  bool alive = true;
+  Progress progress = Progress::begins;
+  std::uint16_t counter = 0;
+  std::uint16_t code = 0;
+  int command = -1;
+  std::uint16_t heartbeat = 0;
+  std::uint16_t heard = 0;  // its heartbeat that has arrived last
+  // The connection on which its block, as it is now, has been answered. It reads the end of a command there.
+  Masters::Id answered_on = 0;
+};
+
+/// What a master asked, and what became of it.
+struct Command {
+  std::uint16_t code = 0;
+  std::uint16_t counter = 0;
+  bool executed = false;
+  // A busy daemon declined it, another command came after it, or the gateway that executed it died.
+  bool over = false;
+  bool reported_refused = false;
+};
+
+struct Line {
+  std::uint64_t id = 0;
+  std::string command;
+  int asked = -1;  // which one of World::commands
+};
+
+struct World {
+  explicit World(const Settings& with) : settings(&with), gateway(std::in_place, with) {}
+
+  const Settings* settings;
+  Budget left;
+  Nanoseconds now = 100 * ns_per_s;
+  std::optional<Gateway> gateway;
+  std::array<Plc, plcs> masters;
+  std::vector<Wire> wires;
+  std::vector<Command> commands;
+  // The daemon.
+  bool runs = false;
+  bool paused = false;
+  std::deque<Line> lines;
+  std::deque<Json> answers;
+  // What is kept to judge by.
+  int halts = 0;  // executed: vents of masters, and reactions to a silence
+  std::optional<Frame> waiting;
+  bool watched = false;
+  bool owed = false;  // a silence has begun, and no daemon has stopped since
+  bool stopped_since_beat = false;
+  int beat_steps = 0;
+  Nanoseconds reacted_at = 0;
+  std::string broken;
+
+  [[nodiscard]] Wire* wire_of(std::size_t plc) {
+    const auto found =
+        std::find_if(wires.rbegin(), wires.rend(), [&](const Wire& w) { return w.plc == plc; });
+    return found == wires.rend() ? nullptr : &*found;
+  }
+  static std::string address_of(std::size_t plc) { return plc == 0 ? "10.0.0.1" : "10.0.0.2"; }
+
+  void check(bool holds, const char* otherwise) {
+    if (!holds && broken.empty()) broken = otherwise;
+  }
+
+  /// What the gateway sends leaves at once. `cause`: the block by which it came to that.
+  void carry(const std::optional<Frame>& cause) {
+    for (const Json& line : gateway->lines_to_daemon()) {
+      const std::string command = line["command"];
+      if (command == "start" || command == "vent") executes(command, cause);
+      if (command == "stop") {
+        ++halts;
+        reacted_at = now;
+      }
+      if (command != "hello" && command != "watch")
+        lines.push_back({line["id"], command, cause && command != "stop" ? cause->command : -1});
+    }
+  }
+  void executes(const std::string& command, const std::optional<Frame>& cause) {
+    check(cause && cause->command >= 0, "something is executed that nobody asked");
+    if (!broken.empty()) return;
+    Command& asked = commands[static_cast<std::size_t>(cause->command)];
+    check((asked.code == start) == (command == "start"), "another command is executed than was asked");
+    check(!asked.executed, "a command is executed twice");
+    check(!asked.reported_refused, "a command is executed that was reported as refused");
+    check(asked.code != start || cause->halts == halts,
+          "a start outlives a stop or a vent that came after it");
+    if (asked.code == vent) ++halts;
+    for (Command& other : commands) other.over = other.over || other.executed;
+    asked.executed = true;
+  }
+
+  void turn() {
+    gateway->look_after(now);
+    carry(waiting);
+    drop_closed();
+  }
+  void drop_closed() {
+    std::erase_if(wires, [&](const Wire& wire) { return !gateway->masters().has(wire.id); });
+  }
+
+  // A master. Its earlier connections stay open: they may be dead, or only slow.
+  bool connect(std::size_t plc) {
+    const auto id = gateway->masters().admit(address_of(plc), now);
+    drop_closed();
+    if (id) wires.push_back({plc, *id, {}, {}, false, {}});
+    return id.has_value();
+  }
+  /// The block as it is: in every cycle, by a master whose program has stopped, too.
+  void write(std::size_t plc) { write_on(*wire_of(plc)); }
+  void write_on(Wire& wire) {
+    Plc& master = masters[wire.plc];
+    // The second master writes a heartbeat that never changes.
+    if (left.time && wire.plc == 0 && master.alive) master.heartbeat = master.heartbeat == 1 ? 2 : 1;
+    if (left.time && wire.plc == 1) master.heartbeat = 9;
+    Frame frame;
+    frame.words = {master.counter, master.code, 1, no_value, no_value, no_value, master.heartbeat};
+    frame.command = master.command;
+    frame.halts = halts;
+    wire.flying = frame;
+  }
+  void deliver_half(Wire& wire) {
+    const modbus::Bytes bytes = wire.flying->bytes();
+    wire.stream.append(std::span(bytes).first(bytes.size() / 2));
+    wire.half = true;
+    check(!wire.stream.next().has_value(), "half a request is one");
+    gateway->masters().find(wire.id)->half = wire.stream.half();
+  }
+  void deliver(std::size_t index) {
+    Wire& wire = wires[index];
+    const Frame frame = *std::exchange(wire.flying, std::nullopt);
+    const modbus::Bytes bytes = frame.bytes();
+    wire.stream.append(std::span(bytes).subspan(wire.half ? bytes.size() / 2 : 0));
+    wire.half = false;
+    const auto request = wire.stream.next();
+    const bool waited = gateway->handshake().waits();
+    static_cast<void>(gateway->serve(wire.id, *request, now));
+    gateway->masters().find(wire.id)->half = wire.stream.half();
+    carry(frame);
+    if (!waited && gateway->handshake().waits()) waiting = frame;
+    if (!gateway->handshake().waits()) waiting.reset();
+    Plc& master = masters[wire.plc];
+    if (frame.words[6] != wire.heartbeat.value_or(master.heard)) {
+      watched = true;
+      stopped_since_beat = false;
+      beat_steps = 0;
+    }
+    wire.heartbeat = master.heard = frame.words[6];
+    const bool is_current = frame.words[0] == master.counter && frame.words[1] == master.code;
+    if (is_current && frame.command == master.command) master.answered_on = wire.id;
+    if (master.progress == Progress::synchronises && frame.words[0] == master.counter && frame.words[1] == 0)
+      master.progress = Progress::ready;
+    drop_closed();
+  }
+  std::array<std::uint16_t, 3> read(Masters::Id id) {
+    modbus::Request request{1, 1, {3}};
+    modbus::append_word(request.pdu, settings->registers.at(Name::done_counter));
+    modbus::append_word(request.pdu, 3);
+    const modbus::Reply reply = gateway->serve(id, request, now);
+    const modbus::Bytes& frame = reply.pieces.at(0).bytes;
+    return {modbus::word_at(frame, 9), modbus::word_at(frame, 11), modbus::word_at(frame, 13)};
+  }
+  /// Reads the end of its command, and goes on as docs/reference/plc-map.md says.
+  void look(std::size_t plc) {
+    Plc& master = masters[plc];
+    const auto [done, outcome_word, reason_word] = read(wire_of(plc)->id);
+    const auto outcome = static_cast<Outcome>(outcome_word);
+    const auto reason = static_cast<Reason>(reason_word);
+    const bool lost_step = outcome == Outcome::refused && reason == Reason::not_next;
+    if (master.progress == Progress::begins) {
+      if (outcome == Outcome::executing) return;
+      master = {master.alive, Progress::synchronises, done, 0, -1, master.heartbeat, master.heard, 0};
+    } else if (lost_step) {
+      if (master.command >= 0) report_refused(master.command);
+      master.progress = Progress::begins;
+    } else if (master.progress == Progress::waits && done == master.counter &&
+               outcome != Outcome::executing) {
+      if (outcome == Outcome::accepted) judge_accepted(master);
+      if (outcome == Outcome::refused && reason != Reason::first_after_start) report_refused(master.command);
+      master.progress = Progress::ready;
+    }
+  }
+  void report_refused(int command) {
+    Command& asked = commands[static_cast<std::size_t>(command)];
+    check(!asked.executed || asked.over, "a command is reported as refused that was executed");
+    asked.reported_refused = true;
+  }
+  /// Two masters that ask for the same thing with the same counter are answered alike.
+  void judge_accepted(const Plc& master) {
+    const bool executed = std::any_of(commands.begin(), commands.end(), [&](const Command& asked) {
+      return asked.executed && asked.counter == master.counter && asked.code == master.code;
+    });
+    check(executed, "a command is reported as accepted that was not executed");
+  }
+  void ask(std::size_t plc, std::uint16_t code) {
+    Plc& master = masters[plc];
+    master.command = static_cast<int>(commands.size());
+    master.code = code;
+    ++master.counter;
+    master.progress = Progress::waits;
+    master.answered_on = 0;
+    commands.push_back({code, master.counter, false, false, false});
+  }
+
+  // The daemon.
+  void daemon_starts() {
+    runs = true;
+    gateway->daemon_came(now);
+    carry({});
+  }
+  void daemon_dies() {
+    runs = paused = false;
+    lines.clear();
+    answers.clear();
+    gateway->daemon_went();
+  }
+  void daemon_takes(bool busy) {
+    const Line line = lines.front();
+    lines.pop_front();
+    if (busy) {
+      if (line.asked >= 0) commands[static_cast<std::size_t>(line.asked)].over = true;
+      answers.push_back({{"id", line.id}, {"ok", false}, {"error", {{"code", "busy"}}}});
+      return;
+    }
+    if (line.command == "stop") {
+      owed = false;
+      stopped_since_beat = true;
+    }
+    answers.push_back({{"id", line.id}, {"ok", true}});
+  }
+  void answer_arrives() {
+    gateway->daemon_said(answers.front(), now);
+    answers.pop_front();
+  }
+  void daemon_says_state() {
+    static const Json state =
+        Json::parse(R"({"id": 2, "watch": {"state": "idle", "result": "-", "fault": null,
+      "sequence": null, "channels": []}})");
+    gateway->daemon_said(state, now);
+  }
+
+  void gateway_dies() {
+    gateway.emplace(*settings);
+    for (Command& command : commands) command.over = command.over || command.executed;
+    wires.clear();
+    waiting.reset();
+    answers
+        .clear();  // what the daemon says to the dead one; what that one sent is heard before what comes now
+    for (Plc& master : masters) master.heard = 0;
+    watched = owed = stopped_since_beat = false;
+    beat_steps = 0;
+    if (runs) {
+      gateway->daemon_came(now);
+      carry({});
+    }
+  }
+  void pass() {
+    now += step;
+    if (runs && !paused) daemon_says_state();
+    if (watched && ++beat_steps == silent_steps) owed = owed || !stopped_since_beat;
+    beat_steps = std::min(beat_steps, silent_steps);
+    turn();
+  }
+
+  [[nodiscard]] std::string key() const;
+  /// What is broken for good, though nothing more goes wrong: the reaction to a silence is lost, or the first
+  /// master is locked out.
+  [[nodiscard]] std::string lost_for_good() const;
+};
+
+class Key {
+ public:
+  Key& operator<<(std::int64_t value) {
+    text_ += std::to_string(value);
+    text_ += ' ';
+    return *this;
+  }
+  Key& operator<<(const std::optional<std::uint16_t>& value) { return *this << (value ? *value : -1); }
+  Key& operator<<(const Frame& frame) {
+    for (const std::uint16_t word : frame.words) *this << word;
+    return *this << frame.command;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// Everything that matters for what can still happen. Times are steps ago, ids are places in their order.
+std::string World::key() const {
+  Key key;
+  const Handshake& handshake = gateway->handshake();
+  key << static_cast<int>(handshake.outcome()) << static_cast<int>(handshake.reason());
+  for (const auto& entry : {handshake.done(), handshake.executing(), handshake.waiting()}) {
+    key << entry.has_value();
+    if (entry) key << entry->counter << entry->command.code << static_cast<int>(entry->refusal);
+  }
+  std::vector<Masters::Id> ids;
+  std::vector<Nanoseconds> asked;
+  for (const auto& [id, master] : gateway->masters().all()) {
+    ids.push_back(id);
+    asked.push_back(master.asked_at);
+  }
+  std::sort(asked.begin(), asked.end());
+  const auto place = [&](const auto& in, auto value) {
+    return std::find(in.begin(), in.end(), value) - in.begin();
+  };
+  for (const auto& [id, master] : gateway->masters().all()) {
+    key << master.asked << master.half << master.fenced << place(asked, master.asked_at)
+        << (now - master.asked_at >= step);
+    for (const std::uint16_t word : master.written) key << word;
+    key << master.heartbeat << master.cursor.at << master.cursor.refused;
+  }
+  for (const auto& [address, past] : gateway->masters().past())
+    key << (address == "10.0.0.1") << past.at << past.heartbeat;
+  key << gateway->watch().watched() << gateway->watch().silent(now) << gateway->watch().silent(now + step)
+      << gateway->watch().owes() << gateway->hears_daemon(now) << gateway->reacts()
+      << gateway->reaction_confirms() << (reacted_at == now);
+  for (const std::uint16_t counter : gateway->unanswered()) key << counter;
+  for (const Plc& master : masters)
+    key << place(ids, master.answered_on) << master.alive << static_cast<int>(master.progress)
+        << master.counter << master.code << master.command << master.heartbeat << master.heard;
+  for (const Wire& wire : wires) {
+    key << static_cast<int>(wire.plc) << place(ids, wire.id) << wire.half << wire.heartbeat
+        << wire.flying.has_value();
+    if (wire.flying) key << *wire.flying << (wire.flying->halts == halts);
+  }
+  for (const Command& command : commands)
+    key << command.code << command.counter << command.executed << command.over << command.reported_refused;
+  key << runs << paused << static_cast<int>(lines.size());
+  for (const Line& line : lines) key << line.command.front() << line.asked;
+  for (const Json& answer : answers) key << answer["ok"].get<bool>();
+  key << waiting.has_value();
+  if (waiting) key << *waiting << (waiting->halts == halts);
+  key << watched << owed << stopped_since_beat << beat_steps;
+  for (std::size_t plc = 0; plc < plcs; ++plc) key << left.commands[plc] << left.connections[plc];
+  key << left.master_deaths << left.gateway_deaths << left.daemon_deaths << left.pauses << left.busy;
+  return key.text();
+}
+
+std::string World::lost_for_good() const {
+  World world = *this;
+  world.left.time = true;
+  const auto settle = [&world] {
+    for (int i = 0; i < 4; ++i) {
+      world.now += Gateway::longest_pause;
+      while (!world.lines.empty()) world.daemon_takes(false);
+      while (!world.answers.empty()) world.answer_arrives();
+      world.daemon_says_state();
+      world.turn();
+    }
+  };
+  if (!world.runs) world.daemon_starts();
+  world.paused = false;
+  settle();
+  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silence is lost";
+  // The programs of all masters stop, and their last blocks are written on.
+  for (Plc& master : world.masters) master.alive = false;
+  for (int i = 0; i < 2 * silent_steps; ++i) {
+    for (std::size_t wire = 0; wire < world.wires.size(); ++wire) {
+      if (!world.wires[wire].flying) world.write_on(world.wires[wire]);
+      world.deliver(wire);
+    }
+    world.pass();
+    settle();
+  }
+  if (world.owed || world.gateway->watch().owes()) return "the reaction to a silence is lost";
+  if (!world.broken.empty()) return world.broken;
+
+  if (!world.connect(0)) return "a master is locked out: it has no place";
+  const Masters::Id id = world.wires.back().id;
+  Plc& master = world.masters[0];
+  master.alive = true;
+  master.progress = Progress::begins;
+  for (const std::uint16_t code : {std::uint16_t{0}, vent, start}) {
+    if (code == 0) {
+      world.look(0);
+    } else {
+      world.ask(0, code);
+    }
+    world.write(0);
+    world.deliver(world.wires.size() - 1);
+    settle();
+    const auto [done, outcome, reason] = world.read(id);
+    if (code != 0 && (done != master.counter || static_cast<Outcome>(outcome) != Outcome::accepted))
+      return "a master is locked out: outcome " + std::to_string(outcome) + ", reason " +
+             std::to_string(reason);
+  }
+  return world.broken;
+}
+
+struct Step {
+  std::string name;
+  std::function<void(World&)> take;
+};
+
+/// What can happen in a state.
+std::vector<Step> steps_from(World& world) {
+  std::vector<Step> steps;
+  const auto add = [&](bool possible, std::string name, std::function<void(World&)> take) {
+    if (possible) steps.push_back({std::move(name), std::move(take)});
+  };
+  for (std::size_t plc = 0; plc < plcs; ++plc) {
+    const std::string who = plc == 0 ? "the first master " : "the second master ";
+    const Plc& master = world.masters[plc];
+    const Wire* const wire = world.wire_of(plc);
+    const bool free = wire != nullptr && !wire->flying;
+    add(world.left.connections[plc] > 0 && master.alive, who + "connects", [=](World& w) {
+      --w.left.connections[plc];
+      w.connect(plc);
+    });
+    add(free && master.progress != Progress::begins, who + "writes its block",
+        [=](World& w) { w.write(plc); });
+    const bool answered = free && (master.progress == Progress::begins || master.answered_on == wire->id);
+    add(answered && master.alive, who + "reads the end of its command", [=](World& w) { w.look(plc); });
+    const bool ready = master.progress == Progress::ready;
+    for (const std::uint16_t code : {start, vent}) {
+      add(master.alive && world.left.commands[plc] > 0 &&
+              (ready || (master.progress == Progress::waits && (code == vent || world.left.impatient))),
+          who + (code == start ? "asks for a start" : "asks for a vent"), [=](World& w) {
+            --w.left.commands[plc];
+            w.ask(plc, code);
+          });
+    }
+    add(world.left.master_deaths > 0 && master.alive, who + "dies", [=](World& w) {
+      --w.left.master_deaths;
+      w.masters[plc].alive = false;
+    });
+  }
+  for (std::size_t i = 0; i < world.wires.size(); ++i) {
+    const std::string which = "the block of connection " + std::to_string(i);
+    add(world.wires[i].flying.has_value(), which + " arrives", [=](World& w) { w.deliver(i); });
+    add(world.wires[i].flying && !world.wires[i].half, "half of " + which + " arrives",
+        [=](World& w) { w.deliver_half(w.wires[i]); });
+  }
+  add(true, "the gateway turns", [](World& w) { w.turn(); });
+  add(world.left.time, "time passes", [](World& w) { w.pass(); });
+  add(world.left.gateway_deaths > 0, "the gateway dies and comes back", [](World& w) {
+    --w.left.gateway_deaths;
+    w.gateway_dies();
+  });
+  add(!world.runs, "a daemon starts", [](World& w) { w.daemon_starts(); });
+  add(world.runs && world.left.daemon_deaths > 0, "the daemon dies", [](World& w) {
+    --w.left.daemon_deaths;
+    w.daemon_dies();
+  });
+  add(world.runs && !world.paused && world.left.pauses > 0, "the daemon is paused", [](World& w) {
+    --w.left.pauses;
+    w.paused = true;
+  });
+  add(world.paused, "the daemon goes on", [](World& w) { w.paused = false; });
+  const bool hears = world.runs && !world.paused && !world.lines.empty();
+  add(hears, "the daemon obeys", [](World& w) { w.daemon_takes(false); });
+  add(hears && world.left.busy > 0, "the daemon is busy", [](World& w) {
+    --w.left.busy;
+    w.daemon_takes(true);
+  });
+  add(!world.answers.empty(), "the daemon's answer arrives", [](World& w) { w.answer_arrives(); });
+  return steps;
+}
+
+struct Found {
+  std::string broken;
+  std::size_t states = 0;
+  std::size_t steps = 0;
+};
+
+Found search(const Budget& budget) {
+  const Settings settings = settings_of_the_search();
+  World first(settings);
+  first.left = budget;
+  first.daemon_starts();
+  struct Reached {
+    std::size_t from;
+    std::string by;
+  };
+  std::vector<Reached> reached{{0, ""}};
+  std::deque<std::pair<World, std::size_t>> open;
+  open.emplace_back(first, 0);
+  std::set<std::string> seen{first.key()};
+  Found found;
+  const auto told = [&](std::string broken, std::size_t last, const std::string& by) {
+    std::vector<std::string> path{by};
+    for (std::size_t at = last; at != 0; at = reached[at].from) path.push_back(reached[at].by);
+    for (auto word = path.rbegin(); word != path.rend(); ++word) broken += "\n  " + *word;
+    return broken;
+  };
+  while (!open.empty()) {
+    auto [from, index] = std::move(open.front());
+    open.pop_front();
+    for (const Step& taken : steps_from(from)) {
+      World to = from;
+      taken.take(to);
+      ++found.steps;
+      if (to.broken.empty() && !seen.insert(to.key()).second) continue;
+      if (to.broken.empty()) to.broken = to.lost_for_good();
+      if (!to.broken.empty()) {
+        found.broken = told(to.broken, index, taken.name);
+        found.states = seen.size();
+        return found;
+      }
+      reached.push_back({index, taken.name});
+      open.emplace_back(std::move(to), reached.size() - 1);
+    }
+  }
+  found.states = seen.size();
+  return found;
+}
+
+void expect_nothing_broken(const Budget& budget) {
+  const Found found = search(budget);
+  std::printf("%zu states, %zu steps\n", found.states, found.steps);
+  EXPECT_EQ(found.broken, "");
+  EXPECT_GT(found.states, 1000U);
+}
+
+TEST(HandshakeSearch, OneMasterOnTwoConnections) {
+  expect_nothing_broken({.commands = {3, 0}, .connections = {2, 0}, .busy = 1});
+}
+
+TEST(HandshakeSearch, TwoMasters) {
+  expect_nothing_broken({.commands = {2, 1}, .connections = {1, 1}});
+}
+
+TEST(HandshakeSearch, AGatewayThatDies) {
+  expect_nothing_broken({.commands = {1, 0}, .connections = {2, 1}, .gateway_deaths = 1});
+}
+
+TEST(HandshakeSearch, AMasterThatFallsSilentAndADaemonThatDies) {
+  expect_nothing_broken({.commands = {1, 0}, .connections = {1, 0}, .daemon_deaths = 1, .time = true});
+}
+
+TEST(HandshakeSearch, AMasterThatFallsSilentAndADaemonThatIsPaused) {
+  expect_nothing_broken({.commands = {1, 0}, .connections = {1, 0}, .pauses = 1, .time = true});
+}
+
+TEST(HandshakeSearch, AMasterThatFallsSilentAndADaemonThatIsBusy) {
+  expect_nothing_broken({.commands = {1, 0}, .connections = {1, 0}, .busy = 1, .time = true});
+}
+
+TEST(HandshakeSearch, AMasterThatIsImpatientAndFallsSilent) {
+  expect_nothing_broken({.commands = {2, 0}, .connections = {1, 0}, .impatient = true, .time = true});
+}
+
+TEST(HandshakeSearch, TwoMastersThatFallSilent) {
+  expect_nothing_broken({.connections = {1, 1}, .master_deaths = 1, .time = true});
+}
+
+}  // namespace
+}  // namespace softgrip::plc::handshake_search_test
