@@ -1,13 +1,16 @@
 """What softgrip-plc does with masters that mean no good: nothing but refusals, and a PLC keeps its place."""
 
 import contextlib
+import os
 import random
+import resource
 import socket
 import struct
 import time
 
 import bench
 import plc
+from test_web_limits import processor_s
 
 
 class Abuse(bench.BenchTest):
@@ -45,6 +48,20 @@ class Abuse(bench.BenchTest):
         # Three beside the PLC may stay until they have asked nothing for five seconds.
         ends = sum(self.is_at_its_end(client) for client in crowd)
         self.assertGreaterEqual(ends, 997)
+        self.assert_well()
+
+    def test_without_free_descriptors_it_does_not_spin(self):
+        pid = self.gateway.child.pid
+        in_use = len(os.listdir(f"/proc/{pid}/fd"))
+        resource.prlimit(pid, resource.RLIMIT_NOFILE, (in_use, in_use))
+        for _ in range(8):
+            self.connect()
+            self.master.read("state")  # as a PLC does: a connection that asks nothing is dropped for a newcomer
+        before = processor_s(pid)
+        for _ in range(40):
+            time.sleep(0.1)
+            self.master.read("state")
+        self.assertLess(processor_s(pid) - before, 0.4, "of 4 s")
         self.assert_well()
 
     def is_at_its_end(self, client):

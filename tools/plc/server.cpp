@@ -35,7 +35,7 @@ Server::Server(const Settings& settings, Gateway& gateway, Descriptor listener, 
     : settings_(settings),
       gateway_(gateway),
       daemon_(settings.socket, gateway),
-      listener_(std::move(listener)),
+      entrance_(std::move(listener)),
       signals_(std::move(signals)) {}
 
 void Server::run() {
@@ -43,8 +43,9 @@ void Server::run() {
   constexpr std::size_t others = 3;
   const timespec pause{0, Gateway::longest_pause};
   for (;;) {
-    watched.assign(
-        {{signals_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}, {daemon_.descriptor(), POLLIN, 0}});
+    watched.assign({{signals_.get(), POLLIN, 0},
+                    {entrance_.descriptor(clock_.now()), POLLIN, 0},
+                    {daemon_.descriptor(), POLLIN, 0}});
     for (const Line& line : lines_) {
       const int events = line.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
       watched.push_back({line.connection.descriptor(), static_cast<short>(events), 0});
@@ -65,7 +66,7 @@ void Server::run() {
 }
 
 void Server::accept(Nanoseconds now) {
-  Descriptor socket = modbus::accept_client(listener_);
+  Descriptor socket = entrance_.accept(now);
   if (!socket) return;
   const std::string address = address_of(socket.get());
   const std::vector<std::string>& allow = settings_.allow;

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/descriptor.h"
 #include "drivers/modbus_server/connection.h"
+#include "drivers/modbus_server/entrance.h"
 #include "tools/plc/daemon_line.h"
 #include "tools/plc/gateway.h"
 
@@ -32,7 +33,7 @@ class Server {
   const Settings& settings_;
   Gateway& gateway_;
   DaemonLine daemon_;
-  Descriptor listener_;
+  modbus::Entrance entrance_;
   Descriptor signals_;
   MonotonicClock clock_;
   std::list<Line> lines_;
