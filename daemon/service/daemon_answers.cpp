@@ -20,7 +20,7 @@ namespace softgrip::daemon {
 namespace {
 
 /// The thread that serves clients may take this long for one turn (service_patience of real_run.cpp).
-constexpr Nanoseconds patience = 2 * ns_per_s;
+constexpr Nanoseconds answer_patience = 2 * ns_per_s;
 constexpr std::size_t longest_reply = std::size_t{8} << 20U;
 constexpr std::string_view question = "{\"command\": \"status\"}\n";
 
@@ -48,7 +48,7 @@ bool daemon_answers(const std::string& socket_path) {
   const ssize_t sent = ::send(socket.get(), question.data(), question.size(), MSG_NOSIGNAL);
   if (sent != static_cast<ssize_t>(question.size())) return false;
   const auto reply =
-      nlohmann::json::parse(line_from(socket.get(), monotonic_now() + patience), nullptr, false);
+      nlohmann::json::parse(line_from(socket.get(), monotonic_now() + answer_patience), nullptr, false);
   return reply.is_object() && reply.contains("ok");
 }
 

@@ -16,7 +16,7 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{1} << 30;
+constexpr std::size_t largest_file_bytes = std::size_t{1} << 30;
 constexpr const char* too_long_hint = "split it into several files";
 constexpr std::string_view hdf5_signature{"\x89HDF\r\n\x1a\n"};
 
@@ -115,14 +115,15 @@ std::optional<ForeignTable> read_foreign_file(const std::string& given, const Ta
   std::error_code error;
   const std::string path = fs::is_directory(given, error) ? (fs::path(given) / "run.csv").string() : given;
   const auto file = open_regular(path);
-  const auto bytes = file ? read_start(*file, most_bytes + 1) : tl::unexpected(file.error());
+  const auto bytes = file ? read_start(*file, largest_file_bytes + 1) : tl::unexpected(file.error());
   if (!bytes) {
     unreadable = true;
     problems.add({path, {1, 1}, {}, "cannot open " + path + ": " + bytes.error(), {}});
     return std::nullopt;
   }
-  if (bytes->size() > most_bytes) {
-    problems.add({path, {1, 1}, {}, "larger than " + std::to_string(most_bytes) + " bytes", too_long_hint});
+  if (bytes->size() > largest_file_bytes) {
+    problems.add(
+        {path, {1, 1}, {}, "larger than " + std::to_string(largest_file_bytes) + " bytes", too_long_hint});
     return std::nullopt;
   }
   std::optional<ForeignTable> table;

@@ -19,9 +19,9 @@ constexpr std::size_t header_bytes = 128;
 constexpr std::size_t tag_bytes = 8;
 
 /// The bytes of one element, decompressed as they are read.
-class Source {
+class ElementSource {
  public:
-  Source(std::string_view bytes, bool compressed, std::size_t& budget)
+  ElementSource(std::string_view bytes, bool compressed, std::size_t& budget)
       : bytes_(bytes), compressed_(compressed), budget_(budget) {
     if (!compressed_) return;
     // The interface of zlib reads through a pointer that is not const.
@@ -29,11 +29,11 @@ class Source {
     stream_.avail_in = static_cast<uInt>(bytes.size());
     good_ = inflateInit(&stream_) == Z_OK;
   }
-  Source(const Source&) = delete;
-  Source& operator=(const Source&) = delete;
-  Source(Source&&) = delete;
-  Source& operator=(Source&&) = delete;
-  ~Source() {
+  ElementSource(const ElementSource&) = delete;
+  ElementSource& operator=(const ElementSource&) = delete;
+  ElementSource(ElementSource&&) = delete;
+  ElementSource& operator=(ElementSource&&) = delete;
+  ~ElementSource() {
     if (compressed_) inflateEnd(&stream_);
   }
 
@@ -85,7 +85,7 @@ std::uint32_t word(const char* at, bool big_endian) {
   return value;
 }
 
-bool read_tag(Source& source, bool big_endian, Tag& tag) {
+bool read_tag(ElementSource& source, bool big_endian, Tag& tag) {
   std::array<char, tag_bytes> raw{};
   if (!source.read(raw.data(), raw.size())) return false;
   tag = {word(raw.data(), big_endian), word(raw.data() + 4, big_endian)};
@@ -101,7 +101,7 @@ class Counter {
 
   /// One element at the top; false where it has too many parts or bytes.
   bool take(std::string_view bytes, bool compressed) {
-    Source source(bytes, compressed, bytes_left_);
+    ElementSource source(bytes, compressed, bytes_left_);
     Tag tag;
     if (!read_tag(source, big_endian_, tag) || tag.type != type_matrix) return bytes_left_ > 0;
     // The flags are the first part of an array; their lowest byte is its class.

@@ -130,23 +130,23 @@ class RowReader {
 
 std::optional<ForeignTable> parse_text_table(const std::string& file, std::string_view bytes,
                                              const TableOptions& options, document::Problems& problems) {
-  const auto too_large = [&](const std::string& what) {
+  const auto refused_with = [&](const std::string& what) {
     problems.add({file, {1, 1}, {}, "the text has more than " + what, "split it into several files"});
     return std::nullopt;
   };
-  if (bytes.size() > most_text_bytes) return too_large(std::to_string(most_text_bytes) + " bytes");
+  if (bytes.size() > most_text_bytes) return refused_with(std::to_string(most_text_bytes) + " bytes");
   const auto text = utf8_of(bytes);
   if (!text) {
     problems.add({file, {1, 1}, {}, text.error(), "export it as CSV"});
     return std::nullopt;
   }
   if (static_cast<std::size_t>(std::count(text->begin(), text->end(), '\n')) > most_rows)
-    return too_large(std::to_string(most_rows) + " lines");
+    return refused_with(std::to_string(most_rows) + " lines");
   const TextLines lines = text_lines(*text);
   const auto dialect = dialect_of(file, lines, options, problems);
   if (!dialect) return std::nullopt;
   if (lines.content.size() > most_values / std::max<std::size_t>(dialect->width, 1))
-    return too_large(std::to_string(most_values) + " values");
+    return refused_with(std::to_string(most_values) + " values");
   ForeignTable table;
   table.file = file;
   LogReporter report(file, problems);
