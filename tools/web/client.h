@@ -49,6 +49,12 @@ class Client {
   /// Ends his stream or file once he has taken what there is.
   void finish() noexcept { phase_ = Phase::answering; }
 
+  /// Frees the bytes that are kept for him.
+  void drop_unsent() noexcept {
+    std::string().swap(out_);
+    sent_ = 0;
+  }
+
   [[nodiscard]] Phase phase() const noexcept { return phase_; }
   [[nodiscard]] const std::string& request() const noexcept { return in_; }
   [[nodiscard]] Nanoseconds came_at() const noexcept { return came_at_; }

@@ -186,6 +186,7 @@ void Server::answer(Visitor& visitor, Outcome outcome, Nanoseconds now) {
   if (visitor.leaves || client.unsent() == 0) return;
   // The socket did not take all: the rest must have a place.
   visitor.leaves = !make_lingering_place(visitor, now) || !make_room(&visitor, visitor.role);
+  if (visitor.leaves) client.drop_unsent();
 }
 
 void Server::refuse(Visitor& visitor, int status, Nanoseconds now) {
@@ -286,12 +287,18 @@ Server::Crowd Server::crowd_beside(const Visitor* visitor) {
   return crowd;
 }
 
+/// Its bytes are freed now: many answers may be made before the visitors that leave are removed.
+void Server::turn_away(Visitor& visitor) {
+  visitor.leaves = true;
+  visitor.client.drop_unsent();
+  ++counts_.turned_away;
+}
+
 bool Server::make_place(Nanoseconds now) {
   const Crowd crowd = crowd_beside(nullptr);
   const Victim victim = gives_way_to_newcomer(crowd.guests, now);
   if (!victim) return false;
-  crowd.visitors[*victim]->leaves = true;
-  ++counts_.turned_away;
+  turn_away(*crowd.visitors[*victim]);
   remove_leaving();
   return true;
 }
@@ -304,8 +311,7 @@ bool Server::make_lingering_place(const Visitor& visitor, Nanoseconds now) {
   if (static_cast<std::size_t>(lingering) < lingering_places(places_)) return true;
   const Victim victim = gives_way_to_lingering(crowd.guests, visitor.role, now);
   if (!victim) return false;
-  crowd.visitors[*victim]->leaves = true;
-  ++counts_.turned_away;
+  turn_away(*crowd.visitors[*victim]);
   return true;
 }
 
@@ -316,8 +322,7 @@ bool Server::make_room(const Visitor* visitor, Role role) {
     if (unsent <= most_unsent) return true;
     const Victim victim = gives_way_for_bytes(crowd.guests, role);
     if (!victim) return false;
-    crowd.visitors[*victim]->leaves = true;
-    ++counts_.turned_away;
+    turn_away(*crowd.visitors[*victim]);
   }
 }
 

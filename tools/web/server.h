@@ -65,6 +65,7 @@ class Server {
   /// Who follows hears what is new, as long as he may.
   void tell_news(Nanoseconds now);
   void remove_leaving();
+  void turn_away(Visitor& visitor);
   void count();
 
   [[nodiscard]] static Guest guest_of(const Visitor& visitor);
