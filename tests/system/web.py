@@ -12,15 +12,16 @@ LOOK, OPERATE = "look-" + "a" * 20, "operate-" + "b" * 20
 
 
 class Web(bench.Process):
-    """On a free port, in front of the test's daemon; `access` is what the file says there."""
+    """On a free port, in front of the test's daemon; `access` is what the file says there, `operate` the socket for commands."""
 
-    def __init__(self, folder, access="without_token: operate", name="softgrip-web", port=0, most=64, environment=None):
+    def __init__(self, folder, access="without_token: operate", name="softgrip-web", port=0, most=64, environment=None,
+                 operate=None):
         tokens = folder / "web.tokens"
         tokens.write_text(f"look {LOOK}\noperate {OPERATE}\n")
         tokens.chmod(0o600)
         self.config = folder / f"{name}.yaml"
         self.config.write_text(
-            f"name: test\ndaemon: {{look: {folder}/softgripd.sock, operate: {folder}/softgripd.sock}}\n"
+            f"name: test\ndaemon: {{look: {folder}/softgripd.sock, operate: {operate or folder / 'softgripd.sock'}}}\n"
             f"listen: {{address: 127.0.0.1, port: {port}, max_connections: {most}}}\n"
             f"access:\n  tokens: {tokens}\n  {access}\nrecordings: {folder}/runs\n")
         super().__init__(name, [SOFTGRIP_WEB, "--config", self.config], folder, environment)

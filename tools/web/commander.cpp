@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/client/own_start.h"
+
 namespace softgrip::web {
 
 namespace {
@@ -13,6 +15,8 @@ using Json = nlohmann::ordered_json;
 
 /// A start may take a second to be planned, and as long as the disk takes.
 constexpr Nanoseconds longest_wait = 8 * ns_per_s;
+/// Between two attempts to stop a start that was given up.
+constexpr Nanoseconds pause_between_stops = ns_per_s / 4;
 constexpr std::size_t longest_sequence_name = 128;
 constexpr std::size_t most_parameters = 32;
 
@@ -62,53 +66,136 @@ tl::expected<Json, std::string> command_in(std::string_view body) {
 }
 
 tl::expected<std::uint64_t, Json> Commander::send(Json request, Nanoseconds now) {
-  const std::string_view command = request["command"].get_ref<const std::string&>();
+  const std::string& command = request["command"].get_ref<const std::string&>();
   const bool is_urgent = command == "stop" || command == "vent";
+  const bool is_start = command == "start";
   if (waiting_.size() >= (is_urgent ? 2 * most_waiting : most_waiting))
     return tl::unexpected<Json>{failure("busy", "too many commands wait for their answers")};
-  if (!daemon_) {
-    if (socket_.empty()) return tl::unexpected<Json>{failure("not_allowed", "this page is for looking only")};
-    auto daemon = tools::DaemonClient::connect_at_once(socket_);
-    if (!daemon) return tl::unexpected<Json>{failure("no_daemon", daemon.error().message)};
-    daemon_.emplace(std::move(*daemon));
-    daemon_->send({{"id", 0}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
-  }
+  if (is_start && given_up_.size() >= most_waiting)
+    return tl::unexpected<Json>{failure("busy", "the daemon has not confirmed the stops of earlier starts")};
+  if (auto refusal = connect()) return tl::unexpected{std::move(*refusal)};
+  Waiting waiting{now + longest_wait, is_start ? tools::new_start_id() : std::string(), std::nullopt};
+  if (is_start) request["start_id"] = waiting.start_id;
+  const std::uint64_t number = send_numbered(std::move(request));
+  waiting_[number] = std::move(waiting);
+  return number;
+}
+
+/// Returns what the daemon would say if there is no connection and none can be made.
+std::optional<Json> Commander::connect() {
+  if (daemon_) return std::nullopt;
+  if (socket_.empty()) return failure("not_allowed", "this page is for looking only");
+  auto daemon = tools::DaemonClient::connect_at_once(socket_);
+  if (!daemon) return failure("no_daemon", daemon.error().message);
+  daemon_.emplace(std::move(*daemon));
+  daemon_->send({{"id", 0}, {"command", "hello"}, {"client", "softgrip-web"}, {"api", 1}});
+  return std::nullopt;
+}
+
+std::uint64_t Commander::send_numbered(Json request) {
   request["id"] = ++last_;
   daemon_->send(request);
-  waiting_[last_] = {now + longest_wait, std::nullopt};
   return last_;
 }
 
 std::optional<Json> Commander::take_answer(std::uint64_t number, Nanoseconds now) {
   const auto found = waiting_.find(number);
   if (found == waiting_.end()) return failure("no_answer", "nobody waits for that answer");
-  std::optional<Json> answer = std::move(found->second.answer);
-  if (!answer && now > found->second.give_up) answer = failure("no_answer", "the daemon does not answer");
+  Waiting& waiting = found->second;
+  if (!waiting.answer && now > waiting.give_up) {
+    end(waiting,
+        failure("no_answer", waiting.start_id.empty()
+                                 ? "the daemon does not answer"
+                                 : "the daemon does not answer; softgrip-web stops this start when it does"));
+  }
+  std::optional<Json> answer = std::move(waiting.answer);
   if (answer) waiting_.erase(found);
   return answer;
 }
 
-void Commander::look_after() {
+bool Commander::is_open_start(std::uint64_t number) const {
+  const auto found = waiting_.find(number);
+  return found != waiting_.end() && !found->second.start_id.empty();
+}
+
+void Commander::forget(std::uint64_t number) {
+  const auto found = waiting_.find(number);
+  if (found == waiting_.end()) return;
+  give_up(found->second);
+  waiting_.erase(found);
+}
+
+void Commander::leave() {
+  for (auto& [number, waiting] : waiting_) give_up(waiting);
+  waiting_.clear();
+}
+
+void Commander::look_after(Nanoseconds now) {
   while (daemon_) {
     auto line = daemon_->next_line(std::chrono::milliseconds(0));
     if (!line) {
       lose();
     } else if (*line) {
-      const auto id = (**line).find("id");
-      const auto found =
-          waiting_.find(id != (**line).end() && id->is_number_unsigned() ? id->get<std::uint64_t>() : 0);
-      if (found != waiting_.end()) found->second.answer = std::move(**line);
+      take(std::move(**line));
     } else {
       break;
     }
+  }
+  stop_again(now);
+}
+
+void Commander::take(Json line) {
+  const auto id = line.find("id");
+  const std::uint64_t number = id != line.end() && id->is_number_unsigned() ? id->get<std::uint64_t>() : 0;
+  if (const auto found = waiting_.find(number); found != waiting_.end())
+    return end(found->second, std::move(line));
+  const auto stopped = std::find_if(given_up_.begin(), given_up_.end(), [number](const GivenUp& start) {
+    return start.stop == number && number != 0;
+  });
+  if (stopped == given_up_.end()) return;
+  stopped->stop = 0;
+  // A daemon that is too old to know the id has refused the start, too.
+  const bool is_older = line.value("error", Json::object()).value("code", "") == "bad_request";
+  if (is_older || tools::confirms_stop(line)) given_up_.erase(stopped);
+}
+
+void Commander::end(Waiting& waiting, Json answer) {
+  if (tools::refuses_start(answer)) waiting.start_id.clear();
+  if (!tools::DaemonClient::result_of(answer)) give_up(waiting);
+  waiting.answer = std::move(answer);
+}
+
+void Commander::give_up(Waiting& waiting) {
+  if (waiting.start_id.empty()) return;
+  given_up_.push_back({std::exchange(waiting.start_id, {}), 0});
+  if (daemon_) stop(given_up_.back());
+}
+
+void Commander::stop(GivenUp& start) {
+  start.stop = send_numbered(tools::stop_of(start.start_id));
+}
+
+/// Stops what was given up without a connection, and what a daemon did not confirm.
+void Commander::stop_again(Nanoseconds now) {
+  const auto is_due = [](const GivenUp& start) { return start.stop == 0; };
+  if (std::none_of(given_up_.begin(), given_up_.end(), is_due)) return;
+  if (stopped_at_ != 0 && now - stopped_at_ < pause_between_stops) return;
+  stopped_at_ = now;
+  if (connect()) return;
+  for (GivenUp& start : given_up_) {
+    if (is_due(start)) stop(start);
   }
 }
 
 void Commander::lose() {
   daemon_.reset();
+  for (GivenUp& start : given_up_) start.stop = 0;
   for (auto& [number, waiting] : waiting_) {
-    if (!waiting.answer)
-      waiting.answer = failure("no_answer", "the daemon went before it answered: look whether it was done");
+    if (waiting.answer) continue;
+    end(waiting,
+        failure("no_answer", waiting.start_id.empty()
+                                 ? "the daemon went before it answered: look whether it was done"
+                                 : "the daemon went before it answered; softgrip-web stops this start"));
   }
 }
 

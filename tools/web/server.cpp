@@ -59,6 +59,11 @@ Server::Server(const Settings& settings, Tokens tokens, std::string chart_js, De
       signals_(std::move(signals)) {}
 
 void Server::run() {
+  serve_until_signal();
+  commander_.leave();
+}
+
+void Server::serve_until_signal() {
   std::vector<pollfd> watched;
   constexpr std::size_t others = 5;
   const timespec pause{0, longest_pause};
@@ -80,7 +85,7 @@ void Server::run() {
     if (watched[0].revents != 0) return;
     const Nanoseconds now = clock_.now();
     watch_.look_after(now);
-    commander_.look_after();
+    commander_.look_after(now);
     if (watched[4].revents != 0) archive_.hear();
     auto found = watched.begin() + others;
     for (Visitor& visitor : visitors_) {
@@ -143,6 +148,8 @@ void Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
       if (client.phase() == Phase::asking && client.said_all()) visitor.leaves = true;
     }
   }
+  // Who has closed his side does not hear the outcome: the start is given up.
+  if (client.said_all() && commander_.is_open_start(visitor.command)) visitor.leaves = true;
   if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
   if (client.phase() == Phase::loading) take_piece(visitor);
   if (visitor.leaves) return;

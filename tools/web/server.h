@@ -50,6 +50,7 @@ class Server {
     std::vector<Visitor*> visitors;
   };
 
+  void serve_until_signal();
   /// The limit of descriptors was lowered: the last visitors go.
   [[nodiscard]] bool give_up_places();
   void accept(Nanoseconds now);

@@ -1,9 +1,12 @@
 #include "tools/web/commander.h"
 
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "drivers/modbus_server/listener.h"
 
@@ -78,7 +81,7 @@ TEST(Commander, ADaemonThatHangsHoldsNoOne) {
   bool ended = false;
   for (int i = 0; i < 5000 && !ended; ++i) {
     const auto sent = commander.send({{"command", "stop"}}, 0);
-    commander.look_after();
+    commander.look_after(0);
     // The one that the daemon does not take is answered.
     const auto answer = sent ? commander.take_answer(*sent, 0) : std::nullopt;
     ended = answer && (*answer)["error"]["code"] == "no_answer";
@@ -86,6 +89,162 @@ TEST(Commander, ADaemonThatHangsHoldsNoOne) {
   }
   EXPECT_TRUE(ended);
   ::unlink(path.c_str());
+}
+
+/// A daemon of which the test reads and writes the lines.
+class CommanderTest : public ::testing::Test {
+ protected:
+  CommanderTest() : listener_(std::move(*modbus::listen_unix(path_))) {}
+  ~CommanderTest() override { ::unlink(path_.c_str()); }
+  CommanderTest(const CommanderTest&) = delete;
+  CommanderTest& operator=(const CommanderTest&) = delete;
+  CommanderTest(CommanderTest&&) = delete;
+  CommanderTest& operator=(CommanderTest&&) = delete;
+
+  std::uint64_t start() {
+    const auto sent = commander_.send({{"command", "start"}, {"sequence", "pick"}}, now_);
+    EXPECT_TRUE(sent);
+    return sent.value_or(0);
+  }
+  /// Requests that have come since this was asked last, without hellos.
+  std::vector<Json> heard() {
+    while (Descriptor next = modbus::accept_client(listener_)) client_ = std::move(next);
+    std::string text;
+    std::array<char, 4096> buffer{};
+    for (ssize_t count = 1; count > 0 && client_;) {
+      count = ::recv(client_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
+      if (count > 0) text.append(buffer.data(), static_cast<std::size_t>(count));
+    }
+    std::vector<Json> lines;
+    for (std::size_t end = 0; (end = text.find('\n')) != std::string::npos; text.erase(0, end + 1)) {
+      Json line = Json::parse(text.substr(0, end));
+      if (line["command"] != "hello") lines.push_back(std::move(line));
+    }
+    return lines;
+  }
+  void reply(const Json& to, Json rest) {
+    rest["id"] = to["id"];
+    const std::string line = rest.dump() + "\n";
+    ASSERT_EQ(::send(client_.get(), line.data(), line.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(line.size()));
+    commander_.look_after(now_);
+  }
+  void pass(double duration_s) {
+    now_ += static_cast<Nanoseconds>(duration_s * static_cast<double>(ns_per_s));
+    commander_.look_after(now_);
+  }
+  /// The only request that has come is a stop of this start.
+  Json expect_stop_of(const Json& start) {
+    const std::vector<Json> lines = heard();
+    EXPECT_EQ(lines.size(), 1U);
+    if (lines.size() != 1) return {};
+    EXPECT_EQ(lines[0]["command"], "stop");
+    EXPECT_EQ(lines[0]["start_id"], start["start_id"]);
+    return lines[0];
+  }
+  void expect_no_stop_any_more() {
+    for (int i = 0; i < 10; ++i) {
+      pass(1);
+      EXPECT_TRUE(heard().empty());
+    }
+  }
+
+  const Json accepted_ = Json::parse(R"({"ok":true,"result":{"request":1}})");
+  const Json no_such_start_ = Json::parse(
+      R"({"ok":false,"error":{"code":"refused","message":"","refusal":{"code":"R12","name":"named_start_not_running"}}})");
+  std::string path_ = "/tmp/commander_test_" + std::to_string(::getpid());
+  Descriptor listener_;
+  Descriptor client_;
+  Commander commander_{path_};
+  Nanoseconds now_ = 100 * ns_per_s;
+};
+
+TEST_F(CommanderTest, EachStartHasAnIdOfItsOwnAndNothingElseHasOne) {
+  start();
+  start();
+  EXPECT_TRUE(commander_.send({{"command", "stop"}}, now_));
+  const std::vector<Json> lines = heard();
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_NE(lines[0]["start_id"], lines[1]["start_id"]);
+  EXPECT_FALSE(lines[2].contains("start_id"));
+}
+
+TEST_F(CommanderTest, AStartWithoutAnAnswerIsStopped) {
+  const std::uint64_t number = start();
+  const Json line = heard().at(0);
+  pass(7.9);
+  EXPECT_FALSE(commander_.take_answer(number, now_));
+  pass(0.2);
+  const auto answer = commander_.take_answer(number, now_);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ((*answer)["error"]["code"], "no_answer");
+  const Json stop = expect_stop_of(line);
+  reply(line, accepted_);
+  EXPECT_TRUE(heard().empty()) << "it has its stop already";
+  reply(stop, accepted_);
+  expect_no_stop_any_more();
+}
+
+TEST_F(CommanderTest, AStartThatItsBrowserForgetsIsStopped) {
+  const std::uint64_t waits = start();
+  const Json line = heard().at(0);
+  EXPECT_TRUE(commander_.is_open_start(waits));
+  commander_.forget(waits);
+  reply(expect_stop_of(line), no_such_start_);
+  const std::uint64_t answered = start();
+  const Json second = heard().at(0);
+  reply(second, accepted_);
+  EXPECT_TRUE(commander_.is_open_start(answered));
+  commander_.forget(answered);
+  reply(expect_stop_of(second), accepted_);
+  expect_no_stop_any_more();
+}
+
+TEST_F(CommanderTest, AStartWhoseOutcomeIsHeardGoesOn) {
+  const std::uint64_t accepted = start();
+  reply(heard().at(0), accepted_);
+  EXPECT_EQ(commander_.take_answer(accepted, now_)->at("ok"), true);
+  commander_.forget(accepted);
+  const std::uint64_t refused = start();
+  reply(heard().at(0), {{"ok", false}, {"error", {{"code", "busy"}, {"message", ""}}}});
+  EXPECT_FALSE(commander_.is_open_start(refused));
+  commander_.forget(refused);
+  expect_no_stop_any_more();
+}
+
+TEST_F(CommanderTest, AStartThatASilentLoopMayStillBeginIsStopped) {
+  const std::uint64_t number = start();
+  const Json line = heard().at(0);
+  reply(line, {{"ok", false}, {"error", {{"code", "no_answer"}, {"message", ""}}}});
+  EXPECT_EQ(commander_.take_answer(number, now_)->at("error").at("code"), "no_answer");
+  const Json stop = expect_stop_of(line);
+  reply(stop, {{"ok", false}, {"error", {{"code", "no_answer"}, {"message", ""}}}});
+  pass(1);
+  reply(expect_stop_of(line), accepted_);
+  expect_no_stop_any_more();
+}
+
+TEST_F(CommanderTest, AStopWaitsForTheNextConnection) {
+  const std::uint64_t number = start();
+  const Json line = heard().at(0);
+  client_.reset();
+  listener_.reset();
+  ::unlink(path_.c_str());
+  pass(1);
+  EXPECT_EQ(commander_.take_answer(number, now_)->at("error").at("code"), "no_answer");
+  pass(1);
+  listener_ = std::move(*modbus::listen_unix(path_));
+  pass(1);
+  const Json stop = expect_stop_of(line);
+  reply(stop, no_such_start_);
+  expect_no_stop_any_more();
+}
+
+TEST_F(CommanderTest, AtTheEndOfTheProgramEveryOpenStartIsStopped) {
+  start();
+  const Json line = heard().at(0);
+  commander_.leave();
+  expect_stop_of(line);
 }
 
 }  // namespace
