@@ -11,6 +11,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "tools/client/reply_check.h"
+
 namespace softgrip::tools {
 namespace {
 
@@ -142,7 +144,9 @@ tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::ch
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + patience;
   std::size_t line_end = 0;
-  while ((line_end = pending_.find('\n')) == std::string::npos) {
+  for (std::size_t searched = 0; (line_end = pending_.find('\n', searched)) == std::string::npos;) {
+    if (pending_.size() > longest_line) return tl::unexpected{malformed("a line is longer than 8 MiB")};
+    searched = pending_.size();
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
     pollfd watched{socket_.get(), POLLIN, 0};
     const int ready = ::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(left, 0)));
@@ -150,16 +154,20 @@ tl::expected<std::optional<Json>, ClientFailure> DaemonClient::next_line(std::ch
     if (ready == 0) return std::optional<Json>{};
     std::array<char, 16384> buffer;
     const ssize_t count = ::recv(socket_.get(), buffer.data(), buffer.size(), 0);
-    if (count <= 0 || pending_.size() > longest_line) return tl::unexpected{gone()};
+    if (count <= 0) return tl::unexpected{gone()};
     pending_.append(buffer.data(), static_cast<std::size_t>(count));
   }
-  Json line =
-      Json::parse(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(line_end), nullptr, false);
+  auto line = parse_reply(std::string_view(pending_).substr(0, line_end));
+  if (!line) return tl::unexpected{malformed(line.error())};
   pending_.erase(0, line_end + 1);
-  if (!line.is_object()) {
-    return tl::unexpected{ClientFailure{ExitCode::failed, "what answers at " + path_ + " is no softgripd"}};
-  }
-  return std::optional<Json>{std::move(line)};
+  return std::optional<Json>{std::move(*line)};
+}
+
+/// Whatever comes behind it is not to be trusted either.
+ClientFailure DaemonClient::malformed(const std::string& why) {
+  ::shutdown(socket_.get(), SHUT_RDWR);
+  pending_.clear();
+  return {ExitCode::io, "softgripd sent a malformed reply: " + why};
 }
 
 ClientFailure DaemonClient::gone() const {

@@ -51,6 +51,7 @@ class DaemonClient {
       const nlohmann::ordered_json& request, std::chrono::milliseconds patience = longest_answer);
 
   /// The next line that the daemon sends by itself (a watched state); nothing when `patience` ends first.
+  /// Each line has passed parse_reply(). One that does not pass ends the connection (ExitCode::io).
   [[nodiscard]] tl::expected<std::optional<nlohmann::ordered_json>, ClientFailure> next_line(
       std::chrono::milliseconds patience);
 
@@ -62,6 +63,7 @@ class DaemonClient {
       const std::string& path, int flags, std::chrono::milliseconds send_limit);
   DaemonClient(Descriptor socket, std::string path) : socket_(std::move(socket)), path_(std::move(path)) {}
   [[nodiscard]] ClientFailure gone() const;
+  [[nodiscard]] ClientFailure malformed(const std::string& why);
 
   Descriptor socket_;
   std::string path_;

@@ -165,6 +165,8 @@ ExitCode FollowedStart::run(Json request, std::uint64_t newest_event) {
   const auto accepted = DaemonClient::result_of(*line);
   if (!accepted && !refuses_start(*line)) return take_back({0, accepted.error()});
   if (!accepted) return fail(accepted.error().code, accepted.error().message);
+  if (!accepted->contains("request"))
+    return take_back({0, {ExitCode::io, "softgripd sent a malformed reply: `result.request` is missing"}});
   if (const Json warnings = accepted->value("warnings", Json::array()); !warnings.empty())
     std::fprintf(stderr, "softgrip: warning:%s\n", listed(warnings).c_str());
   if (options_.wait) {

@@ -151,8 +151,13 @@ TEST(DaemonClient, MapsRefusalsToExitCodes) {
 }
 
 TEST(DaemonClient, SurvivesADaemonThatTalksNonsenseOrHangsUp) {
-  EXPECT_EQ(answer_to("hello\n").error().code, ExitCode::failed);
-  EXPECT_EQ(answer_to("[1]\n").error().code, ExitCode::failed);
+  for (const char* nonsense : {"hello\n", "[1]\n", "{}\n",
+                               R"({"ok":1})"
+                               "\n"}) {
+    const auto answer = answer_to(nonsense);
+    EXPECT_EQ(answer.error().code, ExitCode::io);
+    EXPECT_TRUE(answer.error().message.starts_with("softgripd sent a malformed reply: ")) << nonsense;
+  }
   EXPECT_EQ(answer_to("{\"ok\"").error().code, ExitCode::io);
   EXPECT_EQ(answer_to("").error().code, ExitCode::io);
 }

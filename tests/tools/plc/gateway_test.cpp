@@ -12,6 +12,8 @@
 #include "base/files.h"
 #include "base/grid.h"
 #include "drivers/modbus_server/listener.h"
+#include "tests/tools/daemon_lines.h"
+#include "tools/client/reply_check.h"
 #include "tools/plc/server.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -339,6 +341,18 @@ TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
   accept();
   gateway_.look_after(now_);
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+}
+
+TEST_F(GatewayTest, NoLineThatPassesTheCheckStopsIt) {
+  daemon_comes();
+  for (const Json& good : tools::testing::good_lines()) {
+    for (const Json& bad : tools::testing::damaged(good)) {
+      const auto parsed = tools::parse_reply(bad.dump());
+      if (parsed) {
+        EXPECT_NO_THROW(gateway_.daemon_said(*parsed, now_)) << bad;
+      }
+    }
+  }
 }
 
 TEST(Server, KnowsWhereAConnectionComesFrom) {

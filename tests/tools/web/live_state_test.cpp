@@ -4,6 +4,10 @@
 
 #include <string>
 
+#include "tests/tools/daemon_lines.h"
+#include "tools/client/reply_check.h"
+#include "tools/web/metrics/daemon_metrics.h"
+
 namespace softgrip::web::live_state_test {
 namespace {
 
@@ -58,6 +62,29 @@ TEST(LiveState, WithoutADaemonNothingOfItIsKnown) {
   EXPECT_EQ(greeting_of(state)["events"].size(), 1U) << "what happened has happened";
   state.lose();
   EXPECT_EQ(state.take_news(), "");
+}
+
+TEST(LiveState, NoLineThatPassesTheCheckStopsItOrTheMetrics) {
+  LiveState state;
+  for (const Json& good : tools::testing::good_lines()) {
+    for (const Json& bad : tools::testing::damaged(good)) {
+      const auto parsed = tools::parse_reply(bad.dump());
+      if (!parsed) continue;
+      if (parsed->contains("watch")) {
+        EXPECT_NO_THROW(state.take_status(parsed->at("watch"))) << bad;
+      }
+      if (parsed->contains("event")) {
+        EXPECT_NO_THROW(state.take_event(parsed->at("event"))) << bad;
+      }
+      if (parsed->contains("result")) {
+        EXPECT_NO_THROW(state.take_statistics(parsed->at("result"))) << bad;
+      }
+      MetricText metrics;
+      EXPECT_NO_THROW(tell_daemon(state.status(), state.statistics(), metrics)) << bad;
+      EXPECT_NO_THROW(static_cast<void>(state.greeting())) << bad;
+      static_cast<void>(state.take_news());
+    }
+  }
 }
 
 }  // namespace

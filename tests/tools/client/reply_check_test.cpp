@@ -1,0 +1,122 @@
+#include "tools/client/reply_check.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/tools/daemon_lines.h"
+#include "tools/client/daemon_client.h"
+#include "tools/client/event_query.h"
+#include "tools/client/event_text.h"
+#include "tools/client/live_view.h"
+#include "tools/client/own_start.h"
+#include "tools/client/sequence_view.h"
+#include "tools/client/status_view.h"
+#include "tools/commissioning/daemon_examination.h"
+
+namespace softgrip::tools::reply_check_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr ViewStyle style{80, false, false};
+
+std::string error_of(const std::string& line) {
+  const auto parsed = parse_reply(line);
+  return parsed ? "accepted" : parsed.error();
+}
+
+/// All that the programs of this room read of a line.
+void read_event(const Json& event) {
+  LiveState state;
+  static_cast<void>(line_of_event(event));
+  static_cast<void>(brief_line_of_event(event));
+  static_cast<void>(wanted({{}, "warning", 1}, event));
+  take_event(state, event);
+  static_cast<void>(screen_of(state, style, 40));
+  static_cast<void>(event.value("kind", "") + event.value("code", ""));
+  static_cast<void>(event.value("request", std::uint64_t{0}));
+}
+
+void read_status(const Json& status) {
+  LiveState state;
+  take_status(state, status);
+  static_cast<void>(screen_of(state, style, 40));
+  static_cast<void>(view_of(status, style));
+  static_cast<void>(line_of_status(status));
+  doctor::Findings findings;
+  doctor::examine_daemon(status, status, "rig", findings);
+}
+
+void read(const Json& line) {
+  if (line.contains("watch")) return read_status(line["watch"]);
+  if (line.contains("event")) return read_event(line["event"]);
+  static_cast<void>(confirms_stop(line));
+  static_cast<void>(refuses_start(line));
+  const auto result = DaemonClient::result_of(line);
+  if (!result) return;
+  read_status(*result);
+  static_cast<void>(result->value("newest", std::uint64_t{0}));
+  static_cast<void>(result->value("request", std::uint64_t{0}));
+  static_cast<void>(sentence_of_acknowledged(*result));
+  static_cast<void>(listed(result->value("warnings", Json::array())));
+  for (const Json& event : result->value("events", Json::array())) read_event(event);
+  static_cast<void>(view_of_sequences(result->value("sequences", Json::array())));
+  static_cast<void>(names_of_sequences(result->value("sequences", Json::array())));
+}
+
+TEST(ReplyCheck, AcceptsWhatTheDaemonSends) {
+  for (const Json& line : testing::good_lines()) {
+    const auto parsed = parse_reply(line.dump());
+    ASSERT_TRUE(parsed) << parsed.error() << "\n" << line;
+    EXPECT_EQ(*parsed, line);
+  }
+  // A newer daemon may say more.
+  EXPECT_TRUE(parse_reply(R"({"id": 1, "ok": true, "more": [], "result": {"more": {"state": 3}}})"));
+}
+
+TEST(ReplyCheck, SaysWhatIsMalformed) {
+  EXPECT_EQ(error_of("{}"), "`ok` is missing");
+  EXPECT_EQ(error_of("[]"), "a line is no JSON object");
+  EXPECT_EQ(error_of(R"({"ok":1})"), "`ok` is of the wrong kind");
+  EXPECT_EQ(error_of(R"({"ok":true})"), "`result` is missing");
+  EXPECT_EQ(error_of(R"({"ok":false,"error":{"code":"busy"}})"), "`error.message` is missing");
+  EXPECT_EQ(error_of(R"({"ok":true,"result":{"events":[{},3]}})"), "`result.events[1]` is of the wrong kind");
+  EXPECT_EQ(error_of(R"({"id":-1,"ok":true,"result":{}})"), "`id` is of the wrong kind");
+  EXPECT_EQ(error_of(R"({"watch":{}})"), "`watch.state` is missing");
+  EXPECT_EQ(error_of(""), "a line is no JSON in UTF-8");
+  EXPECT_EQ(error_of("{\"ok\":true,\"result\":{\"a\":\"\xff\xfe\"}}"), "a line is no JSON in UTF-8");
+  EXPECT_EQ(error_of(R"({"ok":true,"result":{"request":1e999}})"), "a line is no JSON in UTF-8");
+}
+
+TEST(ReplyCheck, RefusesWhatNestsTooDeepBeforeItIsParsed) {
+  const auto nested = [](std::size_t depth) {
+    return R"({"ok":true,"result":{"a":)" + std::string(depth, '[') + std::string(depth, ']') + "}}";
+  };
+  EXPECT_TRUE(parse_reply(nested(30)));
+  EXPECT_EQ(error_of(nested(31)), "a line nests deeper than 32 levels");
+  EXPECT_EQ(error_of(std::string(8'000'000, '[')), "a line nests deeper than 32 levels");
+  const std::string brackets(100, '[');
+  EXPECT_TRUE(parse_reply(R"({"ok":true,"result":{"a":"\"\\)" + brackets + R"("}})")) << "they are text";
+}
+
+/// Every place of every kind of line, with every other kind of value: refused, or nobody minds.
+TEST(ReplyCheck, WhatPassesBreaksNoReader) {
+  std::size_t refused = 0;
+  std::size_t passed = 0;
+  for (const Json& good : testing::good_lines()) {
+    for (const Json& bad : testing::damaged(good)) {
+      const auto parsed = parse_reply(bad.dump());
+      ++(parsed ? passed : refused);
+      if (parsed) {
+        EXPECT_NO_THROW(read(*parsed)) << bad;
+      }
+    }
+  }
+  EXPECT_GT(refused, 1000U);
+  EXPECT_GT(passed, 500U);
+}
+
+}  // namespace
+}  // namespace softgrip::tools::reply_check_test
