@@ -12,7 +12,7 @@
 #include "sysid/fitting/minimise.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
-#include "sysid/logs/strided_record.h"
+#include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -13,12 +13,6 @@
 namespace softgrip::sysid {
 namespace {
 
-/// Durations on a grid of a picosecond: what differs by less is rounding of the written times, and equal
-/// durations share their coefficients.
-double on_grid(double duration_s) {
-  return std::round(duration_s * 1e12) * 1e-12;
-}
-
 void fill_missing(std::vector<double>& values) {
   std::size_t last = values.size();  // the last one that is there
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -52,10 +46,10 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
   for (auto* column : {&record.drive_kpa, &record.temperature_c, &record.supply_kpa}) fill_missing(*column);
   record.duration_s.resize(record.size());
   for (std::size_t i = 1; i < record.size(); ++i)
-    record.duration_s[i] = on_grid(log.time_s[i] - log.time_s[i - 1]);
+    record.duration_s[i] = step_duration_s(log.time_s[i] - log.time_s[i - 1]);
   record.finest_interval_s = record.mean_interval_s();
   const Sampling sampling = sampling_of(log);
-  const double nominal = on_grid(sampling.median_interval_s);
+  const double nominal = step_duration_s(sampling.median_interval_s);
   const double worst =
       std::max(sampling.longest_interval_s - nominal, nominal - sampling.shortest_interval_s);
   if (worst < 1e-9 * nominal + 2e-12) record.sample_time_s = nominal;
@@ -91,23 +85,8 @@ std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptio
   return records;
 }
 
-Record thinned_record(const Record& record, std::span<const std::size_t> kept) {
-  Record thin = record;
-  // A held command is that of the step's begin: the thinned step takes the first of its steps for all.
-  for (auto* column :
-       {&thin.time_s, &thin.drive_kpa, &thin.reading_mm, &thin.temperature_c, &thin.supply_kpa}) {
-    if (column->empty()) continue;
-    for (std::size_t to = 0; to < kept.size(); ++to) (*column)[to] = (*column)[kept[to]];
-    column->resize(kept.size());
-  }
-  thin.duration_s.assign(kept.size(), 0);
-  thin.sample_time_s = 0;
-  thin.readings = 0;
-  for (std::size_t i = 0; i < thin.size(); ++i) {
-    if (i > 0) thin.duration_s[i] = on_grid(thin.time_s[i] - thin.time_s[i - 1]);
-    if (std::isfinite(thin.reading_mm[i])) ++thin.readings;
-  }
-  return thin;
+double step_duration_s(double duration_s) {
+  return std::round(duration_s * 1e12) * 1e-12;
 }
 
 double fast_noise_mm(const Record& record) {

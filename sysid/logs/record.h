@@ -2,7 +2,6 @@
 // A log as a fit sees it: steps with durations, the pressure that drives the model, readings, surroundings.
 
 #include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -81,9 +80,9 @@ struct Record {
 /// Drive::measured every log must have a pressure_kpa column.
 [[nodiscard]] std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options);
 
-/// The samples at `kept` (ascending, the first is 0), with durations between them; of irregular sampling
-/// where nothing else is said.
-[[nodiscard]] Record thinned_record(const Record& record, std::span<const std::size_t> kept);
+/// A step's duration without the rounding of written times: differences below a picosecond go, so that equal
+/// durations share their coefficients.
+[[nodiscard]] double step_duration_s(double duration_s);
 
 /// The readings' noise, from second differences of neighbours (robust; white noise assumed) [mm].
 [[nodiscard]] double fast_noise_mm(const Record& record);

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "model/envelope_map.h"
 #include "sysid/fitting/score.h"
+#include "sysid/logs/resampled_record.h"
 #include "sysid/structure/structure_columns.h"
 #include "sysid/structure/structure_projection.h"
 
@@ -243,23 +244,6 @@ class Search {
   std::vector<Coordinate> coordinates_;
   StructureColumns columns_;
 };
-
-/// Readings for a search: every k-th; the pressure is walked through all samples.
-std::vector<Record> with_fewer_readings(std::vector<Record> records, std::size_t most) {
-  std::size_t readings = 0;
-  for (const Record& record : records) readings += record.readings;
-  const std::size_t stride = (readings + most - 1) / std::max<std::size_t>(most, 1);
-  if (stride <= 1) return records;
-  for (Record& record : records) {
-    std::size_t seen = 0;
-    for (double& y : record.reading_mm) {
-      if (!std::isfinite(y)) continue;
-      if (seen++ % stride != 0) y = std::numeric_limits<double>::quiet_NaN();
-    }
-    record.readings = (seen + stride - 1) / stride;
-  }
-  return records;
-}
 
 std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, const StructureGrid& grid) {
   std::vector<double> peaks;

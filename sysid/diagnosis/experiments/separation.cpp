@@ -9,7 +9,7 @@
 #include "sysid/fitting/jacobian.h"
 #include "sysid/fitting/residuals.h"
 #include "sysid/fitting/trajectory.h"
-#include "sysid/logs/strided_record.h"
+#include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {

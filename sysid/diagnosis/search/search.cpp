@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "model/catalogue.h"
 #include "sysid/diagnosis/search/scan.h"
-#include "sysid/logs/strided_record.h"
+#include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "base/numbers.h"
 
-#include "sysid/logs/strided_record.h"
+#include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 

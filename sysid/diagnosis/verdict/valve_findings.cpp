@@ -28,6 +28,7 @@
 #include "sysid/diagnosis/verdict/lost_pressure.h"
 #include "sysid/diagnosis/verdict/measured_valve.h"
 #include "sysid/logs/input_smoothing.h"
+#include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -90,21 +91,6 @@ PartName leak_name() {
           causes::Leak::id,
           [] { return model::block_type<model::Leak>(); },
           {{"share", "", &ValveStage::leak_share}}};
-}
-
-std::vector<double> strided(const std::vector<double>& values, std::size_t stride) {
-  std::vector<double> kept;
-  for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
-  return kept;
-}
-
-Log strided(const Log& log, std::size_t stride) {
-  Log kept = log;
-  for (std::vector<double> Log::*column : {&Log::time_s, &Log::pressure_command_kpa, &Log::displacement_mm,
-                                           &Log::pressure_kpa, &Log::supply_kpa}) {
-    kept.*column = strided(log.*column, stride);
-  }
-  return kept;
 }
 
 double range_of(const std::vector<Log>& logs, std::vector<double> Log::*column) {
@@ -327,7 +313,7 @@ std::optional<ValveFindings> find_in_valve(const std::vector<Log>& logs, const V
   const std::size_t stride = 1 + samples / most_samples;
   std::vector<Log> measured;
   for (const Log& log : logs) {
-    measured.push_back(strided(log, stride));
+    measured.push_back(thinned_log(log, stride));
     if (!log.supply_kpa.empty()) (void)smooth_input(measured.back().time_s, measured.back().supply_kpa);
   }
   const ThreadBudget budget(question.threads);

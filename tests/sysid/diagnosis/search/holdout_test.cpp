@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sysid/diagnosis/search/search.h"
-#include "sysid/logs/strided_record.h"
+#include "sysid/logs/resampled_record.h"
 #include "tests/sysid/simulated.h"
 
 namespace softgrip::sysid::holdout_test {

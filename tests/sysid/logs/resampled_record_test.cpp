@@ -1,4 +1,4 @@
-#include "sysid/logs/strided_record.h"
+#include "sysid/logs/resampled_record.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,9 @@
 #include <random>
 #include <vector>
 
-namespace softgrip::sysid::strided_record_test {
+#include "sysid/logs/centred_record.h"
+
+namespace softgrip::sysid::resampled_record_test {
 namespace {
 
 /// A parabola in time at 1 kHz, 4 s, with noise.
@@ -126,5 +128,91 @@ TEST(StridedRecord, LeavesOutReadingsButTellsMotionsApartLikeTheLog) {
   EXPECT_NEAR(averaged_to(parabola(0), 0.02).finest_interval_s, 0.02, 1e-12) << "a mean blurs what is faster";
 }
 
+/// A ramp at 1 kHz, 4 s.
+Record ramp() {
+  Record record;
+  for (int i = 0; i <= 4000; ++i) {
+    record.time_s.push_back(1e-3 * i);
+    record.duration_s.push_back(i == 0 ? 0 : 1e-3);
+    record.drive_kpa.push_back(1e-2 * i);
+    record.reading_mm.push_back(2e-3 * i);
+    record.temperature_c.push_back(20 + 1e-3 * i);
+  }
+  record.sample_time_s = 1e-3;
+  record.finest_interval_s = 1e-3;
+  record.readings = record.size();
+  return record;
+}
+
+TEST(CentredRecord, KeepsTheFirstSampleAndTheMiddleOfEveryInterval) {
+  const Record thin = thinned_to_centres(ramp(), 0.011);
+  ASSERT_GE(thin.size(), 364U);
+  EXPECT_EQ(thin.time_s[0], 0);
+  EXPECT_EQ(thin.sample_time_s, 0) << "the first step is another one";
+  EXPECT_NEAR(thin.finest_interval_s, 0.011, 1e-4) << "a sample stands for those around it";
+  for (std::size_t i = 1; i + 1 < thin.size(); ++i) {
+    EXPECT_NEAR(thin.time_s[i], 0.011 * (static_cast<double>(i) - 0.5), 0.51e-3);
+    EXPECT_NEAR(thin.duration_s[i], thin.time_s[i] - thin.time_s[i - 1], 1e-9);
+    EXPECT_NEAR(thin.drive_kpa[i], 10 * thin.time_s[i], 1e-9);
+    EXPECT_NEAR(thin.reading_mm[i], 2 * thin.time_s[i], 1e-9);
+    EXPECT_NEAR(thin.temperature_c[i], 20 + thin.time_s[i], 1e-9);
+  }
+  EXPECT_EQ(thin.duration_s[5], thin.duration_s[6]) << "equal steps share their coefficients";
+  EXPECT_TRUE(thin.supply_kpa.empty());
+}
+
+TEST(CentredRecord, CountsTheReadingsThatAreLeft) {
+  Record record = ramp();
+  for (std::size_t i = 1000; i < 3000; ++i) record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+  const Record thin = thinned_to_centres(record, 0.02);
+  EXPECT_NEAR(static_cast<double>(thin.readings), 0.5 * static_cast<double>(thin.size()), 2);
+}
+
+TEST(CentredRecord, WhatIsCoarserAlreadyStaysAsItIs) {
+  const Record same = thinned_to_centres(ramp(), 0.5e-3);
+  EXPECT_EQ(same.time_s, ramp().time_s);
+  EXPECT_EQ(same.sample_time_s, 1e-3);
+}
+
+Log three_samples() {
+  Log log;
+  log.name = "log";
+  log.time_s = {0, 1, 3};
+  log.pressure_command_kpa = {0, 10, 30};
+  log.displacement_mm = {0, 1, 3};
+  return log;
+}
+
+TEST(FinerRecord, GoesStraightBetweenSamplesAndKnowsNoReadingThere) {
+  const Record record = make_records({three_samples()}, {}).front();
+  const Record fine = finer_record(record, 2);
+  ASSERT_EQ(fine.size(), 5U);
+  EXPECT_EQ(fine.time_s, (std::vector<double>{0, 0.5, 1, 2, 3}));
+  EXPECT_EQ(fine.duration_s, (std::vector<double>{0, 0.5, 0.5, 1, 1}));
+  EXPECT_EQ(fine.drive_kpa, (std::vector<double>{0, 5, 10, 20, 30}));
+  EXPECT_TRUE(std::isnan(fine.reading_mm[1]));
+  EXPECT_EQ(fine.reading_mm[2], record.reading_mm[1]);
+  EXPECT_EQ(finer_record(record, 1).time_s, record.time_s);
+}
+
+TEST(FinerRecord, AHeldDriveStaysWhereItWas) {
+  const Record fine = finer_record(make_records({three_samples()}, {.held = true}).front(), 2);
+  EXPECT_EQ(fine.drive_kpa, (std::vector<double>{0, 0, 10, 10, 30}));
+}
+
+TEST(FewerReadings, LeavesEveryKthAndAllSamples) {
+  Record record = ramp();
+  record.reading_mm[3] = std::numeric_limits<double>::quiet_NaN();
+  --record.readings;
+  const Record few = with_fewer_readings({record}, 1000).front();
+  EXPECT_EQ(few.time_s, record.time_s);
+  EXPECT_EQ(few.readings, 1000U);
+  const auto left =
+      std::count_if(few.reading_mm.begin(), few.reading_mm.end(), [](double y) { return std::isfinite(y); });
+  EXPECT_EQ(left, 1000);
+  EXPECT_EQ(few.reading_mm[0], record.reading_mm[0]);
+  EXPECT_EQ(with_fewer_readings({record}, 4000).front().readings, 4000U) << "nothing has to be left out";
+}
+
 }  // namespace
-}  // namespace softgrip::sysid::strided_record_test
+}  // namespace softgrip::sysid::resampled_record_test
