@@ -17,6 +17,7 @@
 #include "sysid/identification/estimates.h"
 #include "sysid/identification/profile.h"
 #include "sysid/identification/start_points.h"
+#include "sysid/logs/division.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -25,16 +26,6 @@ using Failure = tl::unexpected<std::string>;
 
 /// A search that ends within this of the best RMSE has reached it.
 constexpr double reached_share = 1e-3;
-
-/// Hides the readings after the fitted share of a record.
-void hold_out(Record& record, double fit_share) {
-  const auto last = static_cast<std::size_t>(fit_share * static_cast<double>(record.size()));
-  record.readings = 0;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (i >= last) record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-    if (std::isfinite(record.reading_mm[i])) ++record.readings;
-  }
-}
 
 /// Which values of the model are free, by flat index.
 struct FreeIndices {
@@ -222,9 +213,7 @@ tl::expected<Identification, std::string> identify(std::vector<Record> records, 
                                                    const IdentifyOptions& options) {
   const auto began = std::chrono::steady_clock::now();
   const std::vector<Record> whole = records;
-  if (options.fit_share < 1) {
-    for (Record& record : records) hold_out(record, options.fit_share);
-  }
+  if (options.fit_share < 1) records = with_first_readings(std::move(records), options.fit_share);
   const model::Model fitted_part = deterministic_part(start, options.record.drive);
   if (const auto wrong = model::validate(fitted_part); !wrong.empty()) return Failure(wrong.front());
 

@@ -10,6 +10,7 @@
 #include "sysid/fitting/residuals.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/identification/estimates.h"
+#include "sysid/logs/division.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_model.h"
 #include "sysid/structure/valve_stage.h"
@@ -22,17 +23,6 @@ using Failure = tl::unexpected<std::string>;
 /// A search that ends within this of the best RMSE has reached it.
 constexpr double reached_share = 1e-3;
 constexpr std::size_t fewest_readings = 100;
-
-std::vector<Record> fitted_part(std::vector<Record> records, double share) {
-  for (Record& record : records) {
-    const auto last = static_cast<std::size_t>(share * static_cast<double>(record.size()));
-    for (std::size_t i = last; i < record.size(); ++i)
-      record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-    record.readings = static_cast<std::size_t>(std::count_if(
-        record.reading_mm.begin(), record.reading_mm.end(), [](double y) { return std::isfinite(y); }));
-  }
-  return records;
-}
 
 StructureEvidence evidence_of(const StructureChoice& choice, const std::vector<WithoutIngredient>& ablation) {
   StructureEvidence evidence;
@@ -140,7 +130,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
 
   const std::vector<Record> whole = make_records(logs, record);
   Identification result;
-  result.records = fitted_part(whole, options.fit_share);
+  result.records = with_first_readings(whole, options.fit_share);
   std::size_t readings = 0;
   for (const Record& each : result.records) readings += each.readings;
   if (readings < fewest_readings)

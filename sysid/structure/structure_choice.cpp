@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "sysid/fitting/held_out.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/identification/identify.h"
-#include "sysid/structure/held_out_blocks.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_fit.h"
 #include "sysid/structure/structure_model.h"
@@ -38,12 +38,15 @@ class Judge {
  public:
   Judge(const std::vector<Record>& records, const StructureChoiceOptions& options,
         RungsBetween rungs = RungsBetween::no)
-      : records_(records), options_(options), grid_(grid_for(records)), blocks_(records) {
+      : records_(records),
+        options_(options),
+        grid_(grid_for(records)),
+        division_(divide_into_fifths(records)) {
     if (options.slow_from_s > 0) grid_.slow_from_s = options.slow_from_s;
     if (rungs == RungsBetween::yes) grid_.ladder_s = with_rungs_between(grid_.ladder_s);
   }
 
-  [[nodiscard]] std::size_t blocks() const { return blocks_.count(); }
+  [[nodiscard]] std::size_t blocks() const { return division_.blocks.size(); }
 
   [[nodiscard]] FittedStructure fit(const BaseStructure& structure, double ridge,
                                     const NonlinearNumbers* near = nullptr) const {
@@ -78,12 +81,10 @@ class Judge {
     trial.start_rmse_mm = whole.start_rmse_mm;
     StructureFitOptions options = with(ridge);
     options.most_iterations = iterations;
-    parallel_for_idle(HeldOutBlocks::folds, [&](std::size_t fold) {
-      const std::vector<Record>& fitted = blocks_.without(fold);
-      const FittedStructure fit = fit_form(fitted, trial.structure, grid_, options, &whole.numbers);
-      blocks_.judge(point_of(fit, fitted, options_.drive), fold, trial.block_losses_mm2);
+    judge_held_out(trial, [&](const std::vector<Record>& rest) {
+      const FittedStructure fit = fit_form(rest, trial.structure, grid_, options, &whole.numbers);
+      return point_of(fit, rest, options_.drive);
     });
-    trial.heldout_rmse_mm = held_out_rmse_mm(trial.block_losses_mm2);
     return trial;
   }
 
@@ -97,8 +98,12 @@ class Judge {
   [[nodiscard]] StructureTrial trial_of(const BaseStructure& structure) const {
     StructureTrial trial;
     trial.structure = structure;
-    trial.block_losses_mm2.assign(blocks_.count(), 0);
     return trial;
+  }
+
+  void judge_held_out(StructureTrial& trial, const Refit& refit) const {
+    trial.block_losses_mm2 = held_out_losses(records_, division_, refit);
+    trial.heldout_rmse_mm = sysid::rmse_mm(trial.block_losses_mm2);
   }
 
   [[nodiscard]] StructureTrial judge_published(const BaseStructure& structure) const {
@@ -109,17 +114,15 @@ class Judge {
     trial.converged = found.converged;
     trial.invertible = rises_everywhere(trial.point.model);
     trial.start_rmse_mm = std::move(found.start_rmse_mm);
-    parallel_for_idle(HeldOutBlocks::folds, [&](std::size_t fold) {
-      blocks_.judge(refit_published(blocks_.without(fold), trial.point), fold, trial.block_losses_mm2);
-    });
-    trial.heldout_rmse_mm = held_out_rmse_mm(trial.block_losses_mm2);
+    judge_held_out(trial,
+                   [&](const std::vector<Record>& rest) { return refit_published(rest, trial.point); });
     return trial;
   }
 
   const std::vector<Record>& records_;
   const StructureChoiceOptions& options_;
   StructureGrid grid_;
-  HeldOutBlocks blocks_;
+  Division division_;
 };
 
 /// The simplest first.

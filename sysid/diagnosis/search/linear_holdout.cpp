@@ -33,12 +33,8 @@ std::vector<BlockRows> rows_of(const std::vector<Record>& records, const Divisio
   }
   std::vector<BlockRows> rows;
   for (const Block& block : division.blocks) {
-    const std::vector<double>& t = records[block.record].time_s;
-    std::size_t from = block.first, to = block.last;
-    while (from > 0 && t[from - 1] >= t[block.first] - division.gap_s) --from;
-    while (to < t.size() && t[to] <= t[block.last - 1] + division.gap_s) ++to;
     const std::vector<Eigen::Index>& at = before[block.record];
-    rows.push_back({at[block.first], at[block.last], at[from], at[to]});
+    rows.push_back({at[block.first], at[block.last], at[block.hidden_first], at[block.hidden_last]});
   }
   return rows;
 }

@@ -11,9 +11,9 @@
 #include "sysid/diagnosis/search/linear_selection.h"
 #include "sysid/diagnosis/verdict/base_ingredients.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/fitting/held_out.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/identification/combinations.h"
-#include "sysid/structure/held_out_blocks.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_choice.h"
 #include "sysid/structure/structure_fit.h"
@@ -39,10 +39,12 @@ constexpr std::size_t published_starts = 6;
 bool foretells_better(const std::vector<Record>& records, const StructureTrial& chosen, const FitPoint& given,
                       Drive drive) {
   if (beta_over_gain(given.model) > 1) return true;
-  const HeldOutContinuation halves(records);
-  const double before_mm = rmse_mm(halves.judge(fit_structure(halves.first_half(), {}, given).point));
-  const double with_mm = rmse_mm(halves.judge(fit_again(chosen, halves.first_half(), drive)));
-  return with_mm < worth_having * before_mm;
+  const Division halves = divide_into_halves(records);
+  const BlockLosses before = held_out_losses(
+      records, halves, [&](const std::vector<Record>& rest) { return fit_structure(rest, {}, given).point; });
+  const BlockLosses with = held_out_losses(
+      records, halves, [&](const std::vector<Record>& rest) { return fit_again(chosen, rest, drive); });
+  return rmse_mm(with) < worth_having * rmse_mm(before);
 }
 
 double slowest_branch_s(const model::Model& model) {
