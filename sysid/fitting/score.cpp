@@ -64,6 +64,7 @@ Score score_of(const model::Model& model, const Record& record, const StartState
                const std::vector<double>& readings) {
   Score score;
   score.name = record.name;
+  score.drive = record.drive;
   score.start = start;
   score.prediction_mm = predict(model, record, start);
   score.error_mm.resize(record.size());

@@ -93,17 +93,18 @@ std::string or_dash(double value, int digits) {
 
 Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores) {
   Table table;
-  table.header = {"log",         "samples",      "span [mm]",         "RMSE [mm]", "RMSE [% of span]",
+  table.header = {"log",         "driven by",    "samples",
+                  "span [mm]",   "RMSE [mm]",    "RMSE [% of span]",
                   "first cycle", "settled [mm]", "largest error [mm]"};
-  table.numeric = {false, true, true, true, true, true, true, true};
+  table.numeric = {false, false, true, true, true, true, true, true, true};
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const Score& s = scores[i];
     std::size_t samples = 0;
     for (const double e : s.error_mm) {
       if (std::isfinite(e)) ++samples;
     }
-    table.rows.push_back({s.name, std::to_string(samples), or_dash(records[i].span_mm), or_dash(s.rmse_mm),
-                          or_dash(s.rmse_percent_of_span), or_dash(s.first_cycle_rmse_mm),
+    table.rows.push_back({s.name, name_of(s.drive), std::to_string(samples), or_dash(records[i].span_mm),
+                          or_dash(s.rmse_mm), or_dash(s.rmse_percent_of_span), or_dash(s.first_cycle_rmse_mm),
                           or_dash(s.settled_rmse_mm), or_dash(s.largest_error_mm)});
   }
   return table;

@@ -30,9 +30,10 @@ namespace softgrip::sysid {
   return json;
 }
 
-/// Adds rmse_mm, rmse_percent_of_span and the rest, each an object by log.
+/// Adds drive, rmse_mm, rmse_percent_of_span and the rest, each an object by log.
 inline void add_scores(nlohmann::ordered_json& json, const std::vector<Score>& scores) {
   for (const Score& s : scores) {
+    json["drive"][s.name] = name_of(s.drive);
     json["rmse_mm"][s.name] = number_or_null(s.rmse_mm);
     json["rmse_percent_of_span"][s.name] = number_or_null(s.rmse_percent_of_span);
     json["first_cycle_rmse_mm"][s.name] = number_or_null(s.first_cycle_rmse_mm);

@@ -31,6 +31,7 @@ void fill_missing(std::vector<double>& values) {
 Record make_record(const Log& log, const RecordOptions& options, double campaign_time_s) {
   Record record;
   record.name = log.name;
+  record.drive = options.drive;
   record.time_s = log.time_s;
   record.drive_kpa = options.drive == Drive::measured ? log.pressure_kpa : log.pressure_command_kpa;
   record.reading_mm = log.displacement_mm;
@@ -71,6 +72,10 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
 }
 
 }  // namespace
+
+std::string name_of(Drive drive) {
+  return drive == Drive::measured ? "measured pressure" : "command";
+}
 
 std::vector<Record> make_records(const std::vector<Log>& logs, const RecordOptions& options) {
   std::vector<Record> records;

@@ -16,6 +16,9 @@ enum class Drive {
   measured,  ///< pressure_kpa, past the blocks of the valve: what the regulator did is known, not modelled
 };
 
+/// "command" or "measured pressure", as scores say it.
+[[nodiscard]] std::string name_of(Drive drive);
+
 /// What is known about the state in which a log begins.
 enum class Start {
   automatic,  ///< rest if the first pressure is next to nothing, otherwise unknown
@@ -46,6 +49,7 @@ struct StartState {
 /// One log, prepared. All vectors have the same length, but for temperature and supply, which may be empty.
 struct Record {
   std::string name;
+  Drive drive = Drive::command;  ///< which column drive_kpa is
   std::vector<double> time_s;
   std::vector<double> duration_s;  ///< of the step that ends at a sample; the first is 0
   std::vector<double> drive_kpa;

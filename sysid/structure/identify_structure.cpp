@@ -91,9 +91,12 @@ void join_valve(const std::vector<Log>& logs, const IdentifyOptions& options, Id
   RecordOptions measured = options.record;
   measured.drive = Drive::measured;
   const std::vector<Record> records = make_records(driven, measured);
-  for (std::size_t k = 0; k < records.size(); ++k)
+  for (std::size_t k = 0; k < records.size(); ++k) {
     valve.from_command.push_back(
         score_of(result.fitted, records[k], result.scores[k].start, logs[k].displacement_mm));
+    // The pressure of these records is computed from the command.
+    valve.from_command.back().drive = Drive::command;
+  }
   result.model = with_valve(result.fitted, stage);
   if (stage.is_far_off()) {
     result.warnings.push_back("the valve is no dead time with a lag: between command and measured pressure " +

@@ -99,9 +99,9 @@ void print_scores(const char* title, const std::vector<sysid::Score>& scores) {
   if (scores.empty()) return;
   std::printf("%s\n", title);
   for (const sysid::Score& s : scores) {
-    std::printf("  %-24s RMSE %8s mm  %6s %% of span  largest %8s mm\n", s.name.c_str(),
+    std::printf("  %-24s RMSE %8s mm  %6s %% of span  largest %8s mm  driven by the %s\n", s.name.c_str(),
                 significant(s.rmse_mm, 4).c_str(), significant(s.rmse_percent_of_span, 3).c_str(),
-                significant(s.largest_error_mm, 3).c_str());
+                significant(s.largest_error_mm, 3).c_str(), name_of(s.drive).c_str());
   }
 }
 

@@ -44,6 +44,7 @@ std::string summary_line(const sysid::Validation& v, const sysid::Score& s) {
   line += std::isfinite(s.settled_rmse_mm) ? "first cycle " + significant(s.first_cycle_rmse_mm) +
                                                  " mm, settled " + significant(s.settled_rmse_mm) + " mm"
                                            : "the command does not repeat";
+  line += "; driven by the " + name_of(s.drive);
   if (!is_acceptable(v, s)) line += "; FAILED: above " + significant(*v.at_most_percent) + " %";
   return line;
 }

@@ -48,6 +48,28 @@ TEST_F(Command, IdentifyWritesModelJsonAndReport) {
   EXPECT_EQ(run("validate --model result/model.yaml --data sp1.csv --at-most-percent 0.01"), 6);
 }
 
+TEST_F(Command, EveryScoreSaysWhatDrivesTheModel) {
+  Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
+  log.pressure_kpa = log.pressure_command_kpa;
+  write("tp1.csv", format_log(log));
+  write("sp1.csv", format_log(log));
+  write("model.yaml", model::to_yaml(loaded("zhang2025")));
+  for (const auto& [option, drive] :
+       {std::pair{"command", "command"}, std::pair{"measured", "measured pressure"}}) {
+    const std::string begin =
+        std::string("identify --starts 1 --start model.yaml --fit-share 0.8 --drive ") + option;
+    ASSERT_EQ(run(begin + " --data tp1.csv --validate sp1.csv --out result"), 0) << read("err.txt");
+    const auto json = nlohmann::json::parse(read("result/identify.json"));
+    EXPECT_EQ(json["drive"]["tp1"], drive);
+    EXPECT_EQ(json["held_out"]["drive"]["tp1"], drive);
+    EXPECT_EQ(json["validation"]["drive"]["sp1"], drive);
+    EXPECT_NE(read("out.txt").find(std::string("driven by the ") + drive), std::string::npos)
+        << read("out.txt");
+    ASSERT_EQ(run(std::string("validate --model model.yaml --data sp1.csv --json --drive ") + option), 0);
+    EXPECT_EQ(nlohmann::json::parse(read("out.txt"))["drive"]["sp1"], drive);
+  }
+}
+
 TEST_F(Command, ValidateFailsPerLogOnScreenInJsonAndByItsCode) {
   write_log("tp1.csv", model::SignalName::tp1);
   write_log("hold.csv", model::SignalName::hold);

@@ -307,6 +307,8 @@ TEST(IdentifyStructure, HasTwoStagesWhereThePressureWasMeasured) {
   EXPECT_NEAR(found->structure->valve->venting_time_constant_s, 0.2, 0.01);
   EXPECT_NEAR(found->structure->valve->rmse_kpa, 0.3, 0.03);
   EXPECT_LT(found->rmse_mm, 2 * 0.03) << "0.3 kPa of noise on the input must not turn its hysteresis";
+  EXPECT_EQ(found->scores.front().drive, Drive::measured);
+  EXPECT_EQ(found->structure->valve->from_command.front().drive, Drive::command);
   EXPECT_TRUE(model::validate(found->model).empty());
 }
 
