@@ -125,7 +125,7 @@ class ChainResiduals final : public Residuals {
     }
     const Record& record = records_[k];
     std::size_t row = first_row_[k];
-    walk<Number>(point.model, values, record, peak, [&](std::size_t i, const Number& y) {
+    walk<Number>(point.model, values, record, peak, point.starts[k], [&](std::size_t i, const Number& y) {
       if (!std::isfinite(record.reading_mm[i])) return;
       if (part.values) r[row] = y.a - record.reading_mm[i];
       double* const line = &jacobian[row * space_.size()];

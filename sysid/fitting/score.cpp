@@ -5,7 +5,6 @@
 #include <limits>
 #include <span>
 
-#include "sysid/fitting/minimise.h"
 #include "sysid/fitting/trajectory.h"
 
 namespace softgrip::sysid {
@@ -81,14 +80,6 @@ Score score_of(const model::Model& model, const Record& record, const StartState
   score.first_cycle_rmse_mm = cycles.size() > 1 ? rms(errors.first(cycles[1])) : none;
   score.settled_rmse_mm = cycles.size() > 1 ? rms(errors.subspan(cycles[1])) : none;
   return score;
-}
-
-std::vector<StartState> estimate_starts(const model::Model& model, const std::vector<Record>& records) {
-  const FitSpace space(model, records, {});
-  FitPoint point{model, rest_starts(model, records)};
-  if (space.size() == 0) return point.starts;
-  const auto residuals = residuals_for(records, space);
-  return space.point(minimise(*residuals, space.z(point)).z).starts;
 }
 
 }  // namespace softgrip::sysid

@@ -34,9 +34,4 @@ struct Score {
 /// excursions from rest that repeats; a command that never repeats has one excursion per cycle.
 [[nodiscard]] std::vector<std::size_t> cycle_starts(const Record& record);
 
-/// What the model leaves open about how records begin (offset, hysteresis, unsettled creep), estimated with
-/// the model kept as it is.
-[[nodiscard]] std::vector<StartState> estimate_starts(const model::Model& model,
-                                                      const std::vector<Record>& records);
-
 }  // namespace softgrip::sysid

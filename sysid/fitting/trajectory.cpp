@@ -25,7 +25,8 @@ void add_start(const model::Model& model, const Record& record, const StartState
 
 std::vector<double> predict(const model::Model& model, const Record& record, const StartState& start) {
   std::vector<double> prediction(record.size());
-  walk<double>(model, {}, record, start.peak_before_kpa, [&](std::size_t i, double y) { prediction[i] = y; });
+  walk<double>(model, {}, record, start.peak_before_kpa, start,
+               [&](std::size_t i, double y) { prediction[i] = y; });
   add_start(model, record, start, prediction);
   return prediction;
 }

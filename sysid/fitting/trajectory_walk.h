@@ -1,6 +1,7 @@
 #pragma once
 // The walk of a record through a Chain<T>; included where a T is chosen (double, automatic differentiation).
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -14,21 +15,45 @@ namespace softgrip::sysid {
 inline constexpr double valve_settling_s = 10;
 inline constexpr double creep_settling_s = 1e6;
 
-/// Brings a chain to where a record begins: at rest at its first pressure or, where the pressure was higher
-/// before, at rest there and then released.
+/// A pressure that arrives at the first sample has moved at that speed for so long, at most.
+inline constexpr double longest_arrival_s = 2;
+
+/// Where a pressure that arrives at the first sample was before, no farther away than its last turn; without
+/// an arrival the first pressure.
+inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double arrival_kpa_per_s) {
+  const double from_kpa = first_kpa - arrival_kpa_per_s * longest_arrival_s;
+  return arrival_kpa_per_s > 0 ? std::clamp(from_kpa, std::min(last_turn_kpa, first_kpa), first_kpa)
+                               : std::clamp(from_kpa, first_kpa, std::max(last_turn_kpa, first_kpa));
+}
+
+/// Brings a chain to where a record begins, by the turns that its StartState names: at rest at the peak, then
+/// to the valley, then to the first pressure, where all settles or which it reaches at the speed of the
+/// arrival. Without turns at rest at the first pressure.
 template <class T>
-void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa) {
-  const T first(record.drive_kpa.front());
+void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa, const StartState& state) {
+  const double first_kpa = record.drive_kpa.front();
+  const double valley_kpa = state.valley_before_kpa;
+  const bool peaked = model::value_of(peak_before_kpa) > first_kpa, turned = valley_kpa < first_kpa;
   // What remembers the largest load so far has seen that of the earlier records.
   chain.reset(T(record.largest_before_kpa));
-  if (!record.start_unknown || !(model::value_of(peak_before_kpa) > record.drive_kpa.front())) {
-    chain.rest(first);
-    return;
-  }
-  chain.rest(peak_before_kpa);
-  chain.step(T(0.0), first);
-  chain.step(T(valve_settling_s), first);
-  chain.step(T(creep_settling_s), first);
+  chain.rest(peaked ? peak_before_kpa : T(turned ? valley_kpa : first_kpa));
+  if (!peaked && !turned) return;
+  const auto settle_at = [&](double pressure_kpa) {
+    chain.step(T(0.0), T(pressure_kpa));
+    chain.step(T(valve_settling_s), T(pressure_kpa));
+  };
+  if (peaked && turned) settle_at(valley_kpa);
+  const double last_turn_kpa = turned ? valley_kpa : model::value_of(peak_before_kpa);
+  const double from_kpa = arrived_from_kpa(first_kpa, last_turn_kpa, state.arrival_kpa_per_s);
+  settle_at(from_kpa);
+  chain.step(T(creep_settling_s), T(from_kpa));
+  if (from_kpa != first_kpa) chain.step(T((first_kpa - from_kpa) / state.arrival_kpa_per_s), T(first_kpa));
+}
+
+/// The same without a valley and an arrival; a record that begins at rest has no peak before it either.
+template <class T>
+void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa) {
+  start(chain, record, record.start_unknown ? peak_before_kpa : T(record.drive_kpa.front()), StartState{});
 }
 
 /// What surrounds the rig at the end of sample `i`; without a column the usual.
@@ -48,9 +73,9 @@ inline double drive_at_end(const Record& record, std::size_t i) {
 /// Calls sink(i, displacement) for every sample. The displacement lacks the offset and the unsettled creep.
 template <class T, class Sink>
 void walk(const model::Model& model, std::span<const T> values, const Record& record,
-          const T& peak_before_kpa, Sink&& sink) {
+          const T& peak_before_kpa, const StartState& state, Sink&& sink) {
   model::Chain<T> chain(model, values, record.sample_time_s);
-  start(chain, record, peak_before_kpa);
+  start(chain, record, peak_before_kpa, state);
   sink(std::size_t{0}, chain.reading_mm());
   for (std::size_t i = 1; i < record.size(); ++i) {
     const model::Surroundings around = surroundings_at(record, i);

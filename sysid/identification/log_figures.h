@@ -20,7 +20,8 @@ namespace softgrip::sysid {
 /// Adds the figures of one log to a page.
 void add_log_figures(Page& page, const Record& record, const Score& score);
 
-/// One row per log: the signal that drives the model, samples, RMSE, % of span, first and settled cycles, largest error.
+/// One row per log: the signal that drives the model, samples, RMSE, % of span, first and settled cycles,
+/// largest error.
 [[nodiscard]] Table score_table(const std::vector<Record>& records, const std::vector<Score>& scores);
 
 /// A number for people, or a dash.

@@ -7,6 +7,7 @@
 
 #include "base/numbers.h"
 #include "model/file/model_file.h"
+#include "sysid/fitting/start_estimate.h"
 #include "sysid/identification/log_figures.h"
 #include "sysid/identification/score_json.h"
 #include "sysid/logs/doubts.h"
@@ -33,10 +34,10 @@ std::string bound_text(const Validation& v) {
   return ": " + which + "more than the " + significant(*v.at_most_percent) + " % that were allowed";
 }
 
-std::string offset_text(const Record& record, const Score& score) {
-  if (record.start_unknown) return "estimated (it does not start from rest)";
-  return record.offset_free ? "offset " + significant(score.start.offset_mm, 3) + " mm estimated"
-                            : "at rest, at 0";
+std::string start_text(const Record& record, const StartState& start) {
+  const std::string offset = "offset " + significant(start.offset_mm, 3) + " mm";
+  return is_at_rest(start, record) ? "at rest, " + offset + " estimated"
+                                   : "state and " + offset + " estimated (it does not begin at rest)";
 }
 
 }  // namespace
@@ -48,7 +49,7 @@ Validation validate_logs(const model::Model& model, const std::vector<Log>& logs
   v.model = model;
   v.records = make_records(logs, options);
   const model::Model part = deterministic_part(model, options.drive);
-  const std::vector<StartState> starts = estimate_starts(part, v.records);
+  const std::vector<StartState> starts = estimated_starts(part, v.records);
   for (std::size_t i = 0; i < v.records.size(); ++i) {
     v.scores.push_back(score_of(part, v.records[i], starts[i], v.records[i].reading_mm));
   }
@@ -99,7 +100,7 @@ Page validate_page(const Validation& v, const std::vector<Log>& logs) {
   page.table(score_table(v.records, v.scores));
   std::vector<std::string> starts;
   for (std::size_t i = 0; i < v.scores.size(); ++i) {
-    starts.push_back(v.scores[i].name + ": start " + offset_text(v.records[i], v.scores[i]));
+    starts.push_back(v.scores[i].name + ": start " + start_text(v.records[i], v.scores[i].start));
   }
   page.list(starts);
   for (std::size_t i = 0; i < v.scores.size(); ++i) add_log_figures(page, v.records[i], v.scores[i]);

@@ -23,7 +23,7 @@ struct Validation {
   double wall_s = 0;
 };
 
-/// Predicts every log from its start; only what a log leaves open about its start is estimated.
+/// Predicts every log from its start, which its first readings tell (sysid/fitting/start_estimate.h).
 [[nodiscard]] Validation validate_logs(const model::Model& model, const std::vector<Log>& logs,
                                        const RecordOptions& options = {});
 

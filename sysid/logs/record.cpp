@@ -59,6 +59,7 @@ Record make_record(const Log& log, const RecordOptions& options, double campaign
     if (std::isfinite(y)) ++record.readings;
   }
 
+  record.start = options.start;
   constexpr double next_to_nothing = 0.01;
   const bool pressurised = std::abs(record.drive_kpa.front()) > next_to_nothing * record.largest_kpa;
   record.start_unknown =

@@ -2,6 +2,7 @@
 // A log as a fit sees it: steps with durations, the pressure that drives the model, readings, surroundings.
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ enum class Drive {
 
 /// What is known about the state in which a log begins.
 enum class Start {
-  automatic,  ///< rest if the first pressure is next to nothing, otherwise unknown
+  automatic,  ///< a fit: rest if the first pressure is next to nothing, otherwise unknown; a prediction: see
+              ///< sysid/fitting/start_estimate.h
   rest,       ///< at rest at the first pressure: risen to it once from 0 and settled
   unknown,    ///< hysteresis, creep and offset are estimated
 };
@@ -39,9 +41,15 @@ struct StartState {
   double offset_mm = 0;  ///< of the sensor's zero
   /// The pressure was here last before it came to the first sample's: sets the hysteresis. At or below the
   /// first pressure it changes nothing.
-  double peak_before_kpa = 0;
+  double peak_before_kpa = -std::numeric_limits<double>::infinity();
   /// Creep that had not settled, by Kelvin-Voigt branch: decays with the branch's time constant.
   std::vector<double> unsettled_mm;
+  /// The pressure was here between the peak and the first sample: sets the hysteresis of a record that begins
+  /// while the pressure rises. At or above the first pressure it changes nothing.
+  double valley_before_kpa = std::numeric_limits<double>::infinity();
+  /// Speed at which the pressure came to the first sample from the last turn before it; 0: it came long ago,
+  /// and all has settled.
+  double arrival_kpa_per_s = 0;
 
   bool operator==(const StartState&) const = default;
 };
@@ -67,7 +75,8 @@ struct Record {
   double largest_before_kpa = 0;  ///< of the drive in the campaign's earlier records
   std::size_t readings = 0;       ///< how many are there
   bool held = false;
-  bool start_unknown = false;
+  Start start = Start::automatic;  ///< what is known about the state in which it begins
+  bool start_unknown = false;      ///< a fit estimates that state
   bool offset_free = false;  ///< the start is unknown, or pressure and reading do not begin at 0 together
 
   [[nodiscard]] std::size_t size() const noexcept { return time_s.size(); }

@@ -41,7 +41,7 @@ void add_log_options(CLI::App& command, LogInput& input) {
   command
       .add_option(
           "--begin", input.begin,
-          "How logs begin: at rest, in an unknown state that is estimated, or as their first sample looks")
+          "How logs begin: at rest, in an unknown state that is estimated, or as the log itself shows")
       ->check(CLI::IsMember({"auto", "rest", "unknown"}))
       ->capture_default_str();
   command.add_flag("--held", input.held, "The command keeps its value until the next sample");

@@ -99,6 +99,14 @@ StructureFit fit_structure(const std::vector<Record>& records, std::vector<Cause
   return fit;
 }
 
+StructureFit fit_starts(const std::vector<Record>& records, std::vector<Cause> causes,
+                        const FitPoint& point) {
+  const FitSpace space(point.model, records, {});
+  if (space.size() == 0) return evaluate_structure(records, std::move(causes), space.point({}));
+  const auto residuals = residuals_for(records, space);
+  return evaluate_structure(records, std::move(causes), space.point(minimise(*residuals, space.z(point)).z));
+}
+
 std::vector<Record> without_effects(std::vector<Record> records, const FitPoint& point,
                                     const std::vector<Cause>& causes) {
   model::Model bare = point.model;

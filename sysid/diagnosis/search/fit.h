@@ -47,6 +47,10 @@ struct FitEffort {
 [[nodiscard]] StructureFit evaluate_structure(const std::vector<Record>& records, std::vector<Cause> causes,
                                               const FitPoint& point);
 
+/// The same model; of the starts, what the records leave open is fitted to all readings.
+[[nodiscard]] StructureFit fit_starts(const std::vector<Record>& records, std::vector<Cause> causes,
+                                      const FitPoint& point);
+
 /// The readings without what the causes of a point's model do to them.
 [[nodiscard]] std::vector<Record> without_effects(std::vector<Record> records, const FitPoint& point,
                                                   const std::vector<Cause>& causes);

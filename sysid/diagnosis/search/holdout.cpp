@@ -1,5 +1,7 @@
 #include "sysid/diagnosis/search/holdout.h"
 
+#include "sysid/fitting/start_estimate.h"
+
 namespace softgrip::sysid {
 namespace {
 
@@ -19,6 +21,16 @@ BlockLosses held_out_losses(const std::vector<Record>& records, const Division& 
                             const StructureFit& fit) {
   return held_out_losses(records, division, [&](const std::vector<Record>& rest) {
     return fit_structure(rest, fit.causes, fit.point, refit).point;
+  });
+}
+
+BlockLosses left_out_log_losses(const std::vector<Record>& records, const StructureFit& fit) {
+  return held_out_losses(records, divide_by_record(records), [&](const std::vector<Record>& rest) {
+    FitPoint point = fit_structure(rest, fit.causes, fit.point, refit).point;
+    for (std::size_t k = 0; k < rest.size(); ++k) {
+      if (rest[k].readings == 0) point.starts[k] = estimated_start(point.model, records[k]);
+    }
+    return point;
   });
 }
 

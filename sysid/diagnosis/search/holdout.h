@@ -15,7 +15,10 @@ inline constexpr double block_length_s = 8;
 /// The structure refitted without each fold. The starts of the records stay as they are in `fit`.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const StructureFit& fit);
-/// The same for a model that is not refitted.
+/// The structure refitted without each log, which is then a unit that was left out: its start is estimated by
+/// its first readings (sysid/fitting/start_estimate.h).
+[[nodiscard]] BlockLosses left_out_log_losses(const std::vector<Record>& records, const StructureFit& fit);
+/// Of a model that is not refitted.
 [[nodiscard]] BlockLosses losses_of(const StructureFit& fit, const Division& division);
 
 }  // namespace softgrip::sysid

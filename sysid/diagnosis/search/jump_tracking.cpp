@@ -94,7 +94,7 @@ class JumpTracker {
     model::Model behind = point.model;
     seen_later_ = take_whole_samples(behind, record);
     Track first{model::Chain<double>(behind, {}, record.sample_time_s), record.drive_kpa.front(), 0, no_jump};
-    sysid::start(first.chain, record, start.peak_before_kpa);
+    sysid::start(first.chain, record, start.peak_before_kpa, start);
     start_mm_.resize(record.size());
     add_start(point.model, record, start, start_mm_);
     const double gain = record.largest_kpa > 0 ? record.span_mm / record.largest_kpa : 1;

@@ -19,6 +19,7 @@
 #include "sysid/diagnosis/verdict/dense_logs.h"
 #include "sysid/diagnosis/verdict/mixed_intervals.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 
 namespace softgrip::sysid {
@@ -152,7 +153,8 @@ class Diagnostician {
     data_.threads = options_.threads;
     data_.scales.has_valve = options_.record.drive == Drive::command;
     d_.records = data_.records;
-    d_.as_given = evaluate_structure(data_.records, {}, data_.given);
+    d_.as_given = evaluate_structure(data_.records, {},
+                                     {data_.given.model, estimated_starts(data_.given.model, data_.records)});
     d_.as_given_rmse_mm = std::sqrt(d_.as_given.mean_square_mm2);
   }
 
@@ -263,18 +265,18 @@ class Diagnostician {
     d_.structure_left = selection.left;
     d_.extended_rmse_mm = rmse_mm(selection.extended_losses);
     d_.gain = gain_percent(selection.base_losses, selection.extended_losses, options_.seed);
-    recalibration_gain_ =
-        mean_difference(losses_of(d_.as_given, division), selection.base_losses, options_.seed);
+    // New numbers are compared with the old ones, and both have their starts fitted.
+    const StructureFit given = fit_starts(data_.records, {}, data_.given);
+    recalibration_gain_ = mean_difference(losses_of(given, division), selection.base_losses, options_.seed);
     d_.unexplained_percent =
         selection.base_structure.excess_mm > 0
             ? std::min(100.0, 100 * square(selection.left.excess_mm / selection.base_structure.excess_mm))
             : 0;
     if (!selection.left.present && !selection.base_structure.present) d_.unexplained_percent = 0;
     if (data_.records.size() > 1) {
-      const Division logs = divide_by_record(data_.records);
-      d_.recalibrated_other_logs_rmse_mm = rmse_mm(held_out_losses(data_.records, logs, selection.base));
+      d_.recalibrated_other_logs_rmse_mm = rmse_mm(left_out_log_losses(data_.records, selection.base));
       if (!selection.chosen.empty()) {
-        d_.extended_other_logs_rmse_mm = rmse_mm(held_out_losses(data_.records, logs, selection.extended));
+        d_.extended_other_logs_rmse_mm = rmse_mm(left_out_log_losses(data_.records, selection.extended));
       }
     }
     d_.extended_model = named_model(selection.extended.point.model,

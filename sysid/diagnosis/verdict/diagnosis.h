@@ -45,8 +45,8 @@ struct Diagnosis {
   std::vector<NamedCause> partial;         ///< of unexplained: what explains part of it
   std::vector<CandidateScore> rejected;
   double noise_mm = 0;
-  Spread gain;  ///< extended against recalibrated, held out [%]
-  double as_given_rmse_mm = 0;
+  Spread gain;                      ///< extended against recalibrated, held out [%]
+  double as_given_rmse_mm = 0;      ///< of all readings; starts by sysid/fitting/start_estimate.h
   double recalibrated_rmse_mm = 0;  ///< held out
   double extended_rmse_mm = 0;      ///< held out
   /// The same with whole logs held out; empty with a single log.

@@ -70,6 +70,23 @@ TEST_F(Command, EveryScoreSaysWhatDrivesTheModel) {
   }
 }
 
+/// Cut where the pressure is 0 between two cycles, a log looks as if it began at rest.
+TEST_F(Command, BeginDecidesWhatIsEstimatedOfAStart) {
+  const Log log = simulated(loaded("bench_twin"), model::SignalName::tp1, 50, 0.05, 7);
+  std::size_t first = log.size() / 4;
+  while (log.pressure_command_kpa[first] > 0) ++first;
+  write("cut.csv", format_log(slice(log, first, log.size())));
+  write("model.yaml", model::to_yaml(loaded("bench_twin")));
+  const auto percent = [&](const std::string& begin) {
+    EXPECT_EQ(run("validate --model model.yaml --data cut.csv --json --begin " + begin), 0)
+        << read("err.txt");
+    return nlohmann::json::parse(read("out.txt"))["rmse_percent_of_span"]["cut"].get<double>();
+  };
+  EXPECT_GT(percent("rest"), 3);
+  EXPECT_LT(percent("unknown"), 2);
+  EXPECT_LT(percent("auto"), 2);
+}
+
 TEST_F(Command, ValidateFailsPerLogOnScreenInJsonAndByItsCode) {
   write_log("tp1.csv", model::SignalName::tp1);
   write_log("hold.csv", model::SignalName::hold);

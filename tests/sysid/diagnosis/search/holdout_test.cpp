@@ -26,5 +26,21 @@ TEST(HeldOutLosses, AreAtMostTheSpansSquare) {
     EXPECT_DOUBLE_EQ(cut[b], std::min(losses[b], 0.25 * most)) << b;
 }
 
+/// A zero that moved, and a start in motion, are no error of a log that was left out.
+TEST(LeftOutLogLosses, AreThoseOfAStartThatTheFirstReadingsTell) {
+  const model::Model twin = loaded("bench_twin");
+  std::vector<Log> logs{simulated(twin, model::SignalName::tp1, 25, 0.05, 3),
+                        simulated(twin, model::SignalName::sp2, 25, 0.05, 4)};
+  logs.push_back(slice(logs[0], logs[0].size() / 3, logs[0].size()));
+  for (double& y : logs[1].displacement_mm) y += 5;
+  const std::vector<Record> records = make_records(logs, {});
+  const StructureFit fit = fit_structure(records, {}, {twin, rest_starts(twin, records)});
+  const BlockLosses losses = left_out_log_losses(records, fit);
+  ASSERT_EQ(losses.size(), 3U);
+  EXPECT_LT(std::sqrt(losses[0]), 1.2 * 0.05);
+  EXPECT_LT(std::sqrt(losses[1]), 1.2 * 0.05);
+  EXPECT_LT(std::sqrt(losses[2]), 0.02 * 30);
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::holdout_test

@@ -57,6 +57,26 @@ TEST(Diagnosis, LittleLeftByTheFirstCauseIsNoQuestionForAnotherBase) {
   }
 }
 
+// The model that made the logs explains them wherever the sensor's zero is, and in whatever state a log
+// begins.
+TEST(Diagnosis, AsGivenEstimatesTheOffsetAndTheStart) {
+  const model::Model truth = loaded("bench_twin");
+  const Log log = simulated(truth, model::SignalName::tp1, 25, noise_mm, 5);
+  const auto as_given_mm = [&](Log one, double shift_mm) {
+    for (double& y : one.displacement_mm) y += shift_mm;
+    const auto diagnosis = diagnose({std::move(one)}, truth, {});
+    EXPECT_TRUE(diagnosis);
+    return diagnosis ? diagnosis->as_given_rmse_mm : 0;
+  };
+  const double at_rest_mm = as_given_mm(log, 0);
+  EXPECT_LT(at_rest_mm, 1.1 * noise_mm);
+  EXPECT_NEAR(as_given_mm(log, 5), at_rest_mm, 1e-6);
+  EXPECT_NEAR(as_given_mm(log, -410), at_rest_mm, 1e-6);
+  const Log in_motion = slice(log, log.size() / 3, log.size());
+  const double of_30_mm = 0.02 * 30;
+  EXPECT_LT(as_given_mm(in_motion, 5), of_30_mm);
+}
+
 // What stands upon another base keeps what was found before any base was fitted.
 TEST(Diagnosis, WrongSamplesKeepTheirNameWhereAnotherBaseHolds) {
   const model::Model given = without_valve();

@@ -1,0 +1,281 @@
+#include "sysid/fitting/start_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "base/statistics.h"
+#include "model/blocks/kelvin_voigt.h"
+#include "model/named.h"
+#include "sysid/fitting/trajectory.h"
+#include "sysid/logs/each_record.h"
+#include "sysid/logs/resampled_record.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double used_share = 0.05, used_at_least_s = 2, used_at_most_share = 0.5;
+/// Standard deviation of unsettled creep, as a share of what the drive's range makes of the branch.
+constexpr double unsettled_share = 0.3;
+/// What a model may err by, as a share of the motion that it predicts.
+constexpr double model_tolerance = 0.05;
+/// A start at rest is given up where it leaves more than so many standard deviations.
+constexpr double rejected_at = 3;
+/// The speed at which the pressure arrived is that of the drive's first so many seconds.
+constexpr double speed_over_s = 0.1;
+/// The last turns are searched on a grid of so many steps, and then between its points, so many times by
+/// half.
+constexpr int grid_steps = 5, halvings = 4;
+/// Of a correlation that is smaller nothing more is to be summed.
+constexpr double least_correlation = 0.05;
+/// Until the residual is known: independent readings in the first samples.
+constexpr double independent_at_first = 5;
+
+Record beginning_of(const Record& unit) {
+  std::vector<std::size_t> kept(samples_for_start(unit));
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  Record beginning = thinned_record(unit, kept);
+  beginning.sample_time_s = unit.sample_time_s;
+  return beginning;
+}
+
+/// How many independent ones would say as much: by the sum of the autocorrelation until it vanishes.
+double independent_among(const Eigen::VectorXd& residual) {
+  const Eigen::Index n = residual.size();
+  const double squares = residual.squaredNorm();
+  double sum = 0;
+  for (Eigen::Index lag = 1; lag < n / 2 && squares > 0; ++lag) {
+    const double correlation = residual.head(n - lag).dot(residual.tail(n - lag)) / squares;
+    if (correlation < least_correlation) break;
+    sum += correlation;
+  }
+  return std::max(1.0, static_cast<double>(n) / (1 + 2 * sum));
+}
+
+/// How far the readings are trusted: mean square of what a start leaves, and how many of them are
+/// independent.
+struct Trust {
+  double mean_square_mm2 = 0;
+  double independent = 1;
+};
+
+/// A start, and what it leaves of the first readings.
+struct Trial {
+  StartState start;
+  double misfit = std::numeric_limits<double>::infinity();  ///< minus twice the logarithm of its posterior
+  Trust left;
+};
+
+class StartSearch {
+ public:
+  StartSearch(const model::Model& model, const Record& unit)
+      : model_(model),
+        beginning_(beginning_of(unit)),
+        time_constants_s_(branch_time_constants_s(model)),
+        first_kpa_(unit.drive_kpa.front()) {
+    const auto [lowest, highest] = std::minmax_element(unit.drive_kpa.begin(), unit.drive_kpa.end());
+    lowest_kpa_ = *lowest;
+    highest_kpa_ = *highest;
+    for (std::size_t i = 0; i < beginning_.size(); ++i) {
+      if (std::isfinite(beginning_.reading_mm[i])) rows_.push_back(i);
+    }
+  }
+
+  StartState run(const Record& unit) {
+    const StartState rest = at_rest();
+    if (rows_.empty()) return rest;
+    const Trial resting = with_offset(rest);
+    if (unit.start == Start::rest) return resting.start;
+    const Trial moving = anywhere(rest);
+    return unit.start_unknown || is_rejected(resting, moving) ? moving.start : resting.start;
+  }
+
+ private:
+  [[nodiscard]] StartState at_rest() const {
+    StartState rest;
+    rest.peak_before_kpa = first_kpa_;
+    rest.unsettled_mm.assign(time_constants_s_.size(), 0);
+    return rest;
+  }
+
+  /// Readings minus what the model makes of a start without offset and unsettled creep.
+  [[nodiscard]] Eigen::VectorXd unexplained(StartState start) const {
+    start.offset_mm = 0;
+    std::fill(start.unsettled_mm.begin(), start.unsettled_mm.end(), 0.0);
+    const std::vector<double> predicted = predict(model_, beginning_, start);
+    Eigen::VectorXd left(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t r = 0; r < rows_.size(); ++r)
+      left[static_cast<Eigen::Index>(r)] = beginning_.reading_mm[rows_[r]] - predicted[rows_[r]];
+    return left;
+  }
+
+  [[nodiscard]] Trial with_offset(StartState start) const {
+    const Eigen::VectorXd y = unexplained(start);
+    Trial trial;
+    trial.start = std::move(start);
+    trial.start.offset_mm = y.mean();
+    const Eigen::VectorXd left = y.array() - y.mean();
+    trial.left = {left.squaredNorm() / static_cast<double>(y.size()), independent_among(left)};
+    return trial;
+  }
+
+  /// Offset and unsettled creep by least squares under their priors, for one course of the pressure.
+  [[nodiscard]] Trial with_creep(StartState start, const Trust& trust) const {
+    const Eigen::VectorXd y = unexplained(start);
+    const double weight = trust.independent / (static_cast<double>(y.size()) * trust.mean_square_mm2);
+    Eigen::MatrixXd normal = weight * columns_.transpose() * columns_;
+    normal.diagonal() += precision_;
+    const Eigen::VectorXd numbers = normal.ldlt().solve(weight * columns_.transpose() * y);
+    const Eigen::VectorXd left = y - columns_ * numbers;
+    Trial trial;
+    trial.start = std::move(start);
+    trial.start.offset_mm = numbers[0];
+    for (std::size_t b = 0; b < time_constants_s_.size(); ++b)
+      trial.start.unsettled_mm[b] = numbers[static_cast<Eigen::Index>(b + 1)];
+    trial.left = {std::max(left.squaredNorm() / static_cast<double>(y.size()), smallest_mm2),
+                  independent_among(left)};
+    const double misfit = weight * left.squaredNorm() + (precision_.array() * numbers.array().square()).sum();
+    if (std::isfinite(misfit)) trial.misfit = misfit;
+    return trial;
+  }
+
+  [[nodiscard]] Trial best_of(const std::vector<StartState>& starts, const Trust& trust) const {
+    Trial best;
+    for (const StartState& start : starts) {
+      Trial trial = with_creep(start, trust);
+      if (trial.misfit < best.misfit) best = std::move(trial);
+    }
+    return best;
+  }
+
+  /// The start that the first readings and the priors make most probable.
+  [[nodiscard]] Trial anywhere(const StartState& rest) {
+    prepare_creep();
+    const std::vector<StartState> starts = grid(rest);
+    const Eigen::VectorXd y = unexplained(rest);
+    const double spread_mm2 = (y.array() - y.mean()).square().mean();
+    Trial best = best_of(starts, {std::max(spread_mm2, smallest_mm2), independent_at_first});
+    // How much is left decides how far the priors count, and the other way round.
+    for (int pass = 0; pass < 2; ++pass) best = best_of(starts, best.left);
+    double peak_step = (highest_kpa_ - first_kpa_) / grid_steps;
+    double valley_step = (first_kpa_ - lowest_kpa_) / grid_steps;
+    for (int halving = 0; halving < halvings; ++halving) {
+      peak_step /= 2;
+      valley_step /= 2;
+      best = best_of(around(best.start, peak_step, valley_step), best.left);
+    }
+    return best;
+  }
+
+  void prepare_creep() {
+    const auto rows = static_cast<Eigen::Index>(rows_.size());
+    const auto branches = static_cast<Eigen::Index>(time_constants_s_.size());
+    columns_ = Eigen::MatrixXd::Ones(rows, 1 + branches);
+    precision_ = Eigen::VectorXd::Zero(1 + branches);
+    if (branches == 0) return;
+    const std::vector<double>& creep = model_.blocks[*model::position_of<model::KelvinVoigt>(model_)].values;
+    for (Eigen::Index b = 0; b < branches; ++b) {
+      const auto branch = static_cast<std::size_t>(b);
+      for (Eigen::Index r = 0; r < rows; ++r) {
+        const double since_s = beginning_.time_s[rows_[static_cast<std::size_t>(r)]] - beginning_.time_s[0];
+        columns_(r, 1 + b) = std::exp(-since_s / time_constants_s_[branch]);
+      }
+      const double settled_mm = (highest_kpa_ - lowest_kpa_) / creep[1 + 2 * branch];
+      precision_[1 + b] = 1 / std::max(square(unsettled_share * settled_mm), smallest_mm2);
+    }
+  }
+
+  /// Every pair of a last peak and a valley behind it.
+  [[nodiscard]] std::vector<StartState> grid(const StartState& rest) const {
+    std::vector<StartState> starts{rest};
+    for (int peak = 0; peak <= grid_steps; ++peak) {
+      for (int valley = 0; valley <= grid_steps; ++valley) {
+        starts.push_back(turned(rest, first_kpa_ + (highest_kpa_ - first_kpa_) * peak / grid_steps,
+                                first_kpa_ - (first_kpa_ - lowest_kpa_) * valley / grid_steps));
+      }
+    }
+    return starts;
+  }
+
+  [[nodiscard]] std::vector<StartState> around(const StartState& start, double peak_step,
+                                               double valley_step) const {
+    const double peak = std::max(start.peak_before_kpa, first_kpa_);
+    const double valley = std::min(start.valley_before_kpa, first_kpa_);
+    return {start, turned(start, peak + peak_step, valley), turned(start, peak - peak_step, valley),
+            turned(start, peak, valley + valley_step), turned(start, peak, valley - valley_step)};
+  }
+
+  [[nodiscard]] StartState turned(StartState start, double peak_kpa, double valley_kpa) const {
+    start.peak_before_kpa = std::clamp(peak_kpa, first_kpa_, highest_kpa_);
+    start.valley_before_kpa = std::clamp(valley_kpa, lowest_kpa_, first_kpa_);
+    start.arrival_kpa_per_s = first_speed_kpa_per_s();
+    return start;
+  }
+
+  [[nodiscard]] double first_speed_kpa_per_s() const {
+    if (beginning_.size() < 2) return 0;
+    std::size_t i = 1;
+    while (i + 1 < beginning_.size() && beginning_.time_s[i] - beginning_.time_s[0] < speed_over_s) ++i;
+    return (beginning_.drive_kpa[i] - first_kpa_) / (beginning_.time_s[i] - beginning_.time_s[0]);
+  }
+
+  /// Whether a start at rest leaves what neither noise nor an error of the model explains.
+  [[nodiscard]] bool is_rejected(const Trial& resting, const Trial& moving) const {
+    const Eigen::VectorXd still = unexplained(resting.start);
+    double sum = 0, squares = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const double predicted = beginning_.reading_mm[rows_[r]] - still[static_cast<Eigen::Index>(r)];
+      sum += predicted;
+      squares += square(predicted);
+    }
+    const auto n = static_cast<double>(rows_.size());
+    const double motion_mm2 = squares / n - square(sum / n);
+    const double less_mm2 = resting.left.mean_square_mm2 - moving.left.mean_square_mm2;
+    const double by_chance_mm2 = moving.left.mean_square_mm2 / moving.left.independent;
+    return less_mm2 > square(rejected_at) * (by_chance_mm2 + square(model_tolerance) * motion_mm2);
+  }
+
+  static constexpr double smallest_mm2 = 1e-18;
+
+  const model::Model& model_;
+  Record beginning_;
+  std::vector<double> time_constants_s_;
+  double first_kpa_, lowest_kpa_ = 0, highest_kpa_ = 0;
+  std::vector<std::size_t> rows_;  ///< samples with readings
+  Eigen::MatrixXd columns_;        ///< what offset and unsettled creep add
+  Eigen::VectorXd precision_;      ///< of their priors
+};
+
+}  // namespace
+
+std::size_t samples_for_start(const Record& record) {
+  const double used_s = std::min(std::max(used_share * record.length_s(), used_at_least_s),
+                                 used_at_most_share * record.length_s());
+  const double until_s = record.time_s.front() + used_s;
+  return std::max<std::size_t>(
+      1, static_cast<std::size_t>(std::upper_bound(record.time_s.begin(), record.time_s.end(), until_s) -
+                                  record.time_s.begin()));
+}
+
+StartState estimated_start(const model::Model& model, const Record& unit) {
+  return StartSearch(model, unit).run(unit);
+}
+
+bool is_at_rest(const StartState& start, const Record& unit) {
+  const double first_kpa = unit.drive_kpa.front();
+  return start.peak_before_kpa <= first_kpa && start.valley_before_kpa >= first_kpa &&
+         std::all_of(start.unsettled_mm.begin(), start.unsettled_mm.end(), [](double u) { return u == 0; });
+}
+
+std::vector<StartState> estimated_starts(const model::Model& model, const std::vector<Record>& units) {
+  std::vector<StartState> starts(units.size());
+  for_each_record(units, [&](std::size_t k) { starts[k] = estimated_start(model, units[k]); });
+  return starts;
+}
+
+}  // namespace softgrip::sysid
