@@ -7,7 +7,7 @@
 
 #include "sysid/changes/bins.h"
 #include "sysid/changes/echo.h"
-#include "sysid/logs/centred_record.h"
+#include "sysid/logs/resampled_record.h"
 
 namespace softgrip::sysid {
 namespace {

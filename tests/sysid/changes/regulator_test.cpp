@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sysid/logs/finer_record.h"
+#include "sysid/logs/resampled_record.h"
 #include "tests/blind/textbook/valve.h"
 #include "tests/sysid/changes/regulator_records.h"
 

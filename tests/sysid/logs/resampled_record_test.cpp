@@ -8,7 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "sysid/logs/centred_record.h"
 
 namespace softgrip::sysid::resampled_record_test {
 namespace {
