@@ -75,7 +75,9 @@ softgrip_room(sysid/structure
   USES base model sysid/logs sysid/fitting sysid/identification
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/residual USES base sysid/logs LIBRARIES Eigen3::Eigen)
-softgrip_room(sysid/diagnosis/causes USES model sysid/logs sysid/fitting sysid/diagnosis/residual)
+softgrip_room(sysid/evidence USES sysid/logs sysid/fitting)
+softgrip_room(sysid/diagnosis/causes
+  USES model sysid/logs sysid/fitting sysid/evidence sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
   USES base model sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes)
 softgrip_room(sysid/diagnosis/evidence
@@ -88,7 +90,8 @@ softgrip_room(sysid/diagnosis/verdict
        sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/changes
-  USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
+  USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/evidence sysid/diagnosis/residual
+       sysid/diagnosis/causes
   LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json)
 softgrip_room(sysid/diagnosis/experiments
   USES base sysid/logs sysid/fitting sysid/identification sysid/diagnosis/residual sysid/diagnosis/causes

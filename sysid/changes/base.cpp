@@ -11,6 +11,7 @@
 #include "sysid/changes/downstream.h"
 #include "sysid/changes/echo_fit.h"
 #include "sysid/changes/regulator_fit.h"
+#include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 #include "sysid/logs/resampled_record.h"
 #include "sysid/structure/published_element.h"
@@ -31,11 +32,12 @@ constexpr double finger_memory_s = 0.4;
 constexpr double least_gain_spread = 0.002;
 constexpr double least_zero_share = 0.0005;
 
-/// A model that may be the base, with the starts of the healthy records.
-struct Choice {
+/// A model that may be the base.
+struct Candidate {
   std::string description;
-  FitPoint point;
-  std::optional<Regulator> regulator = {};
+  std::optional<Regulator> regulator;
+  /// Fits it to records behind the regulator; a model without blocks predicts what drives it.
+  std::function<FitPoint(const std::vector<Record>&)> fit;
 };
 
 std::vector<Record> behind(const std::optional<Regulator>& regulator, const std::vector<Record>& records) {
@@ -62,57 +64,79 @@ std::vector<double> without_model(const std::optional<Regulator>& regulator, con
   return regulator ? driven.drive_kpa : std::vector<double>(driven.size(), 0.0);
 }
 
+/// Where a run begins that was not fitted. Its zero is left to whoever compares runs.
+StartState start_of(const model::Model& model, const Record& record) {
+  if (model.blocks.empty()) return {};
+  StartState start = estimated_start(model, record);
+  start.offset_mm = 0;
+  return start;
+}
+
 std::vector<double> plain_prediction(const model::Model& model, const std::optional<Regulator>& regulator,
-                                     const Record& record) {
+                                     const Record& record, const StartState& start) {
   if (model.blocks.empty()) return without_model(regulator, record);
-  return predict(model, record, rest_starts(model, {record}).front());
+  StartState own = rest_starts(model, {record}).front();
+  own.peak_before_kpa = start.peak_before_kpa;
+  own.valley_before_kpa = start.valley_before_kpa;
+  own.arrival_kpa_per_s = start.arrival_kpa_per_s;
+  // A block that extends the model may have a branch of its own, which begins settled.
+  std::copy_n(start.unsettled_mm.begin(), std::min(start.unsettled_mm.size(), own.unsettled_mm.size()),
+              own.unsettled_mm.begin());
+  return predict(model, record, own);
 }
 
-std::vector<double> started_prediction(const Choice& choice, const std::vector<Record>& records,
-                                       std::size_t r) {
-  if (choice.point.model.blocks.empty()) return without_model(choice.regulator, records[r]);
-  return predict(choice.point.model, records[r], choice.point.starts[r]);
-}
-
-/// What a choice leaves of its records, in bins.
-Binned left_by(const Choice& choice, const std::vector<Record>& records, double bin_s) {
+/// What a candidate leaves of all records, in bins, fitted to those that are left without a unit.
+/// @param model  receives the model.
+Binned left_by(const Candidate& candidate, const std::vector<Record>& records, const Units& units,
+               std::size_t unit, double bin_s, model::Model& model) {
+  std::vector<std::size_t> kept;
+  const FitPoint point = candidate.fit(units.without(records, unit, &kept));
+  model = point.model;
+  std::vector<StartState> starts(records.size());
+  if (!model.blocks.empty()) {
+    for (std::size_t k = 0; k < kept.size(); ++k) starts[kept[k]] = point.starts[k];
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      if (std::find(kept.begin(), kept.end(), r) == kept.end()) starts[r] = start_of(model, records[r]);
+    }
+  }
   Binned left;
-  for (std::size_t r = 0; r < records.size(); ++r)
-    left.push_back(binned(records[r], residual(records[r], started_prediction(choice, records, r)), bin_s));
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const std::vector<double> prediction = model.blocks.empty()
+                                               ? without_model(candidate.regulator, records[r])
+                                               : predict(model, records[r], starts[r]);
+    left.push_back(binned(records[r], residual(records[r], prediction), bin_s));
+  }
   return left;
 }
 
-std::vector<Choice> choices(const std::vector<Record>& records, const Base& base,
-                            const BaseOptions& options) {
-  if (base.judged == Judged::pressure) return {{"filter bank", {}}};
+std::vector<Candidate> candidates(const std::vector<Record>& records, const Base& base,
+                                  const BaseOptions& options) {
+  const auto nothing = [](const std::vector<Record>&) { return FitPoint{}; };
+  if (base.judged == Judged::pressure)
+    return {{"filter bank", {}, nothing},
+            {"a regulator", fit_regulator(records, base.largest_kpa, ReadBy::gauge), nothing}};
   const bool command = base.drive == Drive::command;
   const BaseStructure play{.hysteresis = HysteresisForm::play, .delay = command, .hinged_creep = true};
-  std::vector<std::function<Choice()>> makes{
-      [&] {
-        const FittedStructure fit = fit_form(records, play, grid_for(records), {});
-        return Choice{description_of(play), point_of(fit, records, base.drive)};
-      },
-      [&] {
-        return Choice{"Bouc-Wen and two creep branches",
-                      fit_published(records, base.drive, 6, options.seed).point};
-      }};
+  const auto fit_play = [play, drive = base.drive](const std::vector<Record>& driven) {
+    return point_of(fit_form(driven, play, grid_for(driven), {}), driven, drive);
+  };
+  std::vector<Candidate> all{{description_of(play), {}, fit_play},
+                             {"Bouc-Wen and two creep branches",
+                              {},
+                              [&options, drive = base.drive](const std::vector<Record>& driven) {
+                                return fit_published(driven, drive, 6, options.seed).point;
+                              }}};
   if (command) {
-    makes.emplace_back([&] {
-      const Regulator regulator = fit_regulator(records, base.largest_kpa);
-      const std::vector<Record> driven = behind(regulator, records);
-      const FittedStructure fit = fit_form(driven, play, grid_for(driven), {});
-      return Choice{"a regulator, " + description_of(play), point_of(fit, driven, base.drive), regulator};
-    });
+    const Regulator regulator = fit_regulator(records, base.largest_kpa);
+    all.push_back({"a regulator, " + description_of(play), regulator, fit_play});
   }
   if (options.given) {
-    makes.emplace_back([&] {
-      const model::Model model = deterministic_part(*options.given, base.drive);
-      return Choice{"the given model", {model, rest_starts(model, records)}};
-    });
+    const model::Model model = deterministic_part(*options.given, base.drive);
+    all.push_back({"the given model", {}, [model](const std::vector<Record>& driven) {
+                     return FitPoint{model, rest_starts(model, driven)};
+                   }});
   }
-  std::vector<Choice> made(makes.size());
-  parallel_for(makes.size(), options.threads, [&](std::size_t i) { made[i] = makes[i](); });
-  return made;
+  return all;
 }
 
 /// Behind a valve whose pressure is not recorded, a finger shows what either of them does.
@@ -122,45 +146,62 @@ std::vector<EchoKind> kinds_for(Judged judged, Drive drive) {
   return {EchoKind::finger, EchoKind::valve_and_finger};
 }
 
-/// The choices that follow the same drives, and what each leaves of the records; one behind a regulator of
-/// its own is alone.
-struct AlikeDriven {
-  std::vector<Record> records;
-  std::vector<std::size_t> choices;
-  std::vector<Binned> left;
+/// A candidate with what it leaves, fitted without each unit and to all.
+struct Fitted {
+  std::vector<Record> driven;
+  model::Model model;  ///< of all records
+  LeftByUnit left;
 };
-std::vector<AlikeDriven> alike_driven(const std::vector<Choice>& all, const std::vector<Record>& records,
-                                      double bin_s) {
-  std::vector<AlikeDriven> groups{{records, {}, {}}};
+std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector<Record>& records,
+                            const Base& base, unsigned threads) {
+  std::vector<Fitted> fitted(all.size());
+  const std::size_t folds = base.units.count() + 1;
   for (std::size_t c = 0; c < all.size(); ++c) {
-    if (all[c].regulator) groups.push_back({behind(all[c].regulator, records), {}, {}});
-    AlikeDriven& group = all[c].regulator ? groups.back() : groups.front();
-    group.choices.push_back(c);
-    group.left.push_back(left_by(all[c], group.records, bin_s));
+    fitted[c].driven = behind(all[c].regulator, records);
+    fitted[c].left.resize(folds);
   }
-  return groups;
+  parallel_for(all.size() * folds, threads, [&](std::size_t task) {
+    const std::size_t c = task / folds, unit = task % folds;
+    model::Model model;
+    fitted[c].left[unit] = left_by(all[c], fitted[c].driven, base.units, unit, base.bin_s, model);
+    if (unit == base.units.count()) fitted[c].model = std::move(model);
+  });
+  return fitted;
 }
 
-/// Of these the choice that leaves least with an echo beside it, the first of those that leave as little;
-/// none where the base that there is leaves no more.
-/// @param share  what a choice may leave of what the base does.
-void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record>& records,
-            const BaseOptions& options, double share = 1) {
+/// Takes the first candidate, unless a later one predicts units to which neither was fitted better.
+void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
+            const BaseOptions& options) {
   const std::vector<EchoKind> kinds = kinds_for(base.judged, base.drive);
-  const std::vector<AlikeDriven> groups = alike_driven(all, records, base.bin_s);
-  std::vector<std::vector<FittedEcho>> fits(all.size(), std::vector<FittedEcho>(kinds.size()));
+  const std::vector<Fitted> fitted = fit_all(all, records, base, options.threads);
+  std::vector<FittedEcho> echoes(all.size() * kinds.size());
+  // Candidates without a regulator follow the same drives and share their columns.
+  std::vector<std::vector<std::size_t>> groups(1);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (all[c].regulator)
+      groups.push_back({c});
+    else
+      groups.front().push_back(c);
+  }
   parallel_for(groups.size() * kinds.size(), options.threads, [&](std::size_t task) {
-    const auto& [driven, members, left] = groups[task / kinds.size()];
-    if (members.empty()) return;
+    const std::vector<std::size_t>& group = groups[task / kinds.size()];
     const std::size_t k = task % kinds.size();
-    std::vector<FittedEcho> fitted = fit_echo(driven, kinds[k], base.bin_s, base.largest_kpa, left);
-    for (std::size_t i = 0; i < members.size(); ++i) fits[members[i]][k] = std::move(fitted[i]);
+    if (group.empty()) return;
+    std::vector<LeftByUnit> left;
+    for (const std::size_t c : group) left.push_back(fitted[c].left);
+    std::vector<FittedEcho> own = fit_echo(fitted[group.front()].driven, base.units, kinds[k], base.bin_s,
+                                           base.largest_kpa, left, options.seed);
+    for (std::size_t i = 0; i < group.size(); ++i) echoes[group[i] * kinds.size() + k] = std::move(own[i]);
   });
   for (std::size_t c = 0; c < all.size(); ++c) {
     for (std::size_t k = 0; k < kinds.size(); ++k) {
-      FittedEcho& echo = fits[c][k];
-      if (!(echo.left_mm < share * base.left_mm)) continue;
-      base.model = all[c].point.model;
+      FittedEcho& echo = echoes[c * kinds.size() + k];
+      if (!std::isfinite(echo.left_mm)) continue;
+      const bool is_first = !std::isfinite(base.left_mm);
+      if (!is_first &&
+          !is_better(compare(losses_of(base.left, echo.left, base.units, base.bin_s), 0, options.seed)))
+        continue;
+      base.model = fitted[c].model;
       base.regulator = all[c].regulator;
       base.description = all[c].description;
       base.kind = kinds[k];
@@ -172,44 +213,41 @@ void choose(Base& base, const std::vector<Choice>& all, const std::vector<Record
   }
 }
 
-/// Filters say exactly what a dead time below a sample does, a regulator does not. It is a pressure's base
-/// where they miss what a regulator does: of a valve that is a delay and a lag they left up to 2.9 times the
-/// noise, of one by ISO 6358 3.2 times and more (changed worlds of --first-seed 20261211 and 20261218).
-void choose_regulator(Base& base, const std::vector<Record>& records, const BaseOptions& options) {
-  constexpr double filters_miss = 3, regulator_share = 0.9;
-  if (!(base.left_mm > filters_miss * base.noise_mm)) return;
-  const Choice choice{"a regulator", {}, fit_regulator(records, base.largest_kpa, ReadBy::gauge)};
-  choose(base, {choice}, records, options, regulator_share);
-}
-
 std::size_t order_for(const Base& base) {
   if (base.judged == Judged::pressure) return whitening_order;
   return std::max(whitening_order, static_cast<std::size_t>(std::lround(finger_memory_s / base.bin_s)));
 }
 
-/// How far gain and zero of the healthy logs differ from log to log.
+/// How far gain and zero differ from unit to unit.
 void spread(Base& base) {
-  double gains = 0, zeros = 0, count = 0;
+  std::vector<PairSums> sums(base.units.count() * base.records.size());
   for (std::size_t r = 0; r < base.records.size(); ++r) {
     const std::vector<double> motion =
         binned(base.records[r], predict_base(base, base.records[r], {}), base.bin_s);
-    PairSums sums;
-    for (std::size_t b = 0; b < std::min(motion.size(), base.left[r].size()); ++b)
-      sums.add(motion[b], base.left[r][b]);
-    if (sums.count < 10) continue;
-    const double slope = sums.covariance() / std::max(sums.variance_x(), 1e-12);
-    gains += slope * slope;
-    zeros += std::pow(sums.y / sums.count, 2);
+    for (std::size_t b = 0; b < std::min(motion.size(), base.left[r].size()); ++b) {
+      const std::size_t unit = base.units.unit_of(r, (static_cast<double>(b) + 0.5) * base.bin_s);
+      sums[r * base.units.count() + unit].add(motion[b], base.left[r][b]);
+    }
+  }
+  double gains = 0, zeros = 0, zeros_squared = 0, count = 0;
+  for (const PairSums& own : sums) {
+    if (own.count < 10) continue;
+    gains += square(own.covariance() / std::max(own.variance_x(), 1e-12));
+    zeros += own.y / own.count;
+    zeros_squared += square(own.y / own.count);
     count += 1;
   }
+  const double free = std::max(1.0, count - 1);
   base.gain_spread = std::max(least_gain_spread, count > 0 ? std::sqrt(gains / count) : 0);
-  base.zero_spread_mm = std::max(least_zero_share * base.span_mm, count > 0 ? std::sqrt(zeros / count) : 0);
+  base.zero_spread_mm =
+      std::max(least_zero_share * base.span_mm,
+               count > 0 ? std::sqrt(std::max(0.0, zeros_squared - zeros * zeros / count) / free) : 0);
 }
 
 std::vector<double> walked_with(const Driven& driven, const std::vector<model::BlockSpec>& blocks) {
   model::Model model = driven.model;
   for (const model::BlockSpec& block : blocks) model = model::with_block(std::move(model), block);
-  return plain_prediction(model, {}, driven.walked);
+  return plain_prediction(model, {}, driven.walked, driven.start);
 }
 
 /// Model and echo with the blocks of an extension. What stands behind the model acts on the echo, too; the
@@ -274,11 +312,19 @@ std::vector<double> drive_of(const Base& base, const Record& record,
   return drive_kpa;
 }
 
+/// The readings that the model alone has to explain.
+Record with_echo_taken_off(const Driven& driven) {
+  Record record = driven.walked;
+  for (std::size_t i = 0; i < record.size(); ++i)
+    record.reading_mm[i] -= driven.echo(static_cast<Eigen::Index>(i));
+  return record;
+}
+
 }  // namespace
 
 Driven driven_by(const Base& base, const Record& record, const std::vector<model::BlockSpec>& valve,
-                 const RegulatorFault& fault) {
-  Driven driven{record, {}, base.model, {}, {}};
+                 const RegulatorFault& fault, const StartState* start) {
+  Driven driven{record, {}, base.model, {}, {}, {}};
   if (base.regulator || !valve.empty()) {
     driven.record.drive_kpa = drive_of(base, record, valve, fault);
     driven.record.held = false;
@@ -287,9 +333,12 @@ Driven driven_by(const Base& base, const Record& record, const std::vector<model
   const auto whole = is_walked_whole ? with_valve(base.model, valve) : std::nullopt;
   if (whole) driven.model = *whole;
   driven.walked = whole ? record : driven.record;
-  driven.echo =
-      weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa, base.echo_weights);
-  driven.plain = plain_prediction(driven.model, base.regulator, driven.walked);
+  driven.echo = base.echo_weights.size() == 0
+                    ? Eigen::VectorXd(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(record.size())))
+                    : weighted_echo(driven.record, driven.record.drive_kpa, base.kind, base.largest_kpa,
+                                    base.echo_weights);
+  driven.start = start != nullptr ? *start : start_of(driven.model, with_echo_taken_off(driven));
+  driven.plain = plain_prediction(driven.model, base.regulator, driven.walked, driven.start);
   return driven;
 }
 
@@ -297,7 +346,8 @@ std::vector<double> predict_base(const Base& base, const Record& record, const E
                                  const Driven* driven) {
   if (driven != nullptr && extension.valve.empty() && extension.fault == RegulatorFault{})
     return driven_prediction(base, *driven, extension);
-  return driven_prediction(base, driven_by(base, record, extension.valve, extension.fault), extension);
+  const StartState* const start = driven != nullptr ? &driven->start : nullptr;
+  return driven_prediction(base, driven_by(base, record, extension.valve, extension.fault, start), extension);
 }
 
 Record thinned_for(const Base& base, const Record& record) {
@@ -327,9 +377,9 @@ Base fit_base(const std::vector<Record>& records, Judged judged, Drive drive, co
     base.span_mm = std::max(base.span_mm, record.span_mm);
     base.noise_mm = std::max(base.noise_mm, fast_noise_mm(record));
   }
+  base.units = Units(records);
   base.left_mm = std::numeric_limits<double>::infinity();
-  choose(base, choices(records, base, options), records, options);
-  if (base.judged == Judged::pressure) choose_regulator(base, records, options);
+  choose(base, candidates(records, base, options), records, options);
   Binned haste;
   for (const Record& record : records) haste.push_back(haste_of(record, base.bin_s));
   base.whitener = whitener_of(base.left, haste, order_for(base));

@@ -15,6 +15,7 @@
 #include "sysid/changes/echo.h"
 #include "sysid/changes/extension.h"
 #include "sysid/changes/regulator.h"
+#include "sysid/evidence/units.h"
 #include "sysid/fitting/fit_space.h"
 #include "sysid/logs/record.h"
 
@@ -42,15 +43,16 @@ struct Base {
   double temperature_c = 20;  ///< of the healthy logs, mean
   double gain_per_c = 0;      ///< that the healthy logs show
   double noise_mm = 0;        ///< of the readings, sample to sample
-  double left_mm = 0;         ///< what the base leaves on held-out blocks of the healthy logs
+  Units units{{}};            ///< of the healthy records
+  double left_mm = 0;         ///< what the base leaves of units that are left out, about their means
   double span_mm = 0;
-  double gain_spread = 0;  ///< from log to log of the healthy ones, relative
+  double gain_spread = 0;  ///< from unit to unit of the healthy logs, relative
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;
   Whitener usual;               ///< without memory: by how much the base misses healthy readings
   std::vector<Record> records;  ///< the healthy ones, thinned
-  Binned left;                  ///< residual of the healthy logs while held out
+  Binned left;                  ///< residual of each unit while it was left out
 };
 
 struct BaseOptions {
@@ -70,12 +72,14 @@ struct Driven {
   Record walked;       ///< what `model` is walked along: that, or the command itself
   model::Model model;  ///< the base's, with what happens to the command in front where it can carry it
   Eigen::VectorXd echo;
+  StartState start;  ///< of the model, without offset
   std::vector<double> plain;
 };
 /// @param valve  what happens to the command before the base sees it. @param fault  of the base's regulator.
+/// @param start  where the record begins; without it, estimated from the record's first readings.
 [[nodiscard]] Driven driven_by(const Base& base, const Record& record,
                                const std::vector<model::BlockSpec>& valve = {},
-                               const RegulatorFault& fault = {});
+                               const RegulatorFault& fault = {}, const StartState* start = nullptr);
 
 /// What the base, changed by `extension`, would read; without offset.
 /// @param driven  driven_by() of the record, where it is known already.

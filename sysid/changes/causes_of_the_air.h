@@ -6,14 +6,13 @@
 
 #include "sysid/diagnosis/causes/form.h"
 #include "sysid/diagnosis/causes/leak.h"
-#include "sysid/diagnosis/causes/valve_lag.h"
 
 namespace softgrip::sysid {
 
 struct CauseOfTheAir {
   std::string_view id, title;
   WhenChanged when_changed;
-  std::string_view contains{};  ///< as Effect::contains
+  Appears appears = Appears::anywhere;
 };
 
 inline constexpr CauseOfTheAir blocked_line{
@@ -24,7 +23,7 @@ inline constexpr CauseOfTheAir blocked_line{
       "Swap the tube for a new one of the same length and record the same log again."},
      {{{HealthNumber::lag, Moves::up}}},
      {SizedBy::Of::number, "more time to fill", "s", "filling_s"}},
-    causes::ValveLag::id};
+    Appears::moving};
 
 inline constexpr CauseOfTheAir leak{
     causes::Leak::id,
@@ -35,7 +34,8 @@ inline constexpr CauseOfTheAir leak{
      {{{HealthNumber::pressure_loss, Moves::up},
        {HealthNumber::leak, Moves::up},
        {HealthNumber::gain, Moves::down}}},
-     {SizedBy::Of::number, "pressure lost in a second with the line shut", "kPa", "loss_kpa_per_s"}}};
+     {SizedBy::Of::number, "pressure lost in a second with the line shut", "kPa", "loss_kpa_per_s"}},
+    Appears::held};
 
 inline constexpr std::array causes_of_the_air{leak, blocked_line};
 

@@ -4,41 +4,32 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "base/numbers.h"
 #include "base/statistics.h"
 #include "base/thread_budget.h"
-#include "sysid/changes/chance.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
+#include "sysid/changes/echo_fit.h"
 #include "sysid/diagnosis/causes/outliers.h"
 #include "sysid/diagnosis/causes/thermal_gain.h"
 #include "sysid/diagnosis/residual/noise.h"
 #include "sysid/diagnosis/residual/outliers.h"
+#include "sysid/evidence/limits.h"
+#include "sysid/evidence/veto.h"
 #include "sysid/fitting/trajectory.h"
 
 namespace softgrip::sysid {
 namespace {
 
-/// A change is at least so large, of what the base usually leaves of healthy readings, either as they are or
-/// whitened: a fast oscillation is seen beside slow misses that are larger.
-constexpr double least_size = 0.5;
 /// From here on the temperature is the finger's own.
 constexpr double own_temperature_gain = 0.05;
-/// A further cause takes at least this share of what is left.
-constexpr double further_share = 0.4;
 constexpr std::size_t most_causes = 3;
-/// Left beyond the healthy spread by more than this, in whitened mean squares: structure.
-constexpr double misfit_allowed = 1.35;
 /// A cause that gains less than this share of another one's, in the other reading, may follow from it: a base
 /// is less certain of a course that it never saw.
 constexpr double beside_another = 0.02;
-/// Where a bend is the finger's or the sensor's, only its law would tell, which nobody knows so well: of
-/// twins of changed worlds (--first-seed 20261204) the lesser took 94 % at least.
-constexpr double twins_share = 0.9;
-/// How often, blocks drawn anew, a cause must take something to be a change, and win against another one to
-/// stand alone.
-constexpr double often = 0.95;
 
 using Failure = tl::unexpected<std::string>;
 
@@ -65,24 +56,76 @@ double rms_of(const Binned& series, double zero) {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-/// Whatever it leaves in a few hasty moments.
-double usual_left(const Binned& left) {
-  std::vector<double> sizes;
-  for (const std::vector<double>& part : left) {
-    for (const double v : part) {
-      if (std::isfinite(v)) sizes.push_back(std::abs(v));
-    }
-  }
-  constexpr double of_normal = 1.4826;
-  return of_normal * median_of(std::span(sizes));
-}
-
 Binned minus(Binned from, const Binned& what) {
   for (std::size_t r = 0; r < from.size(); ++r) {
     for (std::size_t b = 0; b < from[r].size(); ++b) from[r][b] -= what[r][b];
   }
   return from;
 }
+
+void add(PairedLosses& losses, const PairedLosses& more) {
+  losses.worse.insert(losses.worse.end(), more.worse.begin(), more.worse.end());
+  losses.better.insert(losses.better.end(), more.better.begin(), more.better.end());
+  losses.rows.insert(losses.rows.end(), more.rows.begin(), more.rows.end());
+}
+
+double per_bin(const LaterReadings& readings, const Eigen::VectorXd& white) {
+  return white.squaredNorm() / static_cast<double>(std::max<std::size_t>(1, readings.rows().rows().size()));
+}
+
+/// Searches each healthy unit, predicted without it.
+std::vector<HealthyFits> healthy_fits(const Base& base, bool pressure_is_judged, unsigned threads) {
+  const LaterReadings all = healthy_readings(base);
+  const std::vector<Effect> effects = effects_for(base, base.records, {}, pressure_is_judged);
+  std::vector<HealthyFits> units;
+  for (std::size_t unit = 0; unit < base.units.count(); ++unit) {
+    LaterReadings readings = all.only(base.units, unit);
+    if (readings.records().empty()) continue;
+    std::vector<ScoredEffect> ranked = ranked_effects(readings, effects, {}, {}, threads);
+    units.push_back({std::move(readings), std::move(ranked)});
+  }
+  return units;
+}
+
+Tolerance tolerance_of(const std::vector<HealthyFits>& healthy, std::size_t runs) {
+  std::vector<NullGains> gains;
+  for (const HealthyFits& unit : healthy) {
+    gains.emplace_back();
+    for (const ScoredEffect& each : unit.ranked) gains.back()[each.fit.fitted.effect.id] = each.gain;
+  }
+  return {gains, runs};
+}
+
+/// How far healthy units differ from what the others predict of them, and what another run may show.
+class RunSpread {
+ public:
+  RunSpread() = default;
+  RunSpread(const std::vector<HealthyFits>& healthy, std::size_t runs)
+      : factor_(run_to_run_factor(runs)), are_runs_(runs > 1) {
+    for (const HealthyFits& unit : healthy) {
+      const double rms = unit.readings.plain_rms({});
+      mean_square_ += square(rms) / static_cast<double>(healthy.size());
+      worst_rms_ = std::max(worst_rms_, rms);
+      worst_misfit_ = std::max(worst_misfit_, per_bin(unit.readings, unit.readings.white({})));
+    }
+  }
+  [[nodiscard]] double usual_rms() const { return std::sqrt(mean_square_); }
+  [[nodiscard]] double allowed_rms() const { return std::sqrt(factor_ * mean_square_); }
+  /// @param rms  of the readings as they are. @param misfit  mean square of the whitened ones: 1 for healthy
+  /// units.
+  [[nodiscard]] bool is_exceeded(double rms, double misfit) const {
+    return rms > allowed_rms() || misfit > factor_;
+  }
+  /// Whether a change may be sought. Where several runs say how much a search finds by itself, it is enough
+  /// that the readings are predicted worse than every healthy run was.
+  [[nodiscard]] bool admits_a_change(double rms, double misfit) const {
+    return is_exceeded(rms, misfit) || (are_runs_ && (rms > worst_rms_ || misfit > worst_misfit_));
+  }
+
+ private:
+  double factor_ = 1, mean_square_ = 0, worst_rms_ = 0, worst_misfit_ = 0;
+  bool are_runs_ = false;
+};
 
 /// One reading from its healthy records to what it shows of the later ones.
 class Judge {
@@ -92,10 +135,10 @@ class Judge {
 
   void judge(const std::vector<Record>& later, ChangeDiagnosis& diagnosis) {
     learn_temperature();
-    say("what chance shows on the healthy logs");
-    const Chance chance =
-        chance_of(LaterReadings(base_, base_.records, base_.left),
-                  effects_for(base_, base_.records, {}, pressure_is_judged_), options_.threads);
+    say("what the search finds in healthy runs that are left out");
+    healthy_ = healthy_fits(base_, pressure_is_judged_, options_.threads);
+    spread_ = RunSpread(healthy_, base_.units.runs());
+    const Tolerance tolerance = tolerance_of(healthy_, base_.units.runs());
     const std::vector<std::vector<double>> residuals = residuals_of(base_, later);
     const LaterReadings readings = readings_of(base_, later, residuals);
     const std::vector<Effect> effects =
@@ -103,31 +146,39 @@ class Judge {
     JudgedChange judged;
     judged.judged = base_.judged;
     judged.base = base_.description;
+    judged.healthy_runs = base_.units.runs();
     judged.noise_mm = base_.noise_mm;
-    judged.healthy_mm = base_.left_mm;
+    judged.healthy_mm = spread_.usual_rms();
+    judged.allowed_mm = spread_.allowed_rms();
     std::vector<FittedEffect> found;
     Eigen::VectorXd white = readings.white(found);
-    judged.misfit_before = judged.misfit_left = per_bin(readings, white.squaredNorm());
+    judged.misfit_before = judged.misfit_left = per_bin(readings, white);
     for (std::size_t step = 0; step < most_causes; ++step) {
       say("which changes the later logs show");
-      std::vector<ScoredEffect> ranked = ranked_effects(readings, effects, found, chance, options_.threads);
+      std::vector<ScoredEffect> ranked =
+          ranked_effects(readings, effects, found, tolerance, options_.threads);
       if (step == 0) {
         for (const ScoredEffect& each : ranked)
-          judged.tried.push_back(
-              {each.fit.fitted.effect.id, each.fit.fitted.effect.form, each.gain, each.chance});
+          judged.tried.push_back({each.fit.fitted.effect.id,
+                                  each.fit.fitted.effect.form,
+                                  each.gain,
+                                  each.usual,
+                                  each.tolerance,
+                                  {}});
       }
-      const Weighed weighed = weigh_first_change(readings, ranked, white, found);
-      const double excess_left = judged.misfit_left - 1;
-      if (ranked.empty() || !(found.empty() || ranked.front().gain > further_share * excess_left)) break;
-      const ScoredEffect& best = ranked.front();
-      diagnosis.causes.push_back(cause_of(readings, ranked, weighed, judged.misfit_before - 1));
-      found.push_back(best.fit.fitted);
-      white = best.fit.white;
-      judged.misfit_left = per_bin(readings, white.squaredNorm());
-      if (!(judged.misfit_left > misfit_allowed)) break;
+      // A further cause is sought only in an error that another run would not show.
+      const double rms = readings.plain_rms(found);
+      if (step == 0 ? !spread_.admits_a_change(rms, judged.misfit_left)
+                    : !spread_.is_exceeded(rms, judged.misfit_left))
+        break;
+      const std::optional<ChangeCause> cause = first_change(readings, ranked, white, found, judged);
+      if (!cause) break;
+      diagnosis.causes.push_back(*cause);
+      found.push_back(cause->fitted);
+      white = readings.white(found);
+      judged.misfit_left = per_bin(readings, white);
     }
-    add_intervals(intervals_of(readings, found), diagnosis.causes);
-    finish(readings, found, judged);
+    finish(readings, effects, found, judged);
     diagnosis.readings.push_back(std::move(judged));
   }
 
@@ -141,7 +192,7 @@ class Judge {
     std::vector<Effect> effects = effects_for(base_, base_.records, {}, pressure_is_judged_);
     std::erase_if(effects, [](const Effect& e) { return e.id != causes::ThermalGain::id; });
     if (effects.empty()) return;
-    const LaterReadings healthy(base_, base_.records, base_.left);
+    const LaterReadings healthy = healthy_readings(base_);
     const std::vector<ScoredEffect> ranked = ranked_effects(healthy, effects, {}, {}, options_.threads);
     if (!(ranked.front().gain > own_temperature_gain)) return;
     FittedEffect own = ranked.front().fit.fitted;
@@ -150,67 +201,124 @@ class Judge {
     base_.gain_per_c = own.numbers.front();
   }
 
-  [[nodiscard]] bool is_large(const LaterReadings& readings, const Binned& added) const {
-    return rms_of(added, 0) >= least_size * usual_left(base_.left) ||
-           per_bin(readings, readings.rows()(added).squaredNorm()) >= least_size * least_size;
+  static std::vector<FittedEffect> with(std::vector<FittedEffect> found, const FittedEffect& one) {
+    found.push_back(one);
+    return found;
   }
 
-  static double per_bin(const LaterReadings& readings, double value) {
-    return value / static_cast<double>(readings.rows().rows().size());
-  }
-
-  /// An effect beside the readings without it.
-  struct Weighed {
-    Binned added;
-    std::vector<double> block_sums;  ///< with it
-    Resampled spread;                ///< of what it takes
-    bool is_a_change = false;        ///< by its size and over blocks drawn anew
-  };
-
-  /// @param without  the whitened readings without it. @param found  what is there beside it.
-  [[nodiscard]] Weighed weigh(const LaterReadings& readings, const ScoredEffect& scored,
-                              const Eigen::VectorXd& without, std::vector<FittedEffect> found) const {
-    Weighed weighed;
-    weighed.added = readings.added({scored.fit.fitted});
-    weighed.block_sums = block_sums(readings, scored.fit.white);
-    weighed.spread = resampled(block_sums(readings, without), weighed.block_sums, options_.seed);
-    const double without_it = readings.plain_rms(found);
-    found.push_back(scored.fit.fitted);
-    // What takes the prediction farther from what was measured, and is there only once the readings are
-    // whitened, is the shape of the base's own misses.
-    weighed.is_a_change = is_large(readings, weighed.added) && weighed.spread.share > often &&
-                          readings.plain_rms(found) < without_it;
-    return weighed;
-  }
-
-  /// Leaves of the ranked those that stand out, the first that is a change in front: what chance alone makes
-  /// gain more does not hide it.
-  [[nodiscard]] Weighed weigh_first_change(const LaterReadings& readings, std::vector<ScoredEffect>& ranked,
-                                           const Eigen::VectorXd& without,
-                                           const std::vector<FittedEffect>& found) const {
-    std::erase_if(ranked, [&](const ScoredEffect& each) { return !stands_out(each, base_); });
-    for (; !ranked.empty(); ranked.erase(ranked.begin())) {
-      put_fewest_numbers_first(ranked);
-      Weighed weighed = weigh(readings, ranked.front(), without, found);
-      if (weighed.is_a_change) return weighed;
+  /// Of each row what the finger was told and did.
+  [[nodiscard]] std::vector<bool> required_rows(const LaterReadings& readings, Appears appears) const {
+    Binned drive, rate;
+    for (std::size_t r = 0; r < readings.records().size(); ++r) {
+      const Record& record = readings.records()[r];
+      const std::size_t bins = readings.left()[r].size();
+      drive.push_back(with_bins(binned(record, record.drive_kpa, base_.bin_s), bins));
+      rate.push_back(with_bins(haste_of(record, base_.bin_s), bins));
     }
-    return {};
+    std::vector<OperatingPoint> conditions;
+    for (const auto& [r, b, spread] : readings.rows().rows())
+      conditions.push_back({drive[r][b], rate[r][b], readings.plain()[r][b]});
+    return required_at(appears, conditions);
   }
 
-  /// Whether another effect explains as much as the best one.
-  [[nodiscard]] bool is_rival(const LaterReadings& readings, const ScoredEffect& best,
-                              const ScoredEffect& other, const Weighed& weighed) const {
-    const Effect& effect = best.fit.fitted.effect;
-    if (takes_as_much(other, best)) return true;
-    if (other.fit.fitted.effect.id == effect.twin && other.gain > twins_share * best.gain) return true;
-    const double dearer = price_of(other.fit.fitted.effect) - price_of(effect);
-    const std::vector<double> sums = block_sums(readings, other.fit.white);
-    return resampled(sums, weighed.block_sums, options_.seed, dearer).share < often;
+  /// Whether the error is smaller where the cause must act.
+  [[nodiscard]] bool is_shown(const std::vector<bool>& required, PairedLosses losses,
+                              const std::vector<std::size_t>& blocks, const Eigen::VectorXd& without,
+                              const Eigen::VectorXd& with_it) const {
+    for (auto* const list : {&losses.worse, &losses.better, &losses.rows})
+      std::fill(list->begin(), list->end(), 0);
+    for (std::size_t i = 0; i < required.size(); ++i) {
+      if (!required[i]) continue;
+      losses.worse[blocks[i]] += square(without(static_cast<Eigen::Index>(i)));
+      losses.better[blocks[i]] += square(with_it(static_cast<Eigen::Index>(i)));
+      losses.rows[blocks[i]] += 1;
+    }
+    return is_better(compare(losses, 0, options_.seed));
+  }
+
+  /// Whether later units to which an effect was not fitted are predicted worse with it. Units in which it
+  /// does not act say nothing: half of a run need not reach the end of a sensor.
+  [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
+                                    const std::vector<FittedEffect>& found) const {
+    PairedLosses losses;
+    if (effect.free_form) return false;
+    const Units units(readings.records());
+    for (std::size_t unit = 0; unit < units.count(); ++unit) {
+      const LaterReadings rest = readings.without(units, unit), own = readings.only(units, unit);
+      if (rest.records().empty() || own.records().empty()) continue;
+      const EffectFit fit = fit_effect(rest, effect, found, rest.white(found));
+      const std::vector<FittedEffect> all = with(found, fit.fitted);
+      add(losses, losses_of(minus(own.left(), own.added(all)), minus(own.left(), own.added(found)),
+                            Units(own.records()), base_.bin_s));
+    }
+    return is_better(compare(losses, 0, options_.seed));
+  }
+
+  /// What a size of this unit is at most: the range of the signal that the cause acts on.
+  [[nodiscard]] double largest_size(const LaterReadings& readings, const std::string& unit) const {
+    double length_s = 0;
+    for (const Record& record : readings.records()) length_s = std::max(length_s, record.length_s());
+    if (unit == "mm") return base_.span_mm;
+    if (unit == "kPa") return base_.largest_kpa;
+    if (unit == "s") return length_s;
+    return std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] Veto vetoed(const LaterReadings& readings, const ScoredEffect& scored,
+                            const Eigen::VectorXd& without, const std::vector<FittedEffect>& found) const {
+    const FittedEffect& fitted = scored.fit.fitted;
+    const std::vector<bool> required = required_rows(readings, fitted.effect.appears);
+    Claim claim;
+    claim.condition_met =
+        static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) >= limits::fewest_bins;
+    if (!claim.condition_met) return veto_of(claim);
+    const std::vector<FittedEffect> all = with(found, fitted);
+    claim.size = intervals_of(readings, all, healthy_).back().size;
+    const ChangeSize size = size_of(readings, fitted, at_full_pressure(readings, readings.added({fitted})));
+    claim.largest_size = largest_size(readings, size.unit);
+    claim.error_without = readings.plain_rms(found);
+    claim.error_with = readings.plain_rms(all);
+    claim.predicts_worse = predicts_worse(readings, fitted.effect, found);
+    claim.shown_there = is_shown(required, paired_losses(readings, without, scored.fit.white),
+                                 blocks_of(readings), without, scored.fit.white);
+    return veto_of(claim);
+  }
+
+  /// The best effect that improves more than the tolerance and meets all conditions; nothing: there is none.
+  /// Notes why the others were rejected.
+  [[nodiscard]] std::optional<ChangeCause> first_change(const LaterReadings& readings,
+                                                        std::vector<ScoredEffect> ranked,
+                                                        const Eigen::VectorXd& without,
+                                                        const std::vector<FittedEffect>& found,
+                                                        JudgedChange& judged) const {
+    const auto reject = [&](const ScoredEffect& scored, std::string_view reason) {
+      for (ChangeRival& tried : judged.tried) {
+        if (tried.id == scored.fit.fitted.effect.id && tried.rejected.empty()) tried.rejected = reason;
+      }
+    };
+    std::erase_if(ranked, [&](const ScoredEffect& each) {
+      const Comparison against_none =
+          compare(paired_losses(readings, without, each.fit.white),
+                  each.tolerance + price_per_row(readings, each.fit.fitted.effect), options_.seed);
+      if (is_better(against_none)) return false;
+      reject(each, "the improvement is within what the search finds in healthy runs");
+      return true;
+    });
+    const Ties ties = ties_in(readings, options_.seed);
+    for (; !ranked.empty(); ranked.erase(ranked.begin())) {
+      put_fewest_numbers_first(ranked, ties);
+      const Veto veto = vetoed(readings, ranked.front(), without, found);
+      if (veto == Veto::none) return cause_of(readings, ranked, ties, without, found);
+      reject(ranked.front(), reason_of(veto));
+    }
+    return std::nullopt;
   }
 
   [[nodiscard]] ChangeCause cause_of(const LaterReadings& readings, const std::vector<ScoredEffect>& ranked,
-                                     const Weighed& weighed, double excess) const {
+                                     const Ties& ties, const Eigen::VectorXd& without,
+                                     const std::vector<FittedEffect>& found) const {
     const FittedEffect& best = ranked.front().fit.fitted;
+    const Binned added = readings.added({best});
     ChangeCause cause;
     cause.id = best.effect.id;
     cause.title = best.effect.title;
@@ -218,28 +326,26 @@ class Judge {
     cause.judged = base_.judged;
     cause.fitted = best;
     cause.gain = ranked.front().gain;
-    cause.gain_lower = per_bin(readings, weighed.spread.lower);
-    cause.gain_upper = per_bin(readings, weighed.spread.upper);
+    const Comparison spread =
+        compare(paired_losses(readings, without, ranked.front().fit.white), 0, options_.seed);
+    cause.gain_lower = spread.lower;
+    cause.gain_upper = spread.upper;
     for (std::size_t i = 1; i < ranked.size(); ++i) {
-      if (is_rival(readings, ranked.front(), ranked[i], weighed))
+      if (ties(ranked.front(), ranked[i]) && vetoed(readings, ranked[i], without, found) == Veto::none)
         cause.rivals.push_back(ranked[i].fit.fitted.effect.id);
     }
-    cause.effect_mm = rms_of(weighed.added, 0);
-    cause.full_pressure_mm = at_full_pressure(readings, weighed.added);
+    cause.effect_mm = rms_of(added, 0);
+    cause.full_pressure_mm = at_full_pressure(readings, added);
     cause.size = size_of(readings, best, cause.full_pressure_mm);
+    const double excess = per_bin(readings, without) - 1;
     cause.share_percent = excess > 0 ? std::clamp(100 * cause.gain / excess, 0.0, 100.0) : 0;
     return cause;
   }
 
-  /// To the causes that were found last.
-  static void add_intervals(const std::vector<EffectIntervals>& intervals, std::vector<ChangeCause>& causes) {
-    const std::size_t before = causes.size() - intervals.size();
-    for (std::size_t i = 0; i < intervals.size(); ++i) causes[before + i].intervals = intervals[i];
-  }
-
-  void finish(const LaterReadings& readings, const std::vector<FittedEffect>& found,
-              JudgedChange& judged) const {
-    judged.left_over = judged.misfit_left > misfit_allowed;
+  void finish(const LaterReadings& readings, const std::vector<Effect>& effects,
+              const std::vector<FittedEffect>& found, JudgedChange& judged) const {
+    judged.intervals = intervals_of(readings, found, healthy_);
+    judged.left_over = spread_.is_exceeded(readings.plain_rms(found), judged.misfit_left);
     judged.bin_s = base_.bin_s;
     for (const Record& record : readings.records()) judged.logs.push_back(record.name);
     judged.left = readings.left();
@@ -247,13 +353,20 @@ class Judge {
     const LaterReadings::Slack slack = readings.slack(found);
     judged.zero_mm = slack.zero_mm;
     judged.gain_percent = 100 * slack.gain;
-    judged.later_mm = rms_of(readings.left(), readings.slack({}).zero_mm);
-    judged.explained_mm = rms_of(judged.explained, slack.zero_mm);
+    judged.later_mm = readings.plain_rms({});
+    judged.explained_mm = readings.plain_rms(found);
+    for (const Effect& effect : effects) {
+      const std::vector<bool> required = required_rows(readings, effect.appears);
+      if (static_cast<std::size_t>(std::count(required.begin(), required.end(), true)) < limits::fewest_bins)
+        judged.not_tested.emplace(effect.id, recording_for(effect.appears));
+    }
   }
 
   Base base_;
   const ChangeOptions& options_;
   bool pressure_is_judged_;
+  std::vector<HealthyFits> healthy_;
+  RunSpread spread_;
 };
 
 bool has_pressure(const std::vector<Log>& logs) {
@@ -279,6 +392,10 @@ void warn(const std::vector<Log>& healthy, const std::vector<Log>& later,
   if (now_kpa > 1.05 * then_kpa)
     warnings.push_back("The later logs go to " + significant(now_kpa, 3) + " kPa, the healthy ones to " +
                        significant(then_kpa, 3) + " kPa: beyond it the base only guesses");
+  if (healthy.size() == 1)
+    warnings.emplace_back(
+        "One healthy log does not show how runs differ. A change is reported only if its error exceeds three "
+        "times the error between the halves of that log. Record three healthy logs or more");
   if (has_pressure(healthy) != has_pressure(later))
     warnings.emplace_back(
         "pressure_kpa is recorded in one of the two only: the valve and the finger are judged as one");
@@ -299,6 +416,17 @@ void judge_outliers(const OutlierEvidence& healthy, const OutlierEvidence& later
   cause.share_percent = 100;
   cause.gain = noise_mm > 0 ? std::pow(later.excess_mm / noise_mm, 2) : 0;
   diagnosis.causes.push_back(std::move(cause));
+}
+
+/// Each reading knows the intervals of the causes that were found in it, in their order.
+void add_intervals(ChangeDiagnosis& diagnosis) {
+  for (const JudgedChange& judged : diagnosis.readings) {
+    auto next = judged.intervals.begin();
+    for (ChangeCause& cause : diagnosis.causes) {
+      if (cause.judged == judged.judged && !cause.fitted.effect.id.empty() && next != judged.intervals.end())
+        cause.intervals = *next++;
+    }
+  }
 }
 
 ChangeVerdict verdict_of(const ChangeDiagnosis& d) {
@@ -351,6 +479,7 @@ tl::expected<ChangeDiagnosis, std::string> diagnose_change(const std::vector<Log
   }
   Judge finger(fit_base(before.records, Judged::displacement, record.drive, base), options, pressure);
   finger.judge(after.records, diagnosis);
+  add_intervals(diagnosis);
   std::stable_sort(diagnosis.causes.begin(), diagnosis.causes.end(),
                    [](const ChangeCause& a, const ChangeCause& b) { return a.gain > b.gain; });
   if (!diagnosis.causes.empty()) {

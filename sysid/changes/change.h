@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,15 +55,20 @@ struct ChangeCause {
 /// What was tried and not named.
 struct ChangeRival {
   std::string id, form;
-  double gain = 0, healthy_gain = 0;
+  double gain = 0;
+  double healthy_gain = 0;  ///< what it improves in healthy units that are left out, on average
+  double tolerance = 0;     ///< what it must improve to be a change
+  std::string rejected;     ///< why it is no cause, if that was found out
 };
 
 /// One reading: the displacement, or the pressure.
 struct JudgedChange {
   Judged judged = Judged::displacement;
-  std::string base;                           ///< in words
-  double noise_mm = 0;                        ///< kPa of the pressure
-  double healthy_mm = 0;                      ///< what the base leaves of healthy readings, held out
+  std::string base;     ///< in words
+  double noise_mm = 0;  ///< kPa of the pressure
+  std::size_t healthy_runs = 0;
+  double healthy_mm = 0;                      ///< what the base leaves of healthy units that are left out
+  double allowed_mm = 0;                      ///< what another healthy run may leave
   double later_mm = 0;                        ///< what it leaves of the later ones, but for zero and gain
   double explained_mm = 0;                    ///< with the causes
   double misfit_before = 1, misfit_left = 1;  ///< mean squares, whitened; 1: as on the healthy logs
@@ -70,6 +76,8 @@ struct JudgedChange {
   double gain_percent = 0;                    ///< within the healthy spread
   bool left_over = false;
   std::vector<ChangeRival> tried;
+  std::vector<EffectIntervals> intervals;         ///< of its causes, in the order in which they were found
+  std::map<std::string, std::string> not_tested;  ///< causes, each with the recording that would show it
   double bin_s = 0.05;
   std::vector<std::string> logs;  ///< names of the later ones
   Binned left, explained;         ///< what the base leaves of them, without and with the causes

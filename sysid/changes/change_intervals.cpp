@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "base/statistics.h"
 #include "sysid/changes/change_search.h"
 #include "sysid/changes/change_size.h"
 
@@ -13,9 +14,6 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double quantile = 1.959963984540054;
-/// What the base does not know adds to what the later logs leave open: with 1, two thirds of the intervals of
-/// changed worlds held the truth (those of --first-seed 20261203); with this, 95 %.
-constexpr double with_the_base = 2.5;
 
 /// One number of one effect, and how far it is moved for a slope.
 struct Place {
@@ -77,7 +75,7 @@ Eigen::MatrixXd covariance_of(const LaterReadings& readings, const Eigen::Matrix
 
 std::optional<Interval> interval(double value, double variance) {
   if (!std::isfinite(variance) || !(variance > 0)) return std::nullopt;
-  const double half = with_the_base * quantile * std::sqrt(variance);
+  const double half = quantile * std::sqrt(variance);
   return Interval{value - half, value + half};
 }
 
@@ -89,15 +87,53 @@ std::optional<Interval> within(const EffectNumber& number, std::optional<Interva
   return interval;
 }
 
+/// The healthy fit of the same form in a unit; nullptr: it improves nothing there.
+const FittedEffect* same_form(const HealthyFits& unit, const FittedEffect& effect) {
+  for (const ScoredEffect& each : unit.ranked) {
+    const FittedEffect& fitted = each.fit.fitted;
+    if (fitted.effect.id == effect.effect.id && fitted.effect.form == effect.effect.form && each.gain > 0)
+      return &fitted;
+  }
+  return nullptr;
+}
+
+/// By how much runs differ in what `value_of` a fitted form: the mean square over healthy units, for another
+/// run beside the mean of theirs.
+template <class ValueOf>
+double between_runs(const std::vector<HealthyFits>& healthy, const FittedEffect& effect, ValueOf value_of) {
+  const auto units = static_cast<double>(healthy.size());
+  double sum = 0;
+  for (const HealthyFits& unit : healthy) {
+    if (const FittedEffect* const fitted = same_form(unit, effect)) sum += square(value_of(unit, *fitted));
+  }
+  return healthy.empty() ? 0 : sum / units * (1 + 1 / units);
+}
+
+double healthy_variance(const std::vector<HealthyFits>& healthy, const FittedEffect& effect,
+                        std::size_t number) {
+  const double nothing = effect.effect.nothing[number];
+  if (!std::isfinite(nothing)) return 0;
+  return between_runs(healthy, effect, [&](const HealthyFits&, const FittedEffect& fitted) {
+    return fitted.numbers[number] - nothing;
+  });
+}
+
 /// What the effect's size is with these numbers.
 double size_with(const LaterReadings& readings, const FittedEffect& effect) {
   return size_of(readings, effect, at_full_pressure(readings, readings.added({effect}))).value;
 }
 
+double healthy_size_variance(const std::vector<HealthyFits>& healthy, const FittedEffect& effect) {
+  return between_runs(healthy, effect, [](const HealthyFits& unit, const FittedEffect& fitted) {
+    return size_with(unit.readings, fitted);
+  });
+}
+
 }  // namespace
 
 std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
-                                          const std::vector<FittedEffect>& found) {
+                                          const std::vector<FittedEffect>& found,
+                                          const std::vector<HealthyFits>& healthy) {
   const std::vector<Place> places = places_of(found);
   const Eigen::VectorXd white = readings.white_and_gain(found);
   const Eigen::MatrixXd slopes = slopes_of(readings, found, places, white);
@@ -112,12 +148,15 @@ std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
       if (place.effect != e) continue;
       const auto i = static_cast<Eigen::Index>(c);
       const bool felt = slopes.col(i).squaredNorm() > 0;
-      const double variance = felt ? covariance(i, i) * place.by * place.by : 0;
+      const double variance =
+          felt ? covariance(i, i) * square(place.by) + healthy_variance(healthy, effect, place.number) : 0;
       all[e].numbers.push_back(
           within(effect.effect.numbers[place.number], interval(effect.numbers[place.number], variance)));
       if (felt) size_slopes(i) = size_with(readings, moved(found, place)[e]) - size;
     }
-    all[e].size = interval(size, size_slopes.dot(covariance * size_slopes));
+    const double size_variance = size_slopes.dot(covariance * size_slopes);
+    if (size_variance > 0)
+      all[e].size = interval(size, size_variance + healthy_size_variance(healthy, effect));
   }
   return all;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "sysid/changes/change_search.h"
 #include "sysid/changes/effect_fit.h"
 #include "sysid/fitting/interval.h"
 
@@ -15,11 +16,18 @@ struct EffectIntervals {
   std::optional<Interval> size;                  ///< of what size_of() says
 };
 
-/// All effects together, the base frozen, by the sandwich estimator over blocks of some seconds, within which
-/// what is left may be as it likes (Liang and Zeger, Biometrika 73, 1986), and widened by what a base adds
-/// that is not certain itself; a size by the numbers' slopes.
-/// @param found  what explains the readings. @return one for each.
+/// A healthy unit that was left out, and what the search finds in it, where nothing has changed.
+struct HealthyFits {
+  LaterReadings readings;
+  std::vector<ScoredEffect> ranked;
+};
+
+/// All effects together, the base frozen, by the sandwich estimator over blocks of some seconds (Liang and
+/// Zeger, Biometrika 73, 1986). To its variance comes that of the same number between healthy units. A size
+/// follows by the slopes of its numbers.
+/// @param found  what explains the readings. @param healthy  one for each unit. @return one for each effect.
 [[nodiscard]] std::vector<EffectIntervals> intervals_of(const LaterReadings& readings,
-                                                        const std::vector<FittedEffect>& found);
+                                                        const std::vector<FittedEffect>& found,
+                                                        const std::vector<HealthyFits>& healthy);
 
 }  // namespace softgrip::sysid

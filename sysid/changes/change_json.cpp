@@ -41,19 +41,26 @@ Json cause_json(const ChangeCause& cause) {
 Json reading_json(const JudgedChange& judged) {
   Json tried = Json::array();
   for (const ChangeRival& rival : judged.tried)
-    tried.push_back(
-        {{"id", rival.id}, {"form", rival.form}, {"gain", rival.gain}, {"healthy_gain", rival.healthy_gain}});
+    tried.push_back({{"id", rival.id},
+                     {"form", rival.form},
+                     {"gain", rival.gain},
+                     {"healthy_gain", rival.healthy_gain},
+                     {"tolerance", rival.tolerance},
+                     {"rejected", rival.rejected.empty() ? Json(nullptr) : Json(rival.rejected)}});
   return {{"reading", judged.judged == Judged::pressure ? "pressure_kpa" : "displacement_mm"},
           {"unit", unit_of(judged.judged)},
           {"base", judged.base},
           {"noise", judged.noise_mm},
+          {"healthy_runs", judged.healthy_runs},
           {"healthy_heldout_rms", judged.healthy_mm},
+          {"allowed_rms", judged.allowed_mm},
           {"later_rms", judged.later_mm},
           {"explained_rms", judged.explained_mm},
           {"misfit", {{"before", judged.misfit_before}, {"left", judged.misfit_left}}},
           {"structure_left", judged.left_over},
           {"zero", judged.zero_mm},
           {"gain_percent", judged.gain_percent},
+          {"not_tested", judged.not_tested},
           {"tried", std::move(tried)}};
 }
 

@@ -74,26 +74,49 @@ Figure tried_figure(const JudgedChange& judged) {
   Chart chart;
   chart.title = name_of(judged.judged);
   chart.y.label = "gain";
-  Series later, healthy;
+  Series later, healthy, tolerance;
   later.label = "later logs";
-  healthy.label = "healthy logs, held out";
+  tolerance.label = "tolerance";
+  healthy.label = "healthy runs, left out";
   later.style = Series::Style::bars;
   healthy.style = Series::Style::points;
   healthy.width = 4;
-  healthy.colour = Colour::error;
+  healthy.colour = Colour::measured;
+  tolerance.style = Series::Style::points;
+  tolerance.width = 4;
+  tolerance.colour = Colour::error;
   later.colour = Colour::model;
   for (std::size_t i = 0; i < std::min(drawn_causes, judged.tried.size()); ++i) {
     chart.x.categories.push_back(judged.tried[i].id);
-    for (Series* series : {&later, &healthy}) series->x.push_back(static_cast<double>(i));
+    for (Series* series : {&later, &healthy, &tolerance}) series->x.push_back(static_cast<double>(i));
     later.y.push_back(std::max(0.0, judged.tried[i].gain));
     healthy.y.push_back(judged.tried[i].healthy_gain);
+    tolerance.y.push_back(judged.tried[i].tolerance);
   }
-  chart.series = {later, healthy};
+  chart.series = {later, healthy, tolerance};
   return {
       std::string("causes tried ") + name_of(judged.judged),
-      "What each cause alone takes of the misfit, in whitened squares per bin: of the later logs, and of the "
-      "healthy ones while they were held out. A change must take more than twice what it takes there.",
+      "Improvement by each cause alone, in whitened squares per bin: of the later logs, and of healthy runs "
+      "that were left out. The improvement by a change must exceed its tolerance.",
       stacked({chart})};
+}
+
+/// Why causes were rejected.
+Table rejected_table(const JudgedChange& judged) {
+  Table table{
+      "Rejected causes", {"cause", "improvement", "tolerance", "reason"}, {false, true, true, false}, {}};
+  for (const ChangeRival& tried : judged.tried) {
+    if (!tried.rejected.empty())
+      table.rows.push_back({tried.id, fixed(tried.gain, 3), fixed(tried.tolerance, 3), tried.rejected});
+  }
+  return table;
+}
+
+/// What the data cannot show, and the recording that would.
+Table not_tested_table(const JudgedChange& judged) {
+  Table table{"Not tested", {"cause", "to test it"}, {false, false}, {}};
+  for (const auto& [id, recording] : judged.not_tested) table.rows.push_back({id, recording});
+  return table;
 }
 
 void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& d) {
@@ -101,8 +124,10 @@ void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& 
   const std::string unit = std::string(" ") + unit_of(judged.judged);
   page.terms({{"base", judged.base},
               {"noise of the readings", significant(judged.noise_mm, 2) + unit},
-              {"left of healthy readings, held out", significant(judged.healthy_mm, 3) + unit},
-              {"left of the later ones", significant(judged.later_mm, 3) + unit},
+              {"healthy logs", std::to_string(judged.healthy_runs)},
+              {"error of healthy runs that were left out", significant(judged.healthy_mm, 3) + unit},
+              {"error that another healthy run may have", significant(judged.allowed_mm, 3) + unit},
+              {"error of the later logs", significant(judged.later_mm, 3) + unit},
               {"with the causes", significant(judged.explained_mm, 3) + unit},
               {"another zero", significant(judged.zero_mm, 2) + unit},
               {"gain within the healthy spread", significant(judged.gain_percent, 2) + " %"}});
@@ -110,6 +135,8 @@ void add_reading(Page& page, const JudgedChange& judged, const ChangeDiagnosis& 
   for (const ChangeCause& cause : d.causes) explained |= cause.judged == judged.judged;
   page.figure(misfit_figure(judged, explained));
   page.figure(tried_figure(judged));
+  page.table(rejected_table(judged));
+  if (!judged.not_tested.empty()) page.table(not_tested_table(judged));
 }
 
 }  // namespace

@@ -1,57 +1,53 @@
 #pragma once
-// Which effects one reading shows, one after the other, each against what chance shows on healthy logs.
+// Which effects one reading shows, one after the other, each against what the same search finds in healthy
+// ones.
 
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "sysid/changes/effect_fit.h"
+#include "sysid/evidence/comparison.h"
+#include "sysid/evidence/tolerance.h"
 
 namespace softgrip::sysid {
 
 struct ScoredEffect {
   EffectFit fit;
-  double gain = 0;               ///< whitened squares per row that it takes, less what its numbers cost
-  double worth_of_a_number = 0;  ///< what one must take to be worth it, per row
-  double chance = 0;             ///< what its cause took of the healthy logs while they were held out
+  double gain = 0;       ///< whitened squares per row that it takes, less what its numbers cost
+  double usual = 0;      ///< what its cause improves in healthy units that are left out, on average
+  double tolerance = 0;  ///< what it must improve to be a change
 };
-
-/// Of every cause, what its best form takes of healthy logs that were held out: chance, and where the base is
-/// wrong.
-using Chance = std::map<std::string, double>;
 
 /// What the numbers of an effect must take to be worth it, in whitened squares.
 [[nodiscard]] double price_of(const Effect& effect);
 
-/// Whether another effect takes nearly what the best one takes beyond chance: what one base is not certain
-/// enough of to tell them apart, however many bins say so.
-[[nodiscard]] bool takes_as_much(const ScoredEffect& other, const ScoredEffect& best);
+/// The same for each row of the readings.
+[[nodiscard]] double price_per_row(const LaterReadings& readings, const Effect& effect);
 
-/// What takes most beyond chance first; of every cause one form, that of those which take as much the one
-/// with the fewest numbers.
+/// Whether an effect does not improve the readings by more than its tolerance beyond what another one does,
+/// so that the data cannot tell them apart. Causes that are declared to give the same readings always tie.
+using Ties = std::function<bool(const ScoredEffect& best, const ScoredEffect& other)>;
+[[nodiscard]] Ties ties_in(const LaterReadings& readings, std::uint64_t seed);
+
+/// The effect that improves most beyond the usual first; of every cause one form, among forms that tie the
+/// one with the fewest numbers.
 [[nodiscard]] std::vector<ScoredEffect> ranked_effects(const LaterReadings& readings,
                                                        const std::vector<Effect>& effects,
                                                        const std::vector<FittedEffect>& others,
-                                                       const Chance& chance, unsigned threads);
+                                                       const Tolerance& tolerance, unsigned threads);
 
-/// Of those that take as much as the first, the one with the fewest numbers goes before it: those that shape
-/// it are counted before those that only say where it is counted from. A line that fills and empties alike is
-/// a lag of the valve, however much they take. A cause's limit and its twin take more, or go behind it.
-void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked);
+/// Puts the effect with the fewest numbers first, among the first and those that tie with it. Numbers that
+/// shape it are counted before those that only say where it is counted from. Of as many numbers, one that is
+/// no ideal is preferred.
+void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked, const Ties& ties);
 
 /// Of every row of the readings, which block of some seconds it is in, from 0.
 [[nodiscard]] std::vector<std::size_t> blocks_of(const LaterReadings& readings);
 
-/// Sums of whitened squares over these blocks.
-[[nodiscard]] std::vector<double> block_sums(const LaterReadings& readings, const Eigen::VectorXd& white);
-
-/// Of paired sums: how often, blocks drawn anew, `worse` is the larger, and the interval of the difference.
-/// @param dearer  what `worse` costs beside its sums more than `better`.
-struct Resampled {
-  double share = 0, lower = 0, upper = 0;
-};
-[[nodiscard]] Resampled resampled(const std::vector<double>& worse, const std::vector<double>& better,
-                                  std::uint64_t seed, double dearer = 0);
+/// Whitened squares of two residuals over these blocks.
+[[nodiscard]] PairedLosses paired_losses(const LaterReadings& readings, const Eigen::VectorXd& worse,
+                                         const Eigen::VectorXd& better);
 
 }  // namespace softgrip::sysid

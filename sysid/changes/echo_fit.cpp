@@ -4,192 +4,244 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include <Eigen/Cholesky>
+
+#include "base/statistics.h"
+#include "sysid/evidence/limits.h"
 
 namespace softgrip::sysid {
 namespace {
 
 constexpr std::array ridges{1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2};
-/// Held out in turn, in blocks, fewer seconds where there are few. Shorter than what a finger remembers, a
-/// block is known from its neighbours, and a slow echo that has merely learnt the order of the healthy logs
-/// by heart passes: on the next day it is a zero that wanders.
-constexpr double longest_block_s = 10;
-constexpr std::size_t folds = 8;
 
 using Factor = Eigen::LDLT<Eigen::MatrixXd, Eigen::Lower>;
 
-/// The columns of all records in bins, each row in its fold.
+/// A bin of a record with a reading.
+struct Row {
+  std::size_t record = 0, bin = 0, unit = 0;
+};
+
+/// Subtracts the mean of every record's part in a unit: where a run begins is not for a model to know.
+Eigen::VectorXd centred(Eigen::VectorXd values, const std::vector<Row>& rows) {
+  std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    auto& [sum, count] = sums[{rows[i].record, rows[i].unit}];
+    sum += values(static_cast<Eigen::Index>(i));
+    count += 1;
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& [sum, count] = sums[{rows[i].record, rows[i].unit}];
+    values(static_cast<Eigen::Index>(i)) -= sum / count;
+  }
+  return values;
+}
+
+/// The columns of all records in bins, each row in its unit.
 class EchoBank {
  public:
-  EchoBank(const std::vector<Record>& records, EchoKind kind, double bin_s, double largest_kpa,
-           const Binned& readings)
-      : kind_(kind), bin_s_(bin_s), largest_kpa_(largest_kpa) {
-    double whole_s = 0;
-    for (const Record& record : records) whole_s += record.length_s();
-    const double block_s = std::min(longest_block_s, whole_s / folds);
-    per_block_ = std::max<std::size_t>(1, static_cast<std::size_t>(block_s / bin_s));
-    for (std::size_t r = 0; r < records.size(); ++r) add(records, r, readings[r]);
-    for (std::size_t f = 0; f < folds; ++f) {
-      const Eigen::MatrixXd part = columns_of(f);
+  EchoBank(const std::vector<Record>& records, const Units& units, EchoKind kind, double bin_s,
+           double largest_kpa)
+      : unit_indices_(units), units_(units.count()), bin_s_(bin_s), largest_kpa_(largest_kpa) {
+    for (std::size_t r = 0; r < records.size(); ++r) add(records, r, units, kind);
+    for (std::size_t u = 0; u < units_; ++u) {
+      const Eigen::MatrixXd part = columns_of(u);
       gram_.push_back(Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols()));
-      if (part.rows() > 0) gram_[f].selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
+      if (part.rows() > 0) gram_[u].selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
     }
   }
 
-  /// A model's target, and what is known of its fit.
+  /// A model's residuals, and what is known of its fit.
   struct Target {
-    Eigen::VectorXd values;
-    std::vector<Eigen::VectorXd> moment;  ///< by fold
-    Eigen::VectorXd weights, left;
+    std::vector<Eigen::VectorXd> values;   ///< fitted without a unit, and to all
+    std::vector<Eigen::VectorXd> moments;  ///< of the rows that it was fitted to
+    Eigen::VectorXd plain_left, left, weights;
     double left_mm = std::numeric_limits<double>::infinity();
   };
-  [[nodiscard]] Target target_of(const Binned& readings) const {
+  [[nodiscard]] Target target_of(const LeftByUnit& left) const {
     Target target;
-    target.values.resize(columns_.rows());
-    for (std::size_t i = 0; i < fold_.size(); ++i)
-      target.values(static_cast<Eigen::Index>(i)) = readings[record_[i]][bin_[i]];
-    for (std::size_t f = 0; f < folds; ++f) {
-      const Eigen::MatrixXd part = columns_of(f);
-      target.moment.push_back(Eigen::VectorXd::Zero(columns_.cols()));
-      if (part.rows() > 0) target.moment[f] = part.transpose() * values_of(target.values, f);
+    for (std::size_t fitted_without = 0; fitted_without <= units_; ++fitted_without) {
+      target.values.emplace_back(columns_.rows());
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        target.values.back()(static_cast<Eigen::Index>(i)) =
+            left[fitted_without][rows_[i].record][rows_[i].bin];
+      if (!target.values.back().allFinite()) return {};
+      target.moments.push_back(Eigen::VectorXd::Zero(columns_.cols()));
+      for (std::size_t u = 0; u < units_; ++u) {
+        if (u != fitted_without)
+          target.moments.back() += columns_of(u).transpose() * values_of(target.values.back(), u);
+      }
     }
+    target.plain_left = left_out(target, std::vector(units_, Eigen::VectorXd()));
+    target.left = target.plain_left;
+    target.left_mm = rms_of(target.left);
     return target;
   }
 
   /// Every target with the ridge that leaves least of it.
   void fit(std::vector<Target>& targets) const {
     for (const double ridge : ridges) {
-      std::vector<Eigen::VectorXd> left(targets.size(), Eigen::VectorXd(columns_.rows()));
-      for (std::size_t f = 0; f < folds; ++f) {
-        const Factor factor = factor_without(f, ridge);
+      std::vector<std::vector<Eigen::VectorXd>> weights(targets.size(), std::vector<Eigen::VectorXd>(units_));
+      for (std::size_t u = 0; u < units_; ++u) {
+        const Factor factor = factor_without(u, ridge);
         for (std::size_t t = 0; t < targets.size(); ++t) {
-          const Eigen::VectorXd w = factor.solve(moment_without(targets[t], f));
-          for (Eigen::Index i = 0; i < left[t].size(); ++i) {
-            if (fold_[static_cast<std::size_t>(i)] == f)
-              left[t](i) = targets[t].values(i) - columns_.row(i).dot(w);
-          }
+          if (!targets[t].moments.empty()) weights[t][u] = factor.solve(targets[t].moments[u]);
         }
       }
-      const Factor whole = factor_without(folds, ridge);
+      const Factor whole = factor_without(units_, ridge);
       for (std::size_t t = 0; t < targets.size(); ++t) {
-        const double rms_mm = std::sqrt(left[t].squaredNorm() / static_cast<double>(left[t].size()));
-        if (rms_mm >= targets[t].left_mm) continue;
-        targets[t].left_mm = rms_mm;
-        targets[t].left = left[t];
-        targets[t].weights = whole.solve(moment_without(targets[t], folds));
+        Target& target = targets[t];
+        if (target.moments.empty()) continue;
+        Eigen::VectorXd left = left_out(target, weights[t]);
+        const double rms_mm = rms_of(left);
+        if (rms_mm >= target.left_mm) continue;
+        target.left_mm = rms_mm;
+        target.left = std::move(left);
+        target.weights = whole.solve(target.moments[units_]).head(echo_count_);
       }
     }
   }
 
-  /// @param left  by model: as it was, now with what the echo leaves where there is a reading.
-  [[nodiscard]] FittedEcho answer(const Target& target, Binned left) const {
-    for (std::vector<double>& series : left)
-      std::fill(series.begin(), series.end(), std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t i = 0; i < fold_.size(); ++i)
-      left[record_[i]][bin_[i]] = target.left(static_cast<Eigen::Index>(i));
-    return {target.weights.head(echo_count_), std::move(left), target.left_mm};
+  /// An echo must be better than none by the rule for any two hypotheses.
+  [[nodiscard]] FittedEcho answer(Target target, const LeftByUnit& model, std::uint64_t seed) const {
+    if (target.values.empty()) return {{}, model.back(), std::numeric_limits<double>::infinity()};
+    const Binned plain = in_bins(target.plain_left, model.back()), left = in_bins(target.left, model.back());
+    if (is_better(compare(losses_of(plain, left, unit_indices_, bin_s_), 0, seed)))
+      return {target.weights, left, target.left_mm};
+    return {{}, plain, rms_of(target.plain_left)};
   }
 
  private:
-  void add(const std::vector<Record>& records, std::size_t r, const std::vector<double>& readings) {
+  void add(const std::vector<Record>& records, std::size_t r, const Units& units, EchoKind kind) {
     const Record& record = records[r];
-    const Eigen::MatrixXd echo = echo_columns(record, record.drive_kpa, kind_, largest_kpa_);
+    const Eigen::MatrixXd echo = echo_columns(record, record.drive_kpa, kind, largest_kpa_);
     echo_count_ = echo.cols();
-    std::vector<std::size_t> usable;
-    for (std::size_t b = 0; b < readings.size(); ++b) {
-      if (std::isfinite(readings[b])) usable.push_back(b);
-    }
+    const std::vector<double> readings = binned(record, record.reading_mm, bin_s_);
     const Eigen::Index first = columns_.rows();
-    // An offset of each record's own stands behind the columns.
-    const auto width = echo_count_ + static_cast<Eigen::Index>(records.size());
-    columns_.conservativeResize(first + static_cast<Eigen::Index>(usable.size()), width);
-    columns_.bottomRows(static_cast<Eigen::Index>(usable.size())).setZero();
+    for (std::size_t b = 0; b < readings.size(); ++b) {
+      const double middle_s = (static_cast<double>(b) + 0.5) * bin_s_;
+      if (std::isfinite(readings[b]) && middle_s > begin_s(record))
+        rows_.push_back({r, b, units.unit_of(r, middle_s)});
+    }
+    // Each record has a column for an offset of its own behind those of the echo.
+    const auto count = static_cast<Eigen::Index>(rows_.size());
+    columns_.conservativeResize(count, echo_count_ + static_cast<Eigen::Index>(records.size()));
+    columns_.bottomRows(count - first).setZero();
     for (Eigen::Index c = 0; c < echo_count_; ++c) {
       const std::vector<double> series = binned(record, {echo.col(c).begin(), echo.col(c).end()}, bin_s_);
-      for (std::size_t i = 0; i < usable.size(); ++i) {
-        const double v = series[usable[i]];
-        columns_(first + static_cast<Eigen::Index>(i), c) = std::isfinite(v) ? v : 0;
+      for (Eigen::Index i = first; i < count; ++i) {
+        const double v = series[rows_[static_cast<std::size_t>(i)].bin];
+        columns_(i, c) = std::isfinite(v) ? v : 0;
       }
     }
-    for (std::size_t i = 0; i < usable.size(); ++i) {
-      columns_(first + static_cast<Eigen::Index>(i), echo_count_ + static_cast<Eigen::Index>(r)) =
-          largest_kpa_;
-      fold_.push_back((first_block_ + usable[i] / per_block_) % folds);
-      record_.push_back(r);
-      bin_.push_back(usable[i]);
-    }
-    first_block_ += readings.size() / per_block_ + 1;
+    columns_.col(echo_count_ + static_cast<Eigen::Index>(r))
+        .bottomRows(count - first)
+        .setConstant(largest_kpa_);
   }
 
-  [[nodiscard]] Eigen::MatrixXd columns_of(std::size_t f) const {
-    Eigen::MatrixXd part(std::count(fold_.begin(), fold_.end(), f), columns_.cols());
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; i < fold_.size(); ++i) {
-      if (fold_[i] == f) part.row(at++) = columns_.row(static_cast<Eigen::Index>(i));
+  [[nodiscard]] std::vector<Eigen::Index> rows_of(std::size_t unit) const {
+    std::vector<Eigen::Index> indices;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (rows_[i].unit == unit) indices.push_back(static_cast<Eigen::Index>(i));
     }
-    return part;
+    return indices;
   }
-  [[nodiscard]] Eigen::VectorXd values_of(const Eigen::VectorXd& values, std::size_t f) const {
-    Eigen::VectorXd part(std::count(fold_.begin(), fold_.end(), f));
-    Eigen::Index at = 0;
-    for (std::size_t i = 0; i < fold_.size(); ++i) {
-      if (fold_[i] == f) part(at++) = values(static_cast<Eigen::Index>(i));
-    }
-    return part;
+  [[nodiscard]] Eigen::MatrixXd columns_of(std::size_t unit) const {
+    return columns_(rows_of(unit), Eigen::all);
+  }
+  [[nodiscard]] Eigen::VectorXd values_of(const Eigen::VectorXd& values, std::size_t unit) const {
+    return values(rows_of(unit));
   }
 
-  /// Of all folds but one; without one: folds.
-  [[nodiscard]] Factor factor_without(std::size_t f, double ridge) const {
+  /// What is left of each unit by the model and the weights that were fitted without it.
+  [[nodiscard]] Eigen::VectorXd left_out(const Target& target,
+                                         const std::vector<Eigen::VectorXd>& weights) const {
+    Eigen::VectorXd left(columns_.rows());
+    for (std::size_t u = 0; u < units_; ++u) {
+      for (const Eigen::Index i : rows_of(u)) {
+        left(i) = target.values[u](i);
+        if (weights[u].size() > 0) left(i) -= columns_.row(i).dot(weights[u]);
+      }
+    }
+    return left;
+  }
+  [[nodiscard]] Binned in_bins(const Eigen::VectorXd& values, Binned shape) const {
+    for (std::vector<double>& series : shape)
+      std::fill(series.begin(), series.end(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      shape[rows_[i].record][rows_[i].bin] = values(static_cast<Eigen::Index>(i));
+    return shape;
+  }
+  [[nodiscard]] double rms_of(const Eigen::VectorXd& left) const {
+    return std::sqrt(centred(left, rows_).squaredNorm() / static_cast<double>(left.size()));
+  }
+  /// Of all units but one; without one: units_.
+  [[nodiscard]] Factor factor_without(std::size_t unit, double ridge) const {
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols());
-    for (std::size_t g = 0; g < folds; ++g) {
-      if (g != f) gram += gram_[g];
+    for (std::size_t u = 0; u < units_; ++u) {
+      if (u != unit) gram += gram_[u];
     }
     gram.diagonal().array() += ridge * static_cast<double>(columns_.rows()) * largest_kpa_ * largest_kpa_;
     return gram.selfadjointView<Eigen::Lower>().ldlt();
   }
-  [[nodiscard]] Eigen::VectorXd moment_without(const Target& target, std::size_t f) const {
-    Eigen::VectorXd moment = Eigen::VectorXd::Zero(columns_.cols());
-    for (std::size_t g = 0; g < folds; ++g) {
-      if (g != f) moment += target.moment[g];
-    }
-    return moment;
-  }
 
-  EchoKind kind_;
+  Units unit_indices_;
+  std::size_t units_;
   double bin_s_, largest_kpa_;
   Eigen::MatrixXd columns_;
-  std::vector<Eigen::MatrixXd> gram_;             ///< by fold
-  std::vector<std::size_t> fold_, record_, bin_;  ///< of each row
-  std::size_t per_block_ = 1;                     ///< bins
-  std::size_t first_block_ = 0;                   ///< of the record that is added next
+  std::vector<Eigen::MatrixXd> gram_;  ///< by unit
+  std::vector<Row> rows_;
   Eigen::Index echo_count_ = 0;
 };
 
-bool same_bins(const Binned& x, const Binned& y) {
-  return std::ranges::equal(x, y, [](const std::vector<double>& a, const std::vector<double>& b) {
-    return std::ranges::equal(a, b, [](double u, double v) { return std::isfinite(u) == std::isfinite(v); });
-  });
-}
-
 }  // namespace
 
-std::vector<FittedEcho> fit_echo(const std::vector<Record>& records, EchoKind kind, double bin_s,
-                                 double largest_kpa, const std::vector<Binned>& left) {
-  const EchoBank bank(records, kind, bin_s, largest_kpa, left.front());
-  std::vector<EchoBank::Target> targets;
-  for (const Binned& model : left) {
-    if (same_bins(model, left.front())) targets.push_back(bank.target_of(model));
+PairedLosses losses_of(const Binned& worse, const Binned& better, const Units& units, double bin_s) {
+  std::vector<Row> rows;
+  std::vector<double> first, second;
+  for (std::size_t r = 0; r < worse.size(); ++r) {
+    for (std::size_t b = 0; b < worse[r].size(); ++b) {
+      if (!std::isfinite(worse[r][b]) || !std::isfinite(better[r][b])) continue;
+      rows.push_back({r, b, units.unit_of(r, (static_cast<double>(b) + 0.5) * bin_s)});
+      first.push_back(worse[r][b]);
+      second.push_back(better[r][b]);
+    }
   }
+  const auto as_vector = [](const std::vector<double>& values) {
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  };
+  const Eigen::VectorXd a = centred(as_vector(first), rows), c = centred(as_vector(second), rows);
+  PairedLosses paired;
+  std::pair<std::size_t, double> last{0, -1};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::pair block{rows[i].record,
+                          std::floor(static_cast<double>(rows[i].bin) * bin_s / limits::block_s)};
+    if (block != last) {
+      for (auto* const list : {&paired.worse, &paired.better, &paired.rows}) list->push_back(0);
+    }
+    last = block;
+    paired.worse.back() += square(a(static_cast<Eigen::Index>(i)));
+    paired.better.back() += square(c(static_cast<Eigen::Index>(i)));
+    paired.rows.back() += 1;
+  }
+  return paired;
+}
+
+std::vector<FittedEcho> fit_echo(const std::vector<Record>& records, const Units& units, EchoKind kind,
+                                 double bin_s, double largest_kpa, const std::vector<LeftByUnit>& left,
+                                 std::uint64_t seed) {
+  const EchoBank bank(records, units, kind, bin_s, largest_kpa);
+  std::vector<EchoBank::Target> targets;
+  targets.reserve(left.size());
+  for (const LeftByUnit& model : left) targets.push_back(bank.target_of(model));
   bank.fit(targets);
   std::vector<FittedEcho> fits;
   fits.reserve(left.size());
-  auto target = targets.begin();
-  for (const Binned& model : left) {
-    // A model whose answer is not finite everywhere has rows of its own.
-    fits.push_back(same_bins(model, left.front()) ? bank.answer(*target++, model)
-                                                  : fit_echo(records, kind, bin_s, largest_kpa, {model})[0]);
-  }
+  for (std::size_t m = 0; m < left.size(); ++m)
+    fits.push_back(bank.answer(std::move(targets[m]), left[m], seed));
   return fits;
 }
 

@@ -17,8 +17,11 @@ constexpr std::size_t followed = 2;
 constexpr double least_curvature = 0.01;
 /// More starts than these are so dense that none needs another size.
 constexpr std::size_t most_sized = 16;
-/// A gain is free within so many of the healthy logs' own spreads; beyond, it is a change.
-constexpr double gain_bound = 2;
+
+/// A gain is free within what another run of an unchanged finger may have; beyond, it is a change.
+double free_gain(const Base& base) {
+  return t_quantile(static_cast<double>(base.units.count() - 1)) * base.gain_spread;
+}
 
 std::vector<double> within(const Effect& effect, std::vector<double> numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -138,16 +141,26 @@ Extension extension_of(const std::vector<FittedEffect>& effects) {
 }
 
 LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned left)
+    : LaterReadings([&] {
+        std::vector<Driven> driven;
+        Binned plain;
+        for (std::size_t r = 0; r < later.size(); ++r) {
+          driven.push_back(driven_by(base, later[r]));
+          plain.push_back(
+              with_bins(binned(later[r], predict_base(base, later[r], {}, &driven.back()), base.bin_s),
+                        left[r].size()));
+        }
+        return LaterReadings(base, std::move(later), std::move(left), std::move(plain), std::move(driven));
+      }()) {}
+
+LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned left, Binned plain,
+                             std::vector<Driven> driven)
     : base_(base),
       later_(std::move(later)),
       left_(std::move(left)),
+      plain_(std::move(plain)),
+      driven_(std::move(driven)),
       rows_(left_, all_haste_of(later_, base.bin_s, left_), base.whitener) {
-  for (std::size_t r = 0; r < later_.size(); ++r) {
-    driven_.push_back(driven_by(base_, later_[r]));
-    plain_.push_back(
-        with_bins(binned(later_[r], predict_base(base_, later_[r], {}, &driven_.back()), base_.bin_s),
-                  left_[r].size()));
-  }
   target_ = rows_(left_);
   const std::size_t n = later_.size();
   slack_.resize(target_.size(), static_cast<Eigen::Index>(n) + 1);
@@ -171,6 +184,38 @@ LaterReadings::LaterReadings(const Base& base, std::vector<Record> later, Binned
   motion_left_ = motion_ - slack_ * (solver_ * motion_);
 }
 
+template <class Keep>
+LaterReadings LaterReadings::part(Keep keep) const {
+  std::vector<Record> later;
+  Binned left, plain;
+  std::vector<Driven> driven;
+  for (std::size_t r = 0; r < later_.size(); ++r) {
+    std::vector<double> kept = left_[r];
+    for (std::size_t b = 0; b < kept.size(); ++b) {
+      if (!keep(r, (static_cast<double>(b) + 0.5) * base_.bin_s))
+        kept[b] = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (std::none_of(kept.begin(), kept.end(), [](double v) { return std::isfinite(v); })) continue;
+    later.push_back(later_[r]);
+    left.push_back(std::move(kept));
+    plain.push_back(plain_[r]);
+    driven.push_back(driven_[r]);
+  }
+  return {base_, std::move(later), std::move(left), std::move(plain), std::move(driven)};
+}
+
+LaterReadings LaterReadings::only(const Units& units, std::size_t unit) const {
+  return part([&](std::size_t r, double s) { return units.unit_of(r, s) == unit; });
+}
+
+LaterReadings LaterReadings::without(const Units& units, std::size_t unit) const {
+  return part([&](std::size_t r, double s) { return units.unit_of(r, s) != unit; });
+}
+
+LaterReadings healthy_readings(const Base& base) {
+  return {base, base.records, base.left};
+}
+
 Binned LaterReadings::added(const std::vector<FittedEffect>& effects) const {
   const Extension extension = extension_of(effects);
   Binned added;
@@ -186,7 +231,7 @@ Binned LaterReadings::added(const std::vector<FittedEffect>& effects) const {
 LaterReadings::Split LaterReadings::split(const std::vector<FittedEffect>& effects) const {
   Split split;
   split.left = effects.empty() ? target_ : Eigen::VectorXd(target_ - rows_(added(effects)));
-  const double bound = gain_bound * base_.gain_spread;
+  const double bound = free_gain(base_);
   const double square = motion_left_.dot(motion_);
   split.gain = square > 0 ? std::clamp(motion_left_.dot(split.left) / square, -bound, bound) : 0;
   split.left -= split.gain * motion_;
@@ -229,7 +274,7 @@ double LaterReadings::plain_rms(const std::vector<FittedEffect>& effects) const 
     motions += own.variance_x() / own.count;
     count += own.count;
   }
-  const double bound = gain_bound * base_.gain_spread;
+  const double bound = free_gain(base_);
   const double gain = motions > 0 ? std::clamp(products / motions, -bound, bound) : 0;
   const double left = misses - 2 * gain * products + gain * gain * motions;
   return count > 0 ? std::sqrt(std::max(left, 0.0) / count) : 0;
@@ -242,6 +287,9 @@ LaterReadings readings_of(const Base& base, const std::vector<Record>& records,
   for (std::size_t r = 0; r < records.size(); ++r) {
     thinned.push_back(thinned_for(base, records[r]));
     left_in_bins.push_back(binned(records[r], left[r], base.bin_s));
+    const double begin_bins = begin_s(records[r]) / base.bin_s;
+    for (std::size_t b = 0; b < left_in_bins.back().size() && static_cast<double>(b) + 0.5 <= begin_bins; ++b)
+      left_in_bins.back()[b] = std::numeric_limits<double>::quiet_NaN();
   }
   return {base, std::move(thinned), std::move(left_in_bins)};
 }

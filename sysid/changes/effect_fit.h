@@ -7,6 +7,7 @@
 
 #include "sysid/changes/base.h"
 #include "sysid/changes/effects.h"
+#include "sysid/evidence/units.h"
 
 namespace softgrip::sysid {
 
@@ -22,6 +23,9 @@ class LaterReadings {
  public:
   /// @param later  thinned_for() the base. @param left  what the base leaves of them, in bins.
   LaterReadings(const Base& base, std::vector<Record> later, Binned left);
+  /// The readings of one unit, or all but those of it.
+  [[nodiscard]] LaterReadings only(const Units& units, std::size_t unit) const;
+  [[nodiscard]] LaterReadings without(const Units& units, std::size_t unit) const;
 
   /// Whitened residual of the base with these effects, without what zero and gain take; a few rows more than
   /// rows(), for what zero and gain cost.
@@ -32,6 +36,8 @@ class LaterReadings {
   [[nodiscard]] const Base& base() const { return base_; }
   [[nodiscard]] const std::vector<Record>& records() const { return later_; }
   [[nodiscard]] const Binned& left() const { return left_; }
+  /// What the unchanged base predicts, in bins.
+  [[nodiscard]] const Binned& plain() const { return plain_; }
   /// What the effects add to the prediction, in bins.
   [[nodiscard]] Binned added(const std::vector<FittedEffect>& effects) const;
   /// Root mean square of what is left of the readings with these effects, as they are and not whitened;
@@ -44,6 +50,11 @@ class LaterReadings {
   [[nodiscard]] Slack slack(const std::vector<FittedEffect>& effects) const;
 
  private:
+  LaterReadings(const Base& base, std::vector<Record> later, Binned left, Binned plain,
+                std::vector<Driven> driven);
+  template <class Keep>
+  [[nodiscard]] LaterReadings part(Keep keep) const;
+
   struct Split {
     Eigen::VectorXd left, zeros;
     double gain = 0;
@@ -62,6 +73,9 @@ class LaterReadings {
   Eigen::VectorXd price_;                 ///< root of what each costs
   Eigen::VectorXd motion_, motion_left_;  ///< the base's own motion, whole and without what zeros take
 };
+
+/// The base's own records with what it leaves of each unit that is left out.
+[[nodiscard]] LaterReadings healthy_readings(const Base& base);
 
 /// @param records  at full rate. @param left  residuals_of() them.
 [[nodiscard]] LaterReadings readings_of(const Base& base, const std::vector<Record>& records,

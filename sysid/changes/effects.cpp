@@ -123,10 +123,8 @@ class Collector {
     effect.station = cause.station;
     effect.form = form;
     effect.twin = cause.twin;
-    effect.contains = cause.contains;
-    effect.limit = cause.limit;
     effect.is_ideal = cause.is_ideal;
-    effect.where_bases_miss = cause.where_bases_miss;
+    effect.appears = cause.appears;
     return effect;
   }
   static Effect form_of(const CauseOfTheAir& cause) {
@@ -134,7 +132,7 @@ class Collector {
     effect.id = effect.form = cause.id;
     effect.title = cause.title;
     effect.station = model::Station::valve;
-    effect.contains = cause.contains;
+    effect.appears = cause.appears;
     return effect;
   }
   /// The first form of a cause, so far; nullptr: the base cannot carry it.

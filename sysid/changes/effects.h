@@ -32,18 +32,13 @@ struct Effect {
   std::vector<double> nothing;  ///< where it does nothing; NaN: does not matter there
   /// Adds the effect with these numbers.
   std::function<void(Extension&, const std::vector<double>&)> apply;
-  /// The id of a cause that it is, with fewer numbers, where they agree; or none.
-  std::string contains = {};
-  /// The id of a cause that it becomes at the end of its range; or none.
-  std::string limit = {};
   /// The id of a cause that gives the same readings; or none.
   std::string twin = {};
   /// Of its numbers, how many only say where it is counted from.
   std::size_t slack_numbers = 0;
   /// No mechanism is quite like it.
   bool is_ideal = false;
-  /// It shows where the drive turns or hastens, as the misses of any base do.
-  bool where_bases_miss = false;
+  Appears appears = Appears::anywhere;
   /// What this form is measured by, where it is not what its cause is.
   std::optional<SizedBy> size = {};
 };

@@ -39,6 +39,7 @@ struct DiagnoseOptions {
   std::vector<std::string> data;
   std::vector<std::string> healthy;
   std::string baseline;
+  bool explain = false;
   std::string out;
   std::string figures;
   std::string gauge;
@@ -158,7 +159,8 @@ ExitCode changed(const DiagnoseOptions& options, const model::Model& model,
                  const std::vector<sysid::Log>& logs, const std::vector<std::string>& call) {
   const auto healthy = read_logs(options.healthy, options.logs);
   if (!healthy) return healthy.error();
-  ChangeQuestion question{*healthy, logs, model, {}, options.out, options.figures, call, options.json};
+  ChangeQuestion question{*healthy, logs,         model,          {}, options.out, options.figures,
+                          call,     options.json, options.explain};
   question.options.held = options.logs.held;
   question.options.seed = options.diagnosis.seed;
   question.options.threads = options.diagnosis.threads;
@@ -186,6 +188,8 @@ ExitCode run(DiagnoseOptions options, const std::vector<std::string>& call) {
   if (!model) return model.error();
   const auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
+  if (options.explain && options.healthy.empty())
+    return fail(ExitCode::usage, "--explain needs --healthy or --baseline");
   if (!options.healthy.empty()) return changed(options, *model, *logs, call);
   options.diagnosis.record = options.logs.record_options();
   if (!options.gauge.empty()) {
@@ -240,6 +244,8 @@ void add_diagnose(CLI::App& program, ExitCode& outcome) {
       ->add_option("--baseline", options->baseline,
                    "Folder of `softgrip baseline`: its logs are the healthy ones")
       ->excludes("--healthy");
+  command->add_flag("--explain", options->explain,
+                    "With --healthy or --baseline: print improvement, tolerance and reason of every cause");
   command
       ->add_option(
           "--out", options->out,

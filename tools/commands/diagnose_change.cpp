@@ -1,5 +1,6 @@
 #include "tools/commands/diagnose_change.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,25 @@ void print_cause(const sysid::ChangeCause& cause) {
   for (const std::string& rival : cause.rivals) std::printf("      %s explains as much\n", rival.c_str());
   for (const std::string_view step : sysid::next_steps(cause.id))
     std::printf("      - %s\n", std::string(step).c_str());
+}
+
+void print_explanation(const sysid::JudgedChange& judged) {
+  std::printf("\n%s: model \"%s\", %zu healthy run%s\n", name_of(judged.judged), judged.base.c_str(),
+              judged.healthy_runs, judged.healthy_runs == 1 ? "" : "s");
+  std::printf(
+      "  error of healthy runs that were left out %s %s; another healthy run may have %s; later logs %s\n",
+      significant(judged.healthy_mm, 3).c_str(), unit_of(judged.judged),
+      significant(judged.allowed_mm, 3).c_str(), significant(judged.later_mm, 3).c_str());
+  std::printf("  whitened squared error of the later logs %s (1: as in healthy runs)\n",
+              significant(judged.misfit_before, 3).c_str());
+  std::printf("  %-26s %12s %12s %12s  %s\n", "cause", "improvement", "in healthy", "tolerance",
+              "rejected because");
+  for (const sysid::ChangeRival& tried : judged.tried)
+    std::printf("  %-26s %12s %12s %12s  %s\n", tried.id.c_str(), fixed(tried.gain, 3).c_str(),
+                fixed(tried.healthy_gain, 3).c_str(), fixed(tried.tolerance, 3).c_str(),
+                tried.rejected.c_str());
+  for (const auto& [id, recording] : judged.not_tested)
+    std::printf("  %-26s not tested: %s\n", id.c_str(), recording.c_str());
 }
 
 void print_summary(const sysid::ChangeDiagnosis& d, const std::string& out) {
@@ -76,6 +96,7 @@ ExitCode run_change(ChangeQuestion question) {
     std::fputs(text.c_str(), stdout);
   } else {
     print_summary(*diagnosis, question.out);
+    if (question.explain) std::ranges::for_each(diagnosis->readings, print_explanation);
   }
   return ExitCode::done;
 }

@@ -18,6 +18,7 @@ struct ChangeQuestion {
   std::string figures;  ///< folder for the figures as files; "": none
   std::vector<std::string> call;
   bool json = false;
+  bool explain = false;  ///< prints the comparison behind each name
 };
 
 /// Diagnoses, writes diagnosis.json and report.html and prints what came of it.

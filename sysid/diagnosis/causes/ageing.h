@@ -13,6 +13,7 @@ namespace softgrip::sysid::causes {
 /// All begin at a tenth over the campaign.
 struct Ageing {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
+  static constexpr Appears appears = Appears::displaced;
   static constexpr WhenChanged when_changed{
       "the gain of the finger is another",
       {"Look at the finger for cracks and bulges, and count its cycles since the last one was fitted.",

@@ -8,7 +8,6 @@ namespace softgrip::sysid::causes {
 
 struct Backlash : FormOf<model::Backlash> {
   static constexpr bool parts_twins = true;
-  static constexpr bool where_bases_miss = true;
   static constexpr WhenChanged when_changed{
       "there is play between finger and sensor",
       {"Move the sensor's target by hand and feel for play.",

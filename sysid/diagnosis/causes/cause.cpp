@@ -124,7 +124,7 @@ constexpr Cause cause() {
   if constexpr (requires { C::is_stop; }) cause.is_stop = C::is_stop;
   if constexpr (requires { C::parts_twins; }) cause.parts_twins = C::parts_twins;
   if constexpr (requires { C::is_ideal; }) cause.is_ideal = C::is_ideal;
-  if constexpr (requires { C::where_bases_miss; }) cause.where_bases_miss = C::where_bases_miss;
+  if constexpr (requires { C::appears; }) cause.appears = C::appears;
   if constexpr (requires { C::sensor_shape; }) cause.sensor_shape = C::sensor_shape;
   return cause;
 }

@@ -52,7 +52,7 @@ struct Cause {
   bool is_stop = false;
   bool parts_twins = false;
   bool is_ideal = false;
-  bool where_bases_miss = false;
+  Appears appears = Appears::anywhere;
   std::string_view sensor_shape;  ///< empty: no sensor without memory
   WhenChanged when_changed;
 

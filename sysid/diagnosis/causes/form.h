@@ -42,11 +42,11 @@
 //       remembers, between actuator and sensor: twins before it and behind it differ
 //   static constexpr bool is_ideal = true;
 //       no mechanism is quite like it: of causes that chance alone sets apart as changes, the other is named
-//   static constexpr bool where_bases_miss = true;
-//       shows where the drive turns or hastens, as what any base misses does: as a change it must show more
 //   static constexpr std::string_view sensor_shape = "...";
 //       a sensor without memory, in words: a gauge shows it
-//   static constexpr bool found_by_fitting = false;        no trajectory shows it: it has no starts
+//   static constexpr Appears appears = ...;                where its effect must appear
+//   (evidence/signature.h) static constexpr bool found_by_fitting = false;        no trajectory shows it: it
+//   has no starts
 
 #include <array>
 #include <cstddef>
@@ -59,6 +59,7 @@
 #include "model/model.h"
 #include "sysid/diagnosis/causes/health_sign.h"
 #include "sysid/diagnosis/causes/scales.h"
+#include "sysid/evidence/signature.h"
 
 namespace softgrip::sysid {
 

@@ -11,9 +11,9 @@ namespace softgrip::sysid::causes {
 struct RateDependentHysteresis {
   static constexpr std::string_view id = "rate_dependent_hysteresis";
   static constexpr std::string_view title = "Rate-dependent hysteresis";
-  static constexpr bool where_bases_miss = true;
   /// A loop that relaxes before the next sample is a lag.
   static constexpr std::string_view contains = "sensor_lag";
+  static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
       "fast motion costs more pressure than slow motion",
       {"Run the same stroke at three speeds and compare the loops.",

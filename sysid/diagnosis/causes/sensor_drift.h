@@ -15,6 +15,7 @@ namespace softgrip::sysid::causes {
 
 struct SensorDrift {
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
+  static constexpr Appears appears = Appears::at_rest;
   static constexpr WhenChanged when_changed{
       "the zero of the sensor wanders",
       {"Leave the finger vented for an hour and read the zero every ten minutes.",

@@ -9,6 +9,7 @@ namespace softgrip::sysid::causes {
 
 struct StressSoftening {
   static constexpr std::array advice{Advice::record_temperature};
+  static constexpr Appears appears = Appears::displaced;
   static constexpr WhenChanged when_changed{
       "the finger softened under a large load",
       {"Look in the events for a load above the usual one.",

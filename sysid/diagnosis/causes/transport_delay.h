@@ -10,6 +10,7 @@ struct TransportDelay : FormOf<model::TransportDelay> {
   static constexpr std::array<std::string_view, 1> confounded_with{"valve_lag"};
   /// Whatever comes later by so little comes more slowly, too.
   static constexpr bool is_ideal = true;
+  static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
       "the pressure begins later",
       {"Look whether the tube, a filter or the board's exchange rate was changed.",

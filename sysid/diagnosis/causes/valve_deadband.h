@@ -11,7 +11,6 @@ namespace softgrip::sysid::causes {
 
 struct ValveDeadband {
   static constexpr std::string_view id = "valve_deadband";
-  static constexpr bool where_bases_miss = true;
   static constexpr WhenChanged when_changed{
       "the valve ignores small changes",
       {"Command steps of 1 kPa up and down and see which of them the pressure answers.",

@@ -8,6 +8,7 @@ namespace softgrip::sysid::causes {
 
 struct ValveLag : FormOf<model::ValveLag> {
   static constexpr std::array<std::string_view, 1> confounded_with{"transport_delay"};
+  static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
       "the pressure follows more slowly",
       {"Look for a kinked tube and a clogged filter or silencer; check the supply pressure while it moves.",

@@ -36,7 +36,7 @@ TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   for (int i = 0; i < draws; ++i) {
     const LaterReadings later = readings({.delay_s = delay_s}, 20 + 2 * static_cast<unsigned>(i));
     const FittedEffect delay = fitted(later, "transport_delay");
-    const EffectIntervals intervals = intervals_of(later, {delay}).front();
+    const EffectIntervals intervals = intervals_of(later, {delay}, {}).front();
     ASSERT_TRUE(intervals.numbers.at(0));
     held += intervals.numbers[0]->lower <= delay_s && delay_s <= intervals.numbers[0]->upper ? 1 : 0;
     sum += delay.numbers[0];
@@ -46,15 +46,32 @@ TEST_F(ChangeIntervals, AreAsWideAsTheNumberScattersAndHoldIt) {
   const double scatter = std::sqrt((squares - sum * sum / draws) / (draws - 1));
   RecordProperty("held", held);
   EXPECT_GE(held, 25) << "of " << draws;  // of 95 %, fewer than 25 come once in 5000
-  // Here one base stands behind all of them: what it adds to the width does not scatter.
-  constexpr double with_the_base = 2.5;
-  EXPECT_GT(widths, 0.6 * with_the_base * 2 * 1.96 * scatter);
-  EXPECT_LT(widths, 1.7 * with_the_base * 2 * 1.96 * scatter);
+  EXPECT_GT(widths, 0.6 * 2 * 1.96 * scatter);
+  EXPECT_LT(widths, 2.5 * 2 * 1.96 * scatter);
+}
+
+TEST_F(ChangeIntervals, AreWiderWhereHealthyUnitsDifferInTheSameNumber) {
+  const LaterReadings later = readings({.delay_s = 0.06}, 5);
+  const FittedEffect delay = fitted(later, "transport_delay");
+  const auto unit = [&](double delay_s, double gain) {
+    ScoredEffect scored;
+    scored.gain = gain;
+    scored.fit.fitted = delay;
+    scored.fit.fitted.numbers = {delay_s};
+    return HealthyFits{readings({}, 9), {scored}};
+  };
+  const double alone = width(intervals_of(later, {delay}, {})[0].numbers.at(0));
+  const double between = width(intervals_of(later, {delay}, {unit(0.01, 1), unit(0.02, 1)})[0].numbers.at(0));
+  // The mean square of 0.01 and 0.02 s, for another run beside the mean of two.
+  const double expected = 2 * 1.96 * std::sqrt(0.00025 * 1.5);
+  EXPECT_NEAR(between, std::hypot(alone, expected), 1e-3 * between);
+  // A fit that improves nothing there says nothing of runs.
+  EXPECT_DOUBLE_EQ(width(intervals_of(later, {delay}, {unit(0.04, -0.1)})[0].numbers.at(0)), alone);
 }
 
 TEST_F(ChangeIntervals, OfASizeAreThoseOfItsNumber) {
   const LaterReadings later = readings({.delay_s = 0.06}, 5);
-  const EffectIntervals intervals = intervals_of(later, {fitted(later, "transport_delay")}).front();
+  const EffectIntervals intervals = intervals_of(later, {fitted(later, "transport_delay")}, {}).front();
   ASSERT_TRUE(intervals.size && intervals.numbers.at(0));
   EXPECT_NEAR(intervals.size->lower, intervals.numbers[0]->lower, 1e-6);
   EXPECT_NEAR(intervals.size->upper, intervals.numbers[0]->upper, 1e-6);
@@ -64,9 +81,9 @@ TEST_F(ChangeIntervals, AreWiderBesideAnEffectThatLooksAlike) {
   const LaterReadings later = readings({.delay_s = 0.06, .valve_lag_s = 0.05}, 5);
   const FittedEffect delay = fitted(later, "transport_delay");
   const FittedEffect lag = fitted(later, "valve_lag", {delay});
-  const auto together = intervals_of(later, {delay, lag});
+  const auto together = intervals_of(later, {delay, lag}, {});
   ASSERT_EQ(together.size(), 2U);
-  EXPECT_GT(width(together[0].numbers.at(0)), 1.3 * width(intervals_of(later, {delay})[0].numbers.at(0)));
+  EXPECT_GT(width(together[0].numbers.at(0)), 1.3 * width(intervals_of(later, {delay}, {})[0].numbers.at(0)));
   EXPECT_GT(width(together[1].numbers.at(0)), 0);
 }
 
@@ -74,7 +91,7 @@ TEST_F(ChangeIntervals, OfANumberThatNothingShowsThereIsNone) {
   const LaterReadings later = readings({}, 5);
   FittedEffect stop = fitted(later, "pressure_saturation");
   stop.numbers.at(0) = stop.effect.numbers[0].upper;  // far above what was asked for
-  const EffectIntervals intervals = intervals_of(later, {stop}).front();
+  const EffectIntervals intervals = intervals_of(later, {stop}, {}).front();
   EXPECT_FALSE(intervals.numbers.at(0));
   EXPECT_FALSE(intervals.size);
 }

@@ -18,6 +18,7 @@ Record waving() {
     record.time_s.push_back(t);
     record.duration_s.push_back(i > 0 ? 0.02 : 0);
     record.drive_kpa.push_back(12 - 10 * std::cos(t) * std::cos(0.3 * t));
+    record.reading_mm.push_back(0);
   }
   record.sample_time_s = 0.02;
   record.largest_kpa = 22;
@@ -33,25 +34,51 @@ Binned left_of(const Record& record, double share) {
   return left;
 }
 
+std::vector<FittedEcho> fitted(const std::vector<Binned>& models) {
+  const std::vector<Record> records{waving()};
+  const Units units(records);
+  std::vector<LeftByUnit> left;
+  for (const Binned& model : models) left.emplace_back(units.count() + 1, model);
+  return fit_echo(records, units, EchoKind::finger, bin_s, 22, left, 1);
+}
+
 TEST(EchoFit, ExplainsWhatFollowsTheDrive) {
-  const Record record = waving();
-  const FittedEcho echo = fit_echo({record}, EchoKind::finger, bin_s, 22, {left_of(record, 0.1)})[0];
+  const FittedEcho echo = fitted({left_of(waving(), 0.1)})[0];
+  EXPECT_GT(echo.weights.size(), 0);
   EXPECT_LT(echo.left_mm, 0.02);
   EXPECT_GT(echo.left_mm, 0.005);
 }
 
+TEST(EchoFit, OfWhatDoesNotFollowTheDriveIsNone) {
+  const FittedEcho echo = fitted({left_of(waving(), 0)})[0];
+  EXPECT_EQ(echo.weights.size(), 0);
+  const Binned model = left_of(waving(), 0);
+  const auto begin = static_cast<std::size_t>(begin_s(waving()) / bin_s);
+  for (std::size_t b = 0; b < model[0].size(); ++b) {
+    if (b < begin)
+      EXPECT_TRUE(std::isnan(echo.left[0][b])) << b;
+    else
+      EXPECT_EQ(echo.left[0][b], model[0][b]) << b;
+  }
+}
+
 TEST(EchoFit, OfSeveralModelsIsThatOfEach) {
-  const Record record = waving();
-  std::vector<Binned> left{left_of(record, 0.1), left_of(record, -0.2), left_of(record, 0.3)};
-  left[1][0][40] = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<FittedEcho> together = fit_echo({record}, EchoKind::finger, bin_s, 22, left);
+  const std::vector<Binned> left{left_of(waving(), 0.1), left_of(waving(), -0.2), left_of(waving(), 0.3)};
+  const std::vector<FittedEcho> together = fitted(left);
   ASSERT_EQ(together.size(), 3U);
   for (std::size_t m = 0; m < 3; ++m) {
-    const FittedEcho alone = fit_echo({record}, EchoKind::finger, bin_s, 22, {left[m]})[0];
+    const FittedEcho alone = fitted({left[m]})[0];
     EXPECT_EQ(together[m].left_mm, alone.left_mm) << m;
     EXPECT_EQ(together[m].weights, alone.weights) << m;
-    EXPECT_EQ(std::isnan(together[m].left[0][40]), m == 1) << m;
   }
+}
+
+TEST(EchoFit, AModelThatIsNotFiniteIsNoChoice) {
+  std::vector<Binned> left{left_of(waving(), 0.1), left_of(waving(), 0.1)};
+  left[1][0][40] = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<FittedEcho> fits = fitted(left);
+  EXPECT_LT(fits[0].left_mm, 0.02);
+  EXPECT_TRUE(std::isinf(fits[1].left_mm));
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(NextSteps, ASizeThatIsANumberIsOneOfTheCausesBlock) {
   }
   EXPECT_GE(numbers, 9U);
   EXPECT_EQ(sized_by(blocked_line.id).number, "filling_s");
-  EXPECT_EQ(blocked_line.contains, "valve_lag");
+  EXPECT_EQ(blocked_line.appears, Appears::moving);
 }
 
 }  // namespace

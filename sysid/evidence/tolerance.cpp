@@ -1,0 +1,33 @@
+#include "sysid/evidence/tolerance.h"
+
+#include <algorithm>
+
+#include "sysid/evidence/f_quantile.h"
+#include "sysid/evidence/limits.h"
+
+namespace softgrip::sysid {
+
+double run_to_run_factor(std::size_t runs) {
+  constexpr double directions = limits::run_directions;
+  return f_quantile(limits::probability, directions, directions * static_cast<double>(runs));
+}
+
+Tolerance::Tolerance(const std::vector<NullGains>& units, std::size_t runs)
+    : factor_(run_to_run_factor(runs)) {
+  for (const NullGains& unit : units) {
+    for (const auto& [cause, gain] : unit)
+      usual_[cause] += std::max(gain, 0.0) / static_cast<double>(units.size());
+  }
+  for (const auto& [cause, gain] : usual_) average_ += gain / static_cast<double>(usual_.size());
+}
+
+double Tolerance::usual(std::string_view cause) const {
+  const auto found = usual_.find(cause);
+  return found == usual_.end() ? average_ : found->second;
+}
+
+double Tolerance::of(std::string_view cause) const {
+  return factor_ * std::max(usual(cause), average_);
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,42 @@
+#include "sysid/evidence/veto.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace softgrip::sysid {
+
+Veto veto_of(const Claim& claim) {
+  if (!claim.condition_met) return Veto::not_tested;
+  if (claim.size) {
+    const auto& [lower, upper] = *claim.size;
+    if (!(lower > 0 || upper < 0)) return Veto::size_uncertain;
+    // The end of the interval that is nearer to zero: a size that may be plausible is not rejected.
+    if (std::min(std::abs(lower), std::abs(upper)) > claim.largest_size) return Veto::size_beyond_range;
+  }
+  if (!(claim.error_with < claim.error_without)) return Veto::error_not_reduced;
+  if (claim.predicts_worse) return Veto::not_predictive;
+  if (!claim.shown_there) return Veto::absent_where_required;
+  return Veto::none;
+}
+
+std::string_view reason_of(Veto veto) {
+  switch (veto) {
+    case Veto::none:
+      break;
+    case Veto::size_uncertain:
+      return "the interval of its size contains zero";
+    case Veto::size_beyond_range:
+      return "its size exceeds the range of the signal";
+    case Veto::error_not_reduced:
+      return "it does not reduce the error of the readings";
+    case Veto::not_predictive:
+      return "it reduces the error where it was fitted but predicts other readings worse";
+    case Veto::not_tested:
+      return "the data never meet the condition under which it acts";
+    case Veto::absent_where_required:
+      return "its effect is absent where it must appear";
+  }
+  return {};
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,23 @@
+#include "sysid/evidence/f_quantile.h"
+
+#include <gtest/gtest.h>
+
+namespace softgrip::sysid::f_quantile_test {
+namespace {
+
+TEST(FQuantile, AgreesWithTheTablesOfAbramowitzAndStegun) {
+  // Table 26.9, upper 5 %, and the upper 1 % of the last.
+  EXPECT_NEAR(f_quantile(0.95, 1, 1), 161.4, 0.1);
+  EXPECT_NEAR(f_quantile(0.95, 3, 3), 9.28, 0.005);
+  EXPECT_NEAR(f_quantile(0.95, 3, 9), 3.86, 0.005);
+  EXPECT_NEAR(f_quantile(0.95, 10, 20), 2.35, 0.005);
+  EXPECT_NEAR(f_quantile(0.99, 5, 10), 5.64, 0.005);
+}
+
+TEST(FQuantile, OfTheReciprocalRatioIsTheReciprocal) {
+  for (const double p : {0.05, 0.3, 0.5, 0.9, 0.99})
+    EXPECT_NEAR(f_quantile(p, 3, 7) * f_quantile(1 - p, 7, 3), 1, 1e-9) << p;
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::f_quantile_test

@@ -1,0 +1,47 @@
+#include "sysid/evidence/signature.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace softgrip::sysid::signature_test {
+namespace {
+
+/// Rest, a rise, a hold at 50 kPa, a fall and rest again.
+std::vector<OperatingPoint> grip() {
+  return {{0, 0, 0}, {1, 0, 0}, {20, 30, 4}, {40, 30, 8}, {50, 0, 10}, {50, 0, 10}, {20, 30, 5}, {0, 0, 1}};
+}
+
+TEST(Signature, EachConditionHoldsWhereItSays) {
+  EXPECT_EQ(required_at(Appears::at_rest, grip()),
+            (std::vector<bool>{true, true, false, false, false, false, false, true}));
+  EXPECT_EQ(required_at(Appears::held, grip()),
+            (std::vector<bool>{false, false, false, false, true, true, false, false}));
+  EXPECT_EQ(required_at(Appears::moving, grip()),
+            (std::vector<bool>{false, false, true, true, false, false, true, false}));
+  EXPECT_EQ(required_at(Appears::displaced, grip()),
+            (std::vector<bool>{false, false, false, true, true, true, false, false}));
+  EXPECT_EQ(required_at(Appears::anywhere, grip()), std::vector<bool>(8, true));
+}
+
+TEST(Signature, TheScaleAndTheOffsetOfThePressureDoNotMatter) {
+  std::vector<OperatingPoint> other = grip();
+  for (OperatingPoint& at : other) at = {100 + 0.001 * at.pressure_kpa, 7 * at.rate_kpa_per_s, at.motion};
+  for (const Appears appears : {Appears::at_rest, Appears::held, Appears::moving, Appears::displaced})
+    EXPECT_EQ(required_at(appears, other), required_at(appears, grip()));
+}
+
+TEST(Signature, ARunWithoutARestHasNone) {
+  const std::vector<OperatingPoint> sine{{0, 30, 0}, {30, 30, 5}, {60, 30, 10}, {30, 30, 5}, {0, 30, 0}};
+  const std::vector<bool> at_rest = required_at(Appears::at_rest, sine);
+  EXPECT_EQ(std::count(at_rest.begin(), at_rest.end(), true), 0);
+}
+
+TEST(Signature, EveryConditionHasARecordingThatMeetsIt) {
+  for (const Appears appears :
+       {Appears::anywhere, Appears::at_rest, Appears::held, Appears::moving, Appears::displaced})
+    EXPECT_EQ(recording_for(appears).substr(0, 7), "record ");
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::signature_test

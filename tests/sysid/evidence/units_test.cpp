@@ -1,0 +1,82 @@
+#include "sysid/evidence/units.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sysid/evidence/limits.h"
+
+namespace softgrip::sysid::units_test {
+namespace {
+
+Record record_of(std::size_t samples, double first_s = 0) {
+  Record record;
+  for (std::size_t i = 0; i < samples; ++i) {
+    record.time_s.push_back(first_s + static_cast<double>(i));
+    record.duration_s.push_back(i > 0 ? 1 : 0);
+    record.drive_kpa.push_back(0);
+    record.reading_mm.push_back(1);
+  }
+  record.readings = samples;
+  return record;
+}
+
+TEST(Units, OfSeveralRunsAreTheRuns) {
+  const std::vector<Record> records{record_of(10), record_of(20), record_of(30)};
+  const Units units(records);
+  EXPECT_TRUE(units.are_runs());
+  ASSERT_EQ(units.count(), 3U);
+  for (std::size_t unit = 0; unit < 3; ++unit) {
+    std::vector<std::size_t> kept;
+    const std::vector<Record> rest = units.without(records, unit, &kept);
+    ASSERT_EQ(rest.size(), 2U);
+    ASSERT_EQ(kept.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NE(kept[k], unit);
+      EXPECT_EQ(rest[k].size(), records[kept[k]].size());
+      EXPECT_EQ(rest[k].readings, records[kept[k]].readings);
+    }
+  }
+}
+
+TEST(Units, OfOneRunAreItsHalves) {
+  const std::vector<Record> records{record_of(11, 5)};
+  const Units units(records);
+  EXPECT_FALSE(units.are_runs());
+  ASSERT_EQ(units.count(), 2U);
+  EXPECT_EQ(units.unit_of(0, 4.9), 0U);
+  EXPECT_EQ(units.unit_of(0, 5), 1U);
+  std::size_t readings = 0;
+  for (std::size_t unit = 0; unit < 2; ++unit) {
+    const Record rest = units.without(records, unit).at(0);
+    EXPECT_EQ(rest.size(), 11U);
+    std::size_t finite = 0;
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const bool left_out = units.unit_of(0, rest.time_s[i] - 5) == unit;
+      EXPECT_EQ(std::isfinite(rest.reading_mm[i]), !left_out) << i;
+      if (std::isfinite(rest.reading_mm[i])) ++finite;
+    }
+    EXPECT_EQ(finite, rest.readings);
+    readings += finite;
+  }
+  EXPECT_EQ(readings, 11U);
+}
+
+TEST(Units, WithoutNoneAreAllRecords) {
+  const std::vector<Record> one{record_of(11)}, two{record_of(4), record_of(4)};
+  EXPECT_EQ(Units(one).without(one, Units(one).count()).at(0).readings, 11U);
+  EXPECT_EQ(Units(two).without(two, Units(two).count()).size(), 2U);
+}
+
+TEST(Units, OfManyRunsAreLeftOutTogetherAndEachOnce) {
+  const std::vector<Record> records(14, record_of(3));
+  const Units units(records);
+  EXPECT_EQ(units.count(), limits::most_units);
+  std::size_t left_out = 0;
+  for (std::size_t unit = 0; unit < units.count(); ++unit)
+    left_out += records.size() - units.without(records, unit).size();
+  EXPECT_EQ(left_out, records.size());
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::units_test

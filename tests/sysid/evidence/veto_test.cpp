@@ -1,0 +1,54 @@
+#include "sysid/evidence/veto.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace softgrip::sysid::veto_test {
+namespace {
+
+/// A claim that meets every condition.
+Claim sound() {
+  return {.size = Interval{1, 2}, .largest_size = 10, .error_without = 1, .error_with = 0.5};
+}
+
+TEST(Veto, ASoundClaimStands) {
+  EXPECT_EQ(veto_of(sound()), Veto::none);
+  EXPECT_TRUE(reason_of(Veto::none).empty());
+}
+
+TEST(Veto, EachConditionRejects) {
+  Claim claim = sound();
+  claim.size = Interval{-0.02, 0.10};
+  EXPECT_EQ(veto_of(claim), Veto::size_uncertain);
+  claim.size = Interval{-29, -27};
+  EXPECT_EQ(veto_of(claim), Veto::size_beyond_range);
+  claim = sound();
+  claim.error_with = 1.03;
+  EXPECT_EQ(veto_of(claim), Veto::error_not_reduced);
+  claim = sound();
+  claim.predicts_worse = true;
+  EXPECT_EQ(veto_of(claim), Veto::not_predictive);
+  claim = sound();
+  claim.condition_met = false;
+  EXPECT_EQ(veto_of(claim), Veto::not_tested);
+  claim = sound();
+  claim.shown_there = false;
+  EXPECT_EQ(veto_of(claim), Veto::absent_where_required);
+}
+
+TEST(Veto, AnErrorThatStaysTheSameIsNotReduced) {
+  Claim claim = sound();
+  claim.error_with = claim.error_without;
+  EXPECT_EQ(veto_of(claim), Veto::error_not_reduced);
+}
+
+TEST(Veto, EachHasItsOwnReason) {
+  std::set<std::string_view> reasons;
+  for (const Veto veto : {Veto::size_uncertain, Veto::size_beyond_range, Veto::error_not_reduced,
+                          Veto::not_predictive, Veto::not_tested, Veto::absent_where_required})
+    EXPECT_TRUE(reasons.insert(reason_of(veto)).second);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::veto_test
