@@ -85,7 +85,7 @@ class Doctor(bench.BenchTest):
         rig = self.rig(emulator.port)
         report, findings = self.doctor(rig, "--move", expect=6)
         self.assertEqual(self.failures(report), ["sensor left"])
-        self.assertIn("see `sensor left`", findings["finger left"]["text"])
+        self.assertIn("see `sensor left`", findings["motion left"]["text"])
         self.assertEqual(findings["finger right"]["verdict"], "ok")
         daemon = self.daemon(rig)
         bench.wait_for("an answer of the daemon", lambda: daemon.status()["bus"]["connected"])

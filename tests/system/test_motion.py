@@ -157,6 +157,18 @@ class Blind(MotionTest):
                 self.assertLessEqual(max(max(sample) for sample in samples), NOISE_KPA)
                 self.assertEqual(child.output(), "", "no lines for the rig file")
 
+    def test_doctor_does_not_move_a_finger_without_its_sensor(self):
+        self.board.ask("fault blind")
+        child = self.begin(MOTIONS["doctor"][0])
+        samples = self.outputs_to_the_end(child)
+        self.assertEqual(child.wait(), 6, child.errors())
+        self.assertLessEqual(max(sample[0] for sample in samples), NOISE_KPA)
+        self.assertGreater(max(sample[1] for sample in samples), 5, "the other finger has its sensor")
+        findings = {finding["name"]: finding for finding in json.loads(child.output())["findings"]}
+        self.assertEqual(findings["sensor left"]["verdict"], "fail")
+        self.assertEqual(findings["motion left"]["text"], "not judged: see `sensor left`")
+        self.assertEqual(findings["finger right"]["verdict"], "ok")
+
     def test_a_cable_that_comes_out_on_the_way_ends_the_motion(self):
         child = self.begin((*CALIBRATE, "--valve", "--move", "--settle-s", "1"))
         self.wait_for_pressure(child, 12)  # on the way to 40

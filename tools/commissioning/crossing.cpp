@@ -36,9 +36,11 @@ bool monitor_followed(const rig::RigFile& rig, const ChannelSample& rest, const 
 using Shown = std::vector<std::optional<std::size_t>>;
 
 template <class Followed>
-Shown who_showed(std::size_t count, const Followed& followed) {
+Shown who_showed(std::span<const Motion> motions, const Followed& followed) {
+  const std::size_t count = motions.size();
   Shown shown(count);
   for (std::size_t moved = 0; moved < count; ++moved) {
+    if (motions[moved].up.empty()) continue;
     std::size_t how_many = 0;
     for (std::size_t other = 0; other < count; ++other) {
       if (!followed(moved, other)) continue;
@@ -89,10 +91,10 @@ std::string terminal(const rig::RigFile& rig, CrossingKind kind, std::size_t cha
 
 std::vector<Crossing> find_crossings(const rig::RigFile& rig, std::span<const ChannelSample> rest,
                                      std::span<const Motion> motions) {
-  const auto sensors = circles_of(who_showed(motions.size(), [&](std::size_t moved, std::size_t other) {
+  const auto sensors = circles_of(who_showed(motions, [&](std::size_t moved, std::size_t other) {
     return sensor_followed(rig, rest[other], motions[moved], other);
   }));
-  const auto monitors = circles_of(who_showed(motions.size(), [&](std::size_t moved, std::size_t other) {
+  const auto monitors = circles_of(who_showed(motions, [&](std::size_t moved, std::size_t other) {
     return monitor_followed(rig, rest[other], motions[moved], moved, other);
   }));
   const auto holds = [](const auto& circles, const std::vector<std::size_t>& circle) {

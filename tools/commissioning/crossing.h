@@ -21,8 +21,9 @@ struct Crossing {
   std::vector<std::size_t> channels;  ///< at least two
 };
 
-/// The circles in what was seen when every channel was moved by itself; `motions[i]` is channel i's, `rest`
-/// what all read before. A channel counts where exactly one sensor, or one monitor, followed it.
+/// The circles in what was seen when every channel was moved by itself; `motions[i]` is channel i's (one that
+/// was not moved shows nothing), `rest` what all read before. A channel counts where exactly one sensor, or
+/// one monitor, followed it.
 [[nodiscard]] std::vector<Crossing> find_crossings(const rig::RigFile& rig,
                                                    std::span<const ChannelSample> rest,
                                                    std::span<const Motion> motions);

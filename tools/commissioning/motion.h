@@ -8,7 +8,7 @@ namespace softgrip::tools::doctor {
 /// What was seen while one finger went up a little and came back.
 struct Motion {
   double command_kpa = 0;         ///< how far up
-  std::vector<ChannelSample> up;  ///< of all channels, while this one stood there
+  std::vector<ChannelSample> up;  ///< of all channels, while this one stood there; empty: it was not moved
   double model_mm = 0;            ///< how far the model moved, up there
   double residual_rms_mm = 0;     ///< of reading minus model, less what it was at rest; over the whole motion
 };

@@ -175,28 +175,47 @@ NotJudged known_of(const rig::RigFile& rig, std::span<const Crossing> crossings,
   return known;
 }
 
+/// The sensor that shows a motion of this channel: the displacement sensor, else the pressure monitor.
+Sight sight_of(const rig::RigFile& rig, std::size_t channel) {
+  const bool displacement = rig.settings.channels[channel].displacement_used;
+  return {channel, displacement, !displacement && rig.wiring[channel].pressure.has_value()};
+}
+
+/// Returns the finding that says why a channel must not be moved: its sensor read nothing valid. Else empty.
+std::string blind_at(const rig::RigFile& rig, const ChannelSample& rest, std::size_t channel) {
+  const Sight sight = sight_of(rig, channel);
+  const std::string& name = rig.settings.channels[channel].name;
+  if (sight.displacement && rest.displacement_mm.count == 0) return "sensor " + name;
+  if (sight.pressure && rest.pressure_kpa.count == 0) return "pressure " + name;
+  return {};
+}
+
 /// Every finger by itself, all sensors watched: only together do they show which wires are swapped.
 void move_all(const rig::RigFile& rig, MotionSession& session, const std::vector<ChannelSample>& rest,
               const MoveSettings& settings, Findings& findings) {
-  std::vector<Motion> motions;
-  while (motions.size() < rest.size()) {
-    const std::size_t i = motions.size();
-    auto motion = move_and_watch(rig, session, i, rest[i], settings);
-    if (!motion) {
-      failed(motion.error(), rig, "motion " + rig.settings.channels[i].name, findings);
-      break;
+  std::vector<Motion> motions(rest.size());
+  std::string ended_by;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const std::string name = "motion " + rig.settings.channels[i].name;
+    const std::string because = ended_by.empty() ? blind_at(rig, rest[i], i) : ended_by;
+    if (!because.empty()) {
+      findings.not_judged(name, "see `" + because + "`");
+      continue;
     }
-    motions.push_back(std::move(*motion));
+    session.require(sight_of(rig, i));
+    auto motion = move_and_watch(rig, session, i, rest[i], settings);
+    if (motion) {
+      motions[i] = std::move(*motion);
+    } else {
+      failed(motion.error(), rig, name, findings);
+      ended_by = name;
+    }
   }
   const std::vector<Crossing> crossings = find_crossings(rig, rest, motions);
   tell_crossings(rig, crossings, findings);
   for (std::size_t i = 0; i < rest.size(); ++i) {
-    if (i < motions.size()) {
+    if (!motions[i].up.empty())
       judge_motion(rig, i, rest[i], motions[i], known_of(rig, crossings, rest[i], i), findings);
-    } else if (i > motions.size()) {
-      findings.not_judged("motion " + rig.settings.channels[i].name,
-                          "see `motion " + rig.settings.channels[motions.size()].name + "`");
-    }
   }
 }
 

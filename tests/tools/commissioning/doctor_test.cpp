@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -38,6 +39,21 @@ class BlindMonitor final : public tools::testing::PassingBoard {
     readings[0].pressure_kpa = std::numeric_limits<double>::quiet_NaN();
     return status;
   }
+};
+
+/// A board that notes the highest pressure of each channel.
+class NotingBoard final : public tools::testing::PassingBoard {
+ public:
+  using PassingBoard::PassingBoard;
+  [[nodiscard]] drivers::BusStatus exchange(std::span<const double> commands_kpa,
+                                            std::span<model::Reading> readings,
+                                            std::chrono::nanoseconds deadline) noexcept override {
+    for (std::size_t i = 0; i < commands_kpa.size(); ++i)
+      highest_kpa[i] = std::max(highest_kpa[i], commands_kpa[i]);
+    return PassingBoard::exchange(commands_kpa, readings, deadline);
+  }
+
+  std::array<double, 2> highest_kpa{};
 };
 
 /// A board with a watchdog, other clients, and a count of them.
@@ -198,19 +214,53 @@ TEST_F(DoctorTest, ASensorThatSeesNothing) {
   expect("sensor left", Verdict::fail, "out_of_range");
 }
 
-TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsValveIsJudgedAllTheSame) {
+/// A finger without a valid reading could leave its limits unseen: only the others move.
+TEST_F(DoctorTest, ASensorThatSeesNothingIsOneFailureAndItsFingerIsNotMoved) {
   Event blind;
   blind.kind = Event::Kind::sensor_fault;
   blind.channel = 0;
   blind.sensor.kind = SensorFault::Kind::out_of_range;
   at_once(blind);
-  examine(true);
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
+  NotingBoard board(*board_);
+  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
   expect("sensor left", Verdict::fail, "out_of_range");
-  expect("valve left", Verdict::ok, "the monitor shows");
-  expect_not_judged("finger left", "see `sensor left`");
-  expect_not_judged("model left", "see `sensor left`");
+  expect_not_judged("motion left", "see `sensor left`");
+  EXPECT_EQ(finding("valve left").name, "no valve left");
+  EXPECT_EQ(finding("finger left").name, "no finger left");
+  EXPECT_EQ(board.highest_kpa[0], 0);
   expect("finger right", Verdict::ok, "moved");
+  EXPECT_GT(board.highest_kpa[1], 10);
   EXPECT_EQ(findings_.count(Verdict::fail), 1U) << text_of({"", "", false, true}, findings_, 100, false);
+}
+
+TEST_F(DoctorTest, ASensorThatIsLostOnTheWayEndsTheMotion) {
+  Event blind;
+  blind.kind = Event::Kind::sensor_fault;
+  blind.channel = 0;
+  blind.sensor.kind = SensorFault::Kind::out_of_range;
+  blind.at_s = 1.5;  // the look at rest takes 1 s, the way up 1 s
+  at_once(blind);
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
+  NotingBoard board(*board_);
+  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
+  expect("motion left", Verdict::fail, "are not valid (out_of_range)");
+  expect_not_judged("motion right", "see `motion left`");
+  EXPECT_GT(board.highest_kpa[0], 0);
+  EXPECT_LT(board.highest_kpa[0], 10);
+  EXPECT_EQ(board.highest_kpa[1], 0);
+  EXPECT_EQ(output_kpa(0), 0);
+}
+
+TEST_F(DoctorTest, AChannelWithoutASensorIsSeenByItsMonitorOrNotMoved) {
+  rig_.settings.channels[0].displacement_used = false;
+  board_ = std::make_unique<simulation::SimulatedBoard>(simulated(), time_.clock);
+  BlindMonitor blind(*board_);
+  NotingBoard board(blind);
+  examine_rig(rig_, board, time_.clock, time_.stop(), true, {}, findings_);
+  expect_not_judged("motion left", "see `pressure left`");
+  EXPECT_EQ(board.highest_kpa[0], 0);
+  expect("finger right", Verdict::ok, "moved");
 }
 
 TEST_F(DoctorTest, AMonitorWithoutAValidReadingIsNamedAndTheFingerJudgedAlone) {
