@@ -182,11 +182,10 @@ void Gateway::daemon_said(const Json& line, Nanoseconds now) {
   if (asked == asked_.end()) return;
   const std::uint16_t counter = asked->second;
   asked_.erase(asked);
-  if (line.value("ok", false)) {
-    handshake_.finish(counter, Outcome::accepted);
-  } else {
-    handshake_.finish(counter, Outcome::refused, reason_of(line.value("error", Json::object())));
-  }
+  if (line.value("ok", false)) return handshake_.finish(counter, Outcome::accepted);
+  const Reason reason = reason_of(line.value("error", Json::object()));
+  // A loop that has not answered in time may still begin a start: nobody may rely on a refusal.
+  handshake_.finish(counter, reason == Reason::no_answer ? Outcome::unknown : Outcome::refused, reason);
 }
 
 /// The gateway's own registers, and those that this master wrote.

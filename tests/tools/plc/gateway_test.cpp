@@ -343,6 +343,19 @@ TEST_F(GatewayTest, WhatWaitedForTheCommandBeforeItIsSentAfterIt) {
   EXPECT_EQ(sent(), std::vector<std::string>{"start"});
 }
 
+/// The daemon's loop may still take the command: it is not refused.
+TEST_F(GatewayTest, ACommandThatTheLoopDidNotAnswerHasAnUnknownEnd) {
+  daemon_comes();
+  put(plc_, 0, CommandCode::none);
+  put(plc_, 1, CommandCode::start);
+  EXPECT_EQ(sent(), std::vector<std::string>{"start"});
+  refuse({{"code", "no_answer"}, {"message", ""}});
+  EXPECT_EQ(read(Name::done_counter), 1);
+  EXPECT_EQ(end_of(plc_), std::pair(Outcome::unknown, Reason::no_answer));
+  put(plc_, 2, CommandCode::stop);
+  EXPECT_EQ(sent(), std::vector<std::string>{"stop"});
+}
+
 TEST_F(GatewayTest, NoLineThatPassesTheCheckStopsIt) {
   daemon_comes();
   for (const Json& good : tools::testing::good_lines()) {
