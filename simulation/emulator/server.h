@@ -43,6 +43,8 @@ class Server {
 
   [[nodiscard]] Nanoseconds now() const;
   [[nodiscard]] std::chrono::nanoseconds timeout() const;
+  /// The limit of descriptors was lowered. False: there is no client to give up.
+  [[nodiscard]] bool give_up_client();
   void accept_modbus(std::size_t link);
   void count_clients();
   void plug_line();

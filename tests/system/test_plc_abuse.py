@@ -64,6 +64,15 @@ class Abuse(bench.BenchTest):
         self.assertLess(processor_s(pid) - before, 0.4, "of 4 s")
         self.assert_well()
 
+    def test_a_lowered_limit_of_descriptors_ends_only_the_newest_connections(self):
+        descriptors = f"/proc/{self.gateway.child.pid}/fd"
+        in_use = len(os.listdir(descriptors))
+        crowd = [self.connect() for _ in range(3)]
+        bench.wait_for("all connections", lambda: self.master.read("state") and len(os.listdir(descriptors)) == in_use + 3)
+        resource.prlimit(self.gateway.child.pid, resource.RLIMIT_NOFILE, (5, 5))
+        self.assertTrue(self.is_at_its_end(crowd[-1]))
+        self.assert_well()
+
     def is_at_its_end(self, client):
         client.settimeout(0.5)
         try:

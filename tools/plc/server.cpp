@@ -50,7 +50,10 @@ void Server::run() {
       const int events = line.connection.blocked() ? POLLIN | POLLOUT : POLLIN;
       watched.push_back({line.connection.descriptor(), static_cast<short>(events), 0});
     }
-    if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) return;
+    if (::ppoll(watched.data(), watched.size(), &pause, nullptr) < 0 && errno != EINTR) {
+      if (errno == EINVAL && give_up_line()) continue;
+      return;
+    }
     if (watched[0].revents != 0) return;
     const Nanoseconds now = clock_.now();
     daemon_.receive(now);
@@ -63,6 +66,14 @@ void Server::run() {
     std::erase_if(lines_, [&](const Line& line) { return !gateway_.masters().has(line.master); });
     daemon_.send();
   }
+}
+
+/// The newest one goes. poll() watches no more descriptors than the process may have.
+bool Server::give_up_line() {
+  if (lines_.empty()) return false;
+  gateway_.masters().leave(lines_.back().master);
+  lines_.pop_back();
+  return true;
 }
 
 void Server::accept(Nanoseconds now) {

@@ -26,6 +26,8 @@ class Server {
     Masters::Id master;
     modbus::Connection connection;
   };
+  /// The limit of descriptors was lowered. False: there is no connection to give up.
+  [[nodiscard]] bool give_up_line();
   void accept(Nanoseconds now);
   /// False: it has gone, or is to be closed.
   [[nodiscard]] bool serve(Line& line, short events, Nanoseconds now);
