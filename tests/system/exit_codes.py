@@ -34,6 +34,12 @@ def table():
     return rows
 
 
+def motion_faults():
+    """{command: (code without the board, code with safe outputs)} of the page's second table."""
+    rows = (line.strip("|").split("|") for line in PAGE.read_text().splitlines() if line.startswith("| `"))
+    return {row[0].strip(" `"): tuple(cell.strip() for cell in row[1:]) for row in rows if len(row) == 3}
+
+
 def each(test, commands, ending, check):
     """Calls check(name, command, cell) as a part of the test, for every command that can end so."""
     cells = table()

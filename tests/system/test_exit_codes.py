@@ -324,7 +324,8 @@ class Motion(bench.BenchTest):
         self.write("short.yaml", SHORT)
         self.write("bad.yaml", "name: bad\nvalve: 3\n")
         (self.folder / "out").mkdir()
-        self.board = self.emulator()
+        self.faults = self.write("faults.yaml", "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
+        self.board = self.emulator("--faults", self.faults)
         self.rig_path = self.rig(self.board.port)
         self.runner = Runner(self.folder)
         self.count = 0
@@ -371,15 +372,66 @@ class Motion(bench.BenchTest):
         self.each("signal", check)
 
     def test_fault(self):
+        self.assertEqual({name: cells[0] for name, cells in exit_codes.motion_faults().items()},
+                         {name: self.table[name]["fault"] for name in MOTION})
         def check(name, command, cell):
             child = self.working(self.line(command))
             self.board.kill()
             said = child.communicate(timeout=bench.PATIENCE_S)[1].decode()
             self.assertEqual(child.returncode, code_of(cell), f"{name}: {said[-1500:]}")
             self.board.control.close()
-            self.board = self.emulator(port=self.board.port)
+            self.board = self.emulator("--faults", self.faults, port=self.board.port)
 
         self.each("fault", check)
+
+    def test_fault_with_safe_outputs(self):
+        """The sensor of a finger under pressure fails, and the board still responds."""
+        for name, (_, cell) in exit_codes.motion_faults().items():
+            with self.subTest(name):
+                child = self.working(self.line(MOTION[name]))
+                self.board.ask("fault blind")
+                said = child.communicate(timeout=bench.PATIENCE_S)[1].decode()
+                self.board.ask("clear blind")
+                self.assertEqual(child.returncode, code_of(cell), f"{name}: {said[-1500:]}")
+                self.check_safe(name)
+
+    def test_done(self):
+        def check(name, command, cell):
+            done = self.runner.run(self.line(command))
+            self.ended(done, cell)
+            self.check_safe(name)
+            if command.writes:
+                self.assertTrue((self.folder / "out" / str(self.count) / command.writes).exists())
+
+        self.each("done", check)
+
+    def test_full_disk(self):
+        disk = FullDisk(self.folder / "full")
+        self.addCleanup(disk.close)
+        lines = {name: self.line(command, "full") for name, command in MOTION.items()}
+        (disk.folder / "output").touch()
+        disk.fill()
+        def check(name, command, cell):
+            if command.writes:
+                done = self.runner.run(lines[name], preexec_fn=disk.limit)
+                self.assertRegex(done.stderr.decode(), "No space left on device|File too large")
+            else:
+                with open(disk.folder / "output", "ab") as output:
+                    done = self.runner.run(lines[name], stdout=output, preexec_fn=disk.limit)
+                self.assertIn("standard output", done.stderr.decode())
+            self.ended(done, cell)
+            self.check_safe(name)
+
+        self.each("full disk", check)
+
+    def test_closed_pipe(self):
+        def check(name, command, cell):
+            for ignored in (False, True) if name != "baseline --rig" else (False,):  # its experiments take 2 minutes
+                done = self.runner.unread(self.line(command), ignored)
+                self.ended(done, "4" if ignored else cell, signal.SIGPIPE)
+                self.check_safe(name)
+
+        self.each("closed pipe", check)
 
 
 if __name__ == "__main__":
