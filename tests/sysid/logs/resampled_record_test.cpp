@@ -8,7 +8,6 @@
 #include <random>
 #include <vector>
 
-
 namespace softgrip::sysid::resampled_record_test {
 namespace {
 
