@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""What `softgrip import` makes of every file in a folder of field reports.
+
+    tests/system/import_reports.py FOLDER [--softgrip PROGRAM]...
+
+FOLDER has a folder for each report. The table has a row for each file. With two programs it has a column for each,
+before and after. Exit code 1 if a run crashed.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import shlex
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("SOFTGRIP_BUILD", ROOT / "build" / "release"))
+SUFFIXES = {".csv", ".gz", ".h5", ".lvm", ".mat", ".mcap", ".tdms", ".tsv", ".txt", ".xlsx"}
+# A report about an option needs the option.
+OPTIONS = {"channel-ignored": ["--channel right", "--channel nonsense", ""]}
+
+
+def cases(folder):
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.suffix in SUFFIXES:
+            for options in OPTIONS.get(path.parent.name, [""]):
+                yield path, options
+
+
+def outcome(program, path, options):
+    """(exit code, sentence) of one import."""
+    with tempfile.TemporaryDirectory() as out:
+        done = subprocess.run([program, "import", path, *shlex.split(options), "--yes", "--json", "--out",
+                               pathlib.Path(out) / "log.csv"], capture_output=True, text=True, timeout=120,
+                              stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        problems = [line for line in done.stderr.splitlines() if line.startswith(f"{path}:")]
+        return done.returncode, (problems or done.stderr.splitlines() or [""])[-1].replace(f"{path}:", "")[:160]
+    log = json.loads(done.stdout)["logs"][0]
+    said = log.get("warnings", []) + log["notes"] + log["doubts"]
+    return 0, f"{log['samples']} samples, {log['duration_s']:.6g} s" + "".join("; " + text[:120] for text in said[:2])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--softgrip", type=pathlib.Path, action="append", help="default: that of the build folder")
+    options = parser.parse_args()
+    programs = options.softgrip or [BUILD / "tools/softgrip"]
+    print("| file | options | " + " | ".join(f"exit code {i + 1} | result {i + 1}" for i in range(len(programs))) + " |")
+    print("|---|---|" + "---|---|" * len(programs))
+    crashed = False
+    for path, said in cases(options.folder):
+        results = [outcome(program, path, said) for program in programs]
+        crashed = crashed or any(code < 0 for code, _ in results)
+        cells = [cell for code, text in results for cell in (str(code), text.replace("|", "\\|"))]
+        print(f"| {path.relative_to(options.folder)} | {said} | " + " | ".join(cells) + " |", flush=True)
+    return 1 if crashed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
