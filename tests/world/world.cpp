@@ -5,7 +5,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <bit>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -14,12 +13,10 @@
 
 #include <fmt/format.h>
 
-#include "base/random.h"
 #include "tests/daemon/temporary_folder.h"
 #include "tests/world/daemon_in_world.h"
-#include "tests/world/hardware.h"
 #include "tests/world/recordings.h"
-#include "tests/world/rig_shape.h"
+#include "tests/world/surroundings.h"
 
 namespace softgrip::world {
 namespace {
@@ -32,7 +29,6 @@ constexpr Nanoseconds restart_pause = ns_per_s;
 constexpr Nanoseconds longest_answer = 2 * ns_per_s;
 /// Of a loop that ticks as it should.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
-constexpr Nanoseconds foreign_period = ns_per_s * 7 / 1000;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
 /// When a daemon has what it needs.
 constexpr Nanoseconds settling = 5 * ns_per_s;
@@ -64,111 +60,84 @@ void fill_disk(bool full) {
   setrlimit(RLIMIT_FSIZE, &limit);
 }
 
-/// The beginning or the end of an incident.
-struct Act {
-  Nanoseconds at = 0;
-  const Incident* incident = nullptr;
-  bool begins = true;
-};
-
 class World {
  public:
   World(const Library& library, std::uint64_t seed, const WorldOptions& options)
-      : library_(library),
-        options_(options),
-        shape_(draw_shape(library.rig, seed)),
-        scheduler_(derived_seed(seed, 2), ns_per_s),
-        begin_(scheduler_.now()),
-        hardware_(hardware_settings()),
-        board_(
-            hardware_, line_, scheduler_,
-            [this](Nanoseconds began, std::span<const double> commands) { wrote(began, commands); },
-            [this] { monitor_.exchange_begins(); }),
-        monitor_(shape_.rig.settings, shape_.watchdog) {
-    result_.shape = shape_.text;
-    result_.incidents = options.incidents
-                            ? *options.incidents
-                            : draw_incidents({seed, options.length, shape_.watchdog,
-                                              shape_.trip_latches || shape_.watchdog == 0,
-                                              library.sequences.size(), shape_.rig.settings.channels.size()});
-    for (const Incident& incident : result_.incidents) {
-      acts_.push_back({incident.at, &incident, true});
-      if (incident.duration > 0) acts_.push_back({incident.at + incident.duration, &incident, false});
-    }
-    std::stable_sort(acts_.begin(), acts_.end(), [](const Act& a, const Act& b) { return a.at < b.at; });
+      : library_(library), options_(options), around_(draw_shape(library.rig, seed), options.trace) {
+    around_.on_write = [this](Nanoseconds began, std::span<const double> commands) {
+      wrote(began, commands);
+    };
+    around_.on_exchange = [this] { monitor_.exchange_begins(); };
+    around_.on_trip = [this] { tripped(); };
+    result_.shape = around_.shape.text;
+    result_.incidents =
+        options.incidents
+            ? *options.incidents
+            : draw_incidents({seed, options.length, around_.shape.watchdog,
+                              around_.shape.trip_latches || around_.shape.watchdog == 0,
+                              library.sequences.size(), around_.shape.rig.settings.channels.size()});
   }
 
   WorldResult run() {
     const std::size_t descriptors = descriptors_ = open_descriptors();
     boot();
-    scheduler_.add("incidents", [this] { incidents_body(); });
+    around_.let_happen(result_.incidents,
+                       [this](const Incident& incident, bool begins) { carry_out(incident, begins); });
     scheduler_.add("outside", [this] { outside_body(); });
-    scheduler_.run_until(begin_ + options_.length, [this](ActorId id) { after(id); });
+    scheduler_.run_until(around_.begin + options_.length, [this](ActorId id) { after(id); });
     fill_disk(false);
     bury();
     if (open_descriptors() != descriptors)
       monitor_.leaks(fmt::format("{} descriptors more than at first",
                                  static_cast<long>(open_descriptors()) - static_cast<long>(descriptors)));
     result_.violation = monitor_.violation();
+    result_.trace = std::move(around_.traced);
+    result_.fingerprint = around_.fingerprint;
+    result_.writes = around_.writes;
+    result_.trips = around_.trips;
     return std::move(result_);
   }
 
  private:
-  HardwareSettings hardware_settings() {
-    HardwareSettings settings;
-    const auto& simulated = std::get<simulation::SimulatedBoardSettings>(shape_.rig.board);
-    for (const simulation::SimulatedChannel& channel : simulated.channels) {
-      settings.plants.push_back(channel.plant);
-      settings.plants.back().sample_time_s = 0.005;
-      settings.plants.back().seed = derived_seed(channel.plant.seed, shape_.seed);
-    }
-    settings.plant_step = ns_per_s / 200;
-    settings.watchdog = shape_.watchdog;
-    settings.trip_latches = shape_.trip_latches;
-    settings.on_trip = [this] {
-      ++result_.trips;
-      trace("the board's watchdog vents");
-      if (!daemon_) return;
-      const bool has_spoken =
-          daemon_->bus_statistics.exchanges.value() > daemon_->bus_statistics.failures.value();
-      monitor_.tripped(has_spoken);
-    };
-    return settings;
-  }
-
-  template <class... Values>
-  void trace(fmt::format_string<Values...> text, Values&&... values) {
-    if (!options_.trace) return;
-    result_.trace.push_back(fmt::format("{:9.4f} s  ", seconds(scheduler_.now() - begin_)) +
-                            fmt::format(text, std::forward<Values>(values)...));
-  }
-
   void boot() {
     trace("softgripd starts");
     monitor_.boots();
-    good_since_ = false;
+    around_.nobody_spoke();
     booted_at_ = memory_looked_at_ = scheduler_.now();
     settled_bytes_ = 0;
     std::string folder = options_.record ? fmt::format("{}/{}", folder_.path(), ++lives_) : std::string();
-    rig::RigFile rig = shape_.rig;
+    rig::RigFile rig = around_.shape.rig;
     rig.recorder.mode =
         options_.record ? rig::RecorderSettings::Mode::sequences : rig::RecorderSettings::Mode::off;
-    daemon_ = std::make_unique<DaemonInWorld>(rig, scheduler_, board_, folder);
+    daemon_ = std::make_unique<DaemonInWorld>(rig, scheduler_, around_.board, folder);
     daemon_->on_submit = [this](Request::Kind kind, std::uint32_t id) { monitor_.submitted(kind, id); };
     recorded_.clear();
     ticked_ = 0;  // one that died at its first tick does not hide the next one's
   }
 
+  template <class... Values>
+  void trace(fmt::format_string<Values...> text, Values&&... values) {
+    around_.trace(text, std::forward<Values>(values)...);
+  }
+
+  void tripped() {
+    if (!daemon_) return;
+    const bool has_spoken =
+        daemon_->bus_statistics.exchanges.value() > daemon_->bus_statistics.failures.value();
+    monitor_.tripped(has_spoken);
+  }
+
   /// What a daemon leaves behind, when it has ended.
   void bury() {
     if (!daemon_) return;
-    board_.hang_up();
+    around_.board.hang_up();
     const bool whole = daemon_->ended() && !killed_;
     const std::string folder = daemon_->rig.recorder.directory;
     const daemon::RecorderStatus status = daemon_->recorder.status();
     buried_.push_back(std::move(daemon_));
     if (options_.record && whole && status.dropped_rows == 0 && !disk_was_full_) {
-      const RecordingsRead read = check_recordings(folder, recorded_, shape_.rig.settings.channels.size());
+      const RecordingsRead read =
+          check_recordings(folder, recorded_, around_.shape.rig.settings.channels.size());
       result_.rows += read.rows;
       if (!read.lack.empty()) monitor_.recording_lacks(read.lack);
     }
@@ -192,11 +161,9 @@ class World {
       scheduler_.sleep_until(scheduler_.now() + ns_per_s / 1000);
       const Nanoseconds now = scheduler_.now();
       hardware_.move_to(now);
-      Excuse excuse;
+      Excuse excuse = around_.excuse();
       excuse.no_daemon = daemon_ == nullptr;
       excuse.paused = daemon_ && is_paused();
-      excuse.no_line = line_hindered_ > 0 || !good_since_;
-      excuse.line_but_for_foreign = line_hindered_ > (foreign_ != nullptr ? 1 : 0) || !good_since_;
       monitor_.passed(now, excuse, hardware_.outputs_kpa());
       if (monitor_.violation()) {
         scheduler_.stop();
@@ -246,19 +213,9 @@ class World {
     return any;
   }
 
-  void incidents_body() {
-    for (const Act& act : acts_) {
-      scheduler_.sleep_until(begin_ + act.at);
-      carry_out(*act.incident, act.begins);
-    }
-    for (;;) scheduler_.sleep_until(begin_ + 2 * options_.length);
-  }
-
   void carry_out(const Incident& incident, bool begins);
   void to_daemon(const Incident& incident);
   void pause(const Incident& incident);
-  void to_line(const Incident& incident, bool begins);
-  void to_fingers(const Incident& incident, bool begins);
 
   void after(ActorId id) {
     if (!daemon_ || daemon_->actor(Part::loop) != id) return;
@@ -298,34 +255,21 @@ class World {
                               now - last_tick_gap_end_ < ns_per_s / 5 ||
                               std::equal(commands.begin(), commands.end(), monitor_.safe_kpa().begin());
     monitor_.write(began, now, outputs, commands, safe_outputs);
-    if (options_.trace && !std::equal(commands.begin(), commands.end(), outputs.begin()))
-      trace("wrote {:.4f} kPa over {:.4f}", fmt::join(commands, " "), fmt::join(outputs, " "));
-    ++result_.writes;
-    good_since_ = true;
-    for (const double command : commands) {
-      result_.fingerprint = scattered(result_.fingerprint ^ std::bit_cast<std::uint64_t>(command));
-    }
-    result_.fingerprint = scattered(result_.fingerprint ^ static_cast<std::uint64_t>(now));
+    around_.note_write(outputs, commands);
   }
 
   const Library& library_;
   const WorldOptions& options_;
-  RigShape shape_;
   WorldResult result_;
   daemon::testing::TemporaryFolder folder_;
-  Scheduler scheduler_;
-  Nanoseconds begin_;
-  Line line_;
-  Hardware hardware_;
-  WorldBoard board_;
-  Monitor monitor_;
-  std::vector<Act> acts_;
+  Surroundings around_;
+  Scheduler& scheduler_ = around_.scheduler;
+  Hardware& hardware_ = around_.hardware;
+  Monitor& monitor_ = around_.monitor;
   std::unique_ptr<DaemonInWorld> daemon_;
   std::vector<std::unique_ptr<DaemonInWorld>> buried_;
   std::vector<Nanoseconds> recorded_;  // when it ticked, since its origin
   unsigned lives_ = 0;
-  int line_hindered_ = 0;
-  bool good_since_ = false;
   bool killed_ = false;
   bool disk_full_ = false;
   bool disk_was_full_ = false;
@@ -339,26 +283,19 @@ class World {
   Nanoseconds last_tick_ = 0;
   Nanoseconds last_tick_gap_end_ = 0;
   Nanoseconds undisturbed_since_ = 0;
-  const Incident* foreign_ = nullptr;
 };
 
 void World::carry_out(const Incident& incident, bool begins) {
-  if (begins) trace("** {}", text_of(incident));
-  if (begins && incident.kind <= Kind::kill) {
-    if (daemon_) to_daemon(incident);
-  } else if (incident.kind == Kind::pause || incident.kind == Kind::pause_late ||
-             incident.kind == Kind::pause_all) {
-    if (begins && daemon_) pause(incident);
-  } else if (incident.kind == Kind::clock_stalls) {
-    if (begins) scheduler_.stall_clock(incident.duration);
+  if (Surroundings::concerns(incident.kind)) {
+    around_.carry_out(incident, begins);
   } else if (incident.kind == Kind::disk_full) {
     disk_full_ = begins;
     disk_was_full_ = true;
     fill_disk(begins);
-  } else if (incident.kind >= Kind::line && incident.kind <= Kind::foreign) {
-    to_line(incident, begins);
-  } else if (incident.kind > Kind::foreign) {
-    to_fingers(incident, begins);
+  } else if (incident.kind == Kind::emergency_stop) {
+    if (daemon_) daemon_->wires.inputs.emergency_stop.store(begins);
+  } else if (begins && daemon_) {
+    incident.kind <= Kind::kill ? to_daemon(incident) : pause(incident);
   }
 }
 
@@ -414,73 +351,6 @@ void World::pause(const Incident& incident) {
     scheduler_.pause(actor, until);
   } else {
     scheduler_.pause_after_look(actor, incident.duration);
-  }
-}
-
-void World::to_line(const Incident& incident, bool begins) {
-  line_hindered_ += begins ? 1 : -1;
-  if (!begins) good_since_ = false;
-  switch (incident.kind) {
-    case Kind::line:
-      line_.status = begins ? static_cast<drivers::BusStatus>(incident.target) : drivers::BusStatus::ok;
-      line_.reply_lost = false;
-      break;
-    case Kind::replies_lost:
-      line_.status = begins ? drivers::BusStatus::timed_out : drivers::BusStatus::ok;
-      line_.reply_lost = begins;
-      break;
-    case Kind::slow_line:
-      line_.latency = begins ? nanoseconds(incident.value) : Line{}.latency;
-      break;
-    case Kind::write_refused:
-      hardware_.refuses_writes = begins;
-      break;
-    case Kind::foreign:
-      foreign_ = begins ? &incident : nullptr;
-      monitor_.foreign_ended();
-      if (begins) {
-        scheduler_.add("foreign", [this, &incident] {
-          const std::vector<double> outputs(hardware_.channels(), incident.value);
-          while (foreign_ == &incident) {
-            monitor_.foreign_wrote(outputs);
-            hardware_.write(scheduler_.now(), outputs);
-            scheduler_.sleep_until(scheduler_.now() + foreign_period);
-          }
-        });
-      }
-      break;
-    default:
-      break;
-  }
-}
-
-void World::to_fingers(const Incident& incident, bool begins) {
-  hardware_.move_to(scheduler_.now());
-  const std::size_t channel = incident.target % hardware_.channels();
-  using Sensor = simulation::SensorFault;
-  using LineFault = simulation::LineFault;
-  switch (incident.kind) {
-    case Kind::sensor_stuck:
-      hardware_.plant(channel).set_fault(Sensor{begins ? Sensor::Kind::stuck : Sensor::Kind::none, 0});
-      break;
-    case Kind::sensor_lost:
-      hardware_.plant(channel).set_fault(Sensor{begins ? Sensor::Kind::out_of_range : Sensor::Kind::none, 0});
-      break;
-    case Kind::line_leaks:
-      hardware_.plant(channel).set_fault(
-          LineFault{begins ? LineFault::Kind::leaking : LineFault::Kind::none, 0.4});
-      break;
-    case Kind::part_gone:
-      for (std::size_t i = 0; i < hardware_.channels(); ++i) {
-        const auto& simulated = std::get<simulation::SimulatedBoardSettings>(shape_.rig.board);
-        hardware_.plant(i).set_object(begins ? std::nullopt : simulated.channels[i].plant.object);
-      }
-      break;
-    case Kind::emergency_stop:
-      if (daemon_) daemon_->wires.inputs.emergency_stop.store(begins);
-      break;
-    default:
-      break;
   }
 }
 

@@ -1,0 +1,83 @@
+#pragma once
+// What is around a program that drives a rig: board, line, fingers, a second master, the clock, and the
+// invariants that are judged there.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "tests/world/hardware.h"
+#include "tests/world/incident.h"
+#include "tests/world/monitor.h"
+#include "tests/world/rig_shape.h"
+#include "tests/world/scheduler.h"
+
+namespace softgrip::world {
+
+class Surroundings {
+ public:
+  /// `tracing`: everything that happens is kept in words.
+  Surroundings(RigShape rig_shape, bool tracing);
+  Surroundings(const Surroundings&) = delete;
+  Surroundings& operator=(const Surroundings&) = delete;
+  Surroundings(Surroundings&&) = delete;
+  Surroundings& operator=(Surroundings&&) = delete;
+  ~Surroundings() = default;
+
+  /// Adds an actor that begins and ends these incidents when they are due. They outlive it.
+  void let_happen(const std::vector<Incident>& incidents,
+                  std::function<void(const Incident& incident, bool begins)> carry_out);
+  /// Incidents of the clock, the line, the board and the fingers.
+  void carry_out(const Incident& incident, bool begins);
+  [[nodiscard]] static bool concerns(Incident::Kind kind) noexcept {
+    return kind == Incident::Kind::clock_stalls ||
+           (kind >= Incident::Kind::line && kind <= Incident::Kind::part_gone);
+  }
+  /// A write has reached the board, whose outputs were as given.
+  void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
+  /// A program begins that has not had a good exchange.
+  void nobody_spoke() noexcept { good_since_ = false; }
+  /// What the line and the second master excuse.
+  [[nodiscard]] Excuse excuse() const noexcept;
+
+  template <class... Values>
+  void trace(fmt::format_string<Values...> text, Values&&... values) {
+    if (!tracing) return;
+    traced.push_back(fmt::format("{:9.4f} s  ", seconds(scheduler.now() - begin)) +
+                     fmt::format(text, std::forward<Values>(values)...));
+  }
+
+  /// Before a request takes effect.
+  WorldBoard::OnWrite on_write = [](auto, auto) {};
+  std::function<void()> on_exchange = [] {};
+  std::function<void()> on_trip = [] {};
+
+  RigShape shape;
+  bool tracing;
+  std::vector<std::string> traced;
+  Scheduler scheduler;
+  Nanoseconds begin;
+  Line line;
+  Hardware hardware;
+  WorldBoard board;
+  Monitor monitor;
+  std::uint64_t fingerprint = 0;  ///< of all writes with their times
+  std::uint64_t writes = 0;
+  std::uint64_t trips = 0;
+
+ private:
+  [[nodiscard]] HardwareSettings hardware_settings();
+  void to_line(const Incident& incident, bool begins);
+  void to_fingers(const Incident& incident, bool begins);
+  void write_as_another(const Incident& incident);
+
+  int hindered_ = 0;  // by so many incidents
+  bool good_since_ = false;
+  const Incident* foreign_ = nullptr;
+};
+
+}  // namespace softgrip::world
