@@ -139,17 +139,20 @@ void DaemonParts::conclude(Outcome& outcome) {
     outcome.pressure_left_on = outcome.pressure_left_on || on;
     if (on) outcome.vents_after_s = seconds(board->watchdog_time().count());
   }
-  if (outcome.ending != Ending::asked || !errand) return;
-  outcome.sequence_end = errand->end();
-  if (!errand->over()) {
+  if (outcome.ending == Ending::asked && errand) conclude_errand(*errand, outcome);
+}
+
+void conclude_errand(const Errand& errand, Outcome& outcome) {
+  outcome.sequence_end = errand.end();
+  if (!errand.over()) {
     outcome.ending = outcome.sequence_end ? Ending::sequence_ended : Ending::interrupted;
     if (!outcome.sequence_end) outcome.sequence_end = control::SequenceEnd::stopped;
     return;
   }
-  switch (errand->state()) {
+  switch (errand.state()) {
     case Errand::State::refused:
       outcome.ending = Ending::sequence_refused;
-      outcome.message = control::name_of(errand->refusal());
+      outcome.message = control::name_of(errand.refusal());
       break;
     case Errand::State::not_idle:
       outcome.ending = Ending::not_idle;

@@ -57,6 +57,9 @@ struct DaemonParts {
   std::uint64_t delivered = 0;  // id of the last event given to on_event
 };
 
+/// What became of the errand, whether it is over or not.
+void conclude_errand(const Errand& errand, Outcome& outcome);
+
 /// Ticks as fast as it can, in this thread alone.
 [[nodiscard]] Outcome run_in_virtual_time(DaemonParts& parts, Signals& signals);
 /// Ticks by the clock, with threads.

@@ -49,6 +49,8 @@ class SocketApi {
   /// Returns true if the client must keep its connection although it is silent: it has a subscription, or its
   /// start runs or may still begin.
   [[nodiscard]] bool keeps_place(ClientId client) const;
+  /// The sequence of a start is being loaded. on_time() takes it when it is.
+  [[nodiscard]] bool loads() const noexcept { return planned_.has_value(); }
   /// Sends what is due: answers of the loop, watched states. Returns when to call again at the latest.
   Nanoseconds on_time(Nanoseconds now);
 
