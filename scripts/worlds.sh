@@ -2,8 +2,10 @@
 # The whole daemon in seeded worlds: loop, bus, board with its watchdog, clients, recorder, pauses, second masters, in one
 # thread on one simulated clock (tests/world). Says what a seed violates, the fewest incidents that do, and the trace.
 #   scripts/worlds.sh [SEEDS [SECONDS [FIRST]]]      default: 10000 seeds of 60 s from seed 1
+#   scripts/worlds.sh tools [SEEDS [SECONDS [FIRST]]]   the same with calibrate, doctor, run, baseline, the experiments of
+#                                                    investigate and softgrip-plc in their turn; default: 2000 seeds
 #   scripts/worlds.sh faults [WORD ...]              faults put into the code on purpose: within how many seeds they are found
-# The second works in a copy under build/worlds.
+# The last works in a copy under build/worlds.
 set -euo pipefail
 cd "$(dirname "$(realpath "$0")")/.."
 . scripts/build.sh
@@ -12,10 +14,17 @@ if [ "${1:-}" = faults ]; then
   shift
   exec python3 scripts/world_faults.py "$@"
 fi
+tool=daemon
+seeds=10000
+if [ "${1:-}" = tools ]; then
+  shift
+  tool=tools
+  seeds=2000
+fi
 cmake --preset release -DSOFTGRIP_TESTS=ON >/dev/null
 build release softgrip-world
 started=$SECONDS
 status=0
-build/release/tests/world/softgrip-world --first "${3:-1}" --count "${1:-10000}" --jobs "$(nproc)" --seconds "${2:-60}" || status=$?
+build/release/tests/world/softgrip-world --tool "$tool" --first "${3:-1}" --count "${1:-$seeds}" --jobs "$(nproc)" --seconds "${2:-60}" || status=$?
 echo "$((SECONDS - started)) s on $(nproc) processors"
 exit $status

@@ -1,21 +1,26 @@
 #include "tests/world/daemon_in_world.h"
 
 #include <algorithm>
+#include <csignal>
 #include <utility>
 
 #include "daemon/loop/heartbeat.h"
+#include "daemon/service/daemon_parts.h"
 
 namespace softgrip::world {
 namespace {
 
 using control::Request;
 
-constexpr Nanoseconds leave_deadline = ns_per_s;
+using daemon::leave_deadline;
+
 constexpr Nanoseconds look_pause = ns_per_s / 20;
 constexpr Nanoseconds service_pause = ns_per_s / 50;
 constexpr Nanoseconds heartbeat_patience = ns_per_s / 2;
 /// WatchdogSec of the unit.
 constexpr Nanoseconds manager_patience = 2 * ns_per_s;
+/// How long the rig may take to become idle before the errand is given up.
+constexpr Nanoseconds errand_patience = 10 * ns_per_s;
 
 daemon::Provenance provenance_of(const rig::RigFile& rig) {
   daemon::Provenance provenance;
@@ -30,7 +35,7 @@ daemon::Provenance provenance_of(const rig::RigFile& rig) {
 }  // namespace
 
 DaemonInWorld::DaemonInWorld(const rig::RigFile& rig_file, Scheduler& scheduler, drivers::Board& board,
-                             std::string folder)
+                             Life life)
     : rig(rig_file),
       clock(scheduler),
       loop_clock(scheduler),
@@ -41,10 +46,16 @@ DaemonInWorld::DaemonInWorld(const rig::RigFile& rig_file, Scheduler& scheduler,
       provenance(provenance_of(rig)),
       loop(controller, rig.recorder.decimation, loop_clock, wires, loop_statistics),
       bus(board, rig.settings, rig.loop, rig.reconnect, clock, wires, bus_statistics),
-      recorder((rig.recorder.directory = std::move(folder), rig.recorder), provenance, "", origin, wires,
-               events, shelf),
+      recorder((rig.recorder.directory = std::move(life.folder), rig.recorder), provenance,
+               life.record_folder, origin, wires, events, shelf),
       service(provenance.channel_names, origin, wires, events, shelf),
       scheduler_(scheduler) {
+  if (life.sequence) errand.emplace(std::move(life.sequence), errand_patience);
+  if (life.loader) {
+    socket.emplace(daemon::StatusSources{rig.settings, provenance, service, recorder, loop_statistics,
+                                         bus_statistics, rig.name, origin, nullptr, nullptr, &wires},
+                   rig.socket, std::move(life.loader), events);
+  }
   actors_.resize(part_count);
   actors_[static_cast<std::size_t>(Part::main)] = scheduler_.add("main", [this] { main_body(); });
 }
@@ -98,7 +109,7 @@ void DaemonInWorld::look_after() {
       {pause, pause + std::max<Nanoseconds>(rig.reconnect.connect_deadline.count(),
                                             nanoseconds(rig.loop.exchange_deadline_s))});
   Nanoseconds beat = clock.now();
-  while (!asked_to_end_) {
+  while (!over()) {
     clock.sleep_until(clock.now() + look_pause);
     const Nanoseconds now = clock.now();
     if (heartbeat.beats(now, {loop_statistics.ticks.value(), bus_statistics.steps.value()})) beat = now;
@@ -109,6 +120,8 @@ void DaemonInWorld::look_after() {
 void DaemonInWorld::service_body() {
   while (!stop_others_) {
     serve();
+    if (errand) errand->step(service, clock.now());
+    if (socket) socket->serve(clock.now());
     clock.sleep_until(clock.now() + service_pause);
   }
   service.pump();
@@ -139,6 +152,16 @@ void DaemonInWorld::recorder_body() {
     clock.sleep_until(clock.now() + nanoseconds(rig.recorder.flush_interval_s));
   }
   recorder.finish();
+}
+
+daemon::Outcome DaemonInWorld::outcome() {
+  daemon::Outcome outcome;
+  outcome.last = service.snapshot();
+  outcome.channel_names = provenance.channel_names;
+  outcome.left_safely = left_safely();
+  if (asked_to_end_) outcome.signal = SIGINT;
+  if (errand) daemon::conclude_errand(*errand, outcome);
+  return outcome;
 }
 
 void DaemonInWorld::ask(Request::Kind kind, std::shared_ptr<const daemon::LoadedSequence> sequence) {

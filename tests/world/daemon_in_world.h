@@ -4,6 +4,8 @@
 
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +13,13 @@
 #include "daemon/loop/bus.h"
 #include "daemon/loop/loop.h"
 #include "daemon/recording/recorder.h"
+#include "daemon/service/daemon.h"
+#include "daemon/socket/errand.h"
 #include "daemon/socket/service.h"
 #include "rig/rig_file.h"
 #include "tests/world/hardware.h"
 #include "tests/world/scheduler.h"
+#include "tests/world/socket_in_world.h"
 
 namespace softgrip::world {
 
@@ -27,10 +32,33 @@ struct Asked {
   Nanoseconds at = 0;
 };
 
+/// The loop's clock. No two looks at it show the same time, as on any machine: the row of leaving has its
+/// own.
+class LoopClock final : public WorldClock {
+ public:
+  using WorldClock::WorldClock;
+  [[nodiscard]] Nanoseconds now() const noexcept override {
+    const Nanoseconds seen = WorldClock::now();
+    return last_ = seen > last_ ? seen : last_ + look_takes;
+  }
+
+ private:
+  static constexpr Nanoseconds look_takes = 100;
+  mutable Nanoseconds last_ = 0;
+};
+
+/// The differences between one life and another.
+struct Life {
+  std::string folder;         ///< of the recordings
+  std::string record_folder;  ///< if not empty, everything is recorded into this one
+  std::shared_ptr<const daemon::LoadedSequence> sequence;  ///< an errand, after which it ends
+  std::shared_ptr<const daemon::SequenceLoader> loader;    ///< clients come on its socket
+};
+
 class DaemonInWorld {
  public:
-  /// Begins to run. `folder`: of the recordings.
-  DaemonInWorld(const rig::RigFile& rig, Scheduler& scheduler, drivers::Board& board, std::string folder);
+  /// Begins to run.
+  DaemonInWorld(const rig::RigFile& rig, Scheduler& scheduler, drivers::Board& board, Life life);
   DaemonInWorld(const DaemonInWorld&) = delete;
   DaemonInWorld& operator=(const DaemonInWorld&) = delete;
   DaemonInWorld(DaemonInWorld&&) = delete;
@@ -48,13 +76,15 @@ class DaemonInWorld {
   [[nodiscard]] bool owns(ActorId id) const;
   [[nodiscard]] bool ended() const noexcept { return ended_; }
   [[nodiscard]] bool left_safely() const { return wires.left_safely.load(); }
+  /// The outcome of its errand, when it has ended.
+  [[nodiscard]] daemon::Outcome outcome();
   /// Its heartbeat has stopped: the service manager kills it.
   [[nodiscard]] bool starved() const noexcept { return starved_; }
   [[nodiscard]] const std::map<std::uint32_t, Asked>& unanswered() const noexcept { return unanswered_; }
 
   rig::RigFile rig;
   WorldClock clock;
-  WorldClock loop_clock;  ///< the loop's own: looked at when a tick begins and when it ends
+  LoopClock loop_clock;  ///< the loop's own: looked at when a tick begins and when it ends
   Nanoseconds origin;
   control::RigController controller;
   daemon::Wires wires;
@@ -67,6 +97,8 @@ class DaemonInWorld {
   daemon::Bus bus;
   daemon::Recorder recorder;
   daemon::Service service;
+  std::optional<daemon::Errand> errand;
+  std::optional<SocketInWorld> socket;
 
   /// The service has taken a request of a client.
   std::function<void(control::Request::Kind kind, std::uint32_t id)> on_submit = [](auto, auto) {};
@@ -82,6 +114,7 @@ class DaemonInWorld {
   void recorder_body();
   void look_after();
   void serve();
+  [[nodiscard]] bool over() const { return asked_to_end_ || (errand && errand->over()); }
 
   Scheduler& scheduler_;
   std::vector<ActorId> actors_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -16,18 +17,37 @@ namespace {
 
 using Kind = Incident::Kind;
 
-constexpr std::array<const char*, 24> names{"start",          "start and stop at once",
-                                            "stop",           "vent",
-                                            "release",        "acknowledge",
-                                            "flood",          "terminate",
-                                            "kill",           "pause",
-                                            "pause late",     "pause all",
-                                            "clock stalls",   "line",
-                                            "replies lost",   "slow line",
-                                            "writes refused", "foreign",
-                                            "sensor stuck",   "sensor lost",
-                                            "line leaks",     "part gone",
-                                            "emergency stop", "disk full"};
+constexpr std::array<const char*, 31> names{"start",
+                                            "start and stop at once",
+                                            "stop",
+                                            "vent",
+                                            "release",
+                                            "acknowledge",
+                                            "flood",
+                                            "terminate",
+                                            "kill",
+                                            "pause",
+                                            "pause late",
+                                            "pause all",
+                                            "clock stalls",
+                                            "line",
+                                            "replies lost",
+                                            "slow line",
+                                            "writes refused",
+                                            "foreign",
+                                            "sensor stuck",
+                                            "sensor lost",
+                                            "line leaks",
+                                            "part gone",
+                                            "emergency stop",
+                                            "disk full",
+                                            "plc command",
+                                            "plc silent",
+                                            "plc cut",
+                                            "plc half",
+                                            "gateway paused",
+                                            "gateway dies",
+                                            "daemon dies and plc silent"};
 constexpr std::array<const char*, part_count> parts{"loop", "bus", "service", "recorder", "main"};
 
 /// How often each happens, of all that happens.
@@ -48,6 +68,14 @@ constexpr std::array shares{
 
 constexpr double mean_time_between_stalls_s = 20;
 
+/// Those of a gateway and its masters.
+constexpr std::array plc_shares{
+    Share{Kind::plc_command, 60},   Share{Kind::plc_silent, 8},     Share{Kind::plc_cut, 14},
+    Share{Kind::plc_half, 6},       Share{Kind::gateway_paused, 6}, Share{Kind::gateway_dies, 2},
+    Share{Kind::daemon_and_plc, 4},
+};
+constexpr double mean_time_between_plc_s = 1.2;
+
 class Drawing {
  public:
   explicit Drawing(std::uint64_t seed) : seed_(seed) {}
@@ -60,15 +88,15 @@ class Drawing {
   std::uint64_t count_ = 0;
 };
 
-Kind draw_kind(Drawing& drawing) {
+Kind draw_kind(Drawing& drawing, std::span<const Share> of) {
   double sum = 0;
-  for (const Share& one : shares) sum += one.share;
+  for (const Share& one : of) sum += one.share;
   double at = drawing.uniform() * sum;
-  for (const Share& one : shares) {
+  for (const Share& one : of) {
     at -= one.share;
     if (at < 0) return one.kind;
   }
-  return Kind::start;
+  return of.front().kind;
 }
 
 /// Below, at and above the watchdog's time; half of them near it.
@@ -80,7 +108,7 @@ double pause_s(Drawing& drawing, Nanoseconds watchdog) {
 Incident draw_one(Drawing& drawing, const Draw& draw, Nanoseconds at) {
   Incident one;
   one.at = at;
-  one.kind = draw_kind(drawing);
+  one.kind = draw_kind(drawing, shares);
   double duration_s = drawing.between(0.01, 4);
   one.target = drawing.below(draw.channels);
   switch (one.kind) {
@@ -126,17 +154,36 @@ Incident draw_one(Drawing& drawing, const Draw& draw, Nanoseconds at) {
 }
 
 bool lasts(Kind kind) {
-  return kind >= Kind::pause;
+  return kind >= Kind::pause && kind != Kind::plc_command && kind != Kind::gateway_dies;
 }
 
 /// Drawn apart from all others, which are the same with and without them.
 void draw_stalls(const Draw& draw, std::vector<Incident>& incidents) {
   Drawing drawing(derived_seed(draw.seed, 3));
   for (double at_s = 1;;) {
-    at_s += -mean_time_between_stalls_s * std::log(drawing.uniform());
+    at_s += -draw.calm * mean_time_between_stalls_s * std::log(drawing.uniform());
     const Nanoseconds at = nanoseconds(at_s);
     if (at >= draw.length) return;
     incidents.push_back({at, Kind::clock_stalls, nanoseconds(pause_s(drawing, draw.watchdog)), 0, 0});
+  }
+}
+
+/// The first second is for master and gateway to find each other.
+void draw_plc(const Draw& draw, std::vector<Incident>& incidents) {
+  Drawing drawing(derived_seed(draw.seed, 5));
+  for (double at_s = 1;;) {
+    at_s += -mean_time_between_plc_s * std::log(drawing.uniform());
+    Incident one{nanoseconds(at_s), draw_kind(drawing, plc_shares), 0, 0, 0};
+    if (one.at >= draw.length) return;
+    one.target = drawing.uniform() < 0.75 ? 0 : 1;
+    if (one.kind == Kind::plc_command) {
+      // Most of them start; then vent, release, acknowledge. A stop is the reaction to a silence alone.
+      constexpr std::array codes{1, 1, 1, 3, 4, 5, 5};
+      one.value = codes[drawing.below(codes.size())];
+    } else {
+      one.duration = nanoseconds(drawing.between(0.05, 5));
+    }
+    incidents.push_back(one);
   }
 }
 
@@ -173,6 +220,15 @@ std::string text_of(const Incident& incident) {
     case Kind::line_leaks:
       text += fmt::format(" channel {}", incident.target);
       break;
+    case Kind::plc_command:
+      text += fmt::format(" {} of master {}", incident.value, incident.target);
+      break;
+    case Kind::plc_silent:
+    case Kind::plc_cut:
+    case Kind::plc_half:
+    case Kind::daemon_and_plc:
+      text += fmt::format(" of master {}", incident.target);
+      break;
     default:
       break;
   }
@@ -183,7 +239,7 @@ std::string text_of(const Incident& incident) {
 std::vector<Incident> draw_incidents(const Draw& draw) {
   Drawing drawing(derived_seed(draw.seed, 1));
   // From quiet worlds, in which sequences come to their end, to wild ones.
-  const double mean_pause_s = drawing.between(0.25, 4);
+  const double mean_pause_s = draw.calm * drawing.between(0.25, 4);
   std::vector<Incident> incidents;
   double at_s = 1 + drawing.uniform();
   incidents.push_back({nanoseconds(at_s), Kind::start, 0, drawing.below(draw.sequences), 0});
@@ -200,6 +256,7 @@ std::vector<Incident> draw_incidents(const Draw& draw) {
     incidents.insert(std::prev(incidents.end()), clear);
   }
   if (draw.late_bus) draw_stalls(draw, incidents);
+  if (draw.plc) draw_plc(draw, incidents);
   std::stable_sort(incidents.begin(), incidents.end(),
                    [](const Incident& a, const Incident& b) { return a.at < b.at; });
   return incidents;

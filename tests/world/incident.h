@@ -35,6 +35,14 @@ struct Incident {
     part_gone,       ///< the part is away for `duration`
     emergency_stop,  ///< pressed for `duration`
     disk_full,       ///< for `duration`
+    // With softgrip-plc; `target`: the number of the master
+    plc_command,     ///< it commands `value` (CommandCode)
+    plc_silent,      ///< its program stops for `duration`, and its last block is written on
+    plc_cut,         ///< it connects again; what it sent last arrives after `duration`
+    plc_half,        ///< the same, and the first half of it has arrived
+    gateway_paused,  ///< for `duration`
+    gateway_dies,    ///< started again a second later
+    daemon_and_plc,  ///< the daemon is killed, and the master falls silent for `duration`
   };
   Nanoseconds at = 0;
   Kind kind = Kind::start;
@@ -57,6 +65,8 @@ struct Draw {
   bool late_bus = false;
   std::size_t sequences = 1;
   std::size_t channels = 1;
+  bool plc = false;  ///< softgrip-plc runs
+  double calm = 1;   ///< factor of the mean time between two incidents
 };
 [[nodiscard]] std::vector<Incident> draw_incidents(const Draw& draw);
 

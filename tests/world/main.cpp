@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -20,6 +21,7 @@ namespace softgrip::world {
 namespace {
 
 struct Options {
+  std::string tool = tool_names.front();
   std::uint64_t first = 1;
   std::uint64_t count = 200;
   unsigned jobs = 1;
@@ -29,11 +31,19 @@ struct Options {
   bool stop_at_first = false;
 };
 
+/// Fewer may miss a rare incident.
+constexpr std::uint64_t enough_worlds = 10;
+
 struct Sum {
   std::uint64_t worlds = 0, failed = 0, ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0,
                 trips = 0, rows = 0, incidents = 0;
   /// The most of all worlds, not their sum.
   std::uint64_t growth_bytes = 0, descriptors = 0;
+  struct Tools {
+    std::uint64_t worlds = 0, failed = 0;
+    Met met;
+  };
+  std::array<Tools, tool_count> tools{};
 };
 
 void add(Sum& sum, const Sum& other) {
@@ -49,12 +59,50 @@ void add(Sum& sum, const Sum& other) {
   sum.incidents += other.incidents;
   sum.growth_bytes = std::max(sum.growth_bytes, other.growth_bytes);
   sum.descriptors = std::max(sum.descriptors, other.descriptors);
+  for (std::size_t i = 0; i < tool_count; ++i) {
+    sum.tools[i].worlds += other.tools[i].worlds;
+    sum.tools[i].failed += other.tools[i].failed;
+    sum.tools[i].met += other.tools[i].met;
+  }
 }
 
-void add(Sum& sum, const WorldResult& result) {
-  add(sum, Sum{1, result.violation ? 1U : 0U, result.ticks, result.writes, result.sequences, result.holdings,
-               result.faults, result.trips, result.rows, result.incidents.size(), result.growth_bytes,
-               result.descriptors});
+void add(Sum& sum, Tool tool, const WorldResult& result) {
+  const std::uint64_t failed = result.violation ? 1U : 0U;
+  Sum one{1,
+          failed,
+          result.ticks,
+          result.writes,
+          result.sequences,
+          result.holdings,
+          result.faults,
+          result.trips,
+          result.rows,
+          result.incidents.size(),
+          result.growth_bytes,
+          result.descriptors};
+  one.tools[static_cast<std::size_t>(tool)] = {1, failed, result.met};
+  add(sum, one);
+}
+
+/// The tools of consecutive seeds. Experiments take longest and come once.
+constexpr const char* all_tools = "tools";
+constexpr std::array turns{
+    Tool::calibrate, Tool::plc,    Tool::doctor,     Tool::run, Tool::blocks, Tool::plc,
+    Tool::calibrate, Tool::doctor, Tool::baseline,   Tool::run, Tool::plc,    Tool::blocks,
+    Tool::calibrate, Tool::doctor, Tool::experiment, Tool::run, Tool::plc};
+
+/// Factor of --seconds: experiments take minutes.
+constexpr std::array<double, tool_count> lives{1, 1, 1, 1, 5, 3, 1, 1};
+
+/// The tool of a seed: the requested one, or each in its turn.
+Tool tool_of(const Options& options, std::uint64_t seed) {
+  const auto found = std::find(tool_names.begin(), tool_names.end(), options.tool);
+  if (found != tool_names.end()) return static_cast<Tool>(found - tool_names.begin());
+  return turns[seed % turns.size()];
+}
+
+std::string of_tool(Tool tool) {
+  return tool == Tool::none ? "" : fmt::format("{}; ", tool_names[static_cast<std::size_t>(tool)]);
 }
 
 /// What a person needs to understand it: the fewest incidents, and what followed.
@@ -64,8 +112,9 @@ void explain(const Library& library, std::uint64_t seed, const WorldResult& fail
   again.incidents = shrink(library, seed, failed, options);
   again.trace = true;
   const WorldResult result = run_world(library, seed, again);
-  std::string text = fmt::format("seed {}: {}\n  {}\n  of {} incidents these are enough:\n", seed,
-                                 failed.violation->invariant, failed.shape, failed.incidents.size());
+  std::string text =
+      fmt::format("seed {}: {}\n  {}{}\n  of {} incidents these are enough:\n", seed,
+                  failed.violation->invariant, of_tool(options.tool), failed.shape, failed.incidents.size());
   for (const Incident& incident : *again.incidents) text += "    " + text_of(incident) + "\n";
   text += "  the last of the trace:\n";
   const std::size_t shown = std::min<std::size_t>(result.trace.size(), options.trace ? 100000 : 25);
@@ -79,13 +128,14 @@ void explain(const Library& library, std::uint64_t seed, const WorldResult& fail
 
 Sum run_share(const Library& library, const Options& options, unsigned job) {
   WorldOptions world;
-  world.length = nanoseconds(options.length_s);
   Sum sum;
   for (std::uint64_t k = job; k < options.count; k += options.jobs) {
     const std::uint64_t seed = options.first + k;
     world.trace = options.trace && options.count == 1;
+    world.tool = tool_of(options, seed);
+    world.length = nanoseconds(options.length_s * lives[static_cast<std::size_t>(world.tool)]);
     const WorldResult result = run_world(library, seed, world);
-    add(sum, result);
+    add(sum, world.tool, result);
     if (options.twice && run_world(library, seed, world).fingerprint != result.fingerprint) {
       fmt::print("seed {}: two runs differ\n", seed);
       ++sum.failed;
@@ -135,13 +185,37 @@ Sum run_jobs(const Library& library, const Options& options) {
   return all;
 }
 
+/// Prints a line per tool. Returns false if a tool met none of one kind of incident, or had no result.
+bool tell_tools(const Options& options, const Sum& sum) {
+  bool eventful = true;
+  for (std::size_t i = 1; i < tool_count; ++i) {
+    const auto& [worlds, failed, met] = sum.tools[i];
+    if (worlds == 0) continue;
+    fmt::print(
+        "{}: {} worlds, {} violated; {} calls, {} with a result; it met {} pauses, {} gaps, {} faults\n",
+        tool_names[i], worlds, failed, met.calls, met.results, met.pauses, met.gaps, met.faults);
+    const bool whole = met.whole() || worlds < enough_worlds;
+    if (!whole) fmt::print("{}: one of these counts is 0, so these worlds are no test\n", tool_names[i]);
+    eventful = eventful && whole;
+  }
+  if (options.tool == all_tools && options.count >= turns.size() * enough_worlds) {
+    for (std::size_t i = 1; i < tool_count; ++i) eventful = eventful && sum.tools[i].worlds >= enough_worlds;
+  }
+  return eventful;
+}
+
 int run(int argc, char** argv) {
   Options options;
+  std::vector<std::string> known(tool_names.begin(), tool_names.end());
+  known.emplace_back(all_tools);
   CLI::App app(
       "Whole rigs in simulated worlds, each under a seed, watched by the invariants of docs/reliability.md");
   app.add_option("--first", options.first, "First seed")->capture_default_str();
   app.add_option("--count", options.count, "So many seeds")->capture_default_str();
   app.add_option("--jobs", options.jobs, "Processes")->capture_default_str();
+  app.add_option("--tool", options.tool, "The program in the world; tools: each in its turn")
+      ->check(CLI::IsMember(known))
+      ->capture_default_str();
   app.add_option("--seconds", options.length_s, "Simulated, each")->capture_default_str();
   app.add_flag("--trace", options.trace, "With --count 1: everything that happens");
   app.add_flag("--twice", options.twice, "Run each twice and compare");
@@ -156,7 +230,8 @@ int run(int argc, char** argv) {
       "at most {} KiB more heap than after 5 s, at most {} descriptors\n",
       sum.worlds, options.length_s, options.first, sum.failed, sum.ticks, sum.writes, sum.incidents,
       sum.sequences, sum.holdings, sum.faults, sum.trips, sum.rows, sum.growth_bytes >> 10, sum.descriptors);
-  return sum.failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  const bool eventful = tell_tools(options, sum);
+  return sum.failed == 0 && eventful ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace

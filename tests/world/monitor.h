@@ -40,6 +40,8 @@ class Monitor {
              std::span<const double> commands_kpa, bool safe_outputs);
   /// The daemon looked at its permission to move when this exchange began.
   void exchange_begins() noexcept { armed_at_entry_ = armed_; }
+  /// For a program without a loop: it may raise pressures, or may not any more.
+  void may_rise(bool allowed) noexcept { armed_ = allowed; }
   /// Another master has written these.
   void foreign_wrote(std::span<const double> outputs_kpa) noexcept;
   void foreign_ended() noexcept { foreign_unseen_.reset(); }
@@ -54,6 +56,14 @@ class Monitor {
   /// It ended by itself, having written its safe outputs.
   void left(Nanoseconds now, std::span<const double> outputs_kpa);
   void answer_is_late(Nanoseconds now, Nanoseconds asked_at);
+  /// The board has vented, and the user hears of something else.
+  void told_nobody(Nanoseconds now, const char* otherwise) {
+    violate(now, "a watchdog that has tripped is a fault", otherwise);
+  }
+  /// A command or an exit code breaks an invariant.
+  void command_breaks(Nanoseconds now, const char* invariant, std::string text) {
+    violate(now, invariant, std::move(text));
+  }
   void recording_lacks(const std::string& text) { violate(0, "recordings are whole", text); }
   void leaks(const std::string& text) { violate(0, "nothing leaks", text); }
 

@@ -84,7 +84,7 @@ class Scheduler {
 };
 
 /// The clock of the daemon in the world.
-class WorldClock final : public Clock {
+class WorldClock : public Clock {
  public:
   explicit WorldClock(Scheduler& scheduler) : scheduler_(scheduler) {}
   [[nodiscard]] Nanoseconds now() const noexcept override {

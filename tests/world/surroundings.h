@@ -1,5 +1,5 @@
 #pragma once
-// What is around a program that drives a rig: board, line, fingers, a second master, the clock, and the
+// The surroundings of a program that drives a rig: board, line, fingers, a second master, the clock, and the
 // invariants that are judged there.
 
 #include <functional>
@@ -41,7 +41,7 @@ class Surroundings {
   void note_write(std::span<const double> outputs_kpa, std::span<const double> commands_kpa);
   /// A program begins that has not had a good exchange.
   void nobody_spoke() noexcept { good_since_ = false; }
-  /// What the line and the second master excuse.
+  /// The excuses by the line and the second master.
   [[nodiscard]] Excuse excuse() const noexcept;
 
   template <class... Values>
@@ -75,7 +75,7 @@ class Surroundings {
   void to_fingers(const Incident& incident, bool begins);
   void write_as_another(const Incident& incident);
 
-  int hindered_ = 0;  // by so many incidents
+  int hindered_ = 0;  // number of incidents
   bool good_since_ = false;
   const Incident* foreign_ = nullptr;
 };

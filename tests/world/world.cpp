@@ -15,6 +15,8 @@
 
 #include "tests/daemon/temporary_folder.h"
 #include "tests/world/daemon_in_world.h"
+#include "tests/world/guest.h"
+#include "tests/world/motion_world.h"
 #include "tests/world/recordings.h"
 #include "tests/world/surroundings.h"
 
@@ -27,6 +29,8 @@ using control::Request;
 /// Between the end of a daemon and the next one.
 constexpr Nanoseconds restart_pause = ns_per_s;
 constexpr Nanoseconds longest_answer = 2 * ns_per_s;
+/// Of a guest that is asked to.
+constexpr Nanoseconds longest_end = 60 * ns_per_s;
 /// Of a loop that ticks as it should.
 constexpr Nanoseconds longest_tick_gap = ns_per_s / 20;
 constexpr Nanoseconds memory_looked_at_every = ns_per_s;
@@ -60,10 +64,13 @@ void fill_disk(bool full) {
   setrlimit(RLIMIT_FSIZE, &limit);
 }
 
-class World {
+class World final : public Host {
  public:
   World(const Library& library, std::uint64_t seed, const WorldOptions& options)
-      : library_(library), options_(options), around_(draw_shape(library.rig, seed), options.trace) {
+      : library_(library),
+        options_(options),
+        around_(shape_for(options.tool, library.rig, seed), options.trace),
+        guest_(make_guest(options.tool, *this)) {
     around_.on_write = [this](Nanoseconds began, std::span<const double> commands) {
       wrote(began, commands);
     };
@@ -75,18 +82,23 @@ class World {
             ? *options.incidents
             : draw_incidents({seed, options.length, around_.shape.watchdog,
                               around_.shape.trip_latches || around_.shape.watchdog == 0,
-                              library.sequences.size(), around_.shape.rig.settings.channels.size()});
+                              library.sequences.size(), around_.shape.rig.settings.channels.size(),
+                              options.tool == Tool::plc, guest_ ? guest_->calm() : 1});
   }
 
   WorldResult run() {
     const std::size_t descriptors = descriptors_ = open_descriptors();
-    boot();
+    if (guest_) guest_->begin();
+    if (managed()) boot({});
     around_.let_happen(result_.incidents,
                        [this](const Incident& incident, bool begins) { carry_out(incident, begins); });
     scheduler_.add("outside", [this] { outside_body(); });
-    scheduler_.run_until(around_.begin + options_.length, [this](ActorId id) { after(id); });
+    run_until(around_.begin + options_.length);
+    if (guest_) end_guest();
     fill_disk(false);
     bury();
+    if (guest_) result_.met = guest_->met();
+    guest_.reset();
     if (open_descriptors() != descriptors)
       monitor_.leaks(fmt::format("{} descriptors more than at first",
                                  static_cast<long>(open_descriptors()) - static_cast<long>(descriptors)));
@@ -98,21 +110,48 @@ class World {
     return std::move(result_);
   }
 
- private:
-  void boot() {
+  // Of Host.
+  [[nodiscard]] const Library& library() const override { return library_; }
+  [[nodiscard]] Surroundings& around() override { return around_; }
+  [[nodiscard]] DaemonInWorld* daemon() override { return daemon_.get(); }
+  [[nodiscard]] const std::optional<daemon::Outcome>& outcome() const override { return outcome_; }
+  [[nodiscard]] bool vented_in_motion() const override { return vented_in_motion_; }
+  void boot(Life life) override {
     trace("softgripd starts");
     monitor_.boots();
     around_.nobody_spoke();
     booted_at_ = memory_looked_at_ = scheduler_.now();
     settled_bytes_ = 0;
-    std::string folder = options_.record ? fmt::format("{}/{}", folder_.path(), ++lives_) : std::string();
+    outcome_.reset();
+    vented_in_motion_ = false;
+    alone_ = life.record_folder.empty();
+    if (options_.record) life.folder = fmt::format("{}/{}", folder_.path(), ++lives_);
     rig::RigFile rig = around_.shape.rig;
     rig.recorder.mode =
         options_.record ? rig::RecorderSettings::Mode::sequences : rig::RecorderSettings::Mode::off;
-    daemon_ = std::make_unique<DaemonInWorld>(rig, scheduler_, around_.board, folder);
+    if (guest_) guest_->prepare(life);
+    daemon_ = std::make_unique<DaemonInWorld>(rig, scheduler_, around_.board, std::move(life));
     daemon_->on_submit = [this](Request::Kind kind, std::uint32_t id) { monitor_.submitted(kind, id); };
+    if (guest_) guest_->boots(*daemon_);
     recorded_.clear();
     ticked_ = 0;  // one that died at its first tick does not hide the next one's
+  }
+
+ private:
+  /// A service manager starts the daemon, and starts it again.
+  [[nodiscard]] bool managed() const { return !guest_ || !guest_->runs_the_daemon(); }
+
+  void run_until(Nanoseconds end) {
+    scheduler_.run_until(end, [this](ActorId id) { after(id); });
+  }
+  /// What a program that is left alone would leave in this process.
+  void end_guest() {
+    guest_->end();
+    const Nanoseconds give_up = scheduler_.now() + longest_end;
+    while (guest_->busy() && !monitor_.violation() && scheduler_.now() < give_up) {
+      if (daemon_) daemon_->terminate();
+      run_until(scheduler_.now() + ns_per_s / 10);
+    }
   }
 
   template <class... Values>
@@ -125,13 +164,16 @@ class World {
     const bool has_spoken =
         daemon_->bus_statistics.exchanges.value() > daemon_->bus_statistics.failures.value();
     monitor_.tripped(has_spoken);
+    if (guest_) ++guest_->met().gaps;
+    const bool runs = daemon_->controller.output().state == control::State::running;
+    vented_in_motion_ = vented_in_motion_ || runs;
   }
 
   /// What a daemon leaves behind, when it has ended.
   void bury() {
     if (!daemon_) return;
     around_.board.hang_up();
-    const bool whole = daemon_->ended() && !killed_;
+    const bool whole = daemon_->ended() && !killed_ && alone_;
     const std::string folder = daemon_->rig.recorder.directory;
     const daemon::RecorderStatus status = daemon_->recorder.status();
     buried_.push_back(std::move(daemon_));
@@ -165,19 +207,21 @@ class World {
       excuse.no_daemon = daemon_ == nullptr;
       excuse.paused = daemon_ && is_paused();
       monitor_.passed(now, excuse, hardware_.outputs_kpa());
+      if (guest_) guest_->look(excuse);
       if (monitor_.violation()) {
         scheduler_.stop();
       } else if (!daemon_) {
-        if (now >= boots_at_) boot();
-      } else if (daemon_->starved()) {
+        if (managed() && now >= boots_at_) boot({});
+      } else if (managed() && daemon_->starved()) {
         die("is killed by its service manager");
       } else if (daemon_->ended()) {
         trace("softgripd has ended");
         if (daemon_->left_safely()) monitor_.left(now, hardware_.outputs_kpa());
+        outcome_ = daemon_->outcome();
         bury();
         boots_at_ = now + restart_pause;
       } else {
-        look_at_memory(now);
+        if (managed()) look_at_memory(now);
         for (const auto& [id, asked] : daemon_->unanswered()) {
           // Who is asked while it ends hangs up instead.
           if (!is_paused() && !daemon_->wires.leave.load() &&
@@ -216,6 +260,7 @@ class World {
   void carry_out(const Incident& incident, bool begins);
   void to_daemon(const Incident& incident);
   void pause(const Incident& incident);
+  void count(const Incident& incident);
 
   void after(ActorId id) {
     if (!daemon_ || daemon_->actor(Part::loop) != id) return;
@@ -266,10 +311,14 @@ class World {
   Scheduler& scheduler_ = around_.scheduler;
   Hardware& hardware_ = around_.hardware;
   Monitor& monitor_ = around_.monitor;
+  std::unique_ptr<Guest> guest_;
   std::unique_ptr<DaemonInWorld> daemon_;
   std::vector<std::unique_ptr<DaemonInWorld>> buried_;
   std::vector<Nanoseconds> recorded_;  // when it ticked, since its origin
   unsigned lives_ = 0;
+  std::optional<daemon::Outcome> outcome_;  // of the last daemon, unless it was killed
+  bool vented_in_motion_ = false;
+  bool alone_ = true;  // its recordings are of the rig file's folder
   bool killed_ = false;
   bool disk_full_ = false;
   bool disk_was_full_ = false;
@@ -286,7 +335,11 @@ class World {
 };
 
 void World::carry_out(const Incident& incident, bool begins) {
-  if (Surroundings::concerns(incident.kind)) {
+  if (guest_ && begins) count(incident);
+  if (incident.kind > Kind::disk_full) {
+    if (incident.kind == Kind::daemon_and_plc && begins && daemon_) die("is killed");
+    guest_->carry_out(incident, begins);
+  } else if (Surroundings::concerns(incident.kind)) {
     around_.carry_out(incident, begins);
   } else if (incident.kind == Kind::disk_full) {
     disk_full_ = begins;
@@ -294,15 +347,30 @@ void World::carry_out(const Incident& incident, bool begins) {
     fill_disk(begins);
   } else if (incident.kind == Kind::emergency_stop) {
     if (daemon_) daemon_->wires.inputs.emergency_stop.store(begins);
-  } else if (begins && daemon_) {
-    incident.kind <= Kind::kill ? to_daemon(incident) : pause(incident);
+  } else if (begins && daemon_ && incident.kind > Kind::kill) {
+    pause(incident);
+  } else if (begins && daemon_ && (incident.kind >= Kind::terminate || !guest_ || guest_->listens())) {
+    to_daemon(incident);
   }
+}
+
+/// What a guest and its daemon have met.
+void World::count(const Incident& incident) {
+  if (!daemon_) return;
+  Met& met = guest_->met();
+  const bool pauses = (incident.kind >= Kind::pause && incident.kind <= Kind::clock_stalls) ||
+                      incident.kind == Kind::gateway_paused;
+  const bool hinders = !pauses && incident.kind != Kind::plc_command &&
+                       (incident.kind >= Kind::line || incident.kind == Kind::kill);
+  met.pauses += pauses ? 1U : 0U;
+  met.faults += hinders ? 1U : 0U;
 }
 
 void World::to_daemon(const Incident& incident) {
   const auto ask = [this](Request::Kind kind,
                           std::shared_ptr<const daemon::LoadedSequence> sequence = nullptr) {
     daemon_->ask(kind, std::move(sequence));
+    if (guest_) guest_->asked(kind);
     monitor_.asked(kind);
   };
   switch (incident.kind) {
@@ -357,7 +425,8 @@ void World::pause(const Incident& incident) {
 }  // namespace
 
 WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options) {
-  return World(library, seed, options).run();
+  const bool by_hand = options.tool == Tool::calibrate || options.tool == Tool::doctor;
+  return by_hand ? run_motion_world(library, seed, options) : World(library, seed, options).run();
 }
 
 std::vector<Incident> shrink(const Library& library, std::uint64_t seed, const WorldResult& failed,

@@ -12,6 +12,7 @@
 #include "rig/rig_file.h"
 #include "tests/world/incident.h"
 #include "tests/world/monitor.h"
+#include "tests/world/tool.h"
 
 namespace softgrip::world {
 
@@ -24,6 +25,7 @@ struct Library {
 [[nodiscard]] Library load_library();
 
 struct WorldOptions {
+  Tool tool = Tool::none;
   Nanoseconds length = 60 * ns_per_s;
   /// Instead of those that the seed draws.
   std::optional<std::vector<Incident>> incidents;
@@ -41,6 +43,7 @@ struct WorldResult {
   std::uint64_t ticks = 0, writes = 0, sequences = 0, holdings = 0, faults = 0, trips = 0, rows = 0;
   std::uint64_t growth_bytes = 0;  ///< the most that a daemon's heap grew after it had settled
   std::uint64_t descriptors = 0;   ///< the most that one had open
+  Met met;                         ///< of the tool
 };
 
 [[nodiscard]] WorldResult run_world(const Library& library, std::uint64_t seed, const WorldOptions& options);

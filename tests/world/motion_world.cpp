@@ -1,0 +1,290 @@
+#include "tests/world/motion_world.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/numbers.h"
+#include "base/random.h"
+#include "tests/world/surroundings.h"
+#include "tools/commissioning/procedure.h"
+#include "tools/commissioning/rig_examination.h"
+
+namespace softgrip::world {
+namespace {
+
+using Kind = Incident::Kind;
+
+/// Between the end of a command and the next one.
+constexpr Nanoseconds call_pause = ns_per_s;
+constexpr double longest_answer_s = 1.5;
+
+/// Reads the gauge and the manometer as they are, after a while.
+class PersonInWorld final : public tools::calibrate::Operator {
+ public:
+  PersonInWorld(Surroundings& around, std::size_t channel, std::uint64_t seed)
+      : around_(around), channel_(channel), seed_(seed) {}
+
+  void tell(const std::string& text) override { around_.trace("printed: {}", text); }
+  void ask(const std::string& question) override {
+    around_.trace("asked: {}", question);
+    of_pressure_ = question.starts_with("manometer");
+    answers_at_ = around_.scheduler.now() + nanoseconds(longest_answer_s * uniform_at(seed_, ++asked_));
+  }
+  std::optional<std::string> answer() override {
+    const Nanoseconds now = around_.scheduler.now();
+    if (now < answers_at_) return std::nullopt;
+    around_.hardware.move_to(now);
+    simulation::Plant& plant = around_.hardware.plant(channel_);
+    return shortest(of_pressure_ ? plant.measured_pressure_kpa() : plant.reading_mm());
+  }
+  [[nodiscard]] bool gone() const override { return false; }
+  [[nodiscard]] bool patient() const override { return false; }
+
+ private:
+  Surroundings& around_;
+  std::size_t channel_;
+  std::uint64_t seed_;
+  std::uint64_t asked_ = 0;
+  bool of_pressure_ = false;
+  Nanoseconds answers_at_ = 0;
+};
+
+class MotionWorld {
+ public:
+  MotionWorld(const Library& library, std::uint64_t seed, const WorldOptions& options)
+      : options_(options),
+        seed_(derived_seed(seed, 4)),
+        around_(draw_shape(library.rig, seed), options.trace),
+        clock_(around_.scheduler) {
+    around_.on_write = [this](Nanoseconds began, std::span<const double> commands) {
+      wrote(began, commands);
+    };
+    around_.on_exchange = [this] {
+      // The exchange before this one has ended, and it was good.
+      spoke_ = spoke_ || good_;
+      good_ = around_.line.status == drivers::BusStatus::ok;
+      spoke_since_trip_ = true;
+      around_.monitor.exchange_begins();
+    };
+    around_.on_trip = [this] { tripped(); };
+    result_.shape = around_.shape.text;
+    result_.incidents =
+        options.incidents ? *options.incidents
+                          : draw_incidents({seed, options.length, around_.shape.watchdog,
+                                            around_.shape.trip_latches || around_.shape.watchdog == 0,
+                                            library.sequences.size(), around_.hardware.channels(), false, 1});
+  }
+
+  WorldResult run() {
+    call();
+    around_.let_happen(result_.incidents,
+                       [this](const Incident& incident, bool begins) { carry_out(incident, begins); });
+    around_.scheduler.add("outside", [this] { outside_body(); });
+    around_.scheduler.run_until(around_.begin + options_.length, [](ActorId) {});
+    result_.violation = around_.monitor.violation();
+    result_.trace = std::move(around_.traced);
+    result_.fingerprint = around_.fingerprint;
+    result_.writes = around_.writes;
+    result_.trips = around_.trips;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] double drawn() { return uniform_at(seed_, ++drawn_); }
+
+  /// The command is called, and again when it has ended.
+  void call() {
+    actor_ = around_.scheduler.add("tool", [this] {
+      for (;;) {
+        begin();
+        options_.tool == Tool::doctor ? examine() : calibrate();
+        alive_ = false;
+        around_.trace("{} has ended", tool_names[static_cast<std::size_t>(options_.tool)]);
+        around_.scheduler.sleep_until(around_.scheduler.now() + call_pause);
+      }
+    });
+  }
+
+  void begin() {
+    around_.trace("{} begins", tool_names[static_cast<std::size_t>(options_.tool)]);
+    ++result_.met.calls;
+    alive_ = true;
+    interrupted_ = vented_ = up_ = good_ = spoke_ = spoke_since_trip_ = false;
+    around_.nobody_spoke();
+    around_.monitor.boots();
+    around_.monitor.may_rise(true);
+  }
+
+  /// The command calls it before every exchange.
+  [[nodiscard]] bool stops() {
+    if (interrupted_) around_.monitor.may_rise(false);
+    return interrupted_;
+  }
+
+  void calibrate() {
+    const rig::RigFile& rig = around_.shape.rig;
+    tools::calibrate::Settings settings;
+    settings.channel = static_cast<std::size_t>(drawn() * static_cast<double>(around_.hardware.channels()));
+    settings.may_move = true;
+    const control::LimitSettings& limits = rig.settings.channels[settings.channel].limits;
+    const double span_kpa = limits.pressure_max_kpa - limits.pressure_min_kpa;
+    settings.low_kpa = limits.pressure_min_kpa + span_kpa / 6;
+    settings.high_kpa = limits.pressure_min_kpa + 2 * span_kpa / 3;
+    settings.settle_s = settings.average_s = 0.5;
+    settings.ramp_s = 4;
+    PersonInWorld person(around_, settings.channel, derived_seed(seed_, result_.met.calls));
+    tools::MotionSession session(rig, around_.board, clock_, [this] { return stops(); });
+    if (!session.connect()) return;
+    const std::string failure = measure(session, person, settings);
+    around_.trace("calibrate: {}", failure.empty() ? "a result" : failure);
+    judge(failure.empty());
+    if (session.leave()) left();
+  }
+
+  /// One of the procedures; why there is no result, or nothing.
+  [[nodiscard]] std::string measure(tools::MotionSession& session, PersonInWorld& person,
+                                    const tools::calibrate::Settings& settings) {
+    const rig::RigFile& rig = around_.shape.rig;
+    const auto why = [](const auto& result) { return result ? std::string() : result.error().text; };
+    switch (static_cast<int>(4 * drawn())) {
+      case 0:
+        return why(tools::calibrate::calibrate_sensor(rig, session, person, settings));
+      case 1:
+        return why(tools::calibrate::calibrate_valve(rig, session, person, settings, false));
+      case 2:
+        return why(tools::calibrate::calibrate_valve(rig, session, person, settings, true));
+      default:
+        return why(tools::calibrate::search_dead_zone(rig, session, person, settings));
+    }
+  }
+
+  void examine() {
+    tools::doctor::Findings findings;
+    tools::doctor::examine_rig(
+        around_.shape.rig, around_.board, clock_, [this] { return stops(); }, true, {}, findings);
+    bool safe = false;
+    for (const tools::doctor::Finding& finding : findings.list()) {
+      around_.trace("doctor: {} {}: {}", tools::doctor::name_of(finding.verdict), finding.name, finding.text);
+      safe = safe || (finding.name == "safe state" && finding.verdict == tools::doctor::Verdict::ok);
+    }
+    judge(findings.worst() != tools::doctor::Verdict::fail);
+    if (safe) left();
+  }
+
+  void judge(bool result) {
+    result_.met.results += result ? 1U : 0U;
+    if (result && vented_ && spoke_since_trip_)
+      around_.monitor.told_nobody(around_.scheduler.now(), "the command ended with a result");
+  }
+
+  /// The command reports that the board has confirmed the lowest pressures.
+  void left() { around_.monitor.left(around_.scheduler.now(), around_.hardware.outputs_kpa()); }
+
+  void tripped() {
+    if (!alive_ || !spoke_) return;
+    ++result_.met.gaps;
+    around_.monitor.tripped(false);
+    vented_ = vented_ || up_;
+    spoke_since_trip_ = false;
+  }
+
+  void wrote(Nanoseconds began, std::span<const double> commands) {
+    const auto outputs = around_.hardware.outputs_kpa();
+    up_ = false;
+    for (std::size_t i = 0; i < commands.size(); ++i)
+      up_ = up_ || commands[i] > around_.shape.rig.settings.channels[i].limits.pressure_min_kpa;
+    // After a lost exchange or a gap the pressure may fall in one step.
+    const bool safe_outputs = !up_ || around_.excuse().no_line;
+    around_.monitor.write(began, around_.scheduler.now(), outputs, commands, safe_outputs);
+    around_.note_write(outputs, commands);
+  }
+
+  void carry_out(const Incident& incident, bool begins) {
+    if (Surroundings::concerns(incident.kind)) {
+      if (begins) count(incident.kind);
+      return around_.carry_out(incident, begins);
+    }
+    if (!begins || !alive_) return;
+    const Nanoseconds until = around_.scheduler.now() + incident.duration;
+    // On a board that clears a trip with any write no program can know such a gap.
+    const bool may_be_late = around_.shape.trip_latches || around_.shape.watchdog == 0;
+    switch (incident.kind) {
+      case Kind::stop:
+      case Kind::terminate:
+        interrupted_ = true;
+        around_.monitor.asked(control::Request::Kind::vent);
+        break;
+      case Kind::kill:
+        kill();
+        break;
+      case Kind::pause:
+      case Kind::pause_all:
+        around_.scheduler.pause(actor_, until);
+        break;
+      case Kind::pause_late:
+        may_be_late ? around_.scheduler.pause_after_look(actor_, incident.duration)
+                    : around_.scheduler.pause(actor_, until);
+        break;
+      default:
+        return;
+    }
+    count(incident.kind);
+  }
+
+  void count(Kind kind) {
+    if (!alive_) return;
+    const bool pauses = kind >= Kind::pause && kind <= Kind::clock_stalls;
+    ++(pauses ? result_.met.pauses : result_.met.faults);
+  }
+
+  void kill() {
+    around_.trace("it is killed");
+    around_.scheduler.kill(actor_);
+    around_.board.hang_up();
+    alive_ = false;
+    again_at_ = around_.scheduler.now() + call_pause;
+  }
+
+  void outside_body() {
+    for (;;) {
+      around_.scheduler.sleep_until(around_.scheduler.now() + ns_per_s / 1000);
+      const Nanoseconds now = around_.scheduler.now();
+      around_.hardware.move_to(now);
+      Excuse excuse = around_.excuse();
+      excuse.no_daemon = !alive_;
+      excuse.paused = around_.scheduler.clock_stalled() || around_.scheduler.paused(actor_);
+      around_.monitor.passed(now, excuse, around_.hardware.outputs_kpa());
+      if (around_.monitor.violation()) around_.scheduler.stop();
+      if (again_at_ == 0 || now < again_at_) continue;
+      again_at_ = 0;
+      call();
+    }
+  }
+
+  const WorldOptions& options_;
+  std::uint64_t seed_;
+  std::uint64_t drawn_ = 0;
+  WorldResult result_;
+  Surroundings around_;
+  WorldClock clock_;
+  ActorId actor_ = 0;
+  bool alive_ = false;             // the command runs
+  bool interrupted_ = false;       // by Ctrl-C
+  bool up_ = false;                // its last write has left pressure on
+  bool vented_ = false;            // the board has taken that pressure away
+  bool good_ = false;              // nothing hindered its last exchange
+  bool spoke_ = false;             // it has had a good exchange, so it can know of a gap
+  bool spoke_since_trip_ = false;  // so the command can know
+  Nanoseconds again_at_ = 0;
+};
+
+}  // namespace
+
+WorldResult run_motion_world(const Library& library, std::uint64_t seed, const WorldOptions& options) {
+  return MotionWorld(library, seed, options).run();
+}
+
+}  // namespace softgrip::world
