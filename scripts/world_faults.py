@@ -47,6 +47,8 @@ FAULTS = (
     ("a motion by hand goes on after a gap in which the board has vented (defect 1)", *GAP_BY_HAND, 60, "calibrate"),
     ("the same, with doctor", *GAP_BY_HAND, 60, "doctor"),
     ("by hand, the gap of a pause is not compared with the board's watchdog (defect 1)", *GAP_OF_BUS, 60, "calibrate"),
+    ("by hand, what another master wrote is no fault", "daemon/loop/bus.cpp", "return FaultCode::outputs_overwritten;",
+     "return FaultCode::none;", 60, "calibrate"),
     ("a motion by hand leaves the board as it is", "tools/commissioning/motion_session.cpp",
      "  targets_ = lowest_;\n  double fastest = 0;", "  return true;\n  double fastest = 0;", 60, "calibrate"),
     ("softgrip-plc executes any new counter (defect 2)", "tools/plc/handshake.cpp",

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/numbers.h"
 #include "base/random.h"
@@ -20,6 +21,8 @@ using Kind = Incident::Kind;
 /// Between the end of a command and the next one.
 constexpr Nanoseconds call_pause = ns_per_s;
 constexpr double longest_answer_s = 1.5;
+/// Writes of ours that find the value of another master at the outputs. The board compares one in 8.
+constexpr unsigned most_overwritten = 32;
 
 /// Reads the gauge and the manometer as they are, after a while.
 class PersonInWorld final : public tools::calibrate::Operator {
@@ -113,6 +116,8 @@ class MotionWorld {
     ++result_.met.calls;
     alive_ = true;
     interrupted_ = vented_ = up_ = good_ = spoke_ = spoke_since_trip_ = false;
+    overwritten_ = 0;
+    written_.clear();
     around_.nobody_spoke();
     around_.monitor.boots();
     around_.monitor.may_rise(true);
@@ -178,6 +183,9 @@ class MotionWorld {
     result_.met.results += result ? 1U : 0U;
     if (result && vented_ && spoke_since_trip_)
       around_.monitor.told_nobody(around_.scheduler.now(), "the command ended with a result");
+    if (result && overwritten_ > most_overwritten)
+      around_.monitor.command_breaks(around_.scheduler.now(), "another master is noticed",
+                                     "the command ended with a result");
   }
 
   /// The command reports that the board has confirmed the lowest pressures.
@@ -193,6 +201,8 @@ class MotionWorld {
 
   void wrote(Nanoseconds began, std::span<const double> commands) {
     const auto outputs = around_.hardware.outputs_kpa();
+    if (!written_.empty() && !std::equal(outputs.begin(), outputs.end(), written_.begin())) ++overwritten_;
+    written_.assign(commands.begin(), commands.end());
     up_ = false;
     for (std::size_t i = 0; i < commands.size(); ++i)
       up_ = up_ || commands[i] > around_.shape.rig.settings.channels[i].limits.pressure_min_kpa;
@@ -278,6 +288,8 @@ class MotionWorld {
   bool good_ = false;              // nothing hindered its last exchange
   bool spoke_ = false;             // it has had a good exchange, so it can know of a gap
   bool spoke_since_trip_ = false;  // so the command can know
+  std::vector<double> written_;    // its last write that has arrived
+  unsigned overwritten_ = 0;       // writes that found something else there
   Nanoseconds again_at_ = 0;
 };
 
