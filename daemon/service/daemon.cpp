@@ -144,6 +144,9 @@ void DaemonParts::conclude(Outcome& outcome) {
 
 void conclude_errand(const Errand& errand, Outcome& outcome) {
   outcome.sequence_end = errand.end();
+  // The last step can end in the tick before the bus reports that the board has vented.
+  if (outcome.sequence_end == control::SequenceEnd::done && outcome.last.state == control::State::faulted)
+    outcome.sequence_end = control::SequenceEnd::faulted;
   if (!errand.over()) {
     outcome.ending = outcome.sequence_end ? Ending::sequence_ended : Ending::interrupted;
     if (!outcome.sequence_end) outcome.sequence_end = control::SequenceEnd::stopped;

@@ -64,6 +64,7 @@ enum class Ending : std::uint8_t {
 struct Outcome {
   Ending ending = Ending::asked;
   std::string message;  ///< one sentence where something went wrong
+  /// `faulted` also if the fault was latched after the last step and before the end of the run.
   std::optional<control::SequenceEnd> sequence_end;
   Snapshot last;  ///< the last tick
   std::vector<std::string> channel_names;
