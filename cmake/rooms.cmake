@@ -75,7 +75,7 @@ softgrip_room(sysid/structure
   USES base model sysid/logs sysid/fitting sysid/identification
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/diagnosis/residual USES base sysid/logs LIBRARIES Eigen3::Eigen)
-softgrip_room(sysid/evidence USES sysid/logs sysid/fitting)
+softgrip_room(sysid/evidence USES base sysid/logs sysid/fitting)
 softgrip_room(sysid/diagnosis/causes
   USES model sysid/logs sysid/fitting sysid/evidence sysid/diagnosis/residual)
 softgrip_room(sysid/diagnosis/search
@@ -87,7 +87,7 @@ softgrip_room(sysid/diagnosis/gauge
        sysid/diagnosis/search)
 softgrip_room(sysid/diagnosis/verdict
   USES base model sysid/logs sysid/fitting sysid/identification sysid/structure sysid/diagnosis/residual sysid/diagnosis/causes
-       sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge
+       sysid/diagnosis/search sysid/diagnosis/evidence sysid/diagnosis/gauge sysid/evidence
   LIBRARIES Eigen3::Eigen)
 softgrip_room(sysid/changes
   USES base model sysid/logs sysid/pages sysid/fitting sysid/structure sysid/evidence sysid/diagnosis/residual

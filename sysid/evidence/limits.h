@@ -25,5 +25,12 @@ inline constexpr double begin_share = 0.05, least_begin_s = 2;
 inline constexpr double rest_share = 0.05;
 /// A condition that fewer bins than this meet cannot show an effect: less would be one sample of noise.
 inline constexpr std::size_t fewest_bins = 5;
+/// A command counts as one that follows the readings at this probability: one log in a thousand by chance.
+inline constexpr double feedback_probability = 0.999;
+/// A course that was planned differs from a parabola through its neighbours by less than this share of its
+/// spread: it has the resolution of its file. A controller adds the noise of the readings.
+inline constexpr double planned_roughness = 1e-4;
+/// The phase of a loop counts as odd within 30 degrees of 90: a third of the way to 180.
+inline constexpr double odd_phase_ratio = 2.0 / 3;
 
 }  // namespace softgrip::sysid::limits

@@ -14,6 +14,7 @@
 namespace softgrip::sysid::causes {
 
 struct SensorDrift {
+  static constexpr std::string_view id = "sensor_drift";
   static constexpr std::array advice{Advice::leave_vented, Advice::record_temperature};
   static constexpr Appears appears = Appears::at_rest;
   static constexpr WhenChanged when_changed{

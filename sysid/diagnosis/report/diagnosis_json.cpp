@@ -230,6 +230,7 @@ Json json_of(const Diagnosis& d) {
                          {"gain_percent", spread(staircase->gain_percent)}};
   }
   json["gauge"] = d.gauge ? gauge_json(*d.gauge) : Json(nullptr);
+  json["not_tested"] = d.not_tested;
   json["partial_causes"] = Json::array();
   for (const NamedCause& named : d.partial) json["partial_causes"].push_back(cause_json(named, budget));
   json["structure_mm"] = {{"recalibrated", d.structure_recalibrated.excess_mm},

@@ -19,6 +19,7 @@
 #include "sysid/diagnosis/verdict/dense_logs.h"
 #include "sysid/diagnosis/verdict/mixed_intervals.h"
 #include "sysid/diagnosis/verdict/naming.h"
+#include "sysid/diagnosis/verdict/untested_causes.h"
 #include "sysid/fitting/start_estimate.h"
 #include "sysid/fitting/trajectory.h"
 
@@ -56,6 +57,7 @@ class Diagnostician {
 
   tl::expected<Diagnosis, std::string> run() {
     if (auto done = judge_displacement(); !done) return Failure(done.error());
+    correct_by_logs(d_, logs_);
     if (d_.in_valve) take_out_named(*d_.in_valve);
     return std::move(d_);
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -68,6 +69,8 @@ struct Diagnosis {
   model::Model recalibrated_model;
   std::vector<Record> records;
   std::vector<std::string> warnings;
+  /// By id: causes whose condition the logs never meet, with the recording that would test them.
+  std::map<std::string, std::string, std::less<>> not_tested;
   std::optional<Evidence> evidence;  ///< where the models are wrong; see examine()
   double wall_s = 0;
   std::vector<std::pair<std::string, double>> stages_s;  ///< what the wall time went into

@@ -1,0 +1,106 @@
+#include "sysid/evidence/loop_phase.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include <Eigen/QR>
+
+#include "base/statistics.h"
+#include "sysid/evidence/f_quantile.h"
+#include "sysid/evidence/limits.h"
+
+namespace softgrip::sysid {
+namespace {
+
+struct Pair {
+  Eigen::VectorXd command, reading;
+};
+
+/// The samples that have both, each without its mean and in units of its spread; empty if one is constant.
+Pair pairs_of(const std::vector<double>& command, const std::vector<double>& reading) {
+  std::vector<double> u, y;
+  for (std::size_t i = 0; i < std::min(command.size(), reading.size()); ++i) {
+    if (!std::isfinite(command[i]) || !std::isfinite(reading[i])) continue;
+    u.push_back(command[i]);
+    y.push_back(reading[i]);
+  }
+  const auto scaled = [](const std::vector<double>& values) {
+    Eigen::VectorXd v =
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    if (v.size() == 0) return v;
+    v.array() -= v.mean();
+    const double spread = std::sqrt(v.squaredNorm() / static_cast<double>(v.size()));
+    return spread > 0 ? Eigen::VectorXd(v / spread) : Eigen::VectorXd();
+  };
+  Pair pair{scaled(u), scaled(y)};
+  if (pair.command.size() == 0 || pair.reading.size() == 0) return {};
+  return pair;
+}
+
+/// By how much a sample differs from the parabola through the three before it: the noise of a series in units
+/// of its spread. The median leaves steps out.
+double roughness(const Eigen::VectorXd& values) {
+  if (values.size() < 4) return 0;
+  std::vector<double> sizes;
+  for (Eigen::Index i = 3; i < values.size(); ++i)
+    sizes.push_back(std::abs(values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3]));
+  // 20: the squares of the four weights. 0.6745: the median of a standard normal size.
+  return median_of(std::span(sizes)) / (0.6745 * std::sqrt(20.0));
+}
+
+double squares_left(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+  return (target - columns * columns.colPivHouseholderQr().solve(target)).squaredNorm();
+}
+
+/// Lag of the first change of sign of sum(a(t) b(t + lag)), between two samples.
+std::optional<double> first_crossing(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double before = a.dot(b);
+  for (Eigen::Index lag = 1; lag < a.size(); ++lag) {
+    const double now = a.head(a.size() - lag).dot(b.tail(b.size() - lag));
+    if (before * now <= 0) {
+      const double step = before - now;
+      return static_cast<double>(lag - 1) + (step != 0 ? before / step : 0);
+    }
+    before = now;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool is_closed_loop(const std::vector<double>& command, const std::vector<double>& reading) {
+  constexpr Eigen::Index order = 3, fewest = 50;
+  const auto [u, y] = pairs_of(command, reading);
+  const Eigen::Index rows = u.size() - order;
+  if (rows < fewest || roughness(u) < limits::planned_roughness) return false;
+  Eigen::MatrixXd columns(rows, 2 * order);
+  for (Eigen::Index lag = 1; lag <= order; ++lag) {
+    columns.col(lag - 1) = u.segment(order - lag, rows);
+    columns.col(order + lag - 1) = y.segment(order - lag, rows);
+  }
+  const Eigen::VectorXd target = u.tail(rows);
+  const double own = squares_left(columns.leftCols(order), target), both = squares_left(columns, target);
+  const auto free = static_cast<double>(rows - 2 * order);
+  // A command that its own past foretells to rounding has nothing left that the readings could explain.
+  if (!(own > 1e-12 * static_cast<double>(rows)) || !(both > 0)) return false;
+  const double f = (own - both) / static_cast<double>(order) / (both / free);
+  return f > f_quantile(limits::feedback_probability, static_cast<double>(order), free);
+}
+
+std::optional<double> phase_ratio(const std::vector<double>& command, const std::vector<double>& reading) {
+  const auto [u, y] = pairs_of(command, reading);
+  if (u.size() == 0) return std::nullopt;
+  const std::optional<double> right = first_crossing(u, y), left = first_crossing(y, u);
+  if (!right || !left || *right + *left == 0) return std::nullopt;
+  return std::abs(*left - *right) / (*left + *right);
+}
+
+bool shows_stiction(const std::vector<double>& command, const std::vector<double>& reading) {
+  const std::optional<double> ratio = phase_ratio(command, reading);
+  return ratio && *ratio > limits::odd_phase_ratio && is_closed_loop(command, reading);
+}
+
+}  // namespace softgrip::sysid

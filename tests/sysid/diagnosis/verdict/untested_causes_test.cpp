@@ -1,0 +1,111 @@
+#include "sysid/diagnosis/verdict/untested_causes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace softgrip::sysid::untested_causes_test {
+namespace {
+
+NamedCause named(std::string_view id) {
+  NamedCause cause;
+  cause.cause = *find_cause(id);
+  return cause;
+}
+
+Diagnosis with(std::initializer_list<std::string_view> ids) {
+  Diagnosis d;
+  d.verdict = Verdict::cause_found;
+  for (const std::string_view id : ids) d.causes.push_back(named(id));
+  return d;
+}
+
+std::vector<std::string> ids(const std::vector<NamedCause>& causes) {
+  std::vector<std::string> list;
+  for (const NamedCause& one : causes) list.emplace_back(one.cause.id);
+  return list;
+}
+
+/// A course of the command that swings about 20 kPa. @param rest_s  without pressure before it.
+std::vector<Log> planned(double rest_s) {
+  Log log;
+  log.name = "planned";
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 0.02 * i;
+    log.time_s.push_back(t);
+    log.pressure_command_kpa.push_back(t < rest_s ? 0 : 20 + 10 * std::sin(t - rest_s));
+    log.displacement_mm.push_back(0.2 * log.pressure_command_kpa.back());
+  }
+  return {log};
+}
+
+/// A flow that a controller holds with a valve. @param band  that the valve ignores. @param wave  of a
+/// disturbance.
+std::vector<Log> loop(double band, double wave) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0, 0.01);
+  Log log;
+  log.name = "loop";
+  double stem = 0.3, flow = 0, sum = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const double reading = flow + wave * std::sin(2 * std::numbers::pi * i / 60.0) + noise(random);
+    sum += 0.03 * reading;
+    const double command = -(wave > 0 ? 0.4 : 0.05) * reading - sum;
+    if (std::abs(command - stem) > band) stem = command;
+    flow += 0.5 * (stem - flow);
+    log.time_s.push_back(i);
+    log.pressure_command_kpa.push_back(10 + command);
+    log.displacement_mm.push_back(reading);
+  }
+  return {log};
+}
+
+TEST(UntestedCauses, ADriftNeedsARestWithoutPressure) {
+  Diagnosis d = with({"sensor_drift", "transport_delay"});
+  correct_by_logs(d, planned(0));
+  EXPECT_EQ(ids(d.causes), std::vector<std::string>{"transport_delay"});
+  EXPECT_EQ(ids(d.partial), std::vector<std::string>{"sensor_drift"});
+  EXPECT_EQ(d.verdict, Verdict::partly_explained);
+  EXPECT_NE(d.not_tested.at("sensor_drift").find("rest"), std::string::npos);
+  Diagnosis alone = with({"sensor_drift"});
+  correct_by_logs(alone, planned(2.9));
+  EXPECT_TRUE(alone.causes.empty());
+  EXPECT_EQ(alone.verdict, Verdict::unexplained);
+  Diagnosis shown = with({"sensor_drift"});
+  correct_by_logs(shown, planned(3.1));
+  EXPECT_EQ(ids(shown.causes), std::vector<std::string>{"sensor_drift"});
+  EXPECT_EQ(shown.verdict, Verdict::cause_found);
+  EXPECT_TRUE(shown.not_tested.empty());
+}
+
+TEST(UntestedCauses, ALoopWhoseValveSticksIsNamedByItsPhase) {
+  Diagnosis d = with({"rate_dependent_hysteresis"});
+  correct_by_logs(d, loop(0.3, 0));
+  EXPECT_EQ(ids(d.causes), std::vector<std::string>{"valve_deadband"});
+  EXPECT_EQ(ids(d.partial), std::vector<std::string>{"rate_dependent_hysteresis"});
+  EXPECT_EQ(d.verdict, Verdict::partly_explained);
+}
+
+TEST(UntestedCauses, ALoopThatADisturbanceDrivesKeepsItsCauses) {
+  Diagnosis d = with({"rate_dependent_hysteresis"});
+  correct_by_logs(d, loop(0, 1));
+  EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
+  ASSERT_EQ(d.warnings.size(), 1U);
+  EXPECT_NE(d.warnings.front().find("closed loop"), std::string::npos);
+}
+
+TEST(UntestedCauses, OneLogOfAPlannedCommandIsNoLoop) {
+  Diagnosis d = with({"rate_dependent_hysteresis"});
+  std::vector<Log> logs = loop(0.3, 0);
+  logs.push_back(planned(5).front());
+  correct_by_logs(d, logs);
+  EXPECT_EQ(ids(d.causes), std::vector<std::string>{"rate_dependent_hysteresis"});
+  EXPECT_TRUE(d.warnings.empty());
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::untested_causes_test

@@ -1,0 +1,108 @@
+#include "sysid/evidence/loop_phase.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace softgrip::sysid::loop_phase_test {
+namespace {
+
+struct Signals {
+  std::vector<double> command, reading;
+};
+
+/// A flow behind a valve, held at 0 by a controller with a proportional and an integral part.
+/// @param band  by how much the command must change before the valve moves, and then jumps.
+/// @param wave  height of a disturbance of the flow.
+Signals loop(double band, double wave, double proportional, double integral, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 0.01);
+  Signals signals;
+  double stem = 0.3, flow = 0, sum = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const double disturbed = flow + wave * std::sin(2 * std::numbers::pi * i / 60.0) + noise(random);
+    sum += integral * disturbed;
+    const double command = -proportional * disturbed - sum;
+    if (std::abs(command - stem) > band) stem = command;
+    flow += 0.5 * (stem - flow);
+    if (i < 300) continue;
+    signals.command.push_back(command);
+    signals.reading.push_back(disturbed);
+  }
+  return signals;
+}
+
+/// A planned course of the command, and a finger that lags behind it.
+Signals planned(double lag_share, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, 0.01);
+  Signals signals;
+  double reading = 0;
+  for (int i = 0; i < 1500; ++i) {
+    signals.command.push_back(std::sin(2 * std::numbers::pi * i / 100.0) + 0.3 * (i / 70 % 3));
+    reading += lag_share * (signals.command.back() - reading);
+    signals.reading.push_back(reading + noise(random));
+  }
+  return signals;
+}
+
+TEST(LoopPhase, AValveThatSticksMakesAnOddCorrelation) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Signals s = loop(0.3, 0, 0.05, 0.03, seed);
+    EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
+    EXPECT_GT(phase_ratio(s.command, s.reading).value_or(0), 2.0 / 3) << seed;
+    EXPECT_TRUE(shows_stiction(s.command, s.reading)) << seed;
+  }
+}
+
+TEST(LoopPhase, ADisturbanceMakesAnEvenOne) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const Signals s = loop(0, 1, 0.4, 0.01, seed);
+    EXPECT_TRUE(is_closed_loop(s.command, s.reading)) << seed;
+    EXPECT_LT(phase_ratio(s.command, s.reading).value_or(1), 1.0 / 3) << seed;
+    EXPECT_FALSE(shows_stiction(s.command, s.reading)) << seed;
+  }
+}
+
+TEST(LoopPhase, APlannedCommandIsNoLoopHoweverLateTheFingerIs) {
+  for (const double lag_share : {1.0, 0.2, 0.01}) {
+    const Signals s = planned(lag_share, 3);
+    EXPECT_FALSE(is_closed_loop(s.command, s.reading)) << lag_share;
+    EXPECT_FALSE(shows_stiction(s.command, s.reading)) << lag_share;
+  }
+}
+
+/// Its correlation with the reading is one-sided, as odd as that of a valve that sticks.
+TEST(LoopPhase, ARandomCommandIsNoLoop) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0, 1);
+  Signals s;
+  double reading = 0;
+  for (int i = 0; i < 3000; ++i) {
+    s.command.push_back(normal(random));
+    reading += 0.05 * (s.command.back() - reading);
+    s.reading.push_back(reading + 0.01 * normal(random));
+  }
+  EXPECT_FALSE(is_closed_loop(s.command, s.reading));
+  EXPECT_FALSE(shows_stiction(s.command, s.reading));
+}
+
+TEST(LoopPhase, NeitherGapsNorAConstantAreALoop) {
+  Signals s = loop(0.3, 0, 0.05, 0.03, 1);
+  for (std::size_t i = 0; i < s.reading.size(); i += 7)
+    s.reading[i] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(shows_stiction(s.command, s.reading));
+  const std::vector<double> constant(s.command.size(), 2);
+  EXPECT_FALSE(phase_ratio(constant, s.reading));
+  EXPECT_FALSE(shows_stiction(constant, s.reading));
+  EXPECT_FALSE(shows_stiction({}, {}));
+  s.command.resize(40);
+  s.reading.resize(40);
+  EXPECT_FALSE(is_closed_loop(s.command, s.reading));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::loop_phase_test
