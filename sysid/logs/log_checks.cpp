@@ -24,8 +24,6 @@ constexpr double longest_median_interval_s = 5;
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double gap_intervals = 5;
-/// Shares of all samples.
-constexpr double missing_share_refused = 0.2;
 
 std::string percent(double share) {
   return fixed(100 * share, 1) + " %";
@@ -166,12 +164,13 @@ class Check {
     const auto& readings = log_.displacement_mm;
     const auto first = std::find_if(readings.begin(), readings.end(), missing);
     if (first == readings.end()) return;
-    const auto count = static_cast<double>(std::count_if(readings.begin(), readings.end(), missing));
-    const double share = count / static_cast<double>(readings.size());
+    const auto count = static_cast<std::size_t>(std::count_if(readings.begin(), readings.end(), missing));
+    const double share = static_cast<double>(count) / static_cast<double>(readings.size());
     const auto at = static_cast<std::size_t>(first - readings.begin());
     const std::string message = percent(share) + " of the samples have no reading";
-    if (share > missing_share_refused) {
-      refuse(at, source_.displacement_column, message, "at most " + percent(missing_share_refused));
+    if (readings.size() - count < fewest_samples) {
+      refuse(at, source_.displacement_column, message,
+             "a log has at least " + std::to_string(fewest_samples) + " readings");
     } else {
       note(at, message + "; they are simulated but not compared");
     }

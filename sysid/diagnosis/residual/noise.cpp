@@ -11,6 +11,19 @@ namespace {
 
 constexpr std::size_t lags = 25;
 
+void add_third_differences(const std::vector<double>& y, std::vector<double>& sizes) {
+  for (std::size_t i = 3; i < y.size(); ++i) {
+    const double third = y[i] - 3 * y[i - 1] + 3 * y[i - 2] - y[i - 3];
+    if (std::isfinite(third)) sizes.push_back(std::abs(third));
+  }
+}
+
+/// The readings without the samples between them.
+std::vector<double> readings_alone(std::vector<double> y) {
+  y.erase(std::remove_if(y.begin(), y.end(), [](double value) { return !std::isfinite(value); }), y.end());
+  return y;
+}
+
 }  // namespace
 
 double measured_noise_mm(const std::vector<Record>& records) {
@@ -18,11 +31,10 @@ double measured_noise_mm(const std::vector<Record>& records) {
   constexpr double inflation = 20.0;
   std::vector<double> sizes;
   for (const Record& record : records) {
-    const std::vector<double>& y = record.reading_mm;
-    for (std::size_t i = 3; i < y.size(); ++i) {
-      const double third = y[i] - 3 * y[i - 1] + 3 * y[i - 2] - y[i - 3];
-      if (std::isfinite(third)) sizes.push_back(std::abs(third));
-    }
+    // Where the sensor is slower than the log, hardly four readings stand side by side.
+    const std::vector<double> readings = readings_alone(record.reading_mm);
+    const bool is_slow = 5 * readings.size() < 4 * record.reading_mm.size();
+    add_third_differences(is_slow ? readings : record.reading_mm, sizes);
   }
   if (sizes.empty()) return 0;
   // The median alone would be as coarse as the quantisation; it only bounds what a wrong sample or a corner

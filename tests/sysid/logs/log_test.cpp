@@ -127,9 +127,9 @@ std::vector<Bad> bad_logs() {
        }),
        34, 29, "extreme value 8 mm", "clips"},
       {"ReadingsMissing", with_log([](Log& log) {
-         for (std::size_t i = 40; i < 70; ++i) log.displacement_mm[i] = std::nan("");
+         for (std::size_t i = 40; i < 91; ++i) log.displacement_mm[i] = std::nan("");
        }),
-       42, 29, "30.0 % of the samples have no reading", ""},
+       42, 29, "51.0 % of the samples have no reading", "at least 50 readings"},
       {"SeveralChannels", header + ",channel\n0,0,0,left\n0,0,0,right\n", 1, 1, "2 channels: 'left', 'right'",
        "--channel"},
       {"NoSuchChannel", header + ",channel\n0,0,0,left\n", 1, 1, "no channel 'thumb'", "",
