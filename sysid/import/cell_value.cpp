@@ -35,16 +35,18 @@ std::optional<double> number_of(std::string_view text, CellValue& value) {
   return to_number(pointed);
 }
 
-bool is_among(const std::vector<std::string>& missing, std::string_view text, std::optional<double> number) {
-  return std::any_of(missing.begin(), missing.end(), [&](const std::string& word) {
+/// Index of the word that the cell says; -1: none of them.
+int place_among(const std::vector<std::string>& missing, std::string_view text,
+                std::optional<double> number) {
+  const auto found = std::find_if(missing.begin(), missing.end(), [&](const std::string& word) {
     const auto as_number = number ? to_number(word) : std::nullopt;
     return word == lower_case(text) || (as_number && *as_number == *number);
   });
+  return found == missing.end() ? -1 : static_cast<int>(found - missing.begin());
 }
 
-bool says_missing(std::string_view text, const std::optional<double>& number,
-                  const std::vector<std::string>& missing) {
-  if (text.empty() || (!missing.empty() && is_among(missing, text, number))) return true;
+bool says_missing(std::string_view text, const std::optional<double>& number) {
+  if (text.empty()) return true;
   if (number) return !std::isfinite(*number);
   return std::find(missing_words.begin(), missing_words.end(), lower_case(text)) != missing_words.end();
 }
@@ -55,7 +57,8 @@ CellValue cell_value(std::string_view cell, const std::vector<std::string>& miss
   CellValue value;
   const std::string_view text = trimmed(unquoted(cell));
   const auto number = number_of(text, value);
-  if (says_missing(text, number, missing)) {
+  if (!missing.empty()) value.missing_word = place_among(missing, text, number);
+  if (value.missing_word >= 0 || says_missing(text, number)) {
     value.kind = CellKind::missing;
   } else if (number) {
     value.kind = CellKind::number;
@@ -64,6 +67,8 @@ CellValue cell_value(std::string_view cell, const std::vector<std::string>& miss
     value.kind = CellKind::moment;
     value.moment = moment->time;
     value.dated = moment->dated;
+    value.short_clock = moment->short_clock;
+    value.surely_minutes = moment->surely_minutes;
   }
   return value;
 }

@@ -14,11 +14,14 @@ enum class CellKind : std::uint8_t { number, missing, moment, text };
 
 struct CellValue {
   CellKind kind = CellKind::text;
-  double number = 0;        ///< of a number; finite
-  Nanoseconds moment = 0;   ///< of a moment
-  bool dated = false;       ///< the moment has a date
-  bool with_comma = false;  ///< the number has a decimal comma
-  bool with_point = false;  ///< the number has a decimal point
+  double number = 0;            ///< of a number; finite
+  Nanoseconds moment = 0;       ///< of a moment
+  bool dated = false;           ///< the moment has a date
+  bool short_clock = false;     ///< the moment has two fields
+  bool surely_minutes = false;  ///< they are minutes and seconds
+  int missing_word = -1;        ///< index of the word in `missing` that the cell says
+  bool with_comma = false;      ///< the number has a decimal comma
+  bool with_point = false;      ///< the number has a decimal point
 };
 
 /// A comma before digits is a decimal one where no point stands beside it: 1.234,5 is no number. Missing are

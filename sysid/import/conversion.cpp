@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "base/enumerated.h"
 #include "base/numbers.h"
+#include "sysid/import/clock.h"
 #include "sysid/import/proposal.h"
 #include "sysid/import/samples.h"
+#include "sysid/logs/log_columns.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -29,19 +33,25 @@ class Converter {
     check_completeness();
     for (const RoleSpec& spec : roles) resolve(spec);
     if (problems_.size() != before) return std::nullopt;
-    ImportedLog result;
+    remarks_.account = table_.account;
     ForeignSamples samples = samples_of_table();
-    if (const auto problem = order_in_time(mapping_, samples, result.notes)) {
+    if (problems_.size() != before) return std::nullopt;
+    if (const auto problem = order_in_time(mapping_, samples, remarks_)) {
       refuse_row(*problem);
       return std::nullopt;
     }
     subtract_first(samples);
     check_any_value(samples);
     if (problems_.size() != before) return std::nullopt;
-    complete_drive(samples, result.notes);
-    cut_at_holes(samples, result.notes);
-    result.log = log_of(std::move(samples));
-    return result;
+    complete_drive(samples, remarks_);
+    cut_at_holes(samples, remarks_);
+    check_account(samples.size());
+    if (problems_.size() != before) return std::nullopt;
+    name_unused_times();
+    name_unused_columns();
+    name_idle_options();
+    return ImportedLog{log_of(std::move(samples)), std::move(remarks_.notes), std::move(remarks_.warnings),
+                       remarks_.account};
   }
 
  private:
@@ -64,6 +74,7 @@ class Converter {
     for (const Role role : proposal.guessed)
       refuse("nothing says which column is the " + std::string(spec_of(role).word),
              "--" + std::string(spec_of(role).word) + " COLUMN");
+    for (const Proposal::Question& question : proposal.questions) refuse(question.text, question.hint);
     if (table_.channels.size() > 1 && mapping_.channel.empty()) {
       std::string names;
       for (const std::string& name : table_.channels) names += (names.empty() ? "'" : ", '") + name + "'";
@@ -104,14 +115,11 @@ class Converter {
   }
 
   void check_cells(const RoleSpec& spec, const TableColumn& column) {
-    for (const BadCell& cell : column.bad) {
-      problems_.add({table_.file, cell.at, cell.line_text,
-                     std::string(spec.word) + ": '" + document::shown(cell.text, 40) + "' is no number",
-                     "--missing says what stands where nothing was read"});
+    if (mapping_.skip_bad_lines) {
+      bad_rows_.insert(column.bad_rows.begin(), column.bad_rows.end());
+    } else {
+      refuse_bad_cells(spec, column);
     }
-    if (column.bad_count > column.bad.size())
-      refuse(std::string(spec.word) + ": " + std::to_string(column.bad_count - column.bad.size()) +
-             " more of these");
     const bool time = spec.role == Role::time;
     const auto numbers = static_cast<std::size_t>(
         std::count_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); }));
@@ -120,13 +128,30 @@ class Converter {
              (time ? " and numbers" : ""));
   }
 
+  void refuse_bad_cells(const RoleSpec& spec, const TableColumn& column) {
+    for (const BadCell& cell : column.bad) {
+      problems_.add(
+          {table_.file, cell.at, cell.line_text,
+           std::string(spec.word) + ": '" + document::shown(cell.text, 40) + "' is no number",
+           "--missing says what stands where nothing was read; --skip-bad-lines leaves such lines out"});
+    }
+    if (column.bad_count > column.bad.size())
+      refuse(std::string(spec.word) + ": " + std::to_string(column.bad_count - column.bad.size()) +
+             " more of these");
+  }
+
   void find_unit(const RoleSpec& spec, const ColumnMapping& mapped, Source& source) {
+    if (spec.role == Role::time && source.columns.size() > 1) return;  // each has its own: samples_by_times()
+    if (spec.role == Role::time && !find_clock(table_.columns[source.columns.front()], mapped, source))
+      return;
     const bool moments = table_.columns[source.columns.front()].moments > 0;
     const std::string text = unit_text(table_, mapped, spec.quantity);
     const std::string word(spec.word);
     if (mapped.scale) {
       source.factor = *mapped.scale;
-    } else if (const auto unit = moments ? Unit{} : unit_named(text, spec.quantity); unit) {
+    } else if (const auto unit =
+                   moments ? Unit{"s", Quantity::time, source.factor} : unit_named(text, spec.quantity);
+               unit) {
       source.factor = unit->factor;
       source.offset = unit->offset;
     } else if (text.empty()) {
@@ -137,31 +162,295 @@ class Converter {
       refuse(
           word + ": '" + document::shown(text) + "' is no unit of a " + std::string(name_of(spec.quantity)),
           "--scale " + word + "=X, " + std::string(spec.unit) + " per " + document::shown(text) +
-              "; known are " + unit_names(spec.quantity));
+              "; known are " + unit_names(spec.quantity) + angle_hint(spec, text));
     }
     if (mapped.zero) source.offset -= source.factor * *mapped.zero;
   }
 
+  [[nodiscard]] std::vector<double> missing_codes() const {
+    std::vector<double> codes;
+    for (const std::string& word : mapping_.missing) {
+      if (const auto number = missing_number(word)) codes.push_back(*number);
+    }
+    return codes;
+  }
+
+  static std::string angle_hint(const RoleSpec& spec, const std::string& unit) {
+    const std::string name = lower_case(unit);
+    const bool angle =
+        name.starts_with("deg") || name.starts_with("rad") || name == "\xc2\xb0" || name == "grad";
+    if (spec.role != Role::displacement || !angle) return {};
+    return ". A log is in mm: of a bending angle, X is the length of the path of the tip per unit of the "
+           "angle";
+  }
+
+  /// "12:34" is two times: of two fields the unit says which.
+  bool find_clock(const TableColumn& column, const ColumnMapping& mapped, Source& source) {
+    if (column.short_clocks == 0) return true;
+    const std::string unit = lower_case(unit_text(table_, mapped, Quantity::time));
+    const bool hours = unit == "hh:mm";
+    if (hours && !column.surely_minutes && column.short_clocks == column.moments) source.factor = 60;
+    if (source.factor == 60 || (!hours && (column.surely_minutes || unit == "mm:ss"))) return true;
+    refuse(
+        "time: '" + document::shown(column.name, 40) +
+            (hours ? "' cannot be hours and minutes" : "' can be hours and minutes, or minutes and seconds"),
+        "--unit time=mm:ss" + std::string(hours ? "" : ", or --unit time=hh:mm"));
+    return false;
+  }
+
+  [[nodiscard]] bool is_missing(double value) const {
+    return std::find(missing_.begin(), missing_.end(), value) != missing_.end();
+  }
+
   [[nodiscard]] double value_at(const Source& source, std::size_t row) const {
     double sum = 0;
-    for (const std::size_t column : source.columns) sum += table_.columns[column].values[row];
+    for (const std::size_t column : source.columns) {
+      const double value = table_.columns[column].values[row];
+      sum += is_missing(value) ? std::nan("") : value;
+    }
     return source.factor * (sum / static_cast<double>(source.columns.size())) + source.offset;
   }
 
-  [[nodiscard]] ForeignSamples samples_of_table() const {
+  ForeignSamples samples_of_table() {
+    if (!table_.is_text) remarks_.account.rows = table_.rows();
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < table_.rows(); ++i) {
+      if (bad_rows_.count(i) == 0) rows.push_back(i);
+    }
+    remarks_.account.leave_out(LeftOut::bad_line, table_.rows() - rows.size());
+    if (rows.size() < table_.rows())
+      remarks_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(table_.rows() - rows.size()) +
+                               " rows with a cell that is no number");
+    const bool by_times = mapping_[Role::time].columns.size() > 1;
+    return by_times ? samples_by_times(rows) : samples_of_rows(rows);
+  }
+
+  ForeignSamples samples_of_rows(const std::vector<std::size_t>& rows) {
     ForeignSamples samples;
-    const std::size_t rows = table_.rows();
-    for (std::size_t i = 0; i < rows; ++i) samples.row.push_back(i);
+    samples.row = rows;
     for (const RoleSpec& spec : roles) {
       const Source& source = sources_[static_cast<std::size_t>(spec.role)];
       if (source.columns.empty()) continue;
       std::vector<double>& values = samples[spec.role];
-      values.reserve(rows);
-      for (std::size_t i = 0; i < rows; ++i) values.push_back(value_at(source, i));
+      values.reserve(rows.size());
+      for (const std::size_t row : rows)
+        values.push_back(spec.role == Role::time ? table_.columns[source.columns.front()].values[row]
+                                                 : value_at(source, row));
     }
-    for (std::size_t i = 0; i < rows && samples[Role::time].size() < rows; ++i)
-      samples[Role::time].push_back(static_cast<double>(i) / *mapping_.rate_hz);
+    std::vector<double>& time = samples[Role::time];
+    const Source& source = sources_[static_cast<std::size_t>(Role::time)];
+    if (!time.empty()) continue_clock(time, source.factor);
+    for (double& value : time) value = source.factor * value + source.offset;
+    for (std::size_t i = 0; i < rows.size() && time.size() < rows.size(); ++i)
+      time.push_back(static_cast<double>(rows[i]) / *mapping_.rate_hz);
     return samples;
+  }
+
+  void continue_clock(std::vector<double>& time, double unit_s) {
+    const auto overflow = continue_overflows(time, unit_s);
+    if (!overflow) return;
+    const bool has_lines = overflow->first < table_.line.size();
+    remarks_.notes.push_back(
+        "the clock overflows at " + significant(overflow->period, 10) + ", " +
+        std::to_string(overflow->count) + (overflow->count == 1 ? " time" : " times") + ", first in " +
+        (has_lines ? "line " : "sample ") +
+        std::to_string(has_lines ? table_.line[overflow->first] : static_cast<int>(overflow->first) + 1) +
+        ": it is continued");
+  }
+
+  /// A value at the time of its own column.
+  struct Entry {
+    double time_s = 0;
+    std::size_t clock = 0;
+    std::size_t row = 0;
+  };
+
+  /// Each time column's rows as samples with the values of its columns alone, in the order of time.
+  ForeignSamples samples_by_times(const std::vector<std::size_t>& rows) {
+    const std::vector<std::size_t>& clocks = sources_[static_cast<std::size_t>(Role::time)].columns;
+    const auto of_roles = times_of_roles(table_, mapping_, clocks);
+    std::vector<Entry> entries;
+    bool good = of_roles.has_value();
+    if (!good)
+      refuse("neither the names nor the order of the columns show the time of each",
+             "give one --time COLUMN");
+    for (std::size_t k = 0; good && k < clocks.size(); ++k) good = add_entries(rows, clocks[k], entries);
+    ForeignSamples samples;
+    if (!good) return samples;
+    remarks_.account.rows += (clocks.size() - 1) * table_.rows();
+    remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] *= clocks.size();
+    leave_out_empty(*of_roles, entries);
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return a.time_s < b.time_s || (std::isfinite(a.time_s) && !std::isfinite(b.time_s));
+    });
+    for (const Entry& entry : entries) {
+      samples.row.push_back(entry.row);
+      samples[Role::time].push_back(entry.time_s);
+      for (const RoleSpec& spec : roles) {
+        const auto role = static_cast<std::size_t>(spec.role);
+        if (spec.role == Role::time || sources_[role].columns.empty()) continue;
+        const bool here = (*of_roles)[role] == entry.clock;
+        samples[spec.role].push_back(here ? value_at(sources_[role], entry.row) : std::nan(""));
+      }
+    }
+    remarks_.notes.push_back("each row has " + std::to_string(clocks.size()) +
+                             " times: its values are merged by time, and each time counts as a row");
+    return samples;
+  }
+
+  bool add_entries(const std::vector<std::size_t>& rows, std::size_t clock, std::vector<Entry>& entries) {
+    const TableColumn& column = table_.columns[clock];
+    const auto time_s = seconds_of(table_, mapping_, clock);
+    const std::string name = "time: '" + document::shown(column.name, 40) + "' ";
+    if (!time_s || column.short_clocks > 0) {
+      refuse(name + "says no unit", "--unit time=s (known are " + unit_names(Quantity::time) + ")");
+      return false;
+    }
+    double last = -std::numeric_limits<double>::infinity();
+    double first = std::nan("");
+    for (const std::size_t row : rows) {
+      const double now = (*time_s)[row];
+      if (now < last) {
+        refuse_row({row,
+                    name + "goes back, from " + significant(last, 9) + " s to " + significant(now, 9) + " s",
+                    {}});
+        return false;
+      }
+      if (std::isfinite(now)) last = now;
+      if (!std::isfinite(first)) first = now;
+      entries.push_back({now, clock, row});
+    }
+    const bool apart = clocks_end_s_ < first || last < clocks_begin_s_;
+    if (apart) refuse(name + "has no stretch in common with the other time", "give one --time COLUMN");
+    clocks_begin_s_ = std::max(clocks_begin_s_, first);
+    clocks_end_s_ = std::min(clocks_end_s_, last);
+    return !apart;
+  }
+
+  /// Where one of the times has more rows than the other, the cells beside it are empty.
+  void leave_out_empty(const std::array<std::size_t, role_count>& of_roles, std::vector<Entry>& entries) {
+    const auto empty = [&](const Entry& entry) {
+      if (std::isfinite(entry.time_s)) return false;
+      for (const RoleSpec& spec : roles) {
+        const auto role = static_cast<std::size_t>(spec.role);
+        if (spec.role != Role::time && of_roles[role] == entry.clock && !sources_[role].columns.empty() &&
+            std::isfinite(value_at(sources_[role], entry.row)))
+          return false;
+      }
+      return true;
+    };
+    const auto kept = std::remove_if(entries.begin(), entries.end(), empty);
+    remarks_.account.leave_out(LeftOut::empty, static_cast<std::size_t>(entries.end() - kept));
+    entries.erase(kept, entries.end());
+  }
+
+  /// Every row has a fate, and not too many are lost.
+  void check_account(std::size_t samples) {
+    RowAccount& account = remarks_.account;
+    account.used = samples;
+    if (!account.balanced()) {
+      refuse("the import does not account for all rows: " + account.sentence(),
+             "report this defect of softgrip");
+    } else if (account.lost_share() > refused_share) {
+      refuse("too few rows are usable: " + account.sentence(),
+             remarks_.warnings.empty() ? std::string() : remarks_.warnings.front());
+    } else if (account.lost_share() > warned_share) {
+      remarks_.warnings.insert(remarks_.warnings.begin(), account.sentence());
+    }
+  }
+
+  [[nodiscard]] bool is_used(std::size_t column) const {
+    return std::any_of(sources_.begin(), sources_.end(), [&](const Source& source) {
+      return std::find(source.columns.begin(), source.columns.end(), column) != source.columns.end();
+    });
+  }
+
+  void name_unused_times() {
+    const std::vector<std::size_t> times = time_columns(table_);
+    const std::vector<std::size_t>& used = sources_[static_cast<std::size_t>(Role::time)].columns;
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      if (is_used(i)) continue;
+      const TableColumn& column = table_.columns[i];
+      const std::string name = "the column '" + document::shown(column.name, 40) + "' looks like a time";
+      const bool is_time = std::find(times.begin(), times.end(), i) != times.end();
+      if (is_time && used.empty()) {
+        remarks_.warnings.push_back(name + " and is not used: --rate-hz takes its place");
+      } else if (is_time && same_clock(table_, mapping_, used.front(), i)) {
+        remarks_.notes.push_back(name + " and shows the time that is used");
+      } else if (is_time) {
+        remarks_.warnings.push_back(name + " and is not used: it differs from the time of '" +
+                                    document::shown(table_.columns[used.front()].name, 40) + "'");
+      } else if (names_role(column.name, Role::time) && column.bad_count * 2 > column.values.size()) {
+        remarks_.warnings.push_back(name + " and cannot be read ('" +
+                                    document::shown(column.bad.front().text, 30) + "'): it is not used");
+      }
+    }
+  }
+
+  void name_unused_columns() {
+    constexpr std::size_t names_a_note = 8;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+      const bool is_channel =
+          lower_case(table_.columns[i].name) == channel_column && !table_.channels.empty();
+      if (!is_used(i) && !is_channel) names.push_back("'" + document::shown(word_of(table_, i), 40) + "'");
+    }
+    for (std::size_t i = 0; i < names.size(); i += names_a_note) {
+      const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(i + names_a_note, names.size()));
+      remarks_.notes.push_back(
+          "not used: " +
+          with_commas(std::vector<std::string>(names.begin() + static_cast<std::ptrdiff_t>(i), end),
+                      [](const std::string& name) { return name; }));
+    }
+  }
+
+  void idle(const std::string& option, const std::string& why) {
+    remarks_.warnings.push_back(option + " has no effect: " + why);
+  }
+
+  /// Options that change nothing.
+  void name_idle_options() {
+    for (const RoleSpec& spec : roles) {
+      const ColumnMapping& mapped = mapping_[spec.role];
+      const std::string word = " " + std::string(spec.word) + "=";
+      const bool time = spec.role == Role::time;
+      const bool dates = time && mapped.given() && table_.columns[sources_[0].columns.front()].moments > 0 &&
+                         table_.columns[sources_[0].columns.front()].short_clocks == 0;
+      const std::string why = mapped.given() ? "" : "no column is the " + std::string(spec.word);
+      if (!mapped.unit.empty() && (!mapped.given() || mapped.scale || dates))
+        idle("--unit" + word + mapped.unit, !why.empty()   ? why
+                                            : mapped.scale ? "--scale takes its place"
+                                                           : "the column has dates or times of day");
+      if (mapped.scale && !mapped.given()) idle("--scale" + word + shortest(*mapped.scale), why);
+      if ((mapped.zero || mapped.zero_first) && (!mapped.given() || time))
+        idle("--zero" + word + (mapped.zero ? shortest(*mapped.zero) : "first"),
+             !why.empty() ? why : "times count from the first sample");
+    }
+    name_idle_words();
+    if (mapping_.separator != 0 && !table_.is_text) idle("--separator", "the file is no text");
+    if (mapping_.skip_bad_lines &&
+        remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] == 0)
+      remarks_.notes.emplace_back("--skip-bad-lines: no line was bad");
+    const bool cuts = mapping_.from_s > 0 || std::isfinite(mapping_.to_s);
+    if (cuts && remarks_.account.left_out[static_cast<std::size_t>(LeftOut::outside_stretch)] == 0)
+      idle("--from-s or --to-s", "all samples are between them");
+  }
+
+  void name_idle_words() {
+    std::size_t text_word = 0;
+    for (const std::string& word : mapping_.missing) {
+      std::size_t cells = 0;
+      if (const auto number = missing_number(word)) {
+        for (std::size_t i = 0; i < table_.columns.size(); ++i) {
+          const std::vector<double>& values = table_.columns[i].values;
+          if (is_used(i))
+            cells += static_cast<std::size_t>(std::count(values.begin(), values.end(), *number));
+        }
+      } else if (text_word < table_.missing_cells.size()) {
+        cells = table_.missing_cells[text_word++];
+      }
+      if (cells == 0) idle("--missing " + document::shown(word, 40), "no cell that is used says it");
+    }
   }
 
   void subtract_first(ForeignSamples& samples) const {
@@ -196,9 +485,18 @@ class Converter {
   const Mapping& mapping_;
   document::Problems& problems_;
   std::array<Source, role_count> sources_;
+  std::set<std::size_t> bad_rows_;
+  std::vector<double> missing_ = missing_codes();
+  ImportRemarks remarks_;
+  double clocks_begin_s_ = -std::numeric_limits<double>::infinity();
+  double clocks_end_s_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
+
+std::optional<double> missing_number(const std::string& word) {
+  return to_number(word);
+}
 
 std::optional<ImportedLog> convert(const ForeignTable& table, const Mapping& mapping,
                                    document::Problems& problems) {

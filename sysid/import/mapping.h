@@ -42,7 +42,8 @@ inline constexpr std::array<RoleSpec, role_count> roles{{
 /// Where a role's values come from: (value - zero) in `unit`, or times `scale`.
 struct ColumnMapping {
   std::vector<std::string>
-      columns;       ///< names, or numbers from 1; several are averaged; empty: the role is not there
+      columns;       ///< names, or numbers from 1; several are averaged, but each of several times holds for
+                     ///< its own columns (clock.h); empty: the role is not there
   std::string unit;  ///< empty: what the column itself says
   std::optional<double> scale;  ///< log units per unit of the column, in place of a unit's
   std::optional<double> zero;   ///< subtracted before, in the column's unit
@@ -58,7 +59,8 @@ struct Mapping {
   char separator = 0;             ///< 0: found
   std::vector<std::string> missing;
   std::string channel;
-  double from_s = 0;  ///< samples used, counted from the first one's time
+  bool skip_bad_lines = false;  ///< lines that cannot be read are left out and counted
+  double from_s = 0;            ///< samples used, counted from the first one's time
   double to_s = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] ColumnMapping& operator[](Role role) { return columns[static_cast<std::size_t>(role)]; }

@@ -58,6 +58,7 @@ class MappingReader {
     for (const RoleSpec& spec : roles) {
       if (const document::Node* node = map.child(spec.word, false)) column(*node, spec, mapping[spec.role]);
     }
+    mapping.skip_bad_lines = map.optional_boolean("skip_bad_lines").value_or(false);
     mapping.rate_hz = map.optional_number("rate_hz", {1e-3, 1e7});
     mapping.from_s = map.optional_number("from_s", {0, longest_s}).value_or(0);
     mapping.to_s = map.optional_number("to_s", {0, longest_s}).value_or(mapping.to_s);
@@ -123,6 +124,7 @@ std::string mapping_yaml(const Mapping& mapping, const ImportSource& source, con
     text += "separator: " + std::string(word_of_separator(mapping.separator)) + "\n";
   if (!mapping.missing.empty()) text += "missing: " + list_of(mapping.missing) + "\n";
   if (!mapping.channel.empty()) text += "channel: " + in_quotes(mapping.channel) + "\n";
+  if (mapping.skip_bad_lines) text += "skip_bad_lines: true\n";
   if (mapping.from_s > 0) text += "from_s: " + shortest(mapping.from_s) + "\n";
   if (std::isfinite(mapping.to_s)) text += "to_s: " + shortest(mapping.to_s) + "\n";
   return text;

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 namespace softgrip::sysid {
 namespace {
@@ -29,6 +30,18 @@ class Scanner {
     left_.remove_prefix(1);
     return true;
   }
+  /// A word of ASCII letters, lower-case; empty: there is none.
+  std::string word() {
+    std::string text;
+    while (!left_.empty() && std::isalpha(static_cast<unsigned char>(left_.front())) != 0) {
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(left_.front())));
+      left_.remove_prefix(1);
+    }
+    return text;
+  }
+  void marks(std::string_view any) {
+    while (mark(any)) continue;
+  }
   [[nodiscard]] char last() const { return last_; }
   [[nodiscard]] bool done() const { return left_.empty(); }
 
@@ -48,6 +61,30 @@ class Scanner {
   char last_ = 0;
 };
 
+/// Hours of a 12 h clock behind which "PM", "a.m." or the like stands; the hours themselves where it does
+/// not.
+std::optional<std::int64_t> with_half_of_day(Scanner& scan, std::int64_t hours) {
+  Scanner ahead = scan;
+  ahead.marks(" ");
+  std::string half = ahead.word();
+  if (half.size() == 1 && ahead.mark(".")) half += ahead.word();
+  if (half != "am" && half != "pm") return hours;
+  (void)ahead.mark(".");
+  scan = ahead;
+  if (hours < 1 || hours > 12) return std::nullopt;
+  return hours % 12 + (half == "pm" ? 12 : 0);
+}
+
+/// The fraction of a second behind a point, a comma, or a colon and 3 digits.
+bool fraction_of(Scanner& scan, Nanoseconds& fraction) {
+  std::int64_t milliseconds = 0;
+  if (scan.mark(".,")) return scan.fraction(fraction);
+  if (!scan.mark(":")) return true;
+  if (!scan.digits(3, 3, milliseconds)) return false;
+  fraction = milliseconds * (ns_per_s / 1000);
+  return true;
+}
+
 std::optional<Nanoseconds> time_of_day(Scanner& scan) {
   std::int64_t hours = 0;
   std::int64_t minutes = 0;
@@ -55,9 +92,23 @@ std::optional<Nanoseconds> time_of_day(Scanner& scan) {
   Nanoseconds fraction = 0;
   if (!scan.digits(1, 2, hours) || !scan.mark(":") || !scan.digits(2, 2, minutes)) return std::nullopt;
   if (scan.mark(":") && !scan.digits(2, 2, seconds)) return std::nullopt;
-  if (scan.mark(".,") && !scan.fraction(fraction)) return std::nullopt;
-  if (hours > 23 || minutes > 59 || seconds > 60) return std::nullopt;
-  return (3600 * hours + 60 * minutes + seconds) * ns_per_s + fraction;
+  if (!fraction_of(scan, fraction)) return std::nullopt;
+  const auto of_day = with_half_of_day(scan, hours);
+  if (!of_day || *of_day > 23 || minutes > 59 || seconds > 60) return std::nullopt;
+  return (3600 * *of_day + 60 * minutes + seconds) * ns_per_s + fraction;
+}
+
+/// "00:59.5": minutes and seconds. Without a fraction, and up to 23, they can be hours and minutes too.
+std::optional<Moment> two_fields(std::string_view text) {
+  Scanner scan(text);
+  std::int64_t minutes = 0;
+  std::int64_t seconds = 0;
+  Nanoseconds fraction = 0;
+  if (!scan.digits(1, 3, minutes) || !scan.mark(":") || !scan.digits(2, 2, seconds)) return std::nullopt;
+  const bool has_fraction = scan.mark(".,");
+  if (has_fraction && !scan.fraction(fraction)) return std::nullopt;
+  if (!scan.done() || seconds > 59) return std::nullopt;
+  return Moment{(60 * minutes + seconds) * ns_per_s + fraction, false, true, has_fraction || minutes > 23};
 }
 
 /// "Z", "+02:00", "-0500", or nothing, which is taken for UTC.
@@ -74,6 +125,53 @@ std::optional<Nanoseconds> zone(Scanner& scan) {
   return sign * (3600 * hours + 60 * minutes) * ns_per_s;
 }
 
+std::optional<Nanoseconds> days_of(std::int64_t year, std::int64_t month, std::int64_t day_of_month) {
+  const std::chrono::year_month_day day{std::chrono::year{static_cast<int>(year)},
+                                        std::chrono::month{static_cast<unsigned>(month)},
+                                        std::chrono::day{static_cast<unsigned>(day_of_month)}};
+  if (!day.ok() || day.year() < std::chrono::year{1900} || day.year() > std::chrono::year{2200})
+    return std::nullopt;
+  return std::chrono::sys_days(day).time_since_epoch().count() * Nanoseconds{86400} * ns_per_s;
+}
+
+/// 1 to 12 of an English or German name or its first three letters; 0: none.
+std::int64_t month_named(const std::string& word) {
+  constexpr std::array<std::string_view, 12> english{"january",   "february", "march",    "april",
+                                                     "may",       "june",     "july",     "august",
+                                                     "september", "october",  "november", "december"};
+  constexpr std::array<std::string_view, 12> german{"januar",    "februar", "maerz",    "april",
+                                                    "mai",       "juni",    "juli",     "august",
+                                                    "september", "oktober", "november", "dezember"};
+  if (word.size() < 3) return 0;
+  for (std::size_t i = 0; i < english.size(); ++i) {
+    const bool short_form = word.size() == 3 || word == "sept";
+    const auto is = [&](std::string_view name) {
+      return word == name || (short_form && name.starts_with(word));
+    };
+    if (is(english[i]) || is(german[i])) return static_cast<std::int64_t>(i) + 1;
+  }
+  return 0;
+}
+
+/// 31-May-2024, 31 May 2024, May 31, 2024 or 2024-May-31.
+std::optional<Nanoseconds> date_with_month_name(Scanner& scan) {
+  constexpr std::string_view between = "-/., ";
+  std::int64_t first = 0;
+  std::int64_t second = 0;
+  const bool number_first = scan.digits(1, 4, first);
+  if (number_first && !scan.mark(between)) return std::nullopt;
+  scan.marks(between);
+  const std::int64_t month = month_named(scan.word());
+  if (month == 0) return std::nullopt;
+  scan.marks(between);
+  if (!number_first) {
+    if (!scan.digits(1, 2, first) || !scan.mark(between)) return std::nullopt;
+    scan.marks(between);
+  }
+  if (!scan.digits(1, 4, second)) return std::nullopt;
+  return first > 31 ? days_of(first, month, second) : days_of(second, month, first);
+}
+
 /// Days since 1970 of 2024-05-31, 2024/05/31 or 31.05.2024.
 std::optional<Nanoseconds> date(Scanner& scan) {
   std::array<std::int64_t, 3> parts{};
@@ -83,28 +181,28 @@ std::optional<Nanoseconds> date(Scanner& scan) {
     return std::nullopt;
   const bool year_first = parts[0] > 31;
   if (!year_first && mark != '.') return std::nullopt;
-  const std::chrono::year_month_day day{
-      std::chrono::year{static_cast<int>(year_first ? parts[0] : parts[2])},
-      std::chrono::month{static_cast<unsigned>(parts[1])},
-      std::chrono::day{static_cast<unsigned>(year_first ? parts[2] : parts[0])}};
-  if (!day.ok() || day.year() < std::chrono::year{1900} || day.year() > std::chrono::year{2200})
-    return std::nullopt;
-  return std::chrono::sys_days(day).time_since_epoch().count() * Nanoseconds{86400} * ns_per_s;
+  return year_first ? days_of(parts[0], parts[1], parts[2]) : days_of(parts[2], parts[1], parts[0]);
 }
 
 }  // namespace
 
 std::optional<Moment> moment_of(std::string_view text) {
+  if (const auto minutes = two_fields(text)) return minutes;
   Scanner alone(text);
-  if (const auto time = time_of_day(alone); time && alone.done()) return Moment{*time, false};
+  if (const auto time = time_of_day(alone); time && alone.done()) return Moment{*time};
   Scanner scan(text);
-  const auto day = date(scan);
+  auto day = date(scan);
+  if (!day) {
+    scan = Scanner(text);
+    day = date_with_month_name(scan);
+    (void)scan.mark(",");
+  }
   if (!day || !scan.mark("T ")) return std::nullopt;
   const auto time = time_of_day(scan);
   if (!time) return std::nullopt;
   const auto offset = zone(scan);
   if (!offset || !scan.done()) return std::nullopt;
-  return Moment{*day + *time - *offset, true};
+  return Moment{*day + *time - *offset, true, false, false};
 }
 
 }  // namespace softgrip::sysid

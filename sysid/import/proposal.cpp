@@ -7,7 +7,10 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "base/enumerated.h"
 #include "base/numbers.h"
+#include "sysid/import/clock.h"
+#include "sysid/import/fingers.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -54,7 +57,9 @@ std::vector<std::string> parts_of(std::string_view name) {
   return parts;
 }
 
-bool names(std::string_view name, Role role) {
+}  // namespace
+
+bool names_role(std::string_view name, Role role) {
   const std::vector<std::string> parts = parts_of(name);
   const auto& surely = words()[static_cast<std::size_t>(role)].surely;
   return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
@@ -62,13 +67,17 @@ bool names(std::string_view name, Role role) {
   });
 }
 
+namespace {
+
 /// The unit that a column carries, whatever it is of.
 std::string open_unit(const TableColumn& column) {
   return column.unit.empty() ? split_unit(column.name).unit : column.unit;
 }
 
-/// How well a column would do for a role; 0: not at all.
-int fitness(const TableColumn& column, const RoleSpec& spec) {
+}  // namespace
+
+int fitness_for(const TableColumn& column, Role role) {
+  const RoleSpec& spec = spec_of(role);
   const bool time = spec.role == Role::time;
   // A few bad cells are to be told, not to be walked around.
   if (column.bad_count * 10 > column.values.size() || (column.moments > 0 && !time)) return 0;
@@ -79,16 +88,18 @@ int fitness(const TableColumn& column, const RoleSpec& spec) {
       !of_quantity && !anywhere.empty() && !is_raw_unit(anywhere) && unit_named(anywhere).has_value();
   if (elsewhere) return 0;
   const std::string bare = split_unit(column.name, spec.quantity).name;
-  const bool named = names(bare, spec.role);
+  const bool named = names_role(bare, spec.role);
   if (time && column.moments > 0) return 4;
   // A pressure that is asked for is no measured one, and the supply's is neither.
   const bool pressure = spec.role == Role::pressure;
-  if (pressure && (names(bare, Role::command) || names(bare, Role::supply))) return 0;
-  if (spec.role == Role::command && names(bare, Role::displacement) && !of_quantity) return 0;
+  if (pressure && (names_role(bare, Role::command) || names_role(bare, Role::supply))) return 0;
+  if (spec.role == Role::command && names_role(bare, Role::displacement) && !of_quantity) return 0;
   if (named) return of_quantity ? 5 : 3;
   const bool by_unit_alone = pressure || spec.role == Role::displacement || time;
   return of_quantity && by_unit_alone ? 2 : 0;
 }
+
+namespace {
 
 bool taken(const Mapping& mapping, const ForeignTable& table, std::size_t index) {
   return std::any_of(mapping.columns.begin(), mapping.columns.end(), [&](const ColumnMapping& column) {
@@ -97,7 +108,8 @@ bool taken(const Mapping& mapping, const ForeignTable& table, std::size_t index)
   });
 }
 
-/// Numbers without a unit that count seconds, milliseconds, ... since 1970 say it by their size.
+}  // namespace
+
 std::string epoch_unit(const TableColumn& column) {
   const auto first =
       std::find_if(column.values.begin(), column.values.end(), [](double v) { return std::isfinite(v); });
@@ -112,11 +124,154 @@ std::string epoch_unit(const TableColumn& column) {
   return {};
 }
 
-void choose(const ForeignTable& table, const RoleSpec& spec, Proposal& proposal) {
+namespace {
+
+/// The fingers in the columns, and the one that is meant; empty: all columns are of one finger, or nobody
+/// said.
+struct FingerChoice {
+  std::vector<std::string> fingers;
+  std::string meant;
+
+  [[nodiscard]] bool offers(const TableColumn& column) const {
+    const std::string of = finger_of(column, fingers);
+    return of.empty() || of == meant;
+  }
+};
+
+std::string quoted(const std::vector<std::string>& names) {
+  return with_commas(names, [](const std::string& name) { return "'" + document::shown(name) + "'"; });
+}
+
+/// The fingers of the columns that the mapping gives.
+std::vector<std::string> given_fingers(const ForeignTable& table, const Mapping& mapping,
+                                       const std::vector<std::string>& fingers) {
+  std::vector<std::string> given;
+  for (const ColumnMapping& column : mapping.columns) {
+    for (const std::string& word : column.columns) {
+      const std::size_t index = column_index(table, word);
+      const std::string of = index < table.columns.size() ? finger_of(table.columns[index], fingers) : "";
+      if (!of.empty() && std::find(given.begin(), given.end(), of) == given.end()) given.push_back(of);
+    }
+  }
+  return given;
+}
+
+/// The fingers that have a column for a displacement.
+std::vector<std::string> read_fingers(const ForeignTable& table, const std::vector<std::string>& fingers) {
+  std::vector<std::string> read;
+  for (const TableColumn& column : table.columns) {
+    const std::string of = fitness_for(column, Role::displacement) > 0 ? finger_of(column, fingers) : "";
+    if (!of.empty() && std::find(read.begin(), read.end(), of) == read.end()) read.push_back(of);
+  }
+  return read;
+}
+
+FingerChoice choose_finger(const ForeignTable& table, const Mapping& given, Proposal& proposal) {
+  FingerChoice choice{fingers_of(table), lower_case(given.channel)};
+  const bool by_rows = !table.channels.empty();
+  if (by_rows) return {};
+  const auto known = [&](const std::string& name) {
+    return std::find(choice.fingers.begin(), choice.fingers.end(), name) != choice.fingers.end();
+  };
+  const std::vector<std::string> said = given_fingers(table, given, choice.fingers);
+  if (!given.channel.empty() && !known(choice.meant)) {
+    const std::string name = "'" + document::shown(given.channel) + "'";
+    proposal.questions.push_back(
+        choice.fingers.size() > 1
+            ? Proposal::Question{"no finger is called " + name + ": the columns are of " +
+                                     quoted(choice.fingers),
+                                 "say which one with --channel"}
+            : Proposal::Question{"--channel " + name +
+                                     ": the file has no column 'channel' and columns of one "
+                                     "finger only",
+                                 "leave --channel out"});
+  } else if (!given.channel.empty()) {
+    for (const std::string& other : said) {
+      if (other != choice.meant)
+        proposal.questions.push_back(
+            {"--channel '" + choice.meant + "': a column of finger '" + other + "' is given",
+             "give columns of one finger"});
+    }
+  } else if (choice.fingers.size() > 1) {
+    const std::vector<std::string> read = read_fingers(table, choice.fingers);
+    if (said.size() > 1)
+      proposal.warnings.push_back("the given columns are of " + std::to_string(said.size()) +
+                                  " fingers: " + quoted(said));
+    if (said.size() == 1) choice.meant = said.front();
+    if (said.empty() && read.size() == 1) choice.meant = read.front();
+    if (choice.meant.empty() && !given.complete())
+      proposal.questions.push_back({"the columns are of " + std::to_string(choice.fingers.size()) +
+                                        " fingers: " + quoted(choice.fingers),
+                                    "say which one with --channel, or give --command and --displacement"});
+  }
+  return choice;
+}
+
+/// Times that differ: each for its own columns, or a question.
+void choose_times(const ForeignTable& table, const FingerChoice& choice, Proposal& proposal) {
+  ColumnMapping& time = proposal.mapping[Role::time];
+  if (!time.given() || time.columns.size() > 1) return;
+  const std::size_t chosen = column_index(table, time.columns.front());
+  std::vector<std::size_t> times;
+  for (const std::size_t index : time_columns(table)) {
+    const bool differs = index == chosen || !same_clock(table, proposal.mapping, chosen, index);
+    if (differs && choice.offers(table.columns[index]) &&
+        (index == chosen || !taken(proposal.mapping, table, index)))
+      times.push_back(index);
+  }
+  if (times.size() < 2) return;
+  std::vector<std::string> words;
+  for (const std::size_t index : times) words.push_back(word_of(table, index));
+  const auto of_roles = times_of_roles(table, proposal.mapping, times);
+  if (!of_roles) {
+    proposal.questions.push_back(
+        {"the times of the columns " + quoted(words) + " differ",
+         "--time COLUMN takes one of them for all values; given twice, each holds for the "
+         "columns that its name or its place shows"});
+    return;
+  }
+  time.columns.clear();
+  for (const std::size_t index : times) {
+    if (std::find(of_roles->begin(), of_roles->end(), index) != of_roles->end())
+      time.columns.push_back(word_of(table, index));
+  }
+}
+
+/// Codes such as 999 in the columns of the mapping count as missing.
+void choose_codes(const ForeignTable& table, Proposal& proposal) {
+  if (!proposal.mapping.missing.empty()) return;
+  for (const RoleSpec& spec : roles) {
+    if (spec.role == Role::time) continue;
+    for (const std::string& word : proposal.mapping[spec.role].columns) {
+      const std::size_t index = column_index(table, word);
+      if (index == table.columns.size()) continue;
+      const TableColumn& column = table.columns[index];
+      for (const double code : sensor_codes(column)) {
+        const auto count = std::count(column.values.begin(), column.values.end(), code);
+        const std::string value = shortest(code);
+        std::vector<std::string>& missing = proposal.mapping.missing;
+        if (std::find(missing.begin(), missing.end(), value) == missing.end()) missing.push_back(value);
+        proposal.warnings.push_back(
+            std::to_string(count) + (count == 1 ? " cell" : " cells") + " of '" +
+            document::shown(column.name, 40) + "' with " + value +
+            ", far from all others, count as missing; --missing NA keeps them as readings");
+      }
+    }
+  }
+}
+
+void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice& choice, Proposal& proposal) {
   int best = 0;
   std::size_t chosen = table.columns.size();
+  const std::vector<std::size_t> times = time_columns(table);
+  const auto is_time = [&](std::size_t i) {
+    return spec.role != Role::time && names_role(table.columns[i].name, Role::time) &&
+           std::find(times.begin(), times.end(), i) != times.end();
+  };
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const int fit = taken(proposal.mapping, table, i) ? 0 : fitness(table.columns[i], spec);
+    const int fit = taken(proposal.mapping, table, i) || !choice.offers(table.columns[i]) || is_time(i)
+                        ? 0
+                        : fitness_for(table.columns[i], spec.role);
     if (fit <= best) continue;
     best = fit;
     chosen = i;
@@ -163,7 +318,8 @@ std::string unit_text(const ForeignTable& table, const ColumnMapping& column, Qu
 }
 
 Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_too) {
-  Proposal proposal{given, {}, {}};
+  Proposal proposal{given, {}, {}, {}, {}};
+  const FingerChoice choice = choose_finger(table, given, proposal);
   const auto open = [&](Role role) { return !proposal.mapping[role].given(); };
   // What is asked for before what is measured, which any column of a pressure could be.
   for (const Role role :
@@ -172,10 +328,13 @@ Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_
                         ((role == Role::command || role == Role::pressure) && !given[Role::command].given() &&
                          !given[Role::pressure].given());
     if (open(role) && (needed || optional_too) && !(role == Role::time && given.rate_hz))
-      choose(table, spec_of(role), proposal);
+      choose(table, spec_of(role), choice, proposal);
   }
+  if (!given[Role::time].given()) choose_times(table, choice, proposal);
+  choose_codes(table, proposal);
   ColumnMapping& time = proposal.mapping[Role::time];
-  if (time.given() && time.unit.empty() && !time.scale && unit_text(table, time, Quantity::time).empty()) {
+  if (time.columns.size() == 1 && time.unit.empty() && !time.scale &&
+      unit_text(table, time, Quantity::time).empty()) {
     const std::size_t index = column_index(table, time.columns.front());
     if (index < table.columns.size()) time.unit = epoch_unit(table.columns[index]);
   }

@@ -12,7 +12,6 @@ namespace softgrip::sysid {
 namespace {
 
 constexpr double finest_s = 1e-9;
-constexpr double most_missing = 0.2;
 constexpr double hole_s = 0.5;
 constexpr double hole_intervals = 20;
 constexpr double hole_change = 0.02;
@@ -75,71 +74,98 @@ double usual_interval_s(const std::vector<double>& time_s) {
   return median_of(std::span<double>(steps));
 }
 
-/// A sensor that is slower than the log.
-void leave_out_unread(ForeignSamples& samples, std::vector<std::string>& notes) {
-  const std::vector<double>& readings = samples[Role::displacement];
-  std::vector<std::size_t> read;
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    if (std::isfinite(readings[i])) read.push_back(i);
+/// Samples at one time complete each other where no role has a value in both.
+bool complete_each_other(const ForeignSamples& samples, std::size_t a, std::size_t b) {
+  return std::all_of(roles.begin(), roles.end(), [&](const RoleSpec& spec) {
+    const std::vector<double>& values = samples[spec.role];
+    return spec.role == Role::time || values.empty() || !std::isfinite(values[a]) ||
+           !std::isfinite(values[b]);
+  });
+}
+
+void join(ForeignSamples& samples, std::size_t into, std::size_t from) {
+  for (std::vector<double>& values : samples.values) {
+    if (!values.empty() && !std::isfinite(values[into])) values[into] = values[from];
   }
-  const std::size_t unread = readings.size() - read.size();
-  if (read.empty() || static_cast<double>(unread) <= most_missing * static_cast<double>(readings.size()))
-    return;
-  notes.push_back(counted(unread, "of ") + std::to_string(readings.size()) +
-                  " have no displacement and are left out");
-  keep(samples, read);
+}
+
+/// Coarse time stamps: their cause and the remedy.
+std::string about_repeats(const std::vector<double>& time_s, std::size_t repeated) {
+  const double span_s = time_s.back() - time_s.front();
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    if (time_s[i] > time_s[i - 1]) steps.push_back(time_s[i] - time_s[i - 1]);
+  }
+  if (steps.empty()) return "all rows have one time; --rate-hz R in place of --time counts the rows";
+  const double rate = static_cast<double>(time_s.size() - 1) / span_s;
+  return std::to_string(repeated) + " of " + std::to_string(time_s.size()) +
+         " rows have the time of the row before: the time stamps have steps of " +
+         significant(median_of(std::span<double>(steps))) + " s. If the rows are evenly spaced, --rate-hz " +
+         significant(rate) + " in place of --time keeps every row";
 }
 
 }  // namespace
 
 std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
-                                           std::vector<std::string>& notes) {
+                                           ImportRemarks& remarks) {
   std::vector<std::size_t> timed;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (std::isfinite(samples[Role::time][i])) timed.push_back(i);
   }
   if (timed.empty()) return SampleProblem{0, "no sample has a time", {}};
   if (timed.size() < samples.size())
-    notes.push_back(counted(samples.size() - timed.size(), "without a time left out"));
+    remarks.notes.push_back(counted(samples.size() - timed.size(), "without a time left out"));
+  remarks.account.leave_out(LeftOut::no_time, samples.size() - timed.size());
   keep(samples, timed);
-  from_zero(samples[Role::time], notes);
+  from_zero(samples[Role::time], remarks.notes);
   const std::vector<double>& time_s = samples[Role::time];
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (time_s[i] < time_s[i - 1])
+      return SampleProblem{
+          samples.row[i],
+          "the time goes back, from " + significant(time_s[i - 1], 7) + " s to " + significant(time_s[i], 7) +
+              " s after the first sample",
+          "two runs in one file? Cut it here and import each. A clock that was set? --rate-hz "
+          "R in place of --time counts the rows"};
+  }
   std::vector<std::size_t> kept;
   std::size_t repeated = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (time_s[i] < mapping.from_s || time_s[i] > mapping.to_s) continue;
-    if (!kept.empty() && time_s[i] < time_s[kept.back()])
-      return SampleProblem{samples.row[i],
-                           "the time goes back, from " + significant(time_s[kept.back()], 7) + " s to " +
-                               significant(time_s[i], 7) + " s after the first sample",
-                           "two runs in one file? Cut it here and import each"};
-    if (!kept.empty() && time_s[i] == time_s[kept.back()]) {
-      ++repeated;
-    } else {
+    if (time_s[i] < mapping.from_s || time_s[i] > mapping.to_s) {
+      remarks.account.leave_out(LeftOut::outside_stretch);
+    } else if (kept.empty() || time_s[i] != time_s[kept.back()]) {
       kept.push_back(i);
+    } else if (complete_each_other(samples, kept.back(), i)) {
+      join(samples, kept.back(), i);
+      ++remarks.account.joined;
+    } else {
+      ++repeated;
     }
   }
   if (kept.empty())
     return SampleProblem{0, "no samples between --from-s and --to-s",
                          "the file has " + significant(time_s.back()) + " s"};
-  if (repeated > 0) notes.push_back(counted(repeated, "at the time of the one before left out"));
+  remarks.account.leave_out(LeftOut::repeated_time, repeated);
+  if (repeated > 0) remarks.notes.push_back(counted(repeated, "at the time of the one before left out"));
+  if (static_cast<double>(repeated) > warned_share * static_cast<double>(samples.size()))
+    remarks.warnings.push_back(about_repeats(time_s, repeated));
   keep(samples, kept);
-  if (samples[Role::time].front() != 0) from_zero(samples[Role::time], notes);
+  if (samples[Role::time].front() != 0) from_zero(samples[Role::time], remarks.notes);
   return std::nullopt;
 }
 
-void complete_drive(ForeignSamples& samples, std::vector<std::string>& notes) {
-  leave_out_unread(samples, notes);
+void complete_drive(ForeignSamples& samples, ImportRemarks& remarks) {
   if (samples[Role::command].empty()) {
     samples[Role::command] = samples[Role::pressure];
-    notes.emplace_back(
+    remarks.notes.emplace_back(
         "no command is given: the measured pressure stands for it (--drive measured says so to a fit)");
   }
   std::vector<double>& command = samples[Role::command];
   const auto first = std::find_if(command.begin(), command.end(), [](double v) { return std::isfinite(v); });
   if (const auto before = static_cast<std::size_t>(first - command.begin());
       before > 0 && first != command.end()) {
-    notes.push_back(counted(before, "before the first command left out"));
+    remarks.notes.push_back(counted(before, "before the first command left out"));
+    remarks.account.leave_out(LeftOut::before_command, before);
     keep_range(samples, before, samples.size());
     const double begin_s = samples[Role::time].front();
     for (double& time : samples[Role::time]) time = rounded(time - begin_s, finest_s);
@@ -151,10 +177,10 @@ void complete_drive(ForeignSamples& samples, std::vector<std::string>& notes) {
     whole[i] = whole[i - 1];
     ++carried;
   }
-  if (carried > 0) notes.push_back(counted(carried, "without a command keep the one before"));
+  if (carried > 0) remarks.notes.push_back(counted(carried, "without a command keep the one before"));
 }
 
-void cut_at_holes(ForeignSamples& samples, std::vector<std::string>& notes) {
+void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks) {
   const std::vector<double>& time_s = samples[Role::time];
   const std::vector<double>& command = samples[Role::command];
   const double long_s = std::max(hole_s, hole_intervals * usual_interval_s(time_s));
@@ -177,11 +203,12 @@ void cut_at_holes(ForeignSamples& samples, std::vector<std::string>& notes) {
     others += (others.empty() ? "" : ", ") + significant(time_s[edges[k]], 6) + " to " +
               significant(time_s[edges[k + 1] - 1], 6) + " s";
   }
-  notes.push_back("the command changed unseen in " + std::to_string(edges.size() - 2) +
-                  (edges.size() == 3 ? " hole" : " holes") + ": the longest piece is kept, " +
-                  significant(time_s[edges[longest]], 6) + " to " +
-                  significant(time_s[edges[longest + 1] - 1], 6) +
-                  " s; with --from-s and --to-s the others: " + others);
+  remarks.notes.push_back("the command changed unseen in " + std::to_string(edges.size() - 2) +
+                          (edges.size() == 3 ? " hole" : " holes") + ": the longest piece is kept, " +
+                          significant(time_s[edges[longest]], 6) + " to " +
+                          significant(time_s[edges[longest + 1] - 1], 6) +
+                          " s; with --from-s and --to-s the others: " + others);
+  remarks.account.leave_out(LeftOut::hole, samples.size() - (edges[longest + 1] - edges[longest]));
   keep_range(samples, edges[longest], edges[longest + 1]);
   const double begin_s = samples[Role::time].front();
   for (double& time : samples[Role::time]) time = rounded(time - begin_s, finest_s);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sysid/import/account.h"
 #include "sysid/import/mapping.h"
 
 namespace softgrip::sysid {
@@ -31,20 +32,26 @@ struct SampleProblem {
   std::string hint;
 };
 
-/// Times from the first sample on, on whole steps of what a double of their size resolves (1e-9 s at best);
-/// samples without a time are left out, those at the time of the one before too, and those outside of the
-/// mapping's stretch. A time that goes back is a problem. What was done is added to `notes`.
-[[nodiscard]] std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
-                                                         std::vector<std::string>& notes);
+/// What was done with the samples.
+struct ImportRemarks {
+  RowAccount account;
+  std::vector<std::string> notes;
+  std::vector<std::string> warnings;
+};
 
-/// Where more than a fifth of the samples have no displacement, the sensor is slower than the log: those
-/// without are left out. A command that is missing is the one before, and samples before the first are left
-/// out. Without a command the measured pressure stands for it. There is a sample at least.
-void complete_drive(ForeignSamples& samples, std::vector<std::string>& notes);
+/// Times from the first sample on, on whole steps of what a double of their size resolves (1e-9 s at best);
+/// samples without a time are left out, and those outside of the mapping's stretch. Samples at one time that
+/// complete each other become one; of others the first stays. A time that goes back is a problem.
+[[nodiscard]] std::optional<SampleProblem> order_in_time(const Mapping& mapping, ForeignSamples& samples,
+                                                         ImportRemarks& remarks);
+
+/// A command that is missing is the one before, and samples before the first are left out. Without a command
+/// the measured pressure stands for it. A sample without a reading stays. There is a sample at least.
+void complete_drive(ForeignSamples& samples, ImportRemarks& remarks);
 
 /// A hole: longer than 0.5 s and than twenty usual intervals, while the command changed by more than 2 % of
 /// its range. What the finger did there nobody knows: the longest piece between holes is kept, the others are
 /// said.
-void cut_at_holes(ForeignSamples& samples, std::vector<std::string>& notes);
+void cut_at_holes(ForeignSamples& samples, ImportRemarks& remarks);
 
 }  // namespace softgrip::sysid

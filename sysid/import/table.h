@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/time.h"
 #include "document/problem.h"
+#include "sysid/import/account.h"
 
 namespace softgrip::sysid {
 
@@ -30,8 +32,12 @@ struct TableColumn {
   std::vector<double> values;  ///< by row; NaN: nothing was there
   /// How many of them were dates or times of day; their values are seconds after the first of these.
   std::size_t moments = 0;
-  std::vector<BadCell> bad;  ///< the first few
+  Nanoseconds first_moment = 0;  ///< of these, on the scale of moments.h
+  std::size_t short_clocks = 0;  ///< how many of them have two fields ("12:34"), read as minutes and seconds
+  bool surely_minutes = false;   ///< one of the short clocks cannot be hours and minutes
+  std::vector<BadCell> bad;      ///< the first few
   std::size_t bad_count = 0;
+  std::vector<std::size_t> bad_rows;  ///< all of them, where bad lines are to be skipped
 };
 
 /// All columns are equally long.
@@ -43,6 +49,9 @@ struct ForeignTable {
   std::vector<int> line;              ///< of each row in the text; empty of a binary file
   std::vector<std::string> channels;  ///< texts of a column named "channel", in the order of their first rows
   std::vector<std::string> notes;     ///< what was passed over
+  RowAccount account;                 ///< of the rows that the reader has seen
+  bool is_text = false;
+  std::vector<std::size_t> missing_cells;  ///< for each word of TableOptions::missing: the cells that say it
 
   [[nodiscard]] std::size_t rows() const noexcept {
     return columns.empty() ? 0 : columns.front().values.size();
@@ -55,6 +64,7 @@ struct TableOptions {
   std::vector<std::string>
       missing;          ///< what stands where nothing was read, besides empty cells, NaN, NA and the like
   std::string channel;  ///< only rows whose column "channel" says this; empty: all
+  bool skip_bad_lines = false;  ///< leave out lines of another width, and count them
 };
 
 /// The column that a word names: its name, or its number counted from 1 where no name is that. Its index, or

@@ -127,6 +127,11 @@ class Heading {
         --above;
       }
     }
+    if (texts.size() == dialect_.width + 1 && texts.back().empty()) texts.pop_back();
+    if (texts.size() + 1 == dialect_.width && rows_end_empty()) {
+      --dialect_.width;
+      dialect_.extra_cell = true;
+    }
     if (texts.size() != dialect_.width) return refuse(lines_.content[above], texts.size());
     dialect_.names = std::move(texts);
     dialect_.names_line = lines_.content[above].number;
@@ -134,6 +139,16 @@ class Heading {
   }
 
  private:
+  /// True if no row has a value behind its last separator.
+  [[nodiscard]] bool rows_end_empty() const {
+    std::vector<Cell> cells;
+    for (std::size_t i = dialect_.first_row; i < lines_.content.size(); ++i) {
+      split_line(lines_.content[i].text, dialect_.separator, cells);
+      if (cells.size() == dialect_.width && !trimmed(cells.back().text).empty()) return false;
+    }
+    return true;
+  }
+
   /// Between blanks a name may have blanks of its own: then two of them separate.
   std::vector<std::string> split_names(const TextLine& line) const {
     std::vector<Cell> cells;

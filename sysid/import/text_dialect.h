@@ -36,6 +36,7 @@ struct Dialect {
   std::vector<std::string> units;  ///< by column, of a row below the names; empty: there is none
   int names_line = 0;              ///< 0: there are no names
   std::size_t width = 0;           ///< columns
+  bool extra_cell = false;         ///< each row has one empty cell more than there are names
 };
 
 /// Finds it by the rows of numbers; nothing and a problem where there are none, or where the names above them

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t bad_cells_kept = 3;
+constexpr std::size_t bad_lines_named = 10;
 
 std::string name_of_separator(char separator) {
   if (separator == '\t') return "tabs";
@@ -23,11 +24,19 @@ std::string name_of_separator(char separator) {
   return std::string("'") + separator + "'";
 }
 
+/// NUL bytes at the end, as a logger leaves them that lost its power; none of UTF-16.
+std::size_t nul_tail(std::string_view bytes) {
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) return 0;
+  const std::size_t last = bytes.find_last_not_of('\0');
+  return last == std::string_view::npos ? 0 : bytes.size() - last - 1;
+}
+
 /// The rows of numbers, read into columns.
 class RowReader {
  public:
   RowReader(const Dialect& dialect, const TableOptions& options, ForeignTable& table, LogReporter& report)
       : dialect_(dialect), options_(options), table_(table), report_(report), moments_(dialect.width) {
+    table_.missing_cells.resize(options.missing.size());
     table_.columns.resize(dialect.width);
     for (std::size_t i = 0; i < dialect.width; ++i) {
       if (!dialect.names.empty()) table_.columns[i].name = dialect.names[i];
@@ -37,21 +46,23 @@ class RowReader {
   }
 
   void read(const TextLine& line, bool is_last) {
+    ++table_.account.rows;
     const bool closed = split_line(line.text, dialect_.separator, cells_);
-    if (cells_.size() != dialect_.width || !closed) {
-      if (is_last && (cells_.size() < dialect_.width || !closed)) {
-        table_.notes.emplace_back("the last line is cut off and left out");
-      } else {
-        report_.add("row", {line.number, 1}, line.text,
-                    closed ? std::to_string(cells_.size()) + " cells where the rows above have " +
-                                 std::to_string(dialect_.width)
-                           : std::string("a quotation mark is not closed"));
-      }
-      return;
-    }
-    if (!belongs()) return;
+    drop_extra_cell();
+    if (cells_.size() != dialect_.width || !closed) return leave_out(line, is_last, closed);
+    if (!belongs()) return table_.account.leave_out(LeftOut::other_channel);
     for (std::size_t i = 0; i < dialect_.width; ++i) read_cell(i, line);
     table_.line.push_back(line.number);
+  }
+
+  void finish() {
+    if (skipped_.empty()) return;
+    std::string lines;
+    for (std::size_t i = 0; i < skipped_.size() && i < bad_lines_named; ++i)
+      lines += (lines.empty() ? "" : ", ") + std::to_string(skipped_[i]);
+    table_.notes.push_back("--skip-bad-lines leaves out " + std::to_string(skipped_.size()) +
+                           " lines of another width: " + lines +
+                           (skipped_.size() > bad_lines_named ? ", ..." : ""));
   }
 
   /// Decimal point and comma in one file: one of them must separate thousands.
@@ -66,6 +77,28 @@ class RowReader {
   [[nodiscard]] bool decimal_comma() const { return comma_.number != 0; }
 
  private:
+  /// A separator behind each row of numbers, which the names do not have.
+  void drop_extra_cell() {
+    const bool extra = dialect_.extra_cell && cells_.size() == dialect_.width + 1;
+    if (extra && trimmed(cells_.back().text).empty()) cells_.pop_back();
+  }
+
+  void leave_out(const TextLine& line, bool is_last, bool closed) {
+    if (is_last && (cells_.size() < dialect_.width || !closed)) {
+      table_.account.leave_out(LeftOut::cut_off_line);
+      table_.notes.emplace_back("the last line is cut off and left out");
+    } else if (options_.skip_bad_lines) {
+      table_.account.leave_out(LeftOut::bad_line);
+      skipped_.push_back(line.number);
+    } else {
+      report_.add("row", {line.number, 1}, line.text,
+                  closed ? std::to_string(cells_.size()) + " cells where the rows above have " +
+                               std::to_string(dialect_.width)
+                         : std::string("a quotation mark is not closed"),
+                  "--skip-bad-lines leaves such lines out and counts them");
+    }
+  }
+
   bool belongs() {
     if (channel_ == dialect_.width) return true;
     const std::string channel = cell_text(cells_[channel_].text);
@@ -84,9 +117,13 @@ class RowReader {
         column.values.push_back(cell.number);
         return;
       case CellKind::moment:
+        if (column.moments == 0) column.first_moment = cell.moment;
+        column.short_clocks += cell.short_clock ? 1 : 0;
+        column.surely_minutes = column.surely_minutes || cell.surely_minutes;
         column.values.push_back(moments_[i].seconds_after_first(cell, column.moments++ == 0));
         return;
       case CellKind::text:
+        if (options_.skip_bad_lines) column.bad_rows.push_back(column.values.size());
         if (++column.bad_count <= bad_cells_kept)
           column.bad.push_back({column.values.size(),
                                 {line.number, cells_[i].column},
@@ -94,24 +131,27 @@ class RowReader {
                                 std::string(trimmed(unquoted(cells_[i].text)))});
         break;
       case CellKind::missing:
+        if (cell.missing_word >= 0) ++table_.missing_cells[static_cast<std::size_t>(cell.missing_word)];
         break;
     }
     column.values.push_back(nothing);
   }
 
   /// Whole nanoseconds are counted from a column's first moment: as seconds since 1970 they would lose
-  /// digits. A time of day that falls back by half a day has passed midnight.
+  /// digits. A time of day that falls back by half a day has passed midnight; minutes and seconds that fall
+  /// back by half an hour have passed a full hour.
   struct Clock {
     Nanoseconds first = 0;
     Nanoseconds last = 0;
-    Nanoseconds midnights = 0;
+    Nanoseconds rounds = 0;
 
     double seconds_after_first(const CellValue& cell, bool is_first) {
       constexpr Nanoseconds day = 86400 * ns_per_s;
       if (is_first) first = last = cell.moment;
-      if (!cell.dated && last - cell.moment > day / 2) midnights += day;
+      const Nanoseconds round = cell.short_clock ? 3600 * ns_per_s : day;
+      if (!cell.dated && last - cell.moment > round / 2) rounds += round;
       last = cell.moment;
-      return seconds(cell.moment - first + midnights);
+      return seconds(cell.moment - first + rounds);
     }
   };
 
@@ -124,6 +164,7 @@ class RowReader {
   std::size_t channel_ = dialect_.width;
   TextLine comma_;
   TextLine point_;
+  std::vector<int> skipped_;
 };
 
 }  // namespace
@@ -135,7 +176,8 @@ std::optional<ForeignTable> parse_text_table(const std::string& file, std::strin
     return std::nullopt;
   };
   if (bytes.size() > most_text_bytes) return refused_with(std::to_string(most_text_bytes) + " bytes");
-  const auto text = utf8_of(bytes);
+  const std::size_t nul_bytes = nul_tail(bytes);
+  const auto text = utf8_of(bytes.substr(0, bytes.size() - nul_bytes));
   if (!text) {
     problems.add({file, {1, 1}, {}, text.error(), "export it as CSV"});
     return std::nullopt;
@@ -149,10 +191,14 @@ std::optional<ForeignTable> parse_text_table(const std::string& file, std::strin
     return refused_with(std::to_string(most_values) + " values");
   ForeignTable table;
   table.file = file;
+  table.is_text = true;
+  if (nul_bytes > 0)
+    table.notes.push_back(std::to_string(nul_bytes) + " NUL bytes at the end of the file are left out");
   LogReporter report(file, problems);
   RowReader rows(*dialect, options, table, report);
   for (std::size_t i = dialect->first_row; i < lines.content.size(); ++i)
     rows.read(lines.content[i], i + 1 == lines.content.size());
+  rows.finish();
   rows.check_decimals();
   report.finish();
   if (report.any()) return std::nullopt;

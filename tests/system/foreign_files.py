@@ -171,6 +171,7 @@ class File:
 
 
 BASIC = ("time_s", "pressure_command_kpa", "displacement_mm")
+BASIC_OF = {key: TRUTH[key] for key in BASIC}
 MEASURED = {key: TRUTH[key] for key in (*BASIC, "pressure_kpa")}
 ALONE = {"time_s": T, "pressure_command_kpa": PRESSURE, "pressure_kpa": PRESSURE, "displacement_mm": TIP}
 PLAIN = table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, TIP])
@@ -183,6 +184,13 @@ EPOCH = 1717156800
 def files():
     hole = set(range(100, 200))
     slow = [tip if i % 5 == 0 else None for i, tip in enumerate(TIP)]
+    coded = [999 if i in (0, 77, 201) else tip for i, tip in enumerate(TIP)]
+    other = [[round(0.5 * value, 6) for value in values] for values in (COMMAND, TIP)]
+    fingers = table(["t (s)", "P_left (kPa)", "P_right (kPa)", "tip_right (mm)", "tip_left (mm)"],
+                    [T, other[0], COMMAND, TIP, other[1]])
+    right = {"time_s": T, "pressure_command_kpa": COMMAND, "pressure_kpa": COMMAND, "displacement_mm": TIP}
+    held = [COMMAND[10 * (i // 10)] for i in range(COUNT)]
+    pairs = list(zip(T, COMMAND, TIP))
     broken_bar = [None if i == 50 else value for i, value in enumerate(COMMAND)]
     return [
         File("names_psi.csv", "other names, psi, units in brackets",
@@ -266,7 +274,9 @@ def files():
              "--command pd1_psi --command pd2_psi"),
         File("slow_sensor.csv", "a sensor five times slower than the log",
              table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, slow]),
-             columns={key: TRUTH[key][::5] for key in BASIC}, says="have no displacement and are left out"),
+             columns={key: TRUTH[key] for key in BASIC} | {
+                 "displacement_mm": [math.nan if tip is None else tip for tip in slow]},
+             says="of the samples have no reading"),
         File("command_gap.csv", "a command that is missing once",
              table(["time_s", "set_kpa", "tip_mm"], [T, broken_bar, TIP]),
              columns={key: TRUTH[key] for key in BASIC} | {"pressure_command_kpa": [
@@ -308,6 +318,85 @@ def files():
              refused="no two arrays of numbers"),
         File("groups.h5", "HDF5: groups, packed, units as attributes", hdf5_datasets, columns=MEASURED),
         File("compound.h5", "HDF5: a table of compounds", hdf5_compound),
+        File("counter_16_bit.csv", "milliseconds of a counter of 16 bits",
+             table(["t_ms", "set_kpa", "tip_mm"], [[(64000 + round(1000 * t)) % 65536 for t in T], COMMAND, TIP]),
+             says="the clock overflows at 65536, 1 time"),
+        File("counter_32_bit.csv", "microseconds of a counter of 32 bits",
+             table(["t_us", "set_kpa", "tip_mm"],
+                   [[(2 ** 32 - 500000 + round(1e6 * t)) % 2 ** 32 for t in T], COMMAND, TIP]),
+             says="the clock overflows at 4.294967296e+09, 1 time"),
+        File("seconds_of_the_day.csv", "seconds of the day across midnight",
+             table(["time_s", "set_kpa", "tip_mm"], [[f"{(86399 + t) % 86400:.2f}" for t in T], COMMAND, TIP]),
+             says="the clock overflows at 86400, 1 time"),
+        File("clock_set.csv", "a clock that was set back by 0.3 s",
+             table(["time_s", "set_kpa", "tip_mm"], [[t if t < 1 else round(t - 0.3, 6) for t in T], COMMAND, TIP]),
+             refused="clock_set.csv:102:1: the time goes back"),
+        File("below_the_first.csv", "a clock that falls below its first value",
+             table(["time_s", "set_kpa", "tip_mm"], [[50 + t if t < 1 else t for t in T], COMMAND, TIP]),
+             refused="below_the_first.csv:102:1: the time goes back"),
+        File("minutes.csv", "minutes and seconds across the hour",
+             table(["Time", "set_kpa", "tip_mm"], [times("2024-05-31T11:59:58", "%M:%S.%f"), COMMAND, TIP])),
+        File("two_fields.csv", "hours and minutes, or minutes and seconds",
+             table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
+             refused="'Time' can be hours and minutes, or minutes and seconds"),
+        File("two_fields_said.csv", "the same, and the unit as an option",
+             table(["Time", "set_kpa", "tip_mm"], [[f"{i // 60:02}:{i % 60:02}" for i in range(COUNT)], COMMAND, TIP]),
+             "--unit time=mm:ss", columns={key: TRUTH[key] for key in BASIC} | {"time_s": list(range(COUNT))}),
+        File("half_days.csv", "AM and PM across noon",
+             table(["Time", "set_kpa", "tip_mm"],
+                   [[text[:12] + (" AM" if text < "12" else " PM")
+                     for text in times("2024-05-31T11:59:58", "%H:%M:%S.%f")], COMMAND, TIP])),
+        File("milliseconds_behind_a_colon.csv", "HH:MM:SS:mmm",
+             table(["Time", "set_kpa", "tip_mm"],
+                   [[text[:8] + ":" + text[9:] for text in times("2024-05-31T12:59:58", "%H:%M:%S.%f")], COMMAND, TIP])),
+        File("named_months.csv", "dates with names of months",
+             table(["Date", "set_kpa", "tip_mm"], [times("2024-05-31T23:59:58", "%d-%b-%Y %H:%M:%S.%f"), COMMAND, TIP],
+                   ";")),
+        File("coarse_times.csv", "time stamps of 50 ms in a log of 100 Hz",
+             table(["time_s", "set_kpa", "tip_mm"], [[round(0.05 * (i // 5), 6) for i in range(COUNT)], COMMAND, TIP]),
+             columns={key: TRUTH[key][::5] for key in BASIC}, says="--rate-hz 101.4 in place of --time keeps every row"),
+        File("coarser_times.csv", "time stamps of 1 s in a log of 100 Hz",
+             table(["time_s", "set_kpa", "tip_mm"], [[i // 100 for i in range(COUNT)], COMMAND, TIP]),
+             refused="too few rows are usable: 300 rows: 3 used, 297 left out (297 at the time of the row before)"),
+        File("rows_of_commands.csv", "commands in rows of their own",
+             table(["time_s", "set_kpa", "tip_mm"],
+                   [T, [value if i % 10 == 0 else None for i, value in enumerate(COMMAND)],
+                    [None if i % 10 == 0 else tip for i, tip in enumerate(TIP)]]),
+             columns={"time_s": T, "pressure_command_kpa": held, "displacement_mm": [
+                 math.nan if i % 10 == 0 else tip for i, tip in enumerate(TIP)]}, says="keep the one before"),
+        File("rows_at_one_time.csv", "command and reading in two rows of one time",
+             "time_s,set_kpa,tip_mm\n" + "".join(f"{t!r},{c!r},\n{t!r},,{y!r}\n" for t, c, y in pairs)),
+        File("two_times.csv", "a time of the command and a time of the reading",
+             table(["t_cmd (s)", "set (kPa)", "t_tip (s)", "tip (mm)"],
+                   [T[::10] + [None] * 270, COMMAND[::10] + [None] * 270, T, TIP]),
+             columns=BASIC_OF | {"pressure_command_kpa": held}, says="each row has 2 times"),
+        File("two_times_unclear.csv", "two times that differ, without a sign of what each is of",
+             table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
+             refused="the times of the columns 'time_a_s', 'time_b_s' differ"),
+        File("two_times_chosen.csv", "the same, and a choice",
+             table(["time_a_s", "time_b_s", "set_kpa", "tip_mm"], [T, [round(0.5 * t, 6) for t in T], COMMAND, TIP]),
+             "--time time_a_s", says="the column 'time_b_s' looks like a time and is not used: it differs"),
+        File("fingers.csv", "two fingers in the columns", fingers, refused="the columns are of 2 fingers: 'left', 'right'"),
+        File("fingers_right.csv", "the same, and one of them", fingers, "--channel right", columns=right,
+             says="not used: 'P_left (kPa)', 'tip_left (mm)'"),
+        File("fingers_none.csv", "the same, and a name that is none", fingers, "--channel thumb",
+             refused="no finger is called 'thumb': the columns are of 'left', 'right'"),
+        File("finger_alone.csv", "a channel of a file that has one finger", PLAIN, "--channel thumb",
+             refused="--channel 'thumb': the file has no column 'channel'"),
+        File("codes.csv", "999 where the sensor read nothing", table(["time_s", "set_kpa", "tip_mm"], [T, COMMAND, coded]),
+             columns=BASIC_OF | {"displacement_mm": [math.nan if v == 999 else v for v in coded]},
+             says="3 cells of 'tip_mm' with 999, far from all others, count as missing"),
+        File("nul_tail.csv", "NUL bytes behind the last line", PLAIN.encode() + bytes(512),
+             says="512 NUL bytes at the end of the file are left out"),
+        File("extra_separator.csv", "a separator behind each row of numbers", PLAIN.replace("\n", ",\n").replace(
+            "tip_mm,\n", "tip_mm\n")),
+        File("bad_lines.csv", "a word and a cell too many, skipped",
+             changed(changed(PLAIN, 120, ",", ",,"), 77, "0.75,", "0.75x,"), "--skip-bad-lines",
+             columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines of another width: 120"),
+        File("idle_options.csv", "options that change nothing", PLAIN,
+             "--missing 888 --unit supply=bar --to-s 100", says="--missing 888 has no effect"),
+        File("angle.csv", "degrees", table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, TIP]),
+             refused="'deg' is no unit of a displacement"),
         File("recording", "a recording of softgripd, one of its channels", recording, "--channel left",
              columns=MEASURED),
         File("recording_both", "the same without saying which", recording, refused="2 channels"),
@@ -355,8 +444,11 @@ def outcome(file, folder):
     if done.returncode != 0:
         return f"exit code {done.returncode}: {said}", "refused", ""
     told = json.loads(done.stdout)["logs"][0]
+    rows = told["rows"]
+    if rows["file"] != rows["used"] + rows["joined"] + sum(rows["left_out"].values()) or rows["used"] != told["samples"]:
+        return f"{rows} does not account for every row", "values", remarks
     worst, why = furthest(read_csv(out), file.columns)
-    remarks = "; ".join(told["notes"] + ["doubt: " + doubt for doubt in told["doubts"]])
+    remarks = "; ".join(told["warnings"] + told["notes"] + ["doubt: " + doubt for doubt in told["doubts"]])
     if why or worst > file.tolerance:
         return why or f"off by {worst:.2g}", "values", remarks
     if file.says and file.says not in remarks:

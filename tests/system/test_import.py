@@ -3,6 +3,7 @@
 import json
 import os
 import pty
+import re
 import subprocess
 
 import bench
@@ -78,6 +79,36 @@ class Import(bench.BenchTest):
         (self.folder / "a.import.yaml").write_text(kept.replace("unit", "units"))
         (self.folder / "c.yaml").write_text(kept.replace("scale:", "skale:"))
         self.assertIn("c.yaml:", self.imported(path, "--out", "c.csv", "--map", "c.yaml", expect=3).stderr)
+
+    def test_the_account_is_said_and_kept(self):
+        path = self.foreign("coarse_times.csv")
+        done = self.imported(path, "--out", "log.csv", "--yes", "--missing", "888")
+        account = "300 rows: 60 used, 240 left out (240 at the time of the row before)"
+        warnings = [account, "--rate-hz 101.4 in place of --time keeps every row", "--missing 888 has no effect"]
+        for warning in warnings:
+            self.assertRegex(done.stderr, f"warning: .*{re.escape(warning)}")
+        self.assertIn(account, done.stdout)
+        kept = (self.folder / "log.import.yaml").read_text()
+        for warning in warnings:
+            self.assertRegex(kept, f"# warning: .*{re.escape(warning)}")
+        rows = json.loads(self.imported(path, "--out", "log.csv", "--yes", "--json").stdout)["logs"][0]["rows"]
+        self.assertEqual(rows, {"file": 300, "used": 60, "joined": 0, "left_out": {"repeated_time": 240}})
+
+    def test_what_was_found_in_a_file_gives_the_same_bytes_from_the_mapping(self):
+        for name, options in (("codes.csv", ()), ("two_times.csv", ()), ("bad_lines.csv", ("--skip-bad-lines",)),
+                              ("fingers_right.csv", ("--channel", "right"))):
+            path = self.foreign(name)
+            self.imported(path, "--out", "a.csv", "--yes", *options)
+            self.imported(path, "--out", "b.csv", "--map", "a.import.yaml")
+            self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes(), name)
+
+    def test_a_log_with_codes_is_not_taken_as_it_is(self):
+        rows = "".join(f"{0.01 * i:.2f},{30 - abs(i % 100 - 50) * 0.6},{999 if i % 50 == 7 else 0.2 * i % 7}\n"
+                       for i in range(200))
+        path = self.write("log.csv", "time_s,pressure_command_kpa,displacement_mm\n" + rows)
+        done = self.imported(path, "--out", "clean.csv", "--yes")
+        self.assertIn("warning: 4 cells of 'displacement_mm' with 999", done.stderr)
+        self.assertNotIn(",999\n", (self.folder / "clean.csv").read_text())
 
     def test_several_files_go_into_a_folder_or_none_is_written(self):
         good, also, broken = (self.foreign(name) for name in ("names_psi.csv", "packed.csv.gz", "word.csv"))

@@ -24,7 +24,8 @@ void add_import(CLI::App& program, ExitCode& outcome) {
     const std::string word(spec.word);
     command
         ->add_option("--" + word, options->columns[static_cast<std::size_t>(spec.role)],
-                     "Column of the " + word + ": its name, or its number from 1; given twice, averaged")
+                     "Column of the " + word + ": its name, or its number from 1; given twice, " +
+                         (spec.role == sysid::Role::time ? "each for its own columns" : "averaged"))
         ->allow_extra_args(false);
   }
   command->add_option("--unit", options->units, "ROLE=UNIT, where the column does not say it (pressure=psi)")
@@ -43,7 +44,9 @@ void add_import(CLI::App& program, ExitCode& outcome) {
                    "What stands where nothing was read (-999), besides NaN and the like")
       ->allow_extra_args(false);
   command->add_option("--separator", options->separator, "comma, semicolon, tab, space or bar [found]");
-  command->add_option("--channel", options->channel, "Only the rows of this channel");
+  command->add_option("--channel", options->channel, "Only the rows, or the columns, of this channel");
+  command->add_flag("--skip-bad-lines", options->skip_bad_lines,
+                    "Leave out lines that cannot be read, and count them");
   command->add_option("--from-s", options->from_s, "Only samples from here on, counted from the first one")
       ->check(number_between(0.0, 1e9));
   command->add_option("--to-s", options->to_s, "Only samples up to here")->check(number_between(0.0, 1e9));

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "base/version.h"
 #include "document/problem.h"
 #include "sysid/import/conversion.h"
+#include "sysid/import/fingers.h"
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/mapping_file.h"
 #include "sysid/import/proposal.h"
@@ -40,6 +42,7 @@ struct Job {
   std::vector<sysid::Role> guessed;
   bool is_log = false;  ///< already, to the letter
   sysid::ImportedLog result;
+  std::vector<std::string> warnings;
   std::vector<std::string> doubts;
 };
 
@@ -57,6 +60,8 @@ bool take_as_it_is(Job& job) {
   auto log = text ? sysid::parse_log(path, *text, problems, options) : std::nullopt;
   if (!log) return false;
   job.result.log = std::move(*log);
+  job.result.account = job.table.account;
+  job.result.account.used = job.result.log.size();
   job.result.notes.emplace_back("this is a log already: taken as it is");
   job.is_log = true;
   return true;
@@ -66,25 +71,50 @@ bool says_columns(const sysid::Mapping& mapping) {
   for (const sysid::ColumnMapping& column : mapping.columns) {
     if (column != sysid::ColumnMapping{}) return true;
   }
-  return mapping.rate_hz.has_value() || mapping.from_s > 0 || std::isfinite(mapping.to_s);
+  return mapping.rate_hz.has_value() || !mapping.missing.empty() || mapping.separator != 0 ||
+         mapping.skip_bad_lines || mapping.from_s > 0 || std::isfinite(mapping.to_s);
+}
+
+/// Words that a reader takes for missing; numbers are compared as values, by convert().
+std::vector<std::string> missing_words(const sysid::Mapping& mapping) {
+  std::vector<std::string> words;
+  for (const std::string& word : mapping.missing) {
+    if (!sysid::missing_number(word)) words.push_back(word);
+  }
+  return words;
+}
+
+/// True if a column holds codes where the sensor read nothing.
+bool has_codes(const sysid::ForeignTable& table) {
+  return std::any_of(table.columns.begin(), table.columns.end(), [](const sysid::TableColumn& column) {
+    const bool is_value =
+        std::any_of(sysid::roles.begin(), sysid::roles.end(), [&](const sysid::RoleSpec& spec) {
+          return spec.role != sysid::Role::time && sysid::fitness_for(column, spec.role) > 0;
+        });
+    return is_value && !sysid::sensor_codes(column).empty();
+  });
 }
 
 /// Reads a file and completes its mapping; false where that is refused, which has then been said.
 bool prepare(Job& job, const sysid::Mapping& given, document::Problems& problems, bool& unreadable) {
   job.mapping = given;
-  auto table = sysid::read_foreign_file(job.file, {given.separator, given.missing, given.channel}, problems,
-                                        unreadable);
+  auto table = sysid::read_foreign_file(
+      job.file, {given.separator, missing_words(given), given.channel, given.skip_bad_lines}, problems,
+      unreadable);
   if (!table) return false;
   job.table = std::move(*table);
-  if (!says_columns(given) && take_as_it_is(job)) return true;
+  if (!says_columns(given) && !has_codes(job.table) && take_as_it_is(job)) return true;
   sysid::Proposal proposal = sysid::propose(job.table, given, !given.complete());
   job.mapping = std::move(proposal.mapping);
   job.guessed = std::move(proposal.guessed);
-  if (proposal.missing.empty()) return true;
+  job.warnings = std::move(proposal.warnings);
+  if (proposal.missing.empty() && proposal.questions.empty()) return true;
   std::fprintf(stderr, "%s: %s\n%s", job.file.c_str(), job.table.format.c_str(),
                sysid::mapping_table(job.table, job.mapping).c_str());
   for (const std::string& missing : proposal.missing)
     problems.add({job.table.file, {1, 1}, {}, "no column looks like " + missing, {}});
+  for (const sysid::Proposal::Question& question : proposal.questions)
+    problems.add({job.table.file, {1, 1}, {}, question.text, question.hint});
   return false;
 }
 
@@ -129,6 +159,7 @@ bool finish(Job& job, document::Problems& problems) {
     auto result = sysid::convert(job.table, job.mapping, problems);
     if (!result) return false;
     job.result = std::move(*result);
+    job.warnings.insert(job.warnings.end(), job.result.warnings.begin(), job.result.warnings.end());
   }
   job.doubts = sysid::doubts_about(job.result.log);
   return true;
@@ -149,10 +180,21 @@ tl::expected<void, std::string> write(const Job& job) {
   if (auto written = write_output(job.out, sysid::format_log(job.result.log)); !written) return written;
   if (job.out == "-" || job.is_log) return {};
   std::vector<std::string> remarks = notes_of(job);
+  remarks.push_back(job.result.account.sentence());
+  for (const std::string& warning : job.warnings) remarks.push_back("warning: " + warning);
   for (const std::string& doubt : job.doubts) remarks.push_back("doubt: " + doubt);
   return write_file(mapping_path(job.out),
                     sysid::mapping_yaml(job.mapping, {job.file, job.table.sha256, job.table.format},
                                         "softgrip " + std::string(software_version()), remarks));
+}
+
+ordered_json account_json(const sysid::RowAccount& account) {
+  ordered_json left_out = ordered_json::object();
+  for (std::size_t i = 0; i < sysid::left_out_count; ++i) {
+    if (account.left_out[i] > 0)
+      left_out[std::string(sysid::word_of(static_cast<sysid::LeftOut>(i)))] = account.left_out[i];
+  }
+  return {{"file", account.rows}, {"used", account.used}, {"joined", account.joined}, {"left_out", left_out}};
 }
 
 ordered_json json_of(const Job& job) {
@@ -164,23 +206,33 @@ ordered_json json_of(const Job& job) {
     columns[std::string(spec.word)] = {{"columns", column.columns},
                                        {"unit", sysid::unit_text(job.table, column, spec.quantity)}};
   }
-  return {{"file", job.file},           {"format", job.table.format},
-          {"sha256", job.table.sha256}, {"out", job.out},
-          {"samples", log.size()},      {"duration_s", log.time_s.back()},
-          {"columns", columns},         {"options", sysid::options_of(job.mapping)},
-          {"notes", notes_of(job)},     {"doubts", job.doubts}};
+  return {{"file", job.file},
+          {"format", job.table.format},
+          {"sha256", job.table.sha256},
+          {"out", job.out},
+          {"samples", log.size()},
+          {"duration_s", log.time_s.back()},
+          {"columns", columns},
+          {"options", sysid::options_of(job.mapping)},
+          {"rows", account_json(job.result.account)},
+          {"warnings", job.warnings},
+          {"notes", notes_of(job)},
+          {"doubts", job.doubts}};
 }
 
 void report(const std::vector<Job>& jobs, const ImportOptions& options) {
   std::FILE* const stream = report_stream(options.out);
   ordered_json logs = ordered_json::array();
   for (const Job& job : jobs) {
+    for (const std::string& warning : job.warnings)
+      std::fprintf(stderr, "%s: warning: %s\n", job.file.c_str(), on_screen(warning).c_str());
     for (const std::string& doubt : job.doubts)
       std::fprintf(stderr, "%s: doubt: %s\n", job.file.c_str(), doubt.c_str());
     logs.push_back(json_of(job));
     if (options.json) continue;
     for (const std::string& note : notes_of(job))
       std::fprintf(stream, "%s: %s\n", job.file.c_str(), on_screen(note).c_str());
+    std::fprintf(stream, "%s: %s\n", job.file.c_str(), job.result.account.sentence().c_str());
     std::fprintf(stream, "%s (%s): %zu samples, %s s -> %s\n", job.file.c_str(), job.table.format.c_str(),
                  job.result.log.size(), significant(job.result.log.time_s.back(), 6).c_str(),
                  job.out.c_str());

@@ -118,8 +118,8 @@ TEST(ForeignSamples, ATimeThatGoesBackIsAProblemAtItsRow) {
   samples[Role::time] = {0, 1, 2, 1.5};
   samples[Role::displacement] = {0, 0, 0, 0};
   samples.row = {0, 1, 2, 3};
-  std::vector<std::string> notes;
-  const auto problem = order_in_time({}, samples, notes);
+  ImportRemarks remarks;
+  const auto problem = order_in_time({}, samples, remarks);
   ASSERT_TRUE(problem);
   EXPECT_EQ(problem->row, 3U);
 }
@@ -129,11 +129,11 @@ TEST(ForeignSamples, OfTwoAtOneTimeTheFirstStays) {
   samples[Role::time] = {10, 10.5, 10.5, std::nan(""), 11};
   samples[Role::displacement] = {1, 2, 3, 4, 5};
   samples.row = {0, 1, 2, 3, 4};
-  std::vector<std::string> notes;
-  EXPECT_FALSE(order_in_time({}, samples, notes));
+  ImportRemarks remarks;
+  EXPECT_FALSE(order_in_time({}, samples, remarks));
   EXPECT_EQ(samples[Role::time], (std::vector<double>{0, 0.5, 1}));
   EXPECT_EQ(samples[Role::displacement], (std::vector<double>{1, 2, 5}));
-  EXPECT_EQ(notes.size(), 3U);
+  EXPECT_EQ(remarks.notes.size(), 3U);
 }
 
 TEST(ForeignSamples, AHoleIsOneOnlyWhereTheCommandChanged) {
@@ -145,15 +145,15 @@ TEST(ForeignSamples, AHoleIsOneOnlyWhereTheCommandChanged) {
       samples.row.push_back(static_cast<std::size_t>(i));
     }
     samples[Role::command].front() = 0;
-    std::vector<std::string> notes;
-    cut_at_holes(samples, notes);
+    ImportRemarks remarks;
+    cut_at_holes(samples, remarks);
     EXPECT_EQ(samples.size(), change > 0 ? 120U : 200U);
     EXPECT_EQ(samples.row.front(), change > 0 ? 80U : 0U);
     EXPECT_EQ(samples[Role::time].front(), 0);
   }
 }
 
-TEST(ForeignSamples, ASlowSensorLeavesOutWhatItDidNotRead) {
+TEST(ForeignSamples, ASlowSensorKeepsTheCommandsBetweenItsReadings) {
   ForeignSamples samples;
   for (int i = 0; i < 100; ++i) {
     samples[Role::time].push_back(0.01 * i);
@@ -161,11 +161,12 @@ TEST(ForeignSamples, ASlowSensorLeavesOutWhatItDidNotRead) {
     samples[Role::displacement].push_back(i % 10 == 0 ? i : std::nan(""));
     samples.row.push_back(static_cast<std::size_t>(i));
   }
-  std::vector<std::string> notes;
-  complete_drive(samples, notes);
-  EXPECT_EQ(samples.size(), 10U);
-  EXPECT_EQ(samples[Role::command][5], 40);
-  EXPECT_EQ(notes.size(), 2U);
+  ImportRemarks remarks;
+  complete_drive(samples, remarks);
+  EXPECT_EQ(samples.size(), 100U);
+  EXPECT_EQ(samples[Role::command][50], 49);
+  EXPECT_TRUE(std::isnan(samples[Role::displacement][55]));
+  EXPECT_EQ(remarks.notes.size(), 1U);
 }
 
 TEST(Propose, TakesWhatNamesAndUnitsSay) {

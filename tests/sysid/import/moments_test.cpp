@@ -35,10 +35,36 @@ TEST(Moments, OfTheDayAloneHaveNoDate) {
   EXPECT_DOUBLE_EQ(seconds(moment->time), 86399.5);
 }
 
-TEST(Moments, AreNotGuessed) {
+TEST(Moments, OfTheDayHaveManySpellings) {
+  EXPECT_DOUBLE_EQ(seconds_of("12:59:50.5 PM"), 46790.5);
+  EXPECT_DOUBLE_EQ(seconds_of("12:00:01 am"), 1);
+  EXPECT_DOUBLE_EQ(seconds_of("1:00:00.25 p.m."), 46800.25);
+  EXPECT_DOUBLE_EQ(seconds_of("12:59:50:020"), 46790.02);
+  EXPECT_DOUBLE_EQ(seconds_of("2024-05-31 12:00:00:250"), 1717156800.25);
+}
+
+TEST(Moments, MonthsMayHaveNames) {
   for (const char* text :
-       {"05/31/2024 12:00:00", "2024-02-30 12:00:00", "25:00:00", "12:61", "2024-05-31", "12", "1.5",
-        "2024-05-31T12:00:00Zulu", "12:00:00 pm", "", "T", "::", "2024-13-01T00:00:00"})
+       {"31-May-2024 12:00:00", "31 May 2024 12:00:00", "31. Mai 2024 12:00:00", "May 31, 2024 12:00:00 PM",
+        "2024-May-31 12:00:00", "31/may/2024 12:00:00", "May 31, 2024, 12:00:00"})
+    EXPECT_DOUBLE_EQ(seconds_of(text), 1717156800) << text;
+  EXPECT_DOUBLE_EQ(seconds_of("1 January 1970 00:00:01"), 1);
+  EXPECT_DOUBLE_EQ(seconds_of("01-Sep-2024 00:00:00"), 1725148800);
+}
+
+TEST(Moments, TwoFieldsAreMinutesAndSeconds) {
+  EXPECT_DOUBLE_EQ(seconds_of("01:02.5"), 62.5);
+  EXPECT_TRUE(moment_of("01:02.5")->surely_minutes);
+  EXPECT_TRUE(moment_of("75:00")->surely_minutes);
+  EXPECT_FALSE(moment_of("12:34")->surely_minutes);
+  EXPECT_TRUE(moment_of("12:34")->short_clock);
+  EXPECT_FALSE(moment_of("12:34:56")->short_clock);
+}
+
+TEST(Moments, AreNotGuessed) {
+  for (const char* text : {"05/31/2024 12:00:00", "2024-02-30 12:00:00", "25:00:00", "12:61", "2024-05-31",
+                           "12", "1.5", "2024-05-31T12:00:00Zulu", "13:00:00 pm", "12:00:00:25",
+                           "31-Foo-2024 12:00:00", "", "T", "::", "2024-13-01T00:00:00"})
     EXPECT_FALSE(moment_of(text)) << text;
 }
 

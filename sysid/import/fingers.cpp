@@ -1,0 +1,181 @@
+#include "sysid/import/fingers.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "sysid/import/proposal.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::array<std::string_view, 26> finger_words{
+    "left",  "right", "l",     "r",   "thumb",  "index", "middle", "ring",   "little",
+    "pinky", "upper", "lower", "top", "bottom", "links", "rechts", "daumen", "inner",
+    "outer", "front", "back",  "a",   "b",      "north", "south",  "centre"};
+
+bool is_finger_word(const std::string& token) {
+  return std::find(finger_words.begin(), finger_words.end(), token) != finger_words.end() ||
+         std::all_of(token.begin(), token.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+bool is_unit_token(const std::string& token) {
+  return is_raw_unit(token) || unit_named(token).has_value();
+}
+
+bool is_role_word(const std::string& token) {
+  return std::any_of(roles.begin(), roles.end(),
+                     [&](const RoleSpec& spec) { return names_role(token, spec.role); });
+}
+
+bool fits_a_pressure(const TableColumn& column) {
+  return fitness_for(column, Role::command) > 0 || fitness_for(column, Role::pressure) > 0;
+}
+
+bool fits_a_displacement(const TableColumn& column) {
+  return fitness_for(column, Role::displacement) > 0;
+}
+
+/// Words in which two or more columns of a kind differ while the rest of their names is the same.
+template <class OfKind>
+std::set<std::string> words_apart(const ForeignTable& table, OfKind of_kind) {
+  std::map<std::string, std::set<std::string>> by_pattern;
+  for (const TableColumn& column : table.columns) {
+    if (!of_kind(column)) continue;
+    const std::vector<std::string> tokens = tokens_of(column.name);
+    for (std::size_t k = 0; k < tokens.size(); ++k) {
+      if (is_unit_token(tokens[k]) || is_role_word(tokens[k])) continue;
+      std::string pattern;
+      for (std::size_t i = 0; i < tokens.size(); ++i) pattern += (i == k ? "*" : tokens[i]) + " ";
+      by_pattern[pattern].insert(tokens[k]);
+    }
+  }
+  std::set<std::string> words;
+  for (const auto& [pattern, apart] : by_pattern) {
+    if (apart.size() > 1) words.insert(apart.begin(), apart.end());
+  }
+  return words;
+}
+
+std::set<std::string> both(const std::set<std::string>& a, const std::set<std::string>& b) {
+  std::set<std::string> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(common, common.end()));
+  return common;
+}
+
+std::set<std::string> finger_set(const ForeignTable& table) {
+  const std::set<std::string> pressures = words_apart(table, fits_a_pressure);
+  const std::set<std::string> readings = words_apart(table, fits_a_displacement);
+  const std::set<std::string> common = both(pressures, readings);
+  if (common.size() > 1) return common;
+  std::set<std::string> known;
+  for (const std::string& word : readings) {
+    if (is_finger_word(word)) known.insert(word);
+  }
+  if (known.size() > 1) return known;
+  // The pressures of two fingers beside the reading of one.
+  for (const TableColumn& column : table.columns) {
+    if (!fits_a_displacement(column)) continue;
+    for (const std::string& token : tokens_of(column.name)) {
+      if (pressures.count(token) > 0) return pressures;
+    }
+  }
+  return {};
+}
+
+constexpr std::array code_values{
+    999.0,   9999.0,   99999.0,  999999.0,  999.9,        9999.9,        999.99,      9999.99, 99.99,
+    -999.0,  -9999.0,  -99999.0, -999.9,    -99.9,        -99.99,        -999.99,     888.0,   8888.0,
+    32767.0, -32768.0, 65535.0,  8388607.0, 2147483647.0, -2147483648.0, 4294967295.0};
+/// A code is farther outside than so many spans of the other values.
+constexpr double far_outside = 3;
+constexpr double farther_outside = 10;
+constexpr std::size_t fewest_repeats = 3;
+constexpr double most_codes = 0.5;
+
+bool is_code_value(double value) {
+  return std::find(code_values.begin(), code_values.end(), value) != code_values.end() ||
+         std::abs(value) > 1e29;
+}
+
+}  // namespace
+
+std::vector<std::string> tokens_of(std::string_view name) {
+  enum class Kind : std::uint8_t { mark, lower, upper, digit };
+  const auto kind_of = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isdigit(byte) != 0) return Kind::digit;
+    if (std::isupper(byte) != 0) return Kind::upper;
+    return std::isalpha(byte) != 0 || byte >= 0x80 ? Kind::lower : Kind::mark;
+  };
+  std::vector<std::string> tokens;
+  Kind last = Kind::mark;
+  for (const char c : name) {
+    const Kind kind = kind_of(c);
+    const bool joins = last == kind || (last == Kind::upper && kind == Kind::lower);
+    if (kind != Kind::mark && !joins) tokens.emplace_back();
+    if (kind != Kind::mark) tokens.back() += c;
+    last = kind;
+  }
+  for (std::string& token : tokens) token = lower_case(token);
+  return tokens;
+}
+
+std::vector<std::string> fingers_of(const ForeignTable& table) {
+  const std::set<std::string> words = finger_set(table);
+  std::vector<std::string> fingers;
+  for (const TableColumn& column : table.columns) {
+    for (const std::string& token : tokens_of(column.name)) {
+      const bool is_new =
+          words.count(token) > 0 && std::find(fingers.begin(), fingers.end(), token) == fingers.end();
+      if (is_new) fingers.push_back(token);
+    }
+  }
+  return fingers;
+}
+
+std::string finger_of(const TableColumn& column, const std::vector<std::string>& fingers) {
+  for (const std::string& token : tokens_of(column.name)) {
+    if (std::find(fingers.begin(), fingers.end(), token) != fingers.end()) return token;
+  }
+  return {};
+}
+
+std::vector<double> sensor_codes(const TableColumn& column) {
+  std::map<double, std::size_t> suspects;
+  std::vector<double> finite;
+  for (const double value : column.values) {
+    if (std::isfinite(value)) finite.push_back(value);
+  }
+  std::vector<double> sorted = finite;
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted.size() < 20) return {};
+  const double low = sorted[sorted.size() / 20];
+  const double high = sorted[sorted.size() - 1 - sorted.size() / 20];
+  std::vector<double> others;
+  for (const double value : sorted) {
+    const bool far =
+        value < low - farther_outside * (high - low) || value > high + farther_outside * (high - low);
+    if (is_code_value(value) || (far && high > low)) {
+      ++suspects[value];
+    } else {
+      others.push_back(value);
+    }
+  }
+  if (others.size() < 2 ||
+      static_cast<double>(others.size()) < most_codes * static_cast<double>(sorted.size()))
+    return {};
+  const double span = others.back() - others.front();
+  std::vector<double> codes;
+  for (const auto& [value, count] : suspects) {
+    const bool outside =
+        value > others.back() + far_outside * span || value < others.front() - far_outside * span;
+    if (span > 0 && outside && (is_code_value(value) || count >= fewest_repeats)) codes.push_back(value);
+  }
+  return codes;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,106 @@
+#include "sysid/import/clock.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/numbers.h"
+#include "sysid/import/text_table.h"
+
+namespace softgrip::sysid::clock_test {
+namespace {
+
+/// 500 values that step by `step` from `begin` and fall back by `period` where they reach `limit`.
+std::vector<double> counter(double begin, double step, double limit, double period) {
+  std::vector<double> values;
+  for (int i = 0; i < 500; ++i) {
+    double value = begin + step * i;
+    while (value >= limit) value -= period;
+    values.push_back(value);
+  }
+  return values;
+}
+
+ForeignTable table_of(const std::string& text) {
+  document::Problems problems;
+  auto table = parse_text_table("t.csv", text, {}, problems);
+  EXPECT_TRUE(table) << problems.format();
+  return table ? *table : ForeignTable{};
+}
+
+TEST(Overflow, EveryClockThatIsSurelyACounterIsContinued) {
+  struct Case {
+    double begin, step, limit, period, unit_s;
+  };
+  for (const Case& c :
+       {Case{60000, 20, 65536, 65536, 1e-3}, Case{60000, 200, 65536, 65536, 1e-6},
+        Case{30000, 20, 32768, 65536, 1e-3}, Case{4294960000, 20, 4294967296, 4294967296, 1e-3},
+        Case{4294.9, 0.001, 4294.967296, 4294.967296, 1}, Case{86395, 0.02, 86400, 86400, 1},
+        Case{16777000, 10, 16777216, 16777216, 1e-6}, Case{60, 0.02, 65.536, 65.536, 1}}) {
+    std::vector<double> clock = counter(c.begin, c.step, c.limit, c.period);
+    const auto overflow = continue_overflows(clock, c.unit_s);
+    ASSERT_TRUE(overflow) << c.begin;
+    EXPECT_NEAR(overflow->period, c.period, 1e-9 * c.period);
+    EXPECT_GE(overflow->count, 1U);
+    for (std::size_t i = 0; i < clock.size(); ++i)
+      ASSERT_NEAR(clock[i], c.begin + c.step * static_cast<double>(i), 1e-6 * c.step) << c.begin << " " << i;
+  }
+}
+
+TEST(Overflow, AStepBackOfAnotherKindIsLeftAlone) {
+  std::vector<double> corrected = counter(0, 0.02, 5, 0.3);
+  std::vector<double> two_runs = counter(0, 20, 5000, 5000);
+  std::vector<double> lost_rows = counter(60000, 20, 65536, 65536);
+  lost_rows.erase(lost_rows.begin() + 250, lost_rows.begin() + 290);
+  for (std::vector<double>* clock : {&corrected, &two_runs, &lost_rows}) {
+    const std::vector<double> before = *clock;
+    EXPECT_FALSE(continue_overflows(*clock, 1e-3));
+    EXPECT_EQ(*clock, before);
+  }
+}
+
+std::string two_times(double slope, double offset) {
+  std::string text = "time_s,set_kpa,clock_ms,tip_mm\n";
+  for (int i = 0; i < 100; ++i)
+    text += shortest(0.02 * i) + ",1," + shortest(1e3 * (offset + slope * 0.02 * i)) + ",2\n";
+  return text;
+}
+
+TEST(SameClock, TellsAnotherTimeFromAnotherUnitOrOrigin) {
+  struct Case {
+    double slope, offset;
+    bool same;
+  };
+  for (const Case& c : {Case{1, 0, true}, Case{1, 1e6, true}, Case{1, 0.1, false}, Case{0.2, 0, false}}) {
+    const ForeignTable table = table_of(two_times(c.slope, c.offset));
+    EXPECT_EQ(time_columns(table), (std::vector<std::size_t>{0, 2}));
+    EXPECT_EQ(same_clock(table, {}, 0, 2), c.same) << c.slope << " " << c.offset;
+  }
+}
+
+TEST(TimesOfRoles, NamesComeBeforeTheOrderOfTheColumns) {
+  const auto times_of = [](const std::string& header) {
+    const ForeignTable table = table_of(header + "\n0,0,0,0\n1,1,1,1\n2,2,2,2\n");
+    Mapping mapping;
+    for (const TableColumn& column : table.columns) {
+      if (column.name.find("kpa") != std::string::npos) mapping[Role::command].columns = {column.name};
+      if (column.name.find("mm") != std::string::npos) mapping[Role::displacement].columns = {column.name};
+    }
+    const auto times = times_of_roles(table, mapping, time_columns(table));
+    return times ? std::vector<std::size_t>{(*times)[1], (*times)[3]} : std::vector<std::size_t>{};
+  };
+  EXPECT_EQ(times_of("t_cmd_s,t_tip_s,set_kpa,tip_mm"), (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(times_of("time_a_s,set_kpa,time_b_s,tip_mm"), (std::vector<std::size_t>{0, 2}));
+  EXPECT_EQ(times_of("time_a_s,time_b_s,set_kpa,tip_mm"), std::vector<std::size_t>{});
+}
+
+TEST(SecondsOf, TheUnitOfEachColumnHolds) {
+  const ForeignTable table = table_of("a_time_s,b_time_ms,x\n1,1000,0\n2,2000,0\n");
+  EXPECT_EQ(seconds_of(table, {}, 0), (std::vector<double>{1, 2}));
+  EXPECT_EQ(seconds_of(table, {}, 1), (std::vector<double>{1, 2}));
+  EXPECT_FALSE(seconds_of(table, {}, 2));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::clock_test

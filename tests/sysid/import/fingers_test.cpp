@@ -1,0 +1,71 @@
+#include "sysid/import/fingers.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace softgrip::sysid::fingers_test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+ForeignTable named(const Names& names) {
+  ForeignTable table;
+  for (const std::string& name : names) {
+    table.columns.emplace_back();
+    table.columns.back().name = name;
+    table.columns.back().values = {0, 1, 2};
+  }
+  return table;
+}
+
+TEST(Fingers, NamesTellThemApart) {
+  EXPECT_EQ(fingers_of(named({"t (s)", "P_left (kPa)", "P_right (kPa)", "tip_right (mm)", "tip_left (mm)"})),
+            (Names{"left", "right"}));
+  EXPECT_EQ(fingers_of(named({"time_s", "p1_kPa", "p2_kPa", "tip1_mm", "tip2_mm"})), (Names{"1", "2"}));
+  EXPECT_EQ(fingers_of(named({"time_s", "thumbSet_kPa", "indexSet_kPa", "thumbTip_mm", "indexTip_mm"})),
+            (Names{"thumb", "index"}));
+  EXPECT_EQ(fingers_of(named({"t_s", "set_kpa", "ch0_pos_mm", "ch1_pos_mm"})), (Names{"0", "1"}));
+}
+
+TEST(Fingers, OneFingerHasSeveralColumns) {
+  EXPECT_EQ(fingers_of(named({"time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"})), Names{});
+  EXPECT_EQ(fingers_of(named({"time_s", "pd1_psi", "pd2_psi", "tip_mm"})), Names{});
+  EXPECT_EQ(fingers_of(named({"time_s", "set_kpa", "tip_raw_mm", "tip_filtered_mm"})), Names{});
+  EXPECT_EQ(fingers_of(named({"time_s", "set_kpa", "x_mm", "y_mm"})), Names{});
+}
+
+TEST(Fingers, AColumnBelongsToItsFingerOrToAll) {
+  const Names fingers{"left", "right"};
+  EXPECT_EQ(finger_of(named({"Left.tip (mm)"}).columns[0], fingers), "left");
+  EXPECT_EQ(finger_of(named({"time_s"}).columns[0], fingers), "");
+}
+
+TEST(Tokens, LettersDigitsAndCapitalsDivideAName) {
+  EXPECT_EQ(tokens_of("P1_left (kPa)"), (Names{"p", "1", "left", "k", "pa"}));
+  EXPECT_EQ(tokens_of("thumbTip_mm"), (Names{"thumb", "tip", "mm"}));
+}
+
+TEST(SensorCodes, AreFarFromAllReadings) {
+  TableColumn column;
+  for (int i = 0; i < 200; ++i) column.values.push_back(0.1 * i);
+  EXPECT_EQ(sensor_codes(column), std::vector<double>{});
+  for (const double code : {999.0, -9999.0, 32767.0, 1e30}) {
+    TableColumn with = column;
+    with.values[7] = code;
+    EXPECT_EQ(sensor_codes(with), std::vector<double>{code});
+  }
+  TableColumn repeated = column;
+  for (const std::size_t at : {3U, 50U, 120U}) repeated.values[at] = 777.7;
+  EXPECT_EQ(sensor_codes(repeated), std::vector<double>{777.7});
+  TableColumn spike = column;
+  spike.values[7] = 777.7;
+  EXPECT_EQ(sensor_codes(spike), std::vector<double>{});
+  TableColumn in_range;
+  for (int i = 0; i < 200; ++i) in_range.values.push_back(10.0 * i);
+  in_range.values[7] = 999;
+  EXPECT_EQ(sensor_codes(in_range), std::vector<double>{});
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::fingers_test
