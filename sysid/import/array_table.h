@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "document/problem.h"
@@ -24,6 +25,7 @@ class ArrayCollector {
   /// over.
   void add(const std::string& name, const std::string& unit, std::size_t rows, std::size_t columns,
            const std::vector<double>& values);
+  void note(std::string what) { notes_.push_back(std::move(what)); }
   /// Something in the file that is no array of numbers.
   void pass_over(const std::string& name, const std::string& what);
   /// True if an array of this size still fits within most_values. Ask before its values are read.

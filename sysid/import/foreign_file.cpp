@@ -9,8 +9,10 @@
 #include "base/sha256.h"
 #include "sysid/import/array_table.h"
 #include "sysid/import/hdf5_table.h"
+#include "sysid/import/lvm_text.h"
 #include "sysid/import/mat_elements.h"
 #include "sysid/import/mat_table.h"
+#include "sysid/import/text_encoding.h"
 #include "sysid/import/text_table.h"
 
 namespace softgrip::sysid {
@@ -56,6 +58,17 @@ std::string_view known_but_unread(std::string_view bytes) {
   return {};
 }
 
+/// A text: a LabVIEW measurement, or a table in any dialect.
+std::optional<ForeignTable> read_text(const std::string& path, std::string_view bytes,
+                                      const TableOptions& options, document::Problems& problems) {
+  if (!is_lvm(bytes) || bytes.size() > most_text_bytes)
+    return parse_text_table(path, bytes, options, problems);
+  const auto text = utf8_of(bytes);
+  if (text) return read_lvm(path, *text, options, problems);
+  problems.add({path, {1, 1}, {}, text.error(), "export it as CSV"});
+  return std::nullopt;
+}
+
 /// `opened`: a path to the file that `bytes` were read from, whatever has replaced it meanwhile.
 std::optional<ForeignTable> read_bytes(const std::string& path, const std::string& opened,
                                        std::string_view bytes, const TableOptions& options,
@@ -78,7 +91,7 @@ std::optional<ForeignTable> read_bytes(const std::string& path, const std::strin
     problems.add({path, {1, 1}, {}, "this is " + std::string(known), "export it as CSV"});
     return std::nullopt;
   }
-  return parse_text_table(path, bytes, options, problems);
+  return read_text(path, bytes, options, problems);
 }
 
 }  // namespace
@@ -133,7 +146,7 @@ std::optional<ForeignTable> read_foreign_file(const std::string& given, const Ta
       problems.add({path, {1, 1}, {}, text.error(), {}});
       return std::nullopt;
     }
-    table = parse_text_table(path, *text, options, problems);
+    table = read_text(path, *text, options, problems);
     if (table) table->format = "gzip, " + table->format;
   } else {
     const std::string opened = "/proc/self/fd/" + std::to_string(file->descriptor.get());

@@ -2,8 +2,11 @@
 
 #include <matio.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "sysid/import/array_table.h"
@@ -11,7 +14,7 @@
 namespace softgrip::sysid {
 namespace {
 
-constexpr int deepest_structure = 4;
+constexpr int deepest_structure = 8;
 
 using MatFile = std::unique_ptr<mat_t, int (*)(mat_t*)>;
 using MatVariable = std::unique_ptr<matvar_t, void (*)(matvar_t*)>;
@@ -60,9 +63,9 @@ bool is_numeric(const matvar_t& variable) {
 const char* what_it_is(const matvar_t& variable) {
   switch (variable.class_type) {
     case MAT_C_CELL:
-      return "a cell array";
+      return "an empty cell array, or one that is too deep";
     case MAT_C_STRUCT:
-      return "an array of structures";
+      return "an empty array of structures, or one that is too deep";
     case MAT_C_CHAR:
       return "a text";
     case MAT_C_SPARSE:
@@ -76,30 +79,99 @@ const char* what_it_is(const matvar_t& variable) {
   }
 }
 
-/// Reads the values of an array, and of the fields of a structure. Of all else, and of what is too large,
-/// libmatio reads only the header: a compressed variable of some bytes can hold some gigabytes.
-void collect(mat_t* file, matvar_t& variable, const std::string& name, int depth, ArrayCollector& arrays) {
+constexpr std::size_t longest_text = 200;
+
+/// Rows and columns of an array in two dimensions; 0 and 0 of others.
+struct Shape {
+  std::size_t rows = 0;
+  std::size_t columns = 0;
+
+  [[nodiscard]] std::size_t count() const { return rows * columns; }
+};
+Shape shape_of(const matvar_t& variable) {
   const bool flat = variable.rank == 2 && variable.dims != nullptr;
-  const std::size_t rows = flat ? variable.dims[0] : 0;
-  const std::size_t columns = flat ? variable.dims[1] : 0;
-  if (variable.class_type == MAT_C_STRUCT && rows == 1 && columns == 1 && depth < deepest_structure) {
-    char* const* fields = Mat_VarGetStructFieldnames(&variable);
-    const unsigned count = Mat_VarGetNumberOfFields(&variable);
-    for (unsigned i = 0; i < count && fields != nullptr; ++i) {
-      matvar_t* field = Mat_VarGetStructFieldByName(&variable, fields[i], 0);
-      if (field != nullptr) collect(file, *field, name + "." + fields[i], depth + 1, arrays);
-    }
-    return;
-  }
-  if (!is_numeric(variable) || !flat || variable.isComplex != 0)
-    return arrays.pass_over(name, what_it_is(variable));
-  if (rows == 0 || columns == 0) return;
-  if (!arrays.has_room(rows, columns)) return arrays.pass_over(name, too_large);
-  const bool read = Mat_VarReadDataAll(file, &variable) == 0;
-  const std::vector<double> values = read ? values_of(variable, rows * columns) : std::vector<double>{};
-  if (values.empty()) return arrays.pass_over(name, "it cannot be read");
-  arrays.add(name, {}, rows, columns, values);
+  return flat ? Shape{variable.dims[0], variable.dims[1]} : Shape{};
 }
+
+/// The ASCII characters of a text; empty where there is none.
+std::string text_of(mat_t* file, matvar_t* variable) {
+  if (variable == nullptr || variable->class_type != MAT_C_CHAR) return {};
+  const Shape shape = shape_of(*variable);
+  if (shape.rows != 1 || shape.columns > longest_text || Mat_VarReadDataAll(file, variable) != 0) return {};
+  if (variable->data == nullptr || variable->data_size <= 0) return {};
+  std::string text;
+  const auto* bytes = static_cast<const char*>(variable->data);
+  for (std::size_t i = 0; i < variable->nbytes; i += static_cast<std::size_t>(variable->data_size))
+    text += bytes[i];
+  return text;
+}
+
+/// The arrays of a file, gathered from its structures and cells.
+class MatCollector {
+ public:
+  MatCollector(mat_t* file, ArrayCollector& arrays) : file_(file), arrays_(arrays) {}
+
+  /// Reads the values of an array, and those in structures, arrays of structures and cells. Of all else, and
+  /// of what is too large, libmatio reads only the header: a compressed variable of some bytes can hold some
+  /// gigabytes.
+  void collect(matvar_t& variable, const std::string& name, const std::string& unit, int depth) {
+    const Shape shape = shape_of(variable);
+    const bool nests =
+        (variable.class_type == MAT_C_STRUCT || variable.class_type == MAT_C_CELL) && shape.count() > 0;
+    if (nests && depth < deepest_structure) {
+      for (std::size_t i = 0; i < shape.count(); ++i) element(variable, name, i, shape.count(), depth);
+      return;
+    }
+    if (!is_numeric(variable) || shape.rows * shape.columns == 0) {
+      if (!is_numeric(variable) || variable.rank != 2) arrays_.pass_over(name, what_it_is(variable));
+      return;
+    }
+    if (variable.isComplex != 0) return arrays_.pass_over(name, what_it_is(variable));
+    if (!arrays_.has_room(shape.rows, shape.columns)) return arrays_.pass_over(name, too_large);
+    const bool read = Mat_VarReadDataAll(file_, &variable) == 0;
+    const std::vector<double> values = read ? values_of(variable, shape.count()) : std::vector<double>{};
+    if (values.empty()) return arrays_.pass_over(name, "it cannot be read");
+    arrays_.add(name, unit, shape.rows, shape.columns, values);
+  }
+
+ private:
+  void element(matvar_t& variable, const std::string& name, std::size_t index, std::size_t count, int depth) {
+    const std::string number = std::to_string(index + 1);
+    if (variable.class_type == MAT_C_CELL) {
+      matvar_t* cell = Mat_VarGetCell(&variable, static_cast<int>(index));
+      if (cell != nullptr) collect(*cell, name + "{" + number + "}", {}, depth + 1);
+      return;
+    }
+    const std::string here = count == 1 ? name : name + "(" + number + ")";
+    if (named_signal(variable, here, index, depth)) return;
+    char* const* fields = Mat_VarGetStructFieldnames(&variable);
+    const unsigned fields_count = Mat_VarGetNumberOfFields(&variable);
+    for (unsigned i = 0; i < fields_count && fields != nullptr; ++i) {
+      matvar_t* field = Mat_VarGetStructFieldByName(&variable, fields[i], index);
+      if (field != nullptr) collect(*field, here + "." + fields[i], {}, depth + 1);
+    }
+  }
+
+  /// A structure of values with their name, as dSPACE (Name, Data, Unit) and Simulink (label, values) write
+  /// it.
+  bool named_signal(matvar_t& variable, const std::string& here, std::size_t index, int depth) {
+    constexpr std::array<std::pair<const char*, const char*>, 2> kinds{
+        {{"Name", "Data"}, {"label", "values"}}};
+    for (const auto& [name_field, data_field] : kinds) {
+      matvar_t* data = Mat_VarGetStructFieldByName(&variable, data_field, index);
+      const std::string name = text_of(file_, Mat_VarGetStructFieldByName(&variable, name_field, index));
+      if (data == nullptr || !is_numeric(*data) || name.empty()) continue;
+      std::string unit = text_of(file_, Mat_VarGetStructFieldByName(&variable, "Unit", index));
+      arrays_.note("'" + document::shown(here) + "' is the column '" + document::shown(name) + "'");
+      collect(*data, name, unit == "-" ? std::string() : unit, depth + 1);
+      return true;
+    }
+    return false;
+  }
+
+  mat_t* file_;
+  ArrayCollector& arrays_;
+};
 
 }  // namespace
 
@@ -118,7 +190,7 @@ std::optional<ForeignTable> read_mat_table(const std::string& path, const std::s
     const MatVariable variable{Mat_VarReadNextInfo(file.get()), Mat_VarFree};
     if (!variable) break;
     if (variable->name == nullptr || variable->name[0] == '#') continue;  // what MATLAB refers to by itself
-    collect(file.get(), *variable, variable->name, 0, arrays);
+    MatCollector(file.get(), arrays).collect(*variable, variable->name, {}, 0);
   }
   return arrays.table(version == MAT_FT_MAT4 ? "MATLAB 4" : "MATLAB 5", problems);
 }

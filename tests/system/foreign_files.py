@@ -106,6 +106,55 @@ def structure(name, fields):
                    + b"".join(matrix("", values) for values in fields.values()))
 
 
+def headed(kind, shape, name, content):
+    return element(14, element(6, struct.pack("<II", kind, 0)) + element(5, struct.pack("<ii", *shape))
+                   + element(1, name.encode()) + content)
+
+
+def text_matrix(text):
+    return headed(4, (1, len(text)), "", element(16, text.encode()))
+
+
+def structures(name, elements):
+    """An array of structures; the values of the fields are encoded already."""
+    names = b"".join(field.encode().ljust(32, b"\0") for field in elements[0])
+    return headed(2, (1, len(elements)), name, struct.pack("<HHi", 5, 4, 32) + element(1, names)
+                  + b"".join(value for fields in elements for value in fields.values()))
+
+
+def cells(name, values):
+    return headed(1, (1, len(values)), name, b"".join(values))
+
+
+def dspace():
+    def signal(name, unit, values):
+        return {"Name": text_matrix(name), "Data": matrix("", values), "Unit": text_matrix(unit)}
+    return matlab_5(structures("rec001", [{"X": structures("", [signal("time", "s", T)]), "Y": structures(
+        "", [signal("set", "kPa", COMMAND), signal("tip", "mm", TIP)]), "Description": text_matrix("bench")}]))
+
+
+def trials():
+    def trial(factor):
+        return {"t_s": matrix("", T), "set_kPa": matrix("", scaled(COMMAND, factor)), "tip_mm": matrix("", scaled(TIP, factor))}
+    return matlab_5(structures("finger", [{"trial": structures("", [trial(factor) for factor in (2, 1, 4)])}]))
+
+
+def lvm(x_columns, sections):
+    """LabVIEW's text with sections of equal length; without X columns the times are counted."""
+    text = "".join(f"{key}\t{value}\n" for key, value in (
+        ("LabVIEW Measurement", ""), ("Writer_Version", "2"), ("Separator", "Tab"), ("Decimal_Separator", ","),
+        ("Multi_Headings", "Yes"), ("X_Columns", x_columns), ("Time_Pref", "Relative"), ("***End_of_Header***", "")))
+    length = COUNT // sections
+    for begin in range(0, COUNT, length):
+        text += ("\t\nChannels\t2\t\t\nDate\t2024/06/13\t2024/06/13\t\nTime\t12:59:50,938\t12:59:50,938\t\n"
+                 "Y_Unit_Label\tkPa\tmm\t\nX0\t0,0E+0\t0,0E+0\t\nDelta_X\t0,01\t0,01\t\n***End_of_Header***\t\t\t\n"
+                 "X_Value\tSet\tTip\tComment\n")
+        for i in range(length):
+            time = "" if x_columns == "No" else f"{T[i]:.6f}"
+            text += "\t".join((time, f"{COMMAND[begin + i]:.6f}", f"{TIP[begin + i]:.6f}")).replace(".", ",") + "\n"
+    return text
+
+
 def matlab_5(*variables):
     return b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM" + b"".join(variables)
 
@@ -311,6 +360,16 @@ def files():
         File("structure.mat", "MATLAB 7: a structure, packed",
              matlab_5(packed(structure("run", {"t_ms": [1000 * t for t in T], "p_set_kPa": COMMAND,
                                                "p_meas_kPa": PRESSURE, "tip_mm": TIP}))), columns=MEASURED),
+        File("dspace.mat", "MATLAB 5: structures with Name, Data and Unit (dSPACE)", dspace()),
+        File("trials.mat", "MATLAB 5: an array of structures", trials(), refused="of 3 fingers: '1', '2', '3'"),
+        File("trials_chosen.mat", "the same, and one of them", trials(), "--channel 2"),
+        File("cells.mat", "MATLAB 5: a cell array", matlab_5(cells("log", [matrix("", T), matrix("", COMMAND),
+                                                                        matrix("", TIP)])),
+             "--time 1 --command 2 --displacement 3 --unit time=s --unit command=kPa --unit displacement=mm"),
+        File("one_section.lvm", "a LabVIEW measurement", lvm("One", 1)),
+        File("sections.lvm", "a LabVIEW measurement in 3 sections", lvm("One", 3),
+             says="the section stands a step behind the one before"),
+        File("counted.lvm", "a LabVIEW measurement without X columns", lvm("No", 1)),
         File("old.mat", "MATLAB 4", matlab_4("time_s", T) + matlab_4("set_bar", scaled(COMMAND, BAR))
              + matlab_4("tip_mm", TIP)),
         File("v73.mat", "MATLAB 7.3", matlab_73, "--unit time=s", columns=MEASURED),

@@ -12,7 +12,8 @@ namespace softgrip::tools {
 void add_import(CLI::App& program, ExitCode& outcome) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App* command = program.add_subcommand(
-      "import", "Logs out of other people's files: CSV in any dialect (.gz too), MATLAB, HDF5, recordings");
+      "import",
+      "Logs out of other people's files: CSV in any dialect (.gz too), LabVIEW, MATLAB, HDF5, recordings");
   command->add_option("FILE", options->files, "Files, or recordings' folders")->required();
   command
       ->add_option(

@@ -1,0 +1,219 @@
+#include "sysid/import/lvm_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/numbers.h"
+#include "sysid/import/cell_value.h"
+#include "sysid/import/moments.h"
+#include "sysid/import/units.h"
+#include "sysid/logs/csv_text.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::string_view end_of_header = "***End_of_Header***";
+constexpr double absent = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+  std::vector<Cell> cells;
+  std::vector<std::string> texts;
+  (void)split(line, cells, separator);
+  for (const Cell& cell : cells) texts.emplace_back(trimmed(cell_text(cell.text)));
+  return texts;
+}
+
+/// Lines "KEY value value ..." up to the end of a header.
+using Header = std::map<std::string, std::vector<std::string>>;
+
+class LvmReader {
+ public:
+  LvmReader(const std::string& file, const TableOptions& options, document::Problems& problems)
+      : options_(options), problems_(problems) {
+    table_.file = file;
+    table_.is_text = true;
+    table_.missing_cells.resize(options.missing.size());
+  }
+
+  std::optional<ForeignTable> read(std::string_view text) {
+    const std::vector<std::string_view> lines = lines_of(text);
+    std::size_t at = 0;
+    const Header file_header = header(lines, at);
+    x_columns_ = lower_case(first_of(file_header, "X_Columns"));
+    int sections = 0;
+    while (at < lines.size() && good_) {
+      if (trimmed(lines[at]).empty()) {
+        ++at;
+        continue;
+      }
+      section(lines, at);
+      ++sections;
+    }
+    if (!good_) return std::nullopt;
+    if (short_line_ != 0 && !options_.skip_bad_lines)
+      table_.notes.emplace_back("the last line is cut off and left out");
+    if (table_.columns.empty() || table_.rows() == 0) return refuse(1, "the LabVIEW measurement has no rows");
+    table_.format = "LabVIEW measurement, " + std::to_string(sections) +
+                    (sections == 1 ? " section" : " sections") + (separator_ == '\t' ? "" : ", commas");
+    return std::move(table_);
+  }
+
+ private:
+  std::nullopt_t refuse(std::size_t line, const std::string& message) {
+    problems_.add({table_.file, {static_cast<int>(line), 1}, {}, message, "export it as CSV"});
+    good_ = false;
+    return std::nullopt;
+  }
+
+  static std::string first_of(const Header& header, const std::string& key) {
+    const auto found = header.find(key);
+    return found == header.end() || found->second.empty() ? std::string() : found->second.front();
+  }
+
+  [[nodiscard]] double number(const std::string& text) const {
+    std::string pointed = text;
+    if (decimal_ == ',') std::replace(pointed.begin(), pointed.end(), ',', '.');
+    return to_number(pointed).value_or(absent);
+  }
+
+  Header header(const std::vector<std::string_view>& lines, std::size_t& at) {
+    Header header;
+    for (; at < lines.size(); ++at) {
+      if (trimmed(lines[at]).starts_with(end_of_header)) {
+        ++at;
+        break;
+      }
+      std::vector<std::string> cells = cells_of(lines[at], separator_);
+      const std::string key = cells.front();
+      cells.erase(cells.begin());
+      if (key == "Separator" && lower_case(cells.empty() ? "" : cells.front()) == "comma") separator_ = ',';
+      if (key == "Decimal_Separator" && !cells.empty() && !cells.front().empty())
+        decimal_ = cells.front().front();
+      if (!key.empty()) header[key] = std::move(cells);
+    }
+    return header;
+  }
+
+  void section(const std::vector<std::string_view>& lines, std::size_t& at) {
+    const bool has_header = trimmed(lines[at]).starts_with("Channels");
+    const Header section = has_header ? header(lines, at) : Header{};
+    if (at >= lines.size()) return;
+    const std::size_t names_line = at;
+    std::vector<std::string> names = cells_of(lines[at++], separator_);
+    const bool comment = !names.empty() && names.back() == "Comment";
+    if (comment) names.pop_back();
+    if (!take_names(names, section, names_line + 1)) return;
+    const double x0 = number(first_of(section, "X0"));
+    const double delta = number(first_of(section, "Delta_X"));
+    const std::size_t begin = table_.rows();
+    for (std::size_t row = 0; at < lines.size(); ++at) {
+      const std::string_view line = trimmed(lines[at]);
+      if (line.empty()) continue;
+      if (line.starts_with("Channels")) break;
+      add_row(lines[at], at + 1, x0 + static_cast<double>(row++) * delta);
+    }
+    place(section, begin, delta);
+  }
+
+  /// Where the X values begin anew, the section stands at its own time; without one, a step behind the last.
+  void place(const Header& section, std::size_t begin, double delta) {
+    const auto moment = moment_of(first_of(section, "Date") + " " + first_of(section, "Time"));
+    if (begin == 0 && moment) first_moment_ = moment->time;
+    if (begin == 0 || begin == table_.rows()) return;
+    for (TableColumn& column : table_.columns) {
+      std::vector<double>& x = column.values;
+      if (!column.name.starts_with("X_Value") || !(x[begin] <= x[begin - 1])) continue;
+      const double apart_s = moment ? seconds(moment->time - first_moment_) : 0;
+      const bool has_time = x[begin] + apart_s > x[begin - 1];
+      const double shift = has_time ? apart_s : x[begin - 1] + delta - x[begin];
+      for (std::size_t i = begin; i < x.size(); ++i) x[i] += shift;
+      table_.notes.push_back("the times begin anew in line " + std::to_string(table_.line[begin]) +
+                             (has_time ? ": the section stands at its own Date and Time"
+                                       : ": the section stands a step behind the one before"));
+    }
+  }
+
+  bool take_names(const std::vector<std::string>& names, const Header& section, std::size_t line) {
+    if (!table_.columns.empty()) {
+      const bool same =
+          names.size() == table_.columns.size() &&
+          std::equal(names.begin(), names.end(), table_.columns.begin(),
+                     [](const std::string& name, const TableColumn& c) { return c.name == name; });
+      if (!same) refuse(line, "the columns of this section differ from those of the first");
+      return same;
+    }
+    const auto units = section.find("Y_Unit_Label");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      TableColumn column;
+      column.name = names[i];
+      const std::size_t channel = x_columns_ == "multi" ? i / 2 : i - 1;
+      const bool is_x = names[i].starts_with("X_Value");
+      if (is_x) column.unit = "s";
+      if (!is_x && split_unit(names[i]).unit.empty() && units != section.end() &&
+          channel < units->second.size())
+        column.unit = units->second[channel];
+      table_.columns.push_back(std::move(column));
+    }
+    return true;
+  }
+
+  void add_row(std::string_view line, std::size_t number_of_line, double counted_x) {
+    ++table_.account.rows;
+    const std::vector<std::string> cells = cells_of(line, separator_);
+    if (cells.size() < table_.columns.size()) {
+      table_.account.leave_out(options_.skip_bad_lines ? LeftOut::bad_line : LeftOut::cut_off_line);
+      if (!options_.skip_bad_lines && short_line_ != 0)
+        refuse(short_line_, "too few cells; --skip-bad-lines leaves such lines out");
+      short_line_ = number_of_line;
+      return;
+    }
+    if (short_line_ != 0 && !options_.skip_bad_lines)
+      refuse(short_line_, "too few cells; --skip-bad-lines leaves such lines out");
+    for (std::size_t i = 0; i < table_.columns.size(); ++i) add_cell(i, cells[i], number_of_line, counted_x);
+    table_.line.push_back(static_cast<int>(number_of_line));
+  }
+
+  void add_cell(std::size_t i, const std::string& text, std::size_t line, double counted_x) {
+    TableColumn& column = table_.columns[i];
+    const bool counts = column.name.starts_with("X_Value") && (text.empty() || x_columns_ == "no");
+    std::string pointed = text;
+    if (decimal_ == ',') std::replace(pointed.begin(), pointed.end(), ',', '.');
+    const CellValue cell = cell_value(pointed, options_.missing);
+    if (cell.missing_word >= 0) ++table_.missing_cells[static_cast<std::size_t>(cell.missing_word)];
+    if (cell.kind == CellKind::text || cell.kind == CellKind::moment) {
+      column.bad_rows.push_back(column.values.size());
+      if (++column.bad_count <= 3)
+        column.bad.push_back({column.values.size(), {static_cast<int>(line), 1}, text, text});
+    }
+    const double value = cell.kind == CellKind::number ? cell.number : absent;
+    column.values.push_back(counts && std::isfinite(counted_x) ? counted_x : value);
+  }
+
+  const TableOptions& options_;
+  document::Problems& problems_;
+  ForeignTable table_;
+  std::string x_columns_;
+  char separator_ = '\t';
+  char decimal_ = '.';
+  Nanoseconds first_moment_ = 0;
+  std::size_t short_line_ = 0;  ///< the first line with too few cells
+  bool good_ = true;
+};
+
+}  // namespace
+
+bool is_lvm(std::string_view text) {
+  return text.starts_with("LabVIEW Measurement") && text.find(end_of_header) != std::string_view::npos &&
+         text.find("\nX_Columns") != std::string_view::npos;
+}
+
+std::optional<ForeignTable> read_lvm(const std::string& file, std::string_view text,
+                                     const TableOptions& options, document::Problems& problems) {
+  return LvmReader(file, options, problems).read(text);
+}
+
+}  // namespace softgrip::sysid

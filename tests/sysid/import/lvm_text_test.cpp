@@ -1,0 +1,73 @@
+#include "sysid/import/lvm_text.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace softgrip::sysid::lvm_text_test {
+namespace {
+
+std::string header(const std::string& x_columns, const std::string& separator = "Tab") {
+  return "LabVIEW Measurement\t\nSeparator\t" + separator + "\nDecimal_Separator\t,\nX_Columns\t" +
+         x_columns + "\n***End_of_Header***\t\n\t\n";
+}
+
+std::string section(const std::string& time, const std::string& rows,
+                    const std::string& names = "X_Value\tSet\tTip\tComment") {
+  return "Channels\t2\t\t\nDate\t2024/06/13\t2024/06/13\nTime\t" + time +
+         "\nY_Unit_Label\tkPa\tmm\nX0\t0,0\t0,0\nDelta_X\t0,5\t0,5\n***End_of_Header***\t\t\t\n" + names +
+         "\n" + rows;
+}
+
+ForeignTable table_of(const std::string& text, const TableOptions& options = {}) {
+  document::Problems problems;
+  EXPECT_TRUE(is_lvm(text));
+  auto table = read_lvm("t.lvm", text, options, problems);
+  EXPECT_TRUE(table) << problems.format();
+  return table ? *table : ForeignTable{};
+}
+
+TEST(Lvm, UnitsAndDecimalMarkStandInItsHeader) {
+  const ForeignTable table =
+      table_of(header("One") + section("12:00:00,5", "0,0\t1,5\t2,5\n0,5\t3\t4\tnote\n"));
+  ASSERT_EQ(table.columns.size(), 3U);
+  EXPECT_EQ(table.columns[0].unit, "s");
+  EXPECT_EQ(table.columns[1].unit, "kPa");
+  EXPECT_EQ(table.columns[2].unit, "mm");
+  EXPECT_EQ(table.columns[2].values, (std::vector<double>{2.5, 4}));
+  EXPECT_EQ(table.account.rows, 2U);
+}
+
+TEST(Lvm, TimesAreCountedWhereNoColumnHoldsThem) {
+  const ForeignTable table = table_of(header("No") + section("12:00:00", "\t1\t2\n\t3\t4\n\t5\t6\n"));
+  EXPECT_EQ(table.columns[0].values, (std::vector<double>{0, 0.5, 1}));
+}
+
+TEST(Lvm, SectionsFollowEachOther) {
+  const std::string rows = "0,0\t1\t2\n0,5\t3\t4\n";
+  const ForeignTable same =
+      table_of(header("One") + section("12:00:00", rows) + "\n" + section("12:00:00", rows));
+  EXPECT_EQ(same.columns[0].values, (std::vector<double>{0, 0.5, 1, 1.5}));
+  EXPECT_EQ(same.notes.size(), 1U);
+  const ForeignTable later = table_of(header("One") + section("12:00:00", rows) + section("12:00:10", rows));
+  EXPECT_EQ(later.columns[0].values, (std::vector<double>{0, 0.5, 10, 10.5}));
+}
+
+TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
+  document::Problems problems;
+  EXPECT_FALSE(read_lvm("t.lvm",
+                        header("One") + section("12:00:00", "0\t1\t2\n") +
+                            section("12:00:00", "0\t1\t2\n", "X_Value\tSet\tOther\tComment"),
+                        {}, problems));
+  EXPECT_NE(problems.format().find("the columns of this section differ"), std::string::npos);
+  const ForeignTable cut = table_of(header("One") + section("12:00:00", "0\t1\t2\n0,5\t3"));
+  EXPECT_EQ(cut.account.rows, 2U);
+  EXPECT_EQ(cut.account.left_out[static_cast<std::size_t>(LeftOut::cut_off_line)], 1U);
+  document::Problems short_line;
+  EXPECT_FALSE(
+      read_lvm("t.lvm", header("One") + section("12:00:00", "0\t1\t2\n0,5\n1\t3\t4\n"), {}, short_line));
+  EXPECT_FALSE(is_lvm("LabVIEW Measurement\nx\n"));
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::lvm_text_test
