@@ -169,7 +169,9 @@ class StartSearch {
       valley_step /= 2;
       best = best_of(around(best.start, peak_step, valley_step), best.left);
     }
-    return best;
+    // What one stroke cannot tell would be chosen by the noise.
+    const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
+    return usual.misfit < best.misfit + square(rejected_at) ? usual : best;
   }
 
   void prepare_creep() {

@@ -18,6 +18,10 @@ inline constexpr double creep_settling_s = 1e6;
 /// A pressure that arrives at the first sample has moved at that speed for so long, at most.
 inline constexpr double longest_arrival_s = 2;
 
+/// A pressure that turned at a peak and at a valley has done so as often, so that a hysteresis is in its
+/// cycle.
+inline constexpr int cycles_before = 15;
+
 /// Where a pressure that arrives at the first sample was before, no farther away than its last turn; without
 /// an arrival the first pressure.
 inline double arrived_from_kpa(double first_kpa, double last_turn_kpa, double arrival_kpa_per_s) {
@@ -33,7 +37,10 @@ template <class T>
 void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kpa, const StartState& state) {
   const double first_kpa = record.drive_kpa.front();
   const double valley_kpa = state.valley_before_kpa;
-  const bool peaked = model::value_of(peak_before_kpa) > first_kpa, turned = valley_kpa < first_kpa;
+  const bool turned = valley_kpa < first_kpa;
+  // A cycle between a valley and the first pressure has its peak there.
+  const bool peaked =
+      turned ? model::value_of(peak_before_kpa) >= first_kpa : model::value_of(peak_before_kpa) > first_kpa;
   // What remembers the largest load so far has seen that of the earlier records.
   chain.reset(T(record.largest_before_kpa));
   chain.rest(peaked ? peak_before_kpa : T(turned ? valley_kpa : first_kpa));
@@ -42,7 +49,13 @@ void start(model::Chain<T>& chain, const Record& record, const T& peak_before_kp
     chain.step(T(0.0), T(pressure_kpa));
     chain.step(T(valve_settling_s), T(pressure_kpa));
   };
-  if (peaked && turned) settle_at(valley_kpa);
+  if (peaked && turned) {
+    for (int cycle = 1; cycle < cycles_before; ++cycle) {
+      settle_at(valley_kpa);
+      settle_at(model::value_of(peak_before_kpa));
+    }
+    settle_at(valley_kpa);
+  }
   const double last_turn_kpa = turned ? valley_kpa : model::value_of(peak_before_kpa);
   const double from_kpa = arrived_from_kpa(first_kpa, last_turn_kpa, state.arrival_kpa_per_s);
   settle_at(from_kpa);
