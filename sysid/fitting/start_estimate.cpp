@@ -77,7 +77,8 @@ class StartSearch {
       : model_(model),
         beginning_(beginning_of(unit)),
         time_constants_s_(branch_time_constants_s(model)),
-        first_kpa_(unit.drive_kpa.front()) {
+        first_kpa_(unit.drive_kpa.front()),
+        under_pressure_(unit.start_unknown && unit.start == Start::automatic) {
     const auto [lowest, highest] = std::minmax_element(unit.drive_kpa.begin(), unit.drive_kpa.end());
     lowest_kpa_ = *lowest;
     highest_kpa_ = *highest;
@@ -169,6 +170,7 @@ class StartSearch {
       valley_step /= 2;
       best = best_of(around(best.start, peak_step, valley_step), best.left);
     }
+    if (!under_pressure_) return best;
     // What one stroke cannot tell would be chosen by the noise.
     const Trial usual = with_creep(turned(rest, highest_kpa_, lowest_kpa_), best.left);
     return usual.misfit < best.misfit + square(rejected_at) ? usual : best;
@@ -248,6 +250,7 @@ class StartSearch {
   Record beginning_;
   std::vector<double> time_constants_s_;
   double first_kpa_, lowest_kpa_ = 0, highest_kpa_ = 0;
+  bool under_pressure_;
   std::vector<std::size_t> rows_;  ///< samples with readings
   Eigen::MatrixXd columns_;        ///< what offset and unsettled creep add
   Eigen::VectorXd precision_;      ///< of their priors
