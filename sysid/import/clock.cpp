@@ -14,8 +14,10 @@ namespace {
 constexpr double day_s = 86400;
 /// A step across an overflow that is longer than this many usual steps may hide lost rows.
 constexpr double longest_step = 3;
-/// Two clocks show one time within this share of the usual step.
-constexpr double same_within = 0.5;
+/// Clocks of different origins show one time if they wander by less than this share of the usual step.
+constexpr double wandering_share = 0.5;
+/// Clocks of one origin show one time if they differ by less than this share of the usual step.
+constexpr double equal_share = 0.05;
 constexpr double rising_share = 0.9;
 /// Rows in which one of two times is absent, where they still are one clock.
 constexpr double apart_share = 0.01;
@@ -181,10 +183,9 @@ bool same_clock(const ForeignTable& table, const Mapping& mapping, std::size_t a
   const double step = usual_step(*first);
   const Extent spread = finite_extent(differences);
   const Extent span = finite_extent(*first);
-  const double offset = std::abs(differences.front());
-  const bool other_origin = offset > span.highest - span.lowest;
-  return spread.highest - spread.lowest <= same_within * step &&
-         (other_origin || offset <= same_within * step);
+  const bool other_origin = std::abs(differences.front()) > span.highest - span.lowest;
+  if (other_origin) return spread.highest - spread.lowest <= wandering_share * step;
+  return std::max(std::abs(spread.lowest), std::abs(spread.highest)) <= equal_share * step;
 }
 
 std::optional<std::array<std::size_t, role_count>> times_of_roles(const ForeignTable& table,

@@ -22,10 +22,6 @@ bool is_finger_word(const std::string& token) {
          std::all_of(token.begin(), token.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-bool is_unit_token(const std::string& token) {
-  return is_raw_unit(token) || unit_named(token).has_value();
-}
-
 bool is_role_word(const std::string& token) {
   return std::any_of(roles.begin(), roles.end(),
                      [&](const RoleSpec& spec) { return names_role(token, spec.role); });
@@ -45,9 +41,10 @@ std::set<std::string> words_apart(const ForeignTable& table, OfKind of_kind) {
   std::map<std::string, std::set<std::string>> by_pattern;
   for (const TableColumn& column : table.columns) {
     if (!of_kind(column)) continue;
-    const std::vector<std::string> tokens = tokens_of(column.name);
+    // Without its unit: 'A' is a finger or an ampere.
+    const std::vector<std::string> tokens = tokens_of(split_unit(column.name).name);
     for (std::size_t k = 0; k < tokens.size(); ++k) {
-      if (is_unit_token(tokens[k]) || is_role_word(tokens[k])) continue;
+      if (is_role_word(tokens[k])) continue;
       std::string pattern;
       for (std::size_t i = 0; i < tokens.size(); ++i) pattern += (i == k ? "*" : tokens[i]) + " ";
       by_pattern[pattern].insert(tokens[k]);

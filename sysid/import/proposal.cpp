@@ -282,10 +282,22 @@ void choose(const ForeignTable& table, const RoleSpec& spec, const FingerChoice&
   proposal.guessed.push_back(spec.role);
 }
 
-void say_what_is_missing(Proposal& proposal) {
+/// The first cell of a column that is called a time and is in no format that is read; empty: there is none.
+std::string unread_time(const ForeignTable& table) {
+  for (const TableColumn& column : table.columns) {
+    if (!column.bad.empty() && names_role(column.name, Role::time))
+      return " ('" + document::shown(column.name, 40) + "' has '" +
+             document::shown(column.bad.front().text, 40) +
+             "', which is in no format that is read: 2024-05-31 12:00:00.25 is one)";
+  }
+  return {};
+}
+
+void say_what_is_missing(const ForeignTable& table, Proposal& proposal) {
+  if (!proposal.questions.empty()) return;
   const Mapping& mapping = proposal.mapping;
   if (!mapping[Role::time].given() && !mapping.rate_hz)
-    proposal.missing.emplace_back("a time: --time COLUMN, or --rate-hz R");
+    proposal.missing.emplace_back("a time: --time COLUMN, or --rate-hz R" + unread_time(table));
   if (!mapping[Role::command].given() && !mapping[Role::pressure].given())
     proposal.missing.emplace_back("a pressure: --command COLUMN (asked for) or --pressure COLUMN (measured)");
   if (!mapping[Role::displacement].given())
@@ -338,7 +350,7 @@ Proposal propose(const ForeignTable& table, const Mapping& given, bool optional_
     const std::size_t index = column_index(table, time.columns.front());
     if (index < table.columns.size()) time.unit = epoch_unit(table.columns[index]);
   }
-  say_what_is_missing(proposal);
+  say_what_is_missing(table, proposal);
   return proposal;
 }
 

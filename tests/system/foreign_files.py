@@ -454,6 +454,12 @@ def files():
              columns={key: values for key, values in without({75, 118}).items() if key in BASIC}, says="--skip-bad-lines leaves out 1 lines of another width: 120"),
         File("idle_options.csv", "options that change nothing", PLAIN,
              "--missing 888 --unit supply=bar --to-s 100", says="--missing 888 has no effect"),
+        File("months_first.csv", "dates of which the month comes first",
+             table(["Timestamp", "set_kpa", "tip_mm"], [times("2024-05-31T12:00:00", "%m/%d/%Y %H:%M:%S.%f"), COMMAND, TIP]),
+             refused="'Timestamp' has '05/31/2024 12:00:00.000', which is in no format that is read"),
+        File("fingers_a_b.csv", "fingers A and B", table(
+            ["t_s", "Finger A set (kPa)", "Finger A tip (mm)", "Finger B set (kPa)", "Finger B tip (mm)"],
+            [T, *other, COMMAND, TIP]), "--channel B"),
         File("angle.csv", "degrees", table(["time_s", "set_kpa", "tip (deg)"], [T, COMMAND, TIP]),
              refused="'deg' is no unit of a displacement"),
         File("recording", "a recording of softgripd, one of its channels", recording, "--channel left",

@@ -72,7 +72,8 @@ TEST(SameClock, TellsAnotherTimeFromAnotherUnitOrOrigin) {
     double slope, offset;
     bool same;
   };
-  for (const Case& c : {Case{1, 0, true}, Case{1, 1e6, true}, Case{1, 0.1, false}, Case{0.2, 0, false}}) {
+  for (const Case& c : {Case{1, 0, true}, Case{1, 1e6, true}, Case{1, 0.1, false}, Case{1, 0.007, false},
+                        Case{0.2, 0, false}}) {
     const ForeignTable table = table_of(two_times(c.slope, c.offset));
     EXPECT_EQ(time_columns(table), (std::vector<std::size_t>{0, 2}));
     EXPECT_EQ(same_clock(table, {}, 0, 2), c.same) << c.slope << " " << c.offset;

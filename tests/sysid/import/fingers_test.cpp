@@ -28,6 +28,12 @@ TEST(Fingers, NamesTellThemApart) {
   EXPECT_EQ(fingers_of(named({"t_s", "set_kpa", "ch0_pos_mm", "ch1_pos_mm"})), (Names{"0", "1"}));
 }
 
+TEST(Fingers, TheNameOfOneMayBeAUnit) {
+  EXPECT_EQ(fingers_of(named({"t_s", "Finger A set (kPa)", "Finger A tip (mm)", "Finger B set (kPa)",
+                              "Finger B tip (mm)"})),
+            (Names{"a", "b"}));
+}
+
 TEST(Fingers, OneFingerHasSeveralColumns) {
   EXPECT_EQ(fingers_of(named({"time_s", "set_kpa", "actual_pressure_kpa", "tip_mm"})), Names{});
   EXPECT_EQ(fingers_of(named({"time_s", "pd1_psi", "pd2_psi", "tip_mm"})), Names{});
