@@ -325,16 +325,21 @@ class Motion(bench.BenchTest):
         self.write("bad.yaml", "name: bad\nvalve: 3\n")
         (self.folder / "out").mkdir()
         self.faults = self.write("faults.yaml", "faults:\n  - {name: blind, kind: sensor_out_of_range, channel: left}\n")
-        self.board = self.emulator("--faults", self.faults)
-        self.rig_path = self.rig(self.board.port)
+        self.use_rested_fingers()
         self.runner = Runner(self.folder)
         self.count = 0
+
+    def use_rested_fingers(self):
+        """Another rig: for a minute after a pressure a finger creeps, and doctor compares its motion with the model."""
+        self.board = self.emulator("--faults", self.faults)
+        self.rig_path = self.rig(self.board.port)
 
     def each(self, ending, check):
         exit_codes.each(self, MOTION, ending, check)
 
     def line(self, command, out="out"):
-        """The words of the command, with folders of its own."""
+        """The words of the command, with a rig and with folders of its own."""
+        self.use_rested_fingers()
         self.count += 1
         (self.folder / out / str(self.count)).mkdir()
         return command.done.format(rig=self.rig_path, out=f"{out}/{self.count}")
@@ -411,7 +416,9 @@ class Motion(bench.BenchTest):
         lines = {name: self.line(command, "full") for name, command in MOTION.items()}
         (disk.folder / "output").touch()
         disk.fill()
+
         def check(name, command, cell):
+            self.use_rested_fingers()
             if command.writes:
                 done = self.runner.run(lines[name], preexec_fn=disk.limit)
                 self.assertRegex(done.stderr.decode(), "No space left on device|File too large")
