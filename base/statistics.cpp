@@ -1,8 +1,17 @@
 #include "base/statistics.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace softgrip {
+
+double third_difference_noise(std::span<const double> values) {
+  std::vector<double> sizes;
+  for (std::size_t i = 3; i < values.size(); ++i)
+    sizes.push_back(std::abs(values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3]));
+  // 20: the sum of the squares of the four weights. 0.6745: the median size of a standard normal.
+  return median_of(std::span(sizes)) / (0.6745 * std::sqrt(20.0));
+}
 
 double t_quantile(double degrees_of_freedom) {
   constexpr double z = 1.959963984540054;

@@ -22,6 +22,10 @@ template <class T>
   return *middle;
 }
 
+/// Sample-to-sample noise of a series: the median size of its third differences, as a standard deviation.
+/// Smooth courses and single steps do not count. 0 of fewer than 4 values.
+[[nodiscard]] double third_difference_noise(std::span<const double> values);
+
 /// What a straight line through pairs of values needs, gathered pair by pair; those that are not finite are
 /// passed over. Variances and covariance are times the count squared.
 struct PairSums {

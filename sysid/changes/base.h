@@ -50,7 +50,6 @@ struct Base {
   double zero_spread_mm = 0;
   double bin_s = 0.05;
   Whitener whitener;
-  Whitener usual;               ///< without memory: by how much the base misses healthy readings
   std::vector<Record> records;  ///< the healthy ones, thinned
   Binned left;                  ///< residual of each unit while it was left out
 };

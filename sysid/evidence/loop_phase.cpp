@@ -40,17 +40,6 @@ Pair pairs_of(const std::vector<double>& command, const std::vector<double>& rea
   return pair;
 }
 
-/// By how much a sample differs from the parabola through the three before it: the noise of a series in units
-/// of its spread. The median leaves steps out.
-double roughness(const Eigen::VectorXd& values) {
-  if (values.size() < 4) return 0;
-  std::vector<double> sizes;
-  for (Eigen::Index i = 3; i < values.size(); ++i)
-    sizes.push_back(std::abs(values[i] - 3 * values[i - 1] + 3 * values[i - 2] - values[i - 3]));
-  // 20: the squares of the four weights. 0.6745: the median of a standard normal size.
-  return median_of(std::span(sizes)) / (0.6745 * std::sqrt(20.0));
-}
-
 double squares_left(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
   return (target - columns * columns.colPivHouseholderQr().solve(target)).squaredNorm();
 }
@@ -75,7 +64,9 @@ bool is_closed_loop(const std::vector<double>& command, const std::vector<double
   constexpr Eigen::Index order = 3, fewest = 50;
   const auto [u, y] = pairs_of(command, reading);
   const Eigen::Index rows = u.size() - order;
-  if (rows < fewest || roughness(u) < limits::planned_roughness) return false;
+  if (rows < fewest ||
+      third_difference_noise({u.data(), static_cast<std::size_t>(u.size())}) < limits::planned_roughness)
+    return false;
   Eigen::MatrixXd columns(rows, 2 * order);
   for (Eigen::Index lag = 1; lag <= order; ++lag) {
     columns.col(lag - 1) = u.segment(order - lag, rows);
@@ -99,8 +90,9 @@ std::optional<double> phase_ratio(const std::vector<double>& command, const std:
 }
 
 bool shows_stiction(const std::vector<double>& command, const std::vector<double>& reading) {
+  if (!is_closed_loop(command, reading)) return false;
   const std::optional<double> ratio = phase_ratio(command, reading);
-  return ratio && *ratio > limits::odd_phase_ratio && is_closed_loop(command, reading);
+  return ratio && *ratio > limits::odd_phase_ratio;
 }
 
 }  // namespace softgrip::sysid

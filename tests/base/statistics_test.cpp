@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -31,6 +32,19 @@ TEST(PairSums, FindTheLineAndPassOverWhatIsNoNumber) {
   EXPECT_NEAR(sums.correlation(), -1, 1e-12);
   EXPECT_EQ(still.variance_x(), 0);
   EXPECT_EQ(still.correlation(), 0);
+}
+
+TEST(ThirdDifferenceNoise, IsThatOfTheSamplesAndNotOfTheCourse) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 0.2);
+  std::vector<double> course, noisy;
+  for (int i = 0; i < 4000; ++i) {
+    course.push_back(3 * std::sin(0.01 * i) + (i > 2000 ? 50 : 0));
+    noisy.push_back(course.back() + normal(random));
+  }
+  EXPECT_LT(third_difference_noise(course), 1e-5);
+  EXPECT_NEAR(third_difference_noise(noisy), 0.2, 0.02);
+  EXPECT_EQ(third_difference_noise(std::span(noisy).first(3)), 0);
 }
 
 TEST(TQuantile, MatchesTables) {

@@ -15,17 +15,9 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double half_window_s = 0.05;
 constexpr std::size_t most_cycles = 8;
 
-/// Sample-to-sample noise of a drive: 0 of a command, that of the sensor of a measured pressure.
-double drive_noise_kpa(const std::vector<double>& p) {
-  std::vector<double> sizes;
-  for (std::size_t i = 3; i < p.size(); ++i)
-    sizes.push_back(std::abs(p[i] - 3 * p[i - 1] + 3 * p[i - 2] - p[i - 3]));
-  return median_of(std::span(sizes)) / (0.6745 * std::sqrt(20.0));
-}
-
 void add_rates(const Record& record, DriveHistory& h) {
   const std::vector<double>& p = record.drive_kpa;
-  const double standing_kpa = 5e-4 * record.largest_kpa + 4 * std::sqrt(2.0) * drive_noise_kpa(p);
+  const double standing_kpa = 5e-4 * record.largest_kpa + 4 * std::sqrt(2.0) * third_difference_noise(p);
   const double zero_kpa = 0.02 * record.largest_kpa;
   std::size_t before = 0, after = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
