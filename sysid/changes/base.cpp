@@ -169,7 +169,8 @@ std::vector<Fitted> fit_all(const std::vector<Candidate>& all, const std::vector
   return fitted;
 }
 
-/// Takes the first candidate, unless a later one predicts units to which neither was fitted better.
+/// The first candidate is the base. A later one replaces it only if it predicts left-out units better. A
+/// regulator is fitted to all units: of its model only what is behind it is fitted without a unit.
 void choose(Base& base, const std::vector<Candidate>& all, const std::vector<Record>& records,
             const BaseOptions& options) {
   const std::vector<EchoKind> kinds = kinds_for(base.judged, base.drive);

@@ -43,7 +43,7 @@ struct Base {
   double temperature_c = 20;  ///< of the healthy logs, mean
   double gain_per_c = 0;      ///< that the healthy logs show
   double noise_mm = 0;        ///< of the readings, sample to sample
-  Units units{{}};            ///< of the healthy records
+  Units units;                ///< of the healthy records
   double left_mm = 0;         ///< what the base leaves of units that are left out, about their means
   double span_mm = 0;
   double gain_spread = 0;  ///< from unit to unit of the healthy logs, relative

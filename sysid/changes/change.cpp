@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "base/numbers.h"
@@ -221,21 +220,6 @@ class Judge {
     return required_at(appears, conditions);
   }
 
-  /// Whether the error is smaller where the cause must act.
-  [[nodiscard]] bool is_shown(const std::vector<bool>& required, PairedLosses losses,
-                              const std::vector<std::size_t>& blocks, const Eigen::VectorXd& without,
-                              const Eigen::VectorXd& with_it) const {
-    for (auto* const list : {&losses.worse, &losses.better, &losses.rows})
-      std::fill(list->begin(), list->end(), 0);
-    for (std::size_t i = 0; i < required.size(); ++i) {
-      if (!required[i]) continue;
-      losses.worse[blocks[i]] += square(without(static_cast<Eigen::Index>(i)));
-      losses.better[blocks[i]] += square(with_it(static_cast<Eigen::Index>(i)));
-      losses.rows[blocks[i]] += 1;
-    }
-    return is_better(compare(losses, 0, options_.seed));
-  }
-
   /// Whether later units to which an effect was not fitted are predicted worse with it. Units in which it
   /// does not act say nothing: half of a run need not reach the end of a sensor.
   [[nodiscard]] bool predicts_worse(const LaterReadings& readings, const Effect& effect,
@@ -279,8 +263,8 @@ class Judge {
     claim.error_without = readings.plain_rms(found);
     claim.error_with = readings.plain_rms(all);
     claim.predicts_worse = predicts_worse(readings, fitted.effect, found);
-    claim.shown_there = is_shown(required, paired_losses(readings, without, scored.fit.white),
-                                 blocks_of(readings), without, scored.fit.white);
+    claim.shown_there =
+        is_better(compare(paired_losses(readings, without, scored.fit.white, &required), 0, options_.seed));
     return veto_of(claim);
   }
 

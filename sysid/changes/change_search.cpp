@@ -106,11 +106,12 @@ std::vector<std::size_t> blocks_of(const LaterReadings& readings) {
 }
 
 PairedLosses paired_losses(const LaterReadings& readings, const Eigen::VectorXd& worse,
-                           const Eigen::VectorXd& better) {
+                           const Eigen::VectorXd& better, const std::vector<bool>* rows) {
   const std::vector<std::size_t> blocks = blocks_of(readings);
   const std::vector<double> none(blocks.empty() ? 0 : blocks.back() + 1);
   PairedLosses losses{none, none, none};
   for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (rows != nullptr && !(*rows)[i]) continue;
     losses.worse[blocks[i]] += square(worse(static_cast<Eigen::Index>(i)));
     losses.better[blocks[i]] += square(better(static_cast<Eigen::Index>(i)));
     losses.rows[blocks[i]] += 1;

@@ -26,8 +26,8 @@ struct ScoredEffect {
 /// The same for each row of the readings.
 [[nodiscard]] double price_per_row(const LaterReadings& readings, const Effect& effect);
 
-/// Whether an effect does not improve the readings by more than its tolerance beyond what another one does,
-/// so that the data cannot tell them apart. Causes that are declared to give the same readings always tie.
+/// Whether the data cannot tell two effects apart: the best one improves the readings beyond the other one by
+/// no more than its tolerance. Causes that are declared to give the same readings always tie.
 using Ties = std::function<bool(const ScoredEffect& best, const ScoredEffect& other)>;
 [[nodiscard]] Ties ties_in(const LaterReadings& readings, std::uint64_t seed);
 
@@ -47,7 +47,9 @@ void put_fewest_numbers_first(std::vector<ScoredEffect>& ranked, const Ties& tie
 [[nodiscard]] std::vector<std::size_t> blocks_of(const LaterReadings& readings);
 
 /// Whitened squares of two residuals over these blocks.
+/// @param rows  of the readings that count, one flag each; nullptr: all.
 [[nodiscard]] PairedLosses paired_losses(const LaterReadings& readings, const Eigen::VectorXd& worse,
-                                         const Eigen::VectorXd& better);
+                                         const Eigen::VectorXd& better,
+                                         const std::vector<bool>* rows = nullptr);
 
 }  // namespace softgrip::sysid

@@ -11,6 +11,7 @@
 
 #include "base/statistics.h"
 #include "sysid/evidence/limits.h"
+#include "sysid/fitting/start_estimate.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "base/statistics.h"
+#include "sysid/fitting/start_estimate.h"
 
 namespace softgrip::sysid {
 namespace {

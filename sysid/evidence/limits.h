@@ -17,9 +17,6 @@ inline constexpr int bootstrap_draws = 500;
 inline constexpr std::size_t most_units = 6;
 /// Within a run, blocks of this length are drawn together [s]: longer than what a finger forgets at once.
 inline constexpr double block_s = 5;
-/// The beginning of a run shows what the run before has left, not what the finger is: so much of it is not
-/// judged [share of the run], and at least so long [s].
-inline constexpr double begin_share = 0.05, least_begin_s = 2;
 /// A pressure within this share of its range above the lowest is no pressure: the resolution of a valve near
 /// zero.
 inline constexpr double rest_share = 0.05;
@@ -27,8 +24,8 @@ inline constexpr double rest_share = 0.05;
 inline constexpr std::size_t fewest_bins = 5;
 /// A command counts as one that follows the readings at this probability: one log in a thousand by chance.
 inline constexpr double feedback_probability = 0.999;
-/// A course that was planned differs from a parabola through its neighbours by less than this share of its
-/// spread: it has the resolution of its file. A controller adds the noise of the readings.
+/// The noise of a planned command, as a share of its spread, is below this: only the resolution of its file
+/// roughens it. A controller adds the noise of the readings.
 inline constexpr double planned_roughness = 1e-4;
 /// The phase of a loop counts as odd within 30 degrees of 90: a third of the way to 180.
 inline constexpr double odd_phase_ratio = 2.0 / 3;

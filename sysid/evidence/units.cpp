@@ -1,17 +1,11 @@
 #include "sysid/evidence/units.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "sysid/evidence/limits.h"
+#include "sysid/logs/division.h"
 
 namespace softgrip::sysid {
-
-double begin_s(const Record& record) noexcept {
-  const double length_s = record.length_s();
-  return std::min(0.5 * length_s, std::max(limits::begin_share * length_s, limits::least_begin_s));
-}
 
 Units::Units(const std::vector<Record>& records) {
   for (const Record& record : records) middle_s_.push_back(record.length_s() / 2);
@@ -32,13 +26,9 @@ std::vector<Record> Units::without(const std::vector<Record>& records, std::size
     if (kept != nullptr) kept->push_back(r);
     if (unit >= count_ || are_runs()) continue;
     Record& record = rest.back();
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (unit_of(r, record.time_s[i] - record.time_s.front()) != unit ||
-          !std::isfinite(record.reading_mm[i]))
-        continue;
-      record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-      record.readings -= 1;
-    }
+    std::size_t middle = 0;
+    while (middle < record.size() && unit_of(r, record.time_s[middle] - record.time_s.front()) == 0) ++middle;
+    hide_readings(record, unit == 0 ? 0 : middle, unit == 0 ? middle : record.size());
   }
   return rest;
 }

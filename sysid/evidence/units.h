@@ -8,10 +8,6 @@
 
 namespace softgrip::sysid {
 
-/// How long the beginning of a record is [s]: limits::begin_share of it, limits::least_begin_s at least, and
-/// half of the record at most. It is used to find the state in which a run begins and is not judged.
-[[nodiscard]] double begin_s(const Record& record) noexcept;
-
 /// A unit is a run. Of many runs, a unit is a few of them. Of a single run the units are its two halves:
 /// within one run nothing shows how runs differ.
 class Units {

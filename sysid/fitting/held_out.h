@@ -20,7 +20,7 @@ using Refit = std::function<FitPoint(const std::vector<Record>& rest)>;
 
 /// What every block loses under the model that `refit` finds without the block's fold. One that runs off
 /// where it was not fitted loses no more than one that predicts nothing, the square of its record's span:
-/// what it lost would stand for nothing but itself in every mean.
+/// a larger loss would dominate every mean.
 [[nodiscard]] BlockLosses held_out_losses(const std::vector<Record>& records, const Division& division,
                                           const Refit& refit);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Losses of two models on the same blocks, compared in pairs: the only place that draws blocks (bootstrap).
+// Losses of two models on the same blocks, compared in pairs by draws of whole blocks (bootstrap).
+// sysid/evidence/comparison.h compares by weights instead.
 
 #include <cstddef>
 #include <cstdint>

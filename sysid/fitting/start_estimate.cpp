@@ -258,10 +258,13 @@ class StartSearch {
 
 }  // namespace
 
+double begin_s(const Record& unit) noexcept {
+  return std::min(std::max(used_share * unit.length_s(), used_at_least_s),
+                  used_at_most_share * unit.length_s());
+}
+
 std::size_t samples_for_start(const Record& record) {
-  const double used_s = std::min(std::max(used_share * record.length_s(), used_at_least_s),
-                                 used_at_most_share * record.length_s());
-  const double until_s = record.time_s.front() + used_s;
+  const double until_s = record.time_s.front() + begin_s(record);
   return std::max<std::size_t>(
       1, static_cast<std::size_t>(std::upper_bound(record.time_s.begin(), record.time_s.end(), until_s) -
                                   record.time_s.begin()));

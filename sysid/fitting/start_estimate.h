@@ -26,7 +26,9 @@
 
 namespace softgrip::sysid {
 
-/// The samples that the rule may use: [0, n). The first at least.
+/// How long the beginning of a unit is [s]: 5 % of it, 2 s at least, and half of the unit at most.
+[[nodiscard]] double begin_s(const Record& unit) noexcept;
+/// The samples of the beginning, which the rule may use: [0, n). The first at least.
 [[nodiscard]] std::size_t samples_for_start(const Record& record);
 
 /// Where the unit begins. Without a finite reading among the first samples it begins at rest and without

@@ -118,8 +118,6 @@ constexpr Cause cause() {
   if constexpr (requires { C::advice; }) cause.advice = C::advice;
   if constexpr (requires { C::twin; }) cause.twin = C::twin;
   if constexpr (requires { C::counterparts; }) cause.counterparts = C::counterparts;
-  if constexpr (requires { C::contains; }) cause.contains = C::contains;
-  if constexpr (requires { C::limit; }) cause.limit = C::limit;
   if constexpr (requires { C::confounded_with; }) cause.confounded_with = C::confounded_with;
   if constexpr (requires { C::is_stop; }) cause.is_stop = C::is_stop;
   if constexpr (requires { C::parts_twins; }) cause.parts_twins = C::parts_twins;

@@ -44,9 +44,7 @@ struct Cause {
   bool found_by_fitting = true;
   Column needs = Column::none;
   std::span<const Advice> advice;
-  std::string_view twin;      ///< id; empty: none
-  std::string_view contains;  ///< id; empty: none
-  std::string_view limit;     ///< id; empty: none
+  std::string_view twin;  ///< id; empty: none
   std::span<const std::string_view> counterparts;
   std::span<const std::string_view> confounded_with;
   bool is_stop = false;

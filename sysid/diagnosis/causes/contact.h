@@ -9,8 +9,6 @@ namespace softgrip::sysid::causes {
 struct Contact : FormOf<model::Contact> {
   static constexpr std::array advice{Advice::change_load};
   static constexpr std::array<std::string_view, 2> counterparts{"sensor_saturation", "sensor_nonlinearity"};
-  /// Where nothing gives way any more.
-  static constexpr std::string_view limit = "sensor_saturation";
   static constexpr bool is_stop = true;
   static constexpr WhenChanged when_changed{
       "something holds the finger back from a position on",

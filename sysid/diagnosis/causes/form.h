@@ -27,12 +27,6 @@
 //   static constexpr Column needs = ...;                   a column without which nothing can be told
 //   static constexpr std::array advice{Advice::...};       what tells it from others where no waveform does
 //   static constexpr std::string_view twin = "...";        gives the same readings whatever the command
-//   static constexpr std::string_view contains = "...";    looks like this one, which has fewer numbers,
-//   where it
-//                                                          is small
-//   static constexpr std::string_view limit = "...";       becomes this one, which has a number less, at the
-//   end
-//                                                          of that number's range
 //   static constexpr std::array<std::string_view, N> counterparts{...};
 //       what the sensor may be instead of the actuator or the load, or the reverse, as asked
 //   static constexpr std::array<std::string_view, N> confounded_with{...};
@@ -41,12 +35,13 @@
 //   static constexpr bool parts_twins = true;
 //       remembers, between actuator and sensor: twins before it and behind it differ
 //   static constexpr bool is_ideal = true;
-//       no mechanism is quite like it: of causes that chance alone sets apart as changes, the other is named
+//       no mechanism is quite like it: among causes that tie and have as many numbers, the other one is named
 //   static constexpr std::string_view sensor_shape = "...";
 //       a sensor without memory, in words: a gauge shows it
-//   static constexpr Appears appears = ...;                where its effect must appear
-//   (evidence/signature.h) static constexpr bool found_by_fitting = false;        no trajectory shows it: it
-//   has no starts
+//   static constexpr Appears appears = ...;
+//       where its effect must appear (evidence/signature.h)
+//   static constexpr bool found_by_fitting = false;
+//       no trajectory shows it: it has no starts
 
 #include <array>
 #include <cstddef>

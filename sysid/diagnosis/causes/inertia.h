@@ -8,8 +8,6 @@ namespace softgrip::sysid::causes {
 
 struct Inertia : FormOf<model::Inertia> {
   static constexpr bool parts_twins = true;
-  /// A mode faster than the data's samples only delays, and slow motion feels it as a lag.
-  static constexpr std::string_view contains = "transport_delay", limit = "sensor_lag";
   static constexpr WhenChanged when_changed{
       "the finger rings",
       {"Tap the finger and look whether its mounting or an added mass swings.",

@@ -11,8 +11,6 @@ namespace softgrip::sysid::causes {
 struct RateDependentHysteresis {
   static constexpr std::string_view id = "rate_dependent_hysteresis";
   static constexpr std::string_view title = "Rate-dependent hysteresis";
-  /// A loop that relaxes before the next sample is a lag.
-  static constexpr std::string_view contains = "sensor_lag";
   static constexpr Appears appears = Appears::moving;
   static constexpr WhenChanged when_changed{
       "fast motion costs more pressure than slow motion",

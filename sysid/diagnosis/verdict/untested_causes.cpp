@@ -26,8 +26,8 @@ void reject_drift(Diagnosis& d) {
   d.verdict = d.causes.empty() ? Verdict::unexplained : Verdict::partly_explained;
   d.warnings.emplace_back(
       "A slow change of unknown origin: no log contains a rest without pressure, so a drift of the sensor "
-      "cannot be told "
-      "from a change of the finger");
+      "cannot be "
+      "told from a change of the finger");
 }
 
 NamedCause sticking_valve() {

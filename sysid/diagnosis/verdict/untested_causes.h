@@ -7,13 +7,10 @@
 namespace softgrip::sysid {
 
 /// Corrects what a search has named.
-/// - A drift of the sensor shows itself at rest without pressure. If no log holds such a rest, it is not
-/// named: an error
-///   that changes slowly is then of unknown origin. It is moved to `partial` and to `not_tested`.
-/// - In a closed loop the command contains the noise of the readings. If the phase of each such loop says
-/// that the valve
-///   sticks (sysid/evidence/loop_phase.h), valve_deadband is named, and the causes of the search are moved to
-///   `partial`.
+/// A drift of the sensor shows at rest without pressure. If no log contains such a rest, the drift is moved
+/// from `causes` to `partial` and listed in `not_tested`. If every log is a closed loop, a warning says so.
+/// If the phase of each of them is that of a sticking valve (sysid/evidence/loop_phase.h), valve_deadband is
+/// named and the causes of the search are moved to `partial`.
 void correct_by_logs(Diagnosis& diagnosis, const std::vector<Log>& logs);
 
 }  // namespace softgrip::sysid

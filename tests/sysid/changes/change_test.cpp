@@ -48,6 +48,17 @@ TEST(Change, AnotherGainIsAgeingInPercent) {
   EXPECT_EQ(d.causes[0].id, "ageing");
   EXPECT_EQ(d.causes[0].size.unit, "%");
   EXPECT_NEAR(d.causes[0].size.value, 3, 0.4);
+  // What was compared is stated, and why the others were rejected.
+  const JudgedChange& judged = d.readings.back();
+  EXPECT_EQ(judged.healthy_runs, logs_of({}, 1).size());
+  EXPECT_GT(judged.healthy_mm, 0);
+  EXPECT_GT(judged.allowed_mm, judged.healthy_mm);
+  std::size_t rejected = 0;
+  for (const ChangeRival& tried : judged.tried) {
+    if (!tried.rejected.empty()) ++rejected;
+    EXPECT_FALSE(tried.id == "ageing" && !tried.rejected.empty()) << tried.rejected;
+  }
+  EXPECT_GT(rejected, 0U);
 }
 
 TEST(Change, AGainThatFollowsTheTemperatureNeedNotBeWhatItWasOnTheHealthyDay) {

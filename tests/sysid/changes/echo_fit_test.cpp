@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sysid/fitting/start_estimate.h"
+
 namespace softgrip::sysid::echo_fit_test {
 namespace {
 
@@ -60,6 +62,27 @@ TEST(EchoFit, OfWhatDoesNotFollowTheDriveIsNone) {
     else
       EXPECT_EQ(echo.left[0][b], model[0][b]) << b;
   }
+}
+
+/// A model that was fitted to a unit says nothing of how it predicts that unit.
+TEST(EchoFit, EachUnitIsJudgedByTheModelThatWasFittedWithoutIt) {
+  const std::vector<Record> records{waving()};
+  const Units units(records);
+  const Binned whole = left_of(waving(), 0);
+  LeftByUnit left;
+  for (std::size_t fitted_without = 0; fitted_without <= units.count(); ++fitted_without) {
+    left.push_back(whole);
+    for (double& v : left.back()[0]) v *= 2 + static_cast<double>(fitted_without);
+  }
+  const FittedEcho echo = fit_echo(records, units, EchoKind::finger, bin_s, 22, {left}, 1).front();
+  ASSERT_EQ(echo.weights.size(), 0);
+  std::size_t judged = 0;
+  for (std::size_t b = 0; b < whole[0].size(); ++b) {
+    if (std::isnan(echo.left[0][b])) continue;
+    EXPECT_EQ(echo.left[0][b], left[units.unit_of(0, (static_cast<double>(b) + 0.5) * bin_s)][0][b]) << b;
+    ++judged;
+  }
+  EXPECT_GT(judged, whole[0].size() / 2);
 }
 
 TEST(EchoFit, OfSeveralModelsIsThatOfEach) {

@@ -54,6 +54,7 @@ TEST(Comparison, TheSameSeedGivesTheSameAnswer) {
   const PairedLosses paired = losses(0.2, 1, 12, 3);
   EXPECT_EQ(compare(paired, 0, 7).share, compare(paired, 0, 7).share);
   EXPECT_EQ(compare(paired, 0, 7).lower, compare(paired, 0, 7).lower);
+  EXPECT_NE(compare(paired, 0, 7).lower, compare(paired, 0, 8).lower);
 }
 
 }  // namespace

@@ -41,6 +41,13 @@ TEST(Signature, EveryConditionHasARecordingThatMeetsIt) {
   for (const Appears appears :
        {Appears::anywhere, Appears::at_rest, Appears::held, Appears::moving, Appears::displaced})
     EXPECT_EQ(recording_for(appears).substr(0, 7), "record ");
+  const auto contains = [](Appears appears, std::string_view words) {
+    return recording_for(appears).find(words) != std::string_view::npos;
+  };
+  EXPECT_TRUE(contains(Appears::at_rest, "rest without pressure"));
+  EXPECT_TRUE(contains(Appears::held, "holds a pressure"));
+  EXPECT_TRUE(contains(Appears::moving, "rates"));
+  EXPECT_TRUE(contains(Appears::displaced, "highest pressure"));
 }
 
 }  // namespace

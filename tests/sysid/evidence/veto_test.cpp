@@ -23,6 +23,10 @@ TEST(Veto, EachConditionRejects) {
   EXPECT_EQ(veto_of(claim), Veto::size_uncertain);
   claim.size = Interval{-29, -27};
   EXPECT_EQ(veto_of(claim), Veto::size_beyond_range);
+  claim.size = Interval{8, 12};
+  EXPECT_EQ(veto_of(claim), Veto::none) << "a size within the range is possible";
+  claim.size.reset();
+  EXPECT_EQ(veto_of(claim), Veto::none);
   claim = sound();
   claim.error_with = 1.03;
   EXPECT_EQ(veto_of(claim), Veto::error_not_reduced);
