@@ -239,23 +239,24 @@ class Converter {
     }
     std::vector<double>& time = samples[Role::time];
     const Source& source = sources_[static_cast<std::size_t>(Role::time)];
-    if (!time.empty()) continue_clock(time, source.factor);
+    if (!time.empty()) continue_clock(time, source.factor, rows);
     for (double& value : time) value = source.factor * value + source.offset;
     for (std::size_t i = 0; i < rows.size() && time.size() < rows.size(); ++i)
       time.push_back(static_cast<double>(rows[i]) / *mapping_.rate_hz);
     return samples;
   }
 
-  void continue_clock(std::vector<double>& time, double unit_s) {
+  /// @param rows  of the table, one for each time.
+  void continue_clock(std::vector<double>& time, double unit_s, const std::vector<std::size_t>& rows) {
     const auto overflow = continue_overflows(time, unit_s);
     if (!overflow) return;
-    const bool has_lines = overflow->first < table_.line.size();
-    remarks_.notes.push_back(
-        "the clock overflows at " + significant(overflow->period, 10) + ", " +
-        std::to_string(overflow->count) + (overflow->count == 1 ? " time" : " times") + ", first in " +
-        (has_lines ? "line " : "sample ") +
-        std::to_string(has_lines ? table_.line[overflow->first] : static_cast<int>(overflow->first) + 1) +
-        ": it is continued");
+    const std::size_t row = rows[overflow->first];
+    const bool has_lines = row < table_.line.size();
+    remarks_.notes.push_back("the clock overflows at " + significant(overflow->period, 10) + ", " +
+                             std::to_string(overflow->count) + (overflow->count == 1 ? " time" : " times") +
+                             ", first in " + (has_lines ? "line " : "sample ") +
+                             std::to_string(has_lines ? table_.line[row] : static_cast<int>(row) + 1) +
+                             ": it is continued");
   }
 
   /// A value at the time of its own column.
@@ -278,7 +279,8 @@ class Converter {
     ForeignSamples samples;
     if (!good) return samples;
     remarks_.account.rows += (clocks.size() - 1) * table_.rows();
-    remarks_.account.left_out[static_cast<std::size_t>(LeftOut::bad_line)] *= clocks.size();
+    // Lines that could not be split into cells are not in the table: they have one fate.
+    remarks_.account.leave_out(LeftOut::bad_line, (clocks.size() - 1) * (table_.rows() - rows.size()));
     leave_out_empty(*of_roles, entries);
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
       return a.time_s < b.time_s || (std::isfinite(a.time_s) && !std::isfinite(b.time_s));

@@ -74,10 +74,14 @@ class LvmReader {
     return found == header.end() || found->second.empty() ? std::string() : found->second.front();
   }
 
+  /// With a point for the decimal mark of the file.
+  [[nodiscard]] std::string pointed(std::string text) const {
+    if (decimal_ == ',') std::replace(text.begin(), text.end(), ',', '.');
+    return text;
+  }
+
   [[nodiscard]] double number(const std::string& text) const {
-    std::string pointed = text;
-    if (decimal_ == ',') std::replace(pointed.begin(), pointed.end(), ',', '.');
-    return to_number(pointed).value_or(absent);
+    return to_number(pointed(text)).value_or(absent);
   }
 
   Header header(const std::vector<std::string_view>& lines, std::size_t& at) {
@@ -110,7 +114,7 @@ class LvmReader {
     const double x0 = number(first_of(section, "X0"));
     const double delta = number(first_of(section, "Delta_X"));
     const std::size_t begin = table_.rows();
-    for (std::size_t row = 0; at < lines.size(); ++at) {
+    for (std::size_t row = 0; at < lines.size() && good_; ++at) {
       const std::string_view line = trimmed(lines[at]);
       if (line.empty()) continue;
       if (line.starts_with("Channels")) break;
@@ -163,16 +167,17 @@ class LvmReader {
 
   void add_row(std::string_view line, std::size_t number_of_line, double counted_x) {
     ++table_.account.rows;
+    // The last line of a recording that was interrupted may be short, no other.
+    if (short_line_ != 0 && !options_.skip_bad_lines) {
+      refuse(short_line_, "too few cells; --skip-bad-lines leaves such lines out");
+      return;
+    }
     const std::vector<std::string> cells = cells_of(line, separator_);
     if (cells.size() < table_.columns.size()) {
       table_.account.leave_out(options_.skip_bad_lines ? LeftOut::bad_line : LeftOut::cut_off_line);
-      if (!options_.skip_bad_lines && short_line_ != 0)
-        refuse(short_line_, "too few cells; --skip-bad-lines leaves such lines out");
       short_line_ = number_of_line;
       return;
     }
-    if (short_line_ != 0 && !options_.skip_bad_lines)
-      refuse(short_line_, "too few cells; --skip-bad-lines leaves such lines out");
     for (std::size_t i = 0; i < table_.columns.size(); ++i) add_cell(i, cells[i], number_of_line, counted_x);
     table_.line.push_back(static_cast<int>(number_of_line));
   }
@@ -180,9 +185,7 @@ class LvmReader {
   void add_cell(std::size_t i, const std::string& text, std::size_t line, double counted_x) {
     TableColumn& column = table_.columns[i];
     const bool counts = column.name.starts_with("X_Value") && (text.empty() || x_columns_ == "no");
-    std::string pointed = text;
-    if (decimal_ == ',') std::replace(pointed.begin(), pointed.end(), ',', '.');
-    const CellValue cell = cell_value(pointed, options_.missing);
+    const CellValue cell = cell_value(pointed(text), options_.missing);
     if (cell.missing_word >= 0) ++table_.missing_cells[static_cast<std::size_t>(cell.missing_word)];
     if (cell.kind == CellKind::text || cell.kind == CellKind::moment) {
       column.bad_rows.push_back(column.values.size());

@@ -194,5 +194,56 @@ TEST(Propose, LeavesWhatIsGivenAlone) {
   EXPECT_EQ(proposal.guessed, (std::vector<Role>{Role::time, Role::displacement}));
 }
 
+/// Line 22 cannot be split into the cells of the header, and the cell of line 40 is no number.
+TEST(Convert, LinesThatAreLeftOutHaveAFateBesideTwoTimes) {
+  const std::string text = text_of("t_set_s,set_kpa,t_tip_s,tip_mm", [](int i, double p, double y) {
+    if (i == 20) return std::string("0.2,3,0.2,4,5");
+    const std::string tip = i == 38 ? "broken" : shortest(y);
+    return shortest(0.01 * i) + "," + shortest(p) + "," + shortest(0.01 * i + 0.003 + 0.0001 * (i % 7)) +
+           "," + tip;
+  });
+  Mapping mapping;
+  mapping[Role::time].columns = {"t_set_s", "t_tip_s"};
+  mapping[Role::command].columns = {"set_kpa"};
+  mapping[Role::displacement].columns = {"tip_mm"};
+  mapping.skip_bad_lines = true;
+  document::Problems problems;
+  TableOptions options;
+  options.skip_bad_lines = true;
+  const auto table = parse_text_table("t.csv", text, options, problems);
+  ASSERT_TRUE(table) << problems.format();
+  const auto result = convert(*table, propose(*table, mapping, true).mapping, problems);
+  ASSERT_TRUE(result) << problems.format();
+  EXPECT_TRUE(result->account.balanced());
+  // Each row of the table counts once for each of its times, the line that is no row once.
+  EXPECT_EQ(result->account.left_out[static_cast<std::size_t>(LeftOut::bad_line)], 3U);
+}
+
+/// @param broken  data row with a cell that is no number, or -1.
+std::string note_of_overflow(int broken) {
+  const std::string text = text_of("t_ms,set_kpa,tip_mm", [broken](int i, double p, double y) {
+    return std::to_string((i * 10 + 65000) % 65536) + "," + shortest(p) + "," +
+           (i == broken ? "x" : shortest(y));
+  });
+  Mapping mapping = mapping_of("t_ms", "set_kpa", "tip_mm");
+  mapping.skip_bad_lines = broken >= 0;
+  document::Problems problems;
+  TableOptions options;
+  options.skip_bad_lines = broken >= 0;
+  const auto table = parse_text_table("t.csv", text, options, problems);
+  EXPECT_TRUE(table) << problems.format();
+  const auto result = convert(*table, propose(*table, mapping, true).mapping, problems);
+  EXPECT_TRUE(result) << problems.format();
+  for (const std::string& note : result ? result->notes : std::vector<std::string>{}) {
+    if (note.find("overflows") != std::string::npos) return note;
+  }
+  return {};
+}
+
+TEST(Convert, TheLineOfAnOverflowIsThatOfTheFile) {
+  EXPECT_NE(note_of_overflow(-1).find("line 56"), std::string::npos) << note_of_overflow(-1);
+  EXPECT_EQ(note_of_overflow(10), note_of_overflow(-1)) << "a row before it was left out";
+}
+
 }  // namespace
 }  // namespace softgrip::sysid::conversion_test

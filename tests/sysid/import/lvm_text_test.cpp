@@ -66,6 +66,12 @@ TEST(Lvm, WhatDiffersOrIsCutOffIsNamed) {
   document::Problems short_line;
   EXPECT_FALSE(
       read_lvm("t.lvm", header("One") + section("12:00:00", "0\t1\t2\n0,5\n1\t3\t4\n"), {}, short_line));
+  EXPECT_NE(short_line.format().find("too few cells"), std::string::npos);
+  document::Problems many;
+  std::string rows = "0\t1\t2\n0,5\n";
+  for (int i = 1; i < 50; ++i) rows += std::to_string(i) + "\t3\t4\n";
+  EXPECT_FALSE(read_lvm("t.lvm", header("One") + section("12:00:00", rows), {}, many));
+  EXPECT_EQ(many.format(), short_line.format()) << "one line is one problem";
   EXPECT_FALSE(is_lvm("LabVIEW Measurement\nx\n"));
 }
 
