@@ -109,9 +109,9 @@ endif()
 softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/import sysid/diagnosis/gauge
   LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
-softgrip_room(tools/client USES base document control/tick rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
+softgrip_room(tools/client USES base document control/tick control/elements rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 # What stands in front of the daemon's socket, in processes of their own.
-softgrip_room(tools/plc USES base drivers/modbus_server rig/plc_file tools/client
+softgrip_room(tools/plc USES base control/elements drivers/modbus_server rig/plc_file tools/client
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/web/metrics USES base LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/web/access USES base drivers/modbus_server rig/web_file LIBRARIES fmt::fmt)
@@ -142,7 +142,7 @@ target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::mati
 # What moves a rig by hand: doctor and calibrate.
 softgrip_room(tools/commissioning
   USES base document model model/file control/elements control/feedforward drivers/board rig/plc_file rig/web_file rig
-       daemon/loop daemon/recording daemon/service tools/command_line
+       daemon/loop daemon/recording tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/investigation
   USES base document model model/file control/elements control/feedforward control/tuning simulation/plant rig

@@ -195,8 +195,9 @@ void Bus::note_success(Nanoseconds duration) noexcept {
 /// Once a session: a client that comes and goes must not fill the log. Where only writes feed the watchdog
 /// another client that writes is found at the outputs.
 void Bus::note_clients() noexcept {
+  if (told_clients_ || !board_.fed_by_readers()) return;
   const unsigned clients = board_.clients();
-  if (clients < 2 || told_clients_ || !board_.fed_by_readers()) return;
+  if (clients < 2) return;
   told_clients_ = true;
   std::array<char, 12> count{};
   std::snprintf(count.data(), count.size(), "%u", clients);

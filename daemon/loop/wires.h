@@ -124,8 +124,8 @@ struct Wires {
   Ring<PanelEvent> panel_events{64};
   Ring<control::Request> vents{16};  ///< taken before ...
   Ring<control::Request> stops{16};  ///< ... these, these before ...
-  /// ... these, each the only one of its start: as many as starts can wait, and some that were taken just
-  /// now.
+  /// ... these: stops of one named start, at most one for each. There is room for every start that waits, and
+  /// for some that were taken a moment ago.
   Ring<control::Request> named_stops{128};
   Ring<control::Request> requests{64};
   std::atomic<control::State> state{control::State::starting};  ///< of the last tick

@@ -25,7 +25,8 @@ class Entrance {
   [[nodiscard]] int descriptor(Nanoseconds now) const noexcept {
     return now < rests_until_ ? -1 : listener_.get();
   }
-  /// Returns the next client as accept_client() does; empty if no client waits, or if the listener rests.
+  /// Returns the next client as accept_client() does; empty if no client waits or none can be
+  /// accepted.
   [[nodiscard]] Descriptor accept(Nanoseconds now);
   /// True if the last accept() found no free descriptor. The caller should close what it can.
   [[nodiscard]] bool short_of_descriptors() const noexcept { return short_; }

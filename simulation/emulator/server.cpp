@@ -135,7 +135,7 @@ void Server::accept_modbus(std::size_t link) {
 }
 
 void Server::count_clients() {
-  for (std::size_t link = 0; link < std::max<std::size_t>(sockets_.modbus.size(), 1); ++link) {
+  for (std::size_t link = 0; link < std::max<std::size_t>(entrances_.size(), 1); ++link) {
     const auto clients = std::count_if(clients_.begin(), clients_.end(),
                                        [link](const Client& client) { return client.link == link; });
     emulator_.count_clients(static_cast<std::size_t>(clients), link);

@@ -8,6 +8,9 @@
 #include <random>
 #include <string_view>
 
+#include "control/elements/fault.h"
+#include "tools/client/json_fields.h"
+
 namespace softgrip::tools {
 
 namespace {
@@ -15,16 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view capability = "start_id";
-
-Json error_in(const Json& reply) {
-  const auto error = reply.find("error");
-  return error != reply.end() && error->is_object() ? *error : Json::object();
-}
-
-std::string text_in(const Json& object, const char* key) {
-  const auto text = object.find(key);
-  return text != object.end() && text->is_string() ? text->get<std::string>() : std::string();
-}
 
 bool accepts(const Json& reply) {
   const auto ok = reply.find("ok");
@@ -60,17 +53,14 @@ Json stop_of(const std::string& start_id) {
 }
 
 bool confirms_stop(const Json& reply) {
-  if (accepts(reply)) return true;
-  const Json error = error_in(reply);
-  const auto refusal = error.find("refusal");
-  return refusal != error.end() && refusal->is_object() &&
-         text_in(*refusal, "name") == "named_start_not_running";
+  return accepts(reply) || text_at(object_at(object_at(reply, "error"), "refusal"), "name") ==
+                               control::name_of(control::RefusalCode::named_start_not_running);
 }
 
 bool refuses_start(const Json& reply) {
   constexpr std::array<std::string_view, 7> refusals{"refused",   "sequence_refused", "busy",       "owned",
                                                      "abandoned", "not_allowed",      "bad_request"};
-  const std::string code = text_in(error_in(reply), "code");
+  const std::string code = text_at(object_at(reply, "error"), "code");
   return !accepts(reply) && std::find(refusals.begin(), refusals.end(), code) != refusals.end();
 }
 

@@ -186,7 +186,7 @@ bool nests_too_deep(std::string_view line) {
 }  // namespace
 
 tl::expected<Json, std::string> parse_reply(std::string_view line) {
-  // First: the parser and whoever copies what it made use the stack.
+  // Before parsing: to copy and to print JSON takes stack for each level.
   if (reply_shape::nests_too_deep(line)) {
     return tl::unexpected("a line nests deeper than " + std::to_string(reply_shape::deepest) + " levels");
   }

@@ -17,6 +17,7 @@
 #include "base/enumerated.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
+#include "daemon/service/signals.h"
 #include "tools/client/daemon_client.h"
 #include "tools/command_line/configuration.h"
 #include "tools/command_line/output.h"
@@ -25,7 +26,6 @@
 #include "tools/commissioning/procedure.h"
 #include "tools/commissioning/rig_update.h"
 #include "tools/commissioning/snippet.h"
-#include "tools/commissioning/stop_signals.h"
 #include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
@@ -235,8 +235,8 @@ ExitCode carry_out(const rig::RigFile& rig, const CalibrateOptions& options,
   if (!lock) return fail(ExitCode::state_refused, lock.error());
   const MonotonicClock clock;
   const auto board = daemon::make_board(rig, clock);
-  StopSignals signals;
-  const StopRequest stop = [&signals] { return signals.came(); };
+  daemon::Signals signals;
+  const StopRequest stop = [&signals] { return signals.first() != 0; };
   MotionSession session(rig, *board, clock, stop);
   if (const auto connected = session.connect(); !connected) return fail(ExitCode::io, connected.error().text);
   std::fprintf(stderr, "%s\nchannel `%s`; Ctrl-C stops and vents\n", board->describe().c_str(),

@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
+#include "daemon/service/signals.h"
 #include "tools/client/daemon_client.h"
 #include "tools/client/daemon_command.h"
 #include "tools/client/last_health.h"
@@ -21,7 +22,6 @@
 #include "tools/commissioning/gateway_examination.h"
 #include "tools/commissioning/machine.h"
 #include "tools/commissioning/rig_examination.h"
-#include "tools/commissioning/stop_signals.h"
 
 namespace softgrip::tools {
 namespace {
@@ -87,9 +87,9 @@ void look_myself(const rig::RigFile& rig, bool move, doctor::Findings& findings)
   const auto board = daemon::make_board(rig, clock);
   doctor::examine_description(rig, *board, findings);
   doctor::examine_gpio(rig, findings);
-  StopSignals signals;
+  daemon::Signals signals;
   doctor::examine_rig(
-      rig, *board, clock, [&signals] { return signals.came(); }, move, {}, findings);
+      rig, *board, clock, [&signals] { return signals.first() != 0; }, move, {}, findings);
 }
 
 ExitCode conclude(const DoctorOptions& options, const doctor::Examination& examination,

@@ -8,10 +8,10 @@
 #include "base/numbers.h"
 #include "daemon/service/board_lock.h"
 #include "daemon/service/daemon.h"
+#include "daemon/service/signals.h"
 #include "tools/client/daemon_client.h"
 #include "tools/commissioning/motion_session.h"
 #include "tools/commissioning/procedure.h"
-#include "tools/commissioning/stop_signals.h"
 #include "tools/commissioning/terminal_operator.h"
 
 namespace softgrip::tools {
@@ -41,8 +41,8 @@ GaugeTaker gauge_by_hand(ExperimentRig rig, Consent consent) {
     if (!lock) return failed(lock.error());
     const MonotonicClock clock;
     const auto board = daemon::make_board(rig.rig, clock);
-    StopSignals signals;
-    MotionSession session(rig.rig, *board, clock, [&signals] { return signals.came(); });
+    daemon::Signals signals;
+    MotionSession session(rig.rig, *board, clock, [&signals] { return signals.first() != 0; });
     if (const auto connected = session.connect(); !connected) return failed(connected.error().text);
     calibrate::TerminalOperator terminal;
     terminal.tell("Enter: the target is there; a number: it is there instead [mm]; -: leave it out");

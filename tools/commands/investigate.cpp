@@ -148,7 +148,6 @@ ExitCode exit_code_of(const Investigation& investigation) {
     case InvestigationEnd::settled:
       return ExitCode::done;
     case InvestigationEnd::stopped:
-      return fail(ExitCode::failed, investigation.why);
     case InvestigationEnd::failed:
       return fail(investigation.code, investigation.why);
     case InvestigationEnd::contact:

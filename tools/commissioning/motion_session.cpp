@@ -208,10 +208,11 @@ MotionFailure MotionSession::blind() const {
   const bool of_displacement = required_->displacement && validity != model::Validity::valid;
   return {FailureKind::blind,
           fmt::format("the {} of `{}`: {} readings in a row are not valid{}. Nothing is raised without them: "
-                      "check its cable, its supply and its target",
+                      "check its cable{}",
                       of_displacement ? "displacement sensor" : "pressure monitor",
                       rig_.settings.channels[required_->channel].name, blind_cycles_,
-                      of_displacement ? fmt::format(" ({})", daemon::name_of(validity)) : "")};
+                      of_displacement ? fmt::format(" ({})", daemon::name_of(validity)) : "",
+                      of_displacement ? ", its supply and its target" : " and its supply")};
 }
 
 MotionSession::Expected<std::vector<ChannelSample>> MotionSession::sample(double duration_s,

@@ -67,9 +67,8 @@ struct Sight {
 /// for gaps. After a gap as long as the board's watchdog time the board has vented. Then the bus writes the
 /// lowest pressures.
 ///
-/// - Outputs rise only in ramp(), from what the board has confirmed, and no faster than the slew limits. A
-/// gap
-///   does not make the next step larger.
+/// - Outputs rise only in ramp(), from what the board has confirmed, and no faster than the slew limits.
+///   A gap does not make the next step larger.
 /// - The session ends if a gap reaches the watchdog time.
 /// - It ends if the board reports a trip, refuses a write or is written by another client.
 /// - It ends if the board does not answer for `bus_down_cycles`.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/grid.h"
+#include "control/elements/fault.h"
 #include "tools/plc/process_image.h"
 
 namespace softgrip::plc {
@@ -38,7 +39,8 @@ bool is_final(const Json& line) {
   if (line.value("ok", false)) return true;
   const Json error = line.value("error", Json::object());
   const Reason reason = reason_of(error);
-  constexpr auto starting = static_cast<Reason>(static_cast<int>(Reason::refusal) + 6);
+  constexpr auto starting = static_cast<Reason>(static_cast<int>(Reason::refusal) +
+                                                static_cast<int>(control::RefusalCode::no_valid_reading));
   return (reason > Reason::refusal && reason != starting) || error.value("code", "") == "owned";
 }
 

@@ -53,7 +53,8 @@ class Masters {
 
   /// A connection has written: what others have sent half is older than that, and those are dropped.
   void drop_halves(Id except);
-  /// The masters were silent: what their connections hold by now may be older than the reaction to that.
+  /// The masters were silent. A request that has already arrived may be older than the reaction to that: the
+  /// next request of each connection starts nothing.
   void fence() noexcept;
   /// Drops every connection that has asked nothing for the time `longest`.
   void drop_silent(Nanoseconds now, Nanoseconds longest);

@@ -51,12 +51,11 @@ struct Archive::Shared {
   explicit Shared(std::string folder) : recordings(std::move(folder)) {}
 
   void work();
-  void do_all(DiskTasks tasks);
   void do_quick_ones();
   void list(const DiskTasks& tasks);
   void answer(DiskTask& task) const;
   void tell() const noexcept;
-  [[nodiscard]] DiskTasks take(DiskTasks& tasks);
+  [[nodiscard]] DiskTasks take_quick_ones();
 
   Descriptor told{::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
   Recordings recordings;  // of the thread alone
@@ -93,13 +92,13 @@ void Archive::Shared::work() {
   changed.notify_all();
 }
 
-Archive::Shared::DiskTasks Archive::Shared::take(DiskTasks& tasks) {
+Archive::Shared::DiskTasks Archive::Shared::take_quick_ones() {
   const std::lock_guard lock(mutex);
-  return std::exchange(tasks, {});
+  return std::exchange(quick, {});
 }
 
 void Archive::Shared::do_quick_ones() {
-  for (const std::shared_ptr<DiskTask>& task : take(quick)) {
+  for (const std::shared_ptr<DiskTask>& task : take_quick_ones()) {
     if (task.use_count() == 1) continue;  // its owner has dropped it
     answer(*task);
     tell();

@@ -79,7 +79,7 @@ class Archive {
   /// Never waits. A list begins after its request, and serves all requests of the meantime. All other
   /// requests come before it.
   [[nodiscard]] std::shared_ptr<const DiskTask> ask(DiskRequest disk_request);
-  /// For poll(): readable when an task is done.
+  /// For poll(): readable when a task is done.
   [[nodiscard]] int descriptor() const noexcept;
   /// To be called when it is readable.
   void hear() const noexcept;

@@ -42,7 +42,8 @@ inline constexpr std::size_t most_unsent = std::size_t{16} << 20U;
 
 using Victim = std::optional<std::size_t>;  ///< index of a guest
 
-/// All places are taken and a client comes: the one that has been asking for longest, if it had its time.
+/// All places are taken and a client comes. Returns the connection with the lowest role, then the oldest,
+/// whose request is still incomplete after its time.
 [[nodiscard]] Victim gives_way_to_newcomer(const std::vector<Guest>& guests, Nanoseconds now);
 /// All lingering places are taken and a client with this role wants one. Returns one that takes nothing and
 /// has no higher role, or one with a lower role. Nothing: the client is refused.

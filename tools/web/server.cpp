@@ -151,11 +151,11 @@ void Server::look_after(Visitor& visitor, short events, Nanoseconds now) {
   // Who has closed his side does not hear the outcome: the start is given up.
   if (client.said_all() && commander_.is_open_start(visitor.command)) visitor.leaves = true;
   if (client.phase() == Phase::waiting && !visitor.leaves) take_reply(visitor, now);
-  if (client.phase() == Phase::loading) take_piece(visitor);
+  if (client.phase() == Phase::loading && !visitor.leaves) take_piece(visitor);
   if (visitor.leaves) return;
   const bool speaks = client.phase() != Phase::asking && client.phase() != Phase::waiting;
   visitor.leaves = (speaks && !client.send_on(now)) || client.late(now);
-  if (client.phase() == Phase::loading) ask_for_piece(visitor);
+  if (client.phase() == Phase::loading && !visitor.leaves) ask_for_piece(visitor);
 }
 
 void Server::serve(Visitor& visitor, Nanoseconds now) {
