@@ -106,8 +106,7 @@ if(NOT SOFTGRIP_SANITIZE)
 endif()
 
 # Programs.
-softgrip_room(tools/command_line USES base document model model/file sysid/logs sysid/import sysid/diagnosis/gauge
-  LIBRARIES CLI11::CLI11)
+softgrip_room(tools/command_line USES base document model model/file LIBRARIES CLI11::CLI11)
 target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_CONFIG_DIR="${SOFTGRIP_CONFIGURATION}")
 softgrip_room(tools/client USES base document control/tick control/elements rig tools/command_line LIBRARIES nlohmann_json::nlohmann_json)
 # What stands in front of the daemon's socket, in processes of their own.
@@ -122,6 +121,9 @@ softgrip_page_files(tools/web/page)
 if(httplib_VERSION VERSION_GREATER_EQUAL 0.18)
   target_compile_definitions(${softgrip_room_target} PRIVATE SOFTGRIP_HTTPLIB_ADDRESSES=1)
 endif()
+# Separate from tools/command_line: the gateways, which a network reaches, do not link the readers of foreign files.
+softgrip_room(tools/log_input USES base document sysid/logs sysid/import sysid/diagnosis/gauge tools/command_line
+  LIBRARIES CLI11::CLI11)
 softgrip_room(tools/recordings USES base document sysid/logs sysid/pages tools/command_line
   LIBRARIES nlohmann_json::nlohmann_json)
 # A recorded grip as numbers, their charts, and what an alarm says.
@@ -136,7 +138,7 @@ softgrip_room(tools/importing USES base document sysid/logs sysid/import tools/c
   LIBRARIES nlohmann_json::nlohmann_json)
 softgrip_room(tools/exporting
   USES base document model model/file control/elements control/feedforward sysid/logs sysid/import tools/command_line
-       tools/recordings
+       tools/log_input tools/recordings
   LIBRARIES nlohmann_json::nlohmann_json)
 target_link_libraries(${softgrip_room_target} PRIVATE ZLIB::ZLIB PkgConfig::matio)
 # What moves a rig by hand: doctor and calibrate.
@@ -160,7 +162,7 @@ softgrip_room(tools/baseline
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
        sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
-       tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
+       tools/log_input tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies tools/baseline
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json
   PRECOMPILE <CLI/CLI.hpp>)

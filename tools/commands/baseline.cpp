@@ -21,13 +21,13 @@
 #include "sysid/structure/identify_structure.h"
 #include "tools/baseline/commissioning_run.h"
 #include "tools/command_line/call.h"
-#include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
 #include "tools/commands/baseline_folder.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/rig_to_move.h"
+#include "tools/log_input/log_input.h"
 
 namespace softgrip::tools {
 namespace {

@@ -16,7 +16,6 @@
 #include "sysid/diagnosis/report/report.h"
 #include "sysid/diagnosis/verdict/diagnosis.h"
 #include "tools/command_line/call.h"
-#include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
@@ -27,6 +26,7 @@
 #include "tools/commands/series_output.h"
 #include "tools/figures/figure_files.h"
 #include "tools/investigation/diagnosis_folder.h"
+#include "tools/log_input/log_input.h"
 
 namespace softgrip::tools {
 namespace {

@@ -14,7 +14,6 @@
 #include "base/version.h"
 #include "base/wall_clock.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/baseline_folder.h"
@@ -22,6 +21,7 @@
 #include "tools/health/health_json.h"
 #include "tools/health/health_page.h"
 #include "tools/health/run_search.h"
+#include "tools/log_input/log_input.h"
 
 namespace softgrip::tools {
 namespace {

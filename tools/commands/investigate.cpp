@@ -16,7 +16,6 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
-#include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/progress_line.h"
@@ -29,6 +28,7 @@
 #include "tools/investigation/investigation.h"
 #include "tools/investigation/investigation_report.h"
 #include "tools/investigation/rig_tracking.h"
+#include "tools/log_input/log_input.h"
 
 namespace softgrip::tools {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "tools/command_line/log_input.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
 #include "tools/figures/picture_format.h"
+#include "tools/log_input/log_input.h"
 #include "tools/recordings/recording.h"
 #include "tools/recordings/recording_picture.h"
 #include "tools/recordings/recording_tracking.h"

@@ -8,11 +8,11 @@
 #include <string>
 
 #include "base/numbers.h"
-#include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
 #include "tools/commands/commands.h"
+#include "tools/log_input/log_input.h"
 #include "tools/studies/simulation.h"
 
 namespace softgrip::tools {

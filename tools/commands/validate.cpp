@@ -15,7 +15,6 @@
 #include "sysid/identification/validate.h"
 #include "tools/client/styled_line.h"
 #include "tools/command_line/call.h"
-#include "tools/command_line/log_input.h"
 #include "tools/command_line/model_input.h"
 #include "tools/command_line/option_check.h"
 #include "tools/command_line/output.h"
@@ -23,6 +22,7 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/series_output.h"
 #include "tools/figures/figure_files.h"
+#include "tools/log_input/log_input.h"
 
 namespace softgrip::tools {
 namespace {

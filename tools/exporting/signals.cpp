@@ -11,7 +11,7 @@
 #include "sysid/logs/csv_text.h"
 #include "sysid/logs/log_columns.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/log_input.h"
+#include "tools/log_input/log_input.h"
 #include "tools/recordings/recording.h"
 
 namespace softgrip::tools {

@@ -1,4 +1,4 @@
-#include "tools/command_line/log_input.h"
+#include "tools/log_input/log_input.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,7 +7,7 @@
 #include "document/problem.h"
 #include "sysid/logs/command_before.h"
 #include "tools/command_line/command.h"
-#include "tools/command_line/import_hint.h"
+#include "tools/log_input/import_hint.h"
 
 namespace softgrip::tools {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/command_line/log_input.h"
+#include "tools/log_input/log_input.h"
 
 #include <gtest/gtest.h>
 

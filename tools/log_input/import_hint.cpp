@@ -1,4 +1,4 @@
-#include "tools/command_line/import_hint.h"
+#include "tools/log_input/import_hint.h"
 
 #include <filesystem>
 
