@@ -1,6 +1,6 @@
 #pragma once
-// What runs between the loop and the threads around it. Every wire has one writer and one reader, but for the
-// events of the loop, which log and recorder both read.
+// What runs between the loop and the threads around it. One thread writes each wire. One thread reads each
+// Latest and each Ring; log and recorder both read the events of the loop; any thread may read an atomic.
 
 #include <array>
 #include <atomic>

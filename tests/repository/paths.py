@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every file, link and program that the documents name exists: paths.py [--build BUILD_DIR]
+"""Every file, link and program that the documents name exists, and no page has a heading twice: paths.py [--build BUILD_DIR]
 
 Read are README.md and docs/. A word of inline code or of a code block is taken for a path of the project where its first
 folder is one; BUILD_DIR's ninja file says which programs there are under build/. `*`, `{a,b}` and CAPITALS (what the
@@ -15,6 +15,10 @@ import sys
 
 import tree
 from tree import ROOT
+
+
+def documents():
+    return [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
 def names_and_folders():
@@ -43,13 +47,19 @@ def pattern_of(word):
     return re.sub(r"<[^<>]*>|\b[A-Z][A-Z_]+\b(?![.])", "*", word)
 
 
-def words_of(text):
-    """(line number, word) of inline code and of code blocks"""
+def lines_of(text):
+    """(line number, line, whether it stands in a code block)"""
     inside = False
     for number, line in enumerate(text.splitlines(), 1):
         if line.lstrip().startswith("```"):
             inside = not inside
-            continue
+        else:
+            yield number, line, inside
+
+
+def words_of(text):
+    """(line number, word) of inline code and of code blocks"""
+    for number, line, inside in lines_of(text):
         for code in [line] if inside else re.findall(r"`([^`]+)`", line):
             for word in re.split(r"[\s'\"=()|;]+", code):
                 yield number, word.rstrip(".,:")
@@ -63,9 +73,15 @@ def made_by_the_reader(document, text):
     return lambda word: word in files or "example" in word
 
 
+def headings_of(text):
+    """(line number, heading)"""
+    for number, line, inside in lines_of(text):
+        if not inside and re.match(r"#+ +", line):
+            yield number, line.lstrip("#").strip()
+
+
 def anchors_of(text):
-    headings = re.findall(r"^#+ +(.*)$", text, re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for _, heading in headings_of(text)}
 
 
 def links_of(text):
@@ -118,9 +134,19 @@ class Judge:
         elif anchor and anchor not in anchors_of(file.read_text()):
             self.findings.append(f"{place}: the link `{target}`: that page has no such heading")
 
+    def headings(self, document, text):
+        """A heading that stands twice makes its link ambiguous, and shows text that was pasted twice."""
+        seen = {}
+        for number, heading in headings_of(text):
+            if heading in seen:
+                place = f"{document.relative_to(ROOT)}:{number}"
+                self.findings.append(f"{place}: the heading `{heading}` stands in line {seen[heading]} already")
+            seen.setdefault(heading, number)
+
     def document(self, document):
         text = document.read_text()
         made = made_by_the_reader(document, text)
+        self.headings(document, text)
         for number, word in words_of(text):
             if not made(word):
                 self.word(f"{document.relative_to(ROOT)}:{number}", word)
@@ -132,10 +158,9 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--build", type=pathlib.Path)
     judge = Judge(parser.parse_args().build)
-    documents = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-    for document in documents:
+    for document in documents():
         judge.document(document)
-    print("\n".join(judge.findings) or f"{len(documents)} documents name nothing that does not exist")
+    print("\n".join(judge.findings) or f"{len(documents())} documents name nothing that does not exist")
     return 1 if judge.findings else 0
 
 

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Every test that a document names exists: named_tests.py [--build BUILD_DIR]
+
+A test is named in inline code or in a code block: `Suite.Name` of GoogleTest, `test_module`, `test_module.Class` or
+`test_module.Class.test_method` of Python, `repository.name` of CTest, and `name_test`, a program or a file. `*` stands for
+any rest. `.Name*` means the suite of the word before it. BUILD_DIR says which tests CTest has.
+"""
+
+import argparse
+import ast
+import fnmatch
+import pathlib
+import re
+import sys
+
+import paths
+import tree
+
+GOOGLE = re.compile(r"\b(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\)")
+
+
+def google_tests():
+    names = set()
+    for name in tree.names():
+        if name.startswith("tests/") and name.endswith(".cpp"):
+            names |= {f"{suite}.{test}" for suite, test in GOOGLE.findall((tree.ROOT / name).read_text())}
+    return names
+
+
+def python_tests():
+    """module, module.Class and module.Class.test_method of every test_*.py, and the methods alone"""
+    names = set()
+    for name in tree.names():
+        file = tree.ROOT / name
+        if not re.fullmatch(r"test_\w+\.py", file.name):
+            continue
+        names.add(file.stem)
+        for node in ast.parse(file.read_text()).body:
+            if isinstance(node, ast.ClassDef):
+                names.add(f"{file.stem}.{node.name}")
+                methods = [one.name for one in node.body if isinstance(one, ast.FunctionDef)]
+                names |= {f"{file.stem}.{node.name}.{method}" for method in methods} | set(methods)
+            elif isinstance(node, ast.FunctionDef):
+                names |= {node.name, f"{file.stem}.{node.name}"}
+    return names
+
+
+def cmake_texts():
+    return [(tree.ROOT / name).read_text() for name in tree.names()
+            if name.startswith("tests/") and name.endswith("CMakeLists.txt")]
+
+
+def ctest_tests(build):
+    """The tests that CTest has; without a build those whose name a CMakeLists.txt writes out, and * for a variable."""
+    if build and (build / "CTestTestfile.cmake").exists():
+        texts = [file.read_text() for file in (build / "tests").rglob("CTestTestfile.cmake")]
+        return {name for text in texts for name in re.findall(r"^add_test\(\[=\[(.*?)\]=\]", text, re.MULTILINE)}
+    names = {name for text in cmake_texts() for name in re.findall(r"add_test\(NAME (\S+)", text)}
+    return {re.sub(r"\$\{\w+\}", "*", name) for name in names}
+
+
+def test_programs():
+    """Programs of GoogleTest, and the stems of their files."""
+    programs = {name for text in cmake_texts() for name in re.findall(r"softgrip_test\((\w+)", text)}
+    stems = {pathlib.PurePosixPath(name).stem for name in tree.names()
+             if re.search(r"_test\.(cpp|sh)$", name) or re.fullmatch(r"tests/.*_test\.py", name)}
+    return programs | stems
+
+
+class Tests:
+    def __init__(self, build):
+        self.google, self.python, self.ctest = google_tests(), python_tests(), ctest_tests(build)
+        self.programs = test_programs()
+
+    def exists(self, word):
+        """None where the word names no test."""
+        if re.fullmatch(r"[A-Z]\w*\*?\.[A-Z*][\w*]*|\*?[A-Z]\w*\*", word):
+            return any(fnmatch.fnmatchcase(name, word) for name in self.google)
+        if re.fullmatch(r"test_\w+(\.\w[\w*]*)*", word) and not word.endswith(".py"):
+            return any(fnmatch.fnmatchcase(name, word) for name in self.python | self.ctest)
+        if re.fullmatch(r"(repository|systemd)\.\w+", word):
+            return any(fnmatch.fnmatchcase(word, name) or name.startswith(word + ".") for name in self.ctest)
+        if re.fullmatch(r"(build/\w+/tests/)?\w+_test", word):
+            return word.rsplit("/", 1)[-1] in self.programs
+        return None
+
+
+def findings_of(place, words, tests):
+    found, suite = [], ""
+    for number, word in words:
+        if re.fullmatch(r"\.[A-Z][\w*]*", word) and suite:
+            word = suite + word
+        exists = tests.exists(word)
+        if exists is None:
+            continue
+        suite = word.rsplit(".", 1)[0]
+        if not exists:
+            found.append(f"{place}:{number}: `{word}`: there is no such test")
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--build", type=pathlib.Path)
+    tests, findings, pages = Tests(parser.parse_args().build), [], paths.documents()
+    for page in pages:
+        text = page.read_text()
+        made = paths.made_by_the_reader(page, text)
+        words = ((number, word) for number, word in paths.words_of(text) if not made(word))
+        findings += findings_of(page.relative_to(tree.ROOT), words, tests)
+    print("\n".join(findings) or f"{len(pages)} documents name no test that does not exist")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

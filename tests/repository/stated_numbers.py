@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+"""Numbers and names that documents state are those of the sources: threads, fingers, worlds, files that include Ceres."""
+
+import re
+import sys
+
+import tree
+
+WORLD = r"^[a-z_+]+,[0-9.]+,[0-9]+,"
+CHANGED_WORLD = r"^[a-z]+,[a-z_]+,[0-9.]+,[0-9]+,"
+BLIND = "tests/blind/"
+
+
+def text(name):
+    return (tree.ROOT / name).read_text()
+
+
+def one_line(name):
+    return " ".join(text(name).split())
+
+
+def sources(folder):
+    return [name for name in tree.names() if name.startswith(folder) and name.endswith((".h", ".cpp"))]
+
+
+def threads():
+    """The threads that softgripd names in its sources, its first one, and the writer of the log's lines."""
+    daemon = [text(name) for name in sources("daemon/")]
+    made = {name for one in daemon for name in re.findall(r'\.name = "(softgrip-[a-z]+)"', one)}
+    pools = sum(one.count("make_shared<spdlog::details::thread_pool>") for one in daemon)
+    page = text("docs/explanation/real-time.md")
+    rows = re.findall(r"^\| `(softgripd?(?:-[a-z]+)?)`", page, re.MULTILINE)
+    if {row for row in rows if row != "softgripd"} != made:
+        yield f"real-time.md: the table has {sorted(set(rows))}, the sources name {sorted(made)}"
+    if rows.count("softgripd") != 1 + pools:
+        yield f"real-time.md: {rows.count('softgripd')} rows `softgripd`, but there are the first thread and {pools} of the log"
+    with_lines = len(made) + 1 + pools
+    if f"{with_lines - 1} threads, and {with_lines} with digital lines" not in one_line("docs/explanation/real-time.md"):
+        yield f"real-time.md does not say {with_lines - 1} threads, and {with_lines} with digital lines"
+
+
+def fingers():
+    most = re.search(r"max_channels = (\d+);", text("control/tick/settings.h")).group(1)
+    if f"for up to {most} soft fingers" not in one_line("README.md"):
+        yield f"README.md does not say that softgripd drives up to {most} fingers"
+
+
+def worlds():
+    """Lines of the tables that tests/blind makes tests of: of every run, and of --all."""
+    counts = {"": 0, "more_": 0}
+    for more in counts:
+        for folder, name, world in (("", "fixed_worlds", WORLD), ("textbook/", "fixed_worlds", WORLD),
+                                    ("", "changed_worlds", CHANGED_WORLD)):
+            file = f"{BLIND}{folder}{more}{name.removeprefix('fixed_') if more else name}.csv"
+            counts[more] += len(re.findall(world, text(file), re.MULTILINE))
+    says = (f"{counts['']} worlds with fixed seeds are part of `scripts/test.sh`, and {counts['more_']} more of "
+            "`scripts/test.sh --all`")
+    if says not in one_line("docs/explanation/diagnosis.md"):
+        yield f"diagnosis.md does not say: {says}"
+
+
+def includes_of_ceres():
+    files = [name for name in sources("") if "#include <ceres/" in text(name) and not name.startswith("tests/")]
+    row = next(line for line in text("docs/explanation/libraries.md").splitlines() if line.startswith("| Ceres |"))
+    if len(files) != 1 or f"Only `{files[0]}` includes it" not in row:
+        yield f"libraries.md: Ceres is included by {', '.join(files)}"
+
+
+def main():
+    wrong = [sentence for part in (threads, fingers, worlds, includes_of_ceres) for sentence in part()]
+    print("\n".join(wrong) or "the stated numbers are those of the sources")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
