@@ -1,5 +1,5 @@
 #pragma once
-// Several fingers in the columns of one table, and codes that stand where a sensor read nothing.
+// Several fingers in the columns of one table.
 
 #include <cstddef>
 #include <string>
@@ -19,9 +19,5 @@ namespace softgrip::sysid {
 
 /// The finger of a column among these; empty: the column belongs to all.
 [[nodiscard]] std::string finger_of(const TableColumn& column, const std::vector<std::string>& fingers);
-
-/// Values that are codes, not readings: 999, -9999 and the like, or a value that occurs three times, each far
-/// outside of all other values.
-[[nodiscard]] std::vector<double> sensor_codes(const TableColumn& column);
 
 }  // namespace softgrip::sysid

@@ -11,6 +11,7 @@
 #include "base/numbers.h"
 #include "sysid/import/clock.h"
 #include "sysid/import/fingers.h"
+#include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -246,7 +247,7 @@ void choose_codes(const ForeignTable& table, Proposal& proposal) {
       const std::size_t index = column_index(table, word);
       if (index == table.columns.size()) continue;
       const TableColumn& column = table.columns[index];
-      for (const double code : sensor_codes(column)) {
+      for (const double code : sensor_codes(column.values)) {
         const auto count = std::count(column.values.begin(), column.values.end(), code);
         const std::string value = shortest(code);
         std::vector<std::string>& missing = proposal.mapping.missing;

@@ -16,12 +16,12 @@
 #include "base/version.h"
 #include "document/problem.h"
 #include "sysid/import/conversion.h"
-#include "sysid/import/fingers.h"
 #include "sysid/import/foreign_file.h"
 #include "sysid/import/mapping_file.h"
 #include "sysid/import/proposal.h"
 #include "sysid/logs/doubts.h"
 #include "sysid/logs/log.h"
+#include "sysid/logs/sensor_codes.h"
 #include "tools/command_line/command.h"
 #include "tools/command_line/output.h"
 #include "tools/command_line/terminal.h"
@@ -91,7 +91,7 @@ bool has_codes(const sysid::ForeignTable& table) {
         std::any_of(sysid::roles.begin(), sysid::roles.end(), [&](const sysid::RoleSpec& spec) {
           return spec.role != sysid::Role::time && sysid::fitness_for(column, spec.role) > 0;
         });
-    return is_value && !sysid::sensor_codes(column).empty();
+    return is_value && !sysid::sensor_codes(column.values).empty();
   });
 }
 

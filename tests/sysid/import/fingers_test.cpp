@@ -52,26 +52,5 @@ TEST(Tokens, LettersDigitsAndCapitalsDivideAName) {
   EXPECT_EQ(tokens_of("thumbTip_mm"), (Names{"thumb", "tip", "mm"}));
 }
 
-TEST(SensorCodes, AreFarFromAllReadings) {
-  TableColumn column;
-  for (int i = 0; i < 200; ++i) column.values.push_back(0.1 * i);
-  EXPECT_EQ(sensor_codes(column), std::vector<double>{});
-  for (const double code : {999.0, -9999.0, 32767.0, 1e30}) {
-    TableColumn with = column;
-    with.values[7] = code;
-    EXPECT_EQ(sensor_codes(with), std::vector<double>{code});
-  }
-  TableColumn repeated = column;
-  for (const std::size_t at : {3U, 50U, 120U}) repeated.values[at] = 777.7;
-  EXPECT_EQ(sensor_codes(repeated), std::vector<double>{777.7});
-  TableColumn spike = column;
-  spike.values[7] = 777.7;
-  EXPECT_EQ(sensor_codes(spike), std::vector<double>{});
-  TableColumn in_range;
-  for (int i = 0; i < 200; ++i) in_range.values.push_back(10.0 * i);
-  in_range.values[7] = 999;
-  EXPECT_EQ(sensor_codes(in_range), std::vector<double>{});
-}
-
 }  // namespace
 }  // namespace softgrip::sysid::fingers_test

@@ -1,0 +1,62 @@
+#include "sysid/logs/sensor_codes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <map>
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr std::array code_values{
+    999.0,   9999.0,   99999.0,  999999.0,  999.9,        9999.9,        999.99,      9999.99, 99.99,
+    -999.0,  -9999.0,  -99999.0, -999.9,    -99.9,        -99.99,        -999.99,     888.0,   8888.0,
+    32767.0, -32768.0, 65535.0,  8388607.0, 2147483647.0, -2147483648.0, 4294967295.0};
+/// A code is farther outside than so many spans of the other values.
+constexpr double far_outside = 3;
+constexpr double farther_outside = 10;
+constexpr std::size_t fewest_repeats = 3;
+constexpr double most_codes = 0.5;
+
+bool is_code_value(double value) {
+  return std::find(code_values.begin(), code_values.end(), value) != code_values.end() ||
+         std::abs(value) > 1e29;
+}
+
+}  // namespace
+
+std::vector<double> sensor_codes(std::span<const double> values) {
+  std::map<double, std::size_t> suspects;
+  std::vector<double> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+               [](double value) { return std::isfinite(value); });
+  std::sort(sorted.begin(), sorted.end());
+  if (sorted.size() < 20) return {};
+  const double low = sorted[sorted.size() / 20];
+  const double high = sorted[sorted.size() - 1 - sorted.size() / 20];
+  std::vector<double> others;
+  for (const double value : sorted) {
+    const bool far =
+        value < low - farther_outside * (high - low) || value > high + farther_outside * (high - low);
+    if (is_code_value(value) || (far && high > low)) {
+      ++suspects[value];
+    } else {
+      others.push_back(value);
+    }
+  }
+  if (others.size() < 2 ||
+      static_cast<double>(others.size()) < most_codes * static_cast<double>(sorted.size()))
+    return {};
+  const double span = others.back() - others.front();
+  std::vector<double> codes;
+  for (const auto& [value, count] : suspects) {
+    const bool outside =
+        value > others.back() + far_outside * span || value < others.front() - far_outside * span;
+    if (span > 0 && outside && (is_code_value(value) || count >= fewest_repeats)) codes.push_back(value);
+  }
+  return codes;
+}
+
+}  // namespace softgrip::sysid

@@ -1,0 +1,13 @@
+#pragma once
+// Numbers that stand where a sensor read nothing.
+
+#include <span>
+#include <vector>
+
+namespace softgrip::sysid {
+
+/// Values that are codes, not readings: 999, -9999 and the like, or a value that occurs three times, each far
+/// outside of all other values; ascending. Values that are not finite do not count.
+[[nodiscard]] std::vector<double> sensor_codes(std::span<const double> values);
+
+}  // namespace softgrip::sysid

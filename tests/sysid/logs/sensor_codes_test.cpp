@@ -1,0 +1,32 @@
+#include "sysid/logs/sensor_codes.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace softgrip::sysid::sensor_codes_test {
+namespace {
+
+TEST(SensorCodes, AreFarFromAllReadings) {
+  std::vector<double> column;
+  for (int i = 0; i < 200; ++i) column.push_back(0.1 * i);
+  EXPECT_EQ(sensor_codes(column), std::vector<double>{});
+  for (const double code : {999.0, -9999.0, 32767.0, 1e30}) {
+    std::vector<double> with = column;
+    with[7] = code;
+    EXPECT_EQ(sensor_codes(with), std::vector<double>{code});
+  }
+  std::vector<double> repeated = column;
+  for (const std::size_t at : {3U, 50U, 120U}) repeated[at] = 777.7;
+  EXPECT_EQ(sensor_codes(repeated), std::vector<double>{777.7});
+  std::vector<double> spike = column;
+  spike[7] = 777.7;
+  EXPECT_EQ(sensor_codes(spike), std::vector<double>{});
+  std::vector<double> in_range;
+  for (int i = 0; i < 200; ++i) in_range.push_back(10.0 * i);
+  in_range[7] = 999;
+  EXPECT_EQ(sensor_codes(in_range), std::vector<double>{});
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::sensor_codes_test
