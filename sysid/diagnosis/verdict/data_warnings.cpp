@@ -7,6 +7,7 @@
 #include "sysid/diagnosis/causes/cause.h"
 #include "sysid/identification/combinations.h"
 #include "sysid/logs/doubts.h"
+#include "sysid/logs/excitation.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -32,21 +33,6 @@ void warn_unphysical(const model::Model& model, std::vector<std::string>& warnin
     warnings.push_back("recalibrated, the model is unphysical: " + wrong_way_sentence(ratio));
 }
 
-bool contains_rest(const std::vector<Log>& logs) {
-  constexpr double long_enough_s = 3, no_pressure_share = 0.02;
-  const double largest_kpa = largest_command_kpa(logs);
-  for (const Log& log : logs) {
-    const std::vector<double>& u = log.pressure_command_kpa;
-    double still_s = 0;
-    for (std::size_t i = 1; i < u.size(); ++i) {
-      const bool still = std::abs(u[i]) < no_pressure_share * largest_kpa && std::abs(u[i] - u[i - 1]) < 1e-6;
-      still_s = still ? still_s + log.time_s[i] - log.time_s[i - 1] : 0;
-      if (still_s > long_enough_s) return true;
-    }
-  }
-  return false;
-}
-
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings) {
   for (std::string& doubt : doubts_among(logs)) warnings.push_back(std::move(doubt));
   warn_of_columns(scales, warnings);
@@ -57,26 +43,7 @@ void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vecto
         "commanded pressure only: what the valve does and what the actuator does are told apart by "
         "their nonlinearity alone");
   }
-  std::vector<double> peaks;
-  bool unloads = false;
-  for (const Log& log : logs) {
-    const std::vector<double>& u = log.pressure_command_kpa;
-    double top = u.front();
-    for (std::size_t i = 1; i < u.size(); ++i) {
-      top = std::max(top, u[i]);
-      unloads |= u[i] < top - 0.2 * scales.largest_kpa;
-      if (i + 1 < u.size() && u[i] > u[i - 1] && u[i] >= u[i + 1]) peaks.push_back(u[i]);
-    }
-  }
-  if (!unloads) warnings.emplace_back("unloading never seen: hysteresis cannot be judged");
-  if (!contains_rest(logs))
-    warnings.emplace_back("no rest at zero pressure: creep, softening and drift are hard to tell apart");
-  if (!peaks.empty()) {
-    const auto [low, high] = std::minmax_element(peaks.begin(), peaks.end());
-    if (*high - *low < 0.05 * scales.largest_kpa) {
-      warnings.emplace_back("one amplitude only: what depends on amplitude cannot be judged");
-    }
-  }
+  for (const Excitation missing : missing_excitation(logs)) warnings.push_back(without(missing));
 }
 
 void warn_of_scale(const std::vector<Record>& records, const std::vector<std::vector<double>>& residual_mm,

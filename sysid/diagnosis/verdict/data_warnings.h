@@ -14,9 +14,6 @@ namespace softgrip::sysid {
 /// What recalibration cannot be trusted with.
 void warn_unphysical(const model::Model& model, std::vector<std::string>& warnings);
 
-/// Whether the command stays at no pressure (2 % of its largest) for more than 3 s in some log.
-[[nodiscard]] bool contains_rest(const std::vector<Log>& logs);
-
 /// Limits of the data that bear on what can be told.
 void warn_of_data(const std::vector<Log>& logs, const Scales& scales, std::vector<std::string>& warnings);
 

@@ -10,9 +10,9 @@
 #include "model/named.h"
 #include "sysid/diagnosis/causes/sensor_drift.h"
 #include "sysid/diagnosis/causes/valve_deadband.h"
-#include "sysid/diagnosis/verdict/data_warnings.h"
 #include "sysid/evidence/loop_phase.h"
 #include "sysid/evidence/signature.h"
+#include "sysid/logs/excitation.h"
 
 namespace softgrip::sysid {
 namespace {

@@ -1,0 +1,90 @@
+#include "sysid/logs/excitation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr double unloaded_share = 0.2;
+constexpr double no_pressure_share = 0.02;
+constexpr double long_enough_s = 3;
+constexpr double same_amplitude_share = 0.05;
+
+std::vector<double> sizes_of(const Log& log) {
+  std::vector<double> sizes = log.pressure_command_kpa;
+  for (double& size : sizes) size = std::abs(size);
+  return sizes;
+}
+
+double largest_size_kpa(const std::vector<Log>& logs) {
+  double largest = 0;
+  for (const Log& log : logs) {
+    for (const double kpa : log.pressure_command_kpa) largest = std::max(largest, std::abs(kpa));
+  }
+  return largest;
+}
+
+bool unloads(const std::vector<double>& sizes, double by_kpa) {
+  double top = sizes.empty() ? 0 : sizes.front();
+  return std::any_of(sizes.begin(), sizes.end(), [&](double size) {
+    top = std::max(top, size);
+    return size < top - by_kpa;
+  });
+}
+
+void add_peaks(const std::vector<double>& sizes, std::vector<double>& peaks) {
+  for (std::size_t i = 1; i + 1 < sizes.size(); ++i) {
+    if (sizes[i] > sizes[i - 1] && sizes[i] >= sizes[i + 1]) peaks.push_back(sizes[i]);
+  }
+}
+
+}  // namespace
+
+std::vector<Excitation> missing_excitation(const std::vector<Log>& logs) {
+  const double largest_kpa = largest_size_kpa(logs);
+  bool unloaded = false;
+  std::vector<double> peaks;
+  for (const Log& log : logs) {
+    const std::vector<double> sizes = sizes_of(log);
+    unloaded = unloaded || unloads(sizes, unloaded_share * largest_kpa);
+    add_peaks(sizes, peaks);
+  }
+  std::vector<Excitation> missing;
+  if (!unloaded) missing.push_back(Excitation::unloading);
+  if (!contains_rest(logs)) missing.push_back(Excitation::rest);
+  if (!peaks.empty()) {
+    const auto [low, high] = std::minmax_element(peaks.begin(), peaks.end());
+    if (*high - *low < same_amplitude_share * largest_kpa) missing.push_back(Excitation::amplitudes);
+  }
+  return missing;
+}
+
+std::string without(Excitation missing) {
+  switch (missing) {
+    case Excitation::unloading:
+      return "unloading never seen: hysteresis cannot be judged";
+    case Excitation::rest:
+      return "no rest at zero pressure: creep, softening and drift are hard to tell apart";
+    case Excitation::amplitudes:
+      return "one amplitude only: what depends on amplitude cannot be judged";
+  }
+  return {};
+}
+
+bool contains_rest(const std::vector<Log>& logs) {
+  const double largest_kpa = largest_size_kpa(logs);
+  for (const Log& log : logs) {
+    const std::vector<double>& u = log.pressure_command_kpa;
+    double still_s = 0;
+    for (std::size_t i = 1; i < u.size(); ++i) {
+      const bool still = std::abs(u[i]) < no_pressure_share * largest_kpa && std::abs(u[i] - u[i - 1]) < 1e-6;
+      still_s = still ? still_s + log.time_s[i] - log.time_s[i - 1] : 0;
+      if (still_s > long_enough_s) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace softgrip::sysid

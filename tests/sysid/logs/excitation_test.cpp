@@ -1,0 +1,73 @@
+#include "sysid/logs/excitation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace softgrip::sysid::excitation_test {
+namespace {
+
+using Missing = std::vector<Excitation>;
+
+/// A command at 50 Hz for 40 s.
+template <class Command>
+Log commanded(Command kpa_at) {
+  Log log;
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 0.02 * i;
+    log.time_s.push_back(t);
+    log.pressure_command_kpa.push_back(kpa_at(t));
+    log.displacement_mm.push_back(0);
+  }
+  return log;
+}
+
+/// Up to `peak_kpa` and back within 8 s, then 2 s of rest.
+double triangle(double t, double peak_kpa) {
+  return peak_kpa * std::max(0.0, 1 - std::abs(std::fmod(t, 10) / 4 - 1));
+}
+
+TEST(MissingExcitation, OfALogThatOnlyLoads) {
+  EXPECT_EQ(missing_excitation({commanded([](double t) { return 1.2 * t; })}),
+            (Missing{Excitation::unloading, Excitation::rest}));
+  EXPECT_EQ(missing_excitation({commanded([](double t) { return t < 5 ? 0 : 20 * std::log(1 + t - 5); })}),
+            Missing{Excitation::unloading});
+}
+
+TEST(MissingExcitation, OfOneAmplitude) {
+  EXPECT_EQ(missing_excitation({commanded([](double t) { return triangle(t, 40); })}),
+            (Missing{Excitation::rest, Excitation::amplitudes}));
+  EXPECT_EQ(missing_excitation({commanded([](double t) { return t < 4 ? 0 : 20 - 20 * std::cos(t - 4); })}),
+            Missing{Excitation::amplitudes});
+}
+
+TEST(MissingExcitation, OtherLogsMayContainIt) {
+  const Log ramp = commanded([](double t) { return t < 4 ? 0 : t - 4; });
+  const Log triangles = commanded([](double t) { return triangle(t, t < 10 ? 20 : 40); });
+  EXPECT_EQ(missing_excitation({triangles}), Missing{Excitation::rest});
+  EXPECT_EQ(missing_excitation({ramp, triangles}), Missing{});
+}
+
+/// A vacuum finger is loaded downwards.
+TEST(MissingExcitation, OfAVacuumIsThatOfAPressure) {
+  for (const double peak_kpa : {-40.0, 40.0}) {
+    EXPECT_EQ(missing_excitation({commanded([&](double t) { return peak_kpa * t / 40; })}),
+              (Missing{Excitation::unloading, Excitation::rest}))
+        << peak_kpa;
+    EXPECT_EQ(missing_excitation(
+                  {commanded([&](double t) { return triangle(t, t < 10 ? 0.5 * peak_kpa : peak_kpa); })}),
+              Missing{Excitation::rest})
+        << peak_kpa;
+    EXPECT_TRUE(contains_rest({commanded([&](double t) { return t < 4 ? 0.0 : peak_kpa; })})) << peak_kpa;
+  }
+}
+
+TEST(MissingExcitation, HasASentence) {
+  for (const Excitation missing : {Excitation::unloading, Excitation::rest, Excitation::amplitudes})
+    EXPECT_NE(without(missing).find(": "), std::string::npos) << without(missing);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::excitation_test
