@@ -4,6 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+
+#include "base/statistics.h"
+#include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -104,7 +108,70 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
   evidence.size_low_mm = std::sqrt(std::max(0.0, square / count - z * deviation));
   evidence.size_high_mm = std::sqrt(square / count + z * deviation);
   // At six deviations noise gives none; a handful may be a knock on the table.
-  evidence.present = evidence.count >= fewest && evidence.excess_mm > worth * noise_mm;
+  evidence.distorts = evidence.excess_mm > worth * noise_mm;
+  evidence.present = evidence.count >= fewest && evidence.distorts;
+}
+
+void hide(Record& record, std::size_t i, double size_mm, OutlierEvidence& evidence) {
+  record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
+  --record.readings;
+  evidence.sizes_mm.push_back(size_mm);
+}
+
+void hide_codes(Record& record, OutlierEvidence& evidence) {
+  const std::vector<double> codes = sensor_codes(record.reading_mm);
+  if (codes.empty()) return;
+  const auto is_code = [&](double value) { return std::binary_search(codes.begin(), codes.end(), value); };
+  std::vector<double> others;
+  for (const double value : record.reading_mm) {
+    if (std::isfinite(value) && !is_code(value)) others.push_back(value);
+  }
+  const double usual_mm = median_of(std::span(others));
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double value = record.reading_mm[i];
+    if (is_code(value)) hide(record, i, value - usual_mm, evidence);
+  }
+}
+
+/// The readings that are there, and their samples.
+struct Readings {
+  std::vector<std::size_t> samples;
+  std::vector<double> mm;
+};
+
+Readings readings_of(const Record& record) {
+  Readings readings;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (!std::isfinite(record.reading_mm[i])) continue;
+    readings.samples.push_back(i);
+    readings.mm.push_back(record.reading_mm[i]);
+  }
+  return readings;
+}
+
+/// Readings without enough neighbours for the rule of the others. 0 belongs to the others: a log may begin
+/// with the last readings before a step.
+void hide_far_ends(Record& record, OutlierEvidence& evidence) {
+  constexpr std::size_t ends = 2;
+  constexpr double far_outside = 3;
+  const Readings readings = readings_of(record);
+  const std::size_t count = readings.mm.size();
+  if (count < 10 * ends) return;
+  const auto [lowest, highest] = std::minmax_element(readings.mm.begin() + ends, readings.mm.end() - ends);
+  const double low = std::min(0.0, *lowest), high = std::max(0.0, *highest);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}, count - 2, count - 1}) {
+    const double value = readings.mm[i];
+    if (std::max(low - value, value - high) > far_outside * (high - low))
+      hide(record, readings.samples[i], value > high ? value - high : value - low, evidence);
+  }
+}
+
+void hide_isolated(Record& record, double noise_mm, OutlierEvidence& evidence) {
+  const Readings readings = readings_of(record);
+  for (std::size_t i = 2; i + 2 < readings.mm.size(); ++i) {
+    double size = 0;
+    if (is_outlier(readings.mm, i, noise_mm, size)) hide(record, readings.samples[i], size, evidence);
+  }
 }
 
 }  // namespace
@@ -112,15 +179,10 @@ void weigh(OutlierEvidence& evidence, double noise_mm) {
 OutlierEvidence hide_outliers(std::vector<Record>& records, double noise_mm) {
   OutlierEvidence evidence;
   for (Record& record : records) {
-    const std::vector<double> y = record.reading_mm;
     evidence.readings += record.readings;
-    for (std::size_t i = 2; i + 2 < y.size(); ++i) {
-      double size = 0;
-      if (!is_outlier(y, i, noise_mm, size)) continue;
-      record.reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-      --record.readings;
-      evidence.sizes_mm.push_back(size);
-    }
+    hide_codes(record, evidence);
+    hide_far_ends(record, evidence);
+    hide_isolated(record, noise_mm, evidence);
   }
   weigh(evidence, noise_mm);
   return evidence;
@@ -141,9 +203,7 @@ std::size_t hide_outliers_beside(std::vector<Record>& records,
           std::abs(size) <= timing_samples * largest_step(y, r, i)) {
         continue;
       }
-      records[k].reading_mm[i] = std::numeric_limits<double>::quiet_NaN();
-      --records[k].readings;
-      evidence.sizes_mm.push_back(size);
+      hide(records[k], i, size, evidence);
       ++hidden;
     }
   }

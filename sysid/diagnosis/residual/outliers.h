@@ -1,5 +1,5 @@
 #pragma once
-// Isolated wrong samples: found against their neighbours, hidden from every other fit.
+// Wrong samples, isolated or far from all others: found without a model, hidden from every other fit.
 
 #include <cstddef>
 #include <vector>
@@ -19,12 +19,15 @@ struct OutlierEvidence {
   double share_high = 0;
   double size_low_mm = 0;  ///< 95 % interval of the size
   double size_high_mm = 0;
-  bool present = false;  ///< more than noise would give, and worth a name
+  bool distorts = false;  ///< they add more than a quarter of the noise to the error
+  bool present = false;   ///< they distort, and are more than noise or a knock would give
   std::vector<double> sizes_mm;
 };
 
 /// Finds readings that differ from both neighbours' line by more than noise can and hides them (NaN). Before
-/// any model is fitted: what a motion might hide, or make, is let pass.
+/// any model is fitted: what a motion might hide, or make, is let pass. Sensor codes
+/// (sysid/logs/sensor_codes.h) are hidden wherever they stand, and so is one of the first or last 2 readings
+/// that is far outside of all others and of 0.
 [[nodiscard]] OutlierEvidence hide_outliers(std::vector<Record>& records, double noise_mm);
 
 /// The same with a fitted model, by what it leaves of the readings: finds those in the midst of a motion too.
