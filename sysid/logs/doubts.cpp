@@ -16,6 +16,8 @@ namespace {
 
 // Above these, as below those of extent.h, a unit was probably mistaken.
 constexpr double large_pressure_kpa = 1000;
+/// The largest pressure of a soft finger in MPa is below this.
+constexpr double small_as_mpa = 0.2;
 constexpr double large_displacement_mm = 500;
 constexpr double slow_sampling_s = 1;
 constexpr double atmosphere_kpa = 101.325;
@@ -129,12 +131,14 @@ void doubt_free_motion(const Log& log, std::vector<std::string>& doubts) {
 
 void doubt_spans(const Log& log, std::vector<std::string>& doubts) {
   if (const auto p = extent_of(log.pressure_command_kpa); p && p->width() > 0) {
-    if (p->highest < small_pressure_kpa)
+    const double largest = std::max(-p->lowest, p->highest);
+    if (largest < small_pressure_kpa)
       doubts.push_back("the pressure stays below " + significant(small_pressure_kpa) +
-                       " kPa: bar or V in a column taken for kPa?");
-    if (p->highest > large_pressure_kpa)
-      doubts.push_back("the pressure reaches " + significant(p->highest) +
-                       " kPa: no soft finger bears that; is the unit right?");
+                       " kPa: " + (largest < small_as_mpa ? "MPa, bar or V" : "bar or V") +
+                       " in a column taken for kPa?");
+    if (largest > large_pressure_kpa)
+      doubts.push_back("the pressure reaches " + significant(largest) +
+                       " kPa, and no soft finger bears that: Pa or mbar in a column taken for kPa?");
     if (p->lowest > 0.9 * atmosphere_kpa && p->lowest < 1.1 * atmosphere_kpa)
       doubts.push_back("the pressure never falls below " + significant(p->lowest) +
                        " kPa, about an atmosphere: absolute? `softgrip import --zero` subtracts it");

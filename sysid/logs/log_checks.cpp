@@ -6,6 +6,7 @@
 
 #include "base/numbers.h"
 #include "sysid/logs/extent.h"
+#include "sysid/logs/sensor_codes.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -133,6 +134,11 @@ class Check {
     }
   }
 
+  [[nodiscard]] bool is_code(double value) const {
+    const std::vector<double> codes = sensor_codes(log_.displacement_mm);
+    return std::binary_search(codes.begin(), codes.end(), value);
+  }
+
   void magnitudes() {
     const auto largest = [](const std::vector<double>& values) {
       return static_cast<std::size_t>(std::max_element(values.begin(), values.end(),
@@ -147,13 +153,15 @@ class Check {
     if (std::abs(log_.pressure_command_kpa[p]) > largest_pressure_kpa) {
       refuse(p, source_.command_column, "a command of " + significant(log_.pressure_command_kpa[p]) + " kPa",
              "is the column in Pa? Divide by 1000");
-    } else if (command_.width() > 0 && command_.highest < small_pressure_kpa) {
+    } else if (command_.width() > 0 && std::max(-command_.lowest, command_.highest) < small_pressure_kpa) {
       note(p, "the command stays below " + significant(small_pressure_kpa) + " kPa: is the column in bar?");
     }
     if (std::abs(log_.displacement_mm[y]) > largest_displacement_mm) {
       refuse(y, source_.displacement_column,
              "a displacement of " + significant(log_.displacement_mm[y]) + " mm",
-             "is the column in micrometres? Divide by 1000");
+             is_code(log_.displacement_mm[y])
+                 ? "a code of the sensor where it read nothing? softgrip import --missing leaves it out"
+                 : "is the column in micrometres? Divide by 1000");
     } else if (const double span = span_mm(log_); span > 0 && span < small_displacement_mm) {
       note(y, "the displacement spans " + significant(span) + " mm: is the column in metres?");
     }

@@ -51,6 +51,28 @@ TEST(Doubts, SignScaleAndOrder) {
             std::string::npos);
 }
 
+/// Of a pressure and of a vacuum, in each unit that is far from kPa.
+TEST(Doubts, AUnitThatIsFarFromKpaIsNamed) {
+  const auto doubts = [](double peak, double mm) {
+    Log log;
+    for (int i = 0; i < 400; ++i) {
+      const double share = 1 - std::abs(i % 100 - 50) / 50.0;
+      log.time_s.push_back(0.01 * i);
+      log.pressure_command_kpa.push_back(peak * share);
+      log.displacement_mm.push_back(mm * share);
+    }
+    return all_of(doubts_about(log));
+  };
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(doubts(sign * 60, sign * 20), "") << sign;
+    EXPECT_NE(doubts(sign * 0.06, sign * 20).find("MPa, bar or V"), std::string::npos) << sign;
+    EXPECT_NE(doubts(sign * 0.6, sign * 20).find("kPa: bar or V"), std::string::npos) << sign;
+    EXPECT_NE(doubts(sign * 60e3, sign * 20).find("Pa or mbar"), std::string::npos) << sign;
+    EXPECT_NE(doubts(sign * 60, sign * 0.02).find("metres"), std::string::npos) << sign;
+    EXPECT_NE(doubts(sign * 60, sign * 20e3).find("micrometres"), std::string::npos) << sign;
+  }
+}
+
 TEST(Doubts, NoneAboutAFingerAsItIs) {
   for (const char* name : {"bench_twin", "zhang2025"}) {
     std::vector<Log> logs;
