@@ -161,7 +161,7 @@ softgrip_room(tools/baseline
   USES base daemon/service sysid/logs sysid/identification sysid/diagnosis/experiments tools/investigation tools/studies)
 softgrip_room(tools/commands
   USES base model/file control/feedforward control/tuning rig daemon/service daemon/socket sysid/logs sysid/pages
-       sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
+       sysid/fitting sysid/identification sysid/structure sysid/changes sysid/diagnosis/residual sysid/diagnosis/verdict sysid/diagnosis/report tools/command_line tools/client
        tools/log_input tools/recordings tools/health tools/figures tools/importing tools/exporting tools/commissioning tools/investigation tools/verification
        tools/studies tools/baseline
   LIBRARIES CLI11::CLI11 nlohmann_json::nlohmann_json

@@ -5,6 +5,8 @@
 #include <limits>
 #include <span>
 
+#include "base/numbers.h"
+#include "base/statistics.h"
 #include "sysid/fitting/trajectory.h"
 
 namespace softgrip::sysid {
@@ -59,6 +61,21 @@ std::vector<std::size_t> cycle_starts(const Record& record) {
   return starts;
 }
 
+namespace {
+
+constexpr double a_multiple = 0.9;
+
+bool diverges(const Score& score, const std::vector<double>& readings, double span_mm) {
+  PairSums sums;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (!std::isfinite(score.prediction_mm[i])) return true;
+    sums.add(score.prediction_mm[i], readings[i]);
+  }
+  return span_mm > 0 && score.rmse_mm > span_mm && std::abs(sums.correlation()) < a_multiple;
+}
+
+}  // namespace
+
 Score score_of(const model::Model& model, const Record& record, const StartState& start,
                const std::vector<double>& readings) {
   Score score;
@@ -79,7 +96,22 @@ Score score_of(const model::Model& model, const Record& record, const StartState
   const std::span<const double> errors(score.error_mm);
   score.first_cycle_rmse_mm = cycles.size() > 1 ? rms(errors.first(cycles[1])) : none;
   score.settled_rmse_mm = cycles.size() > 1 ? rms(errors.subspan(cycles[1])) : none;
+  score.diverges = diverges(score, readings, record.span_mm);
   return score;
+}
+
+std::vector<std::string> divergences_of(const std::vector<Score>& scores) {
+  std::vector<std::string> sentences;
+  for (const Score& score : scores) {
+    if (!score.diverges) continue;
+    const bool finite = std::all_of(score.prediction_mm.begin(), score.prediction_mm.end(),
+                                    [](double value) { return std::isfinite(value); });
+    sentences.push_back(
+        "the prediction of " + score.name + " diverges: it " +
+        (finite ? "leaves the readings by up to " + significant(score.largest_error_mm, 3) + " mm"
+                : std::string("does not stay finite")));
+  }
+  return sentences;
 }
 
 }  // namespace softgrip::sysid

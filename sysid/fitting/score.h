@@ -23,12 +23,18 @@ struct Score {
   double largest_error_mm = 0;
   double first_cycle_rmse_mm = 0;  ///< NaN where the command does not repeat
   double settled_rmse_mm = 0;      ///< of the cycles after the first; NaN where there are none
+  /// The prediction is not finite, or its RMSE is larger than the span of the readings and it is no multiple
+  /// of them, as in another unit.
+  bool diverges = false;
   StartState start;
 };
 
 /// Simulates from `start` and compares with `readings` (those of the record, or others of the same samples).
 [[nodiscard]] Score score_of(const model::Model& model, const Record& record, const StartState& start,
                              const std::vector<double>& readings);
+
+/// "the prediction of sp1 diverges: ..." for each score that does.
+[[nodiscard]] std::vector<std::string> divergences_of(const std::vector<Score>& scores);
 
 /// Where the cycles of a command begin: indices of samples, the first 0. A cycle is the shortest sequence of
 /// excursions from rest that repeats; a command that never repeats has one excursion per cycle.

@@ -25,10 +25,14 @@ double largest_percent(const Validation& v) {
   return largest;
 }
 
+bool is_above_bound(const Validation& v, const Score& s) {
+  return v.at_most_percent && !(s.rmse_percent_of_span <= *v.at_most_percent);
+}
+
 /// ": 2 of them more than the 1 % that were allowed", or "" where no bound was given or none is above it.
 std::string bound_text(const Validation& v) {
   const auto above =
-      std::count_if(v.scores.begin(), v.scores.end(), [&](const Score& s) { return !is_acceptable(v, s); });
+      std::count_if(v.scores.begin(), v.scores.end(), [&](const Score& s) { return is_above_bound(v, s); });
   if (above == 0) return {};
   const std::string which = v.scores.size() == 1 ? std::string() : std::to_string(above) + " of them ";
   return ": " + which + "more than the " + significant(*v.at_most_percent) + " % that were allowed";
@@ -54,6 +58,7 @@ Validation validate_logs(const model::Model& model, const std::vector<Log>& logs
     v.scores.push_back(score_of(part, v.records[i], starts[i], v.records[i].reading_mm));
   }
   v.warnings = doubts_among(logs);
+  for (std::string& sentence : divergences_of(v.scores)) v.warnings.push_back(std::move(sentence));
   for (std::size_t i = 0; i < v.scores.size(); ++i) {
     if (std::string doubt =
             doubt_about_scale(logs[i].name, v.scores[i].prediction_mm, v.records[i].reading_mm);
@@ -65,7 +70,7 @@ Validation validate_logs(const model::Model& model, const std::vector<Log>& logs
 }
 
 bool is_acceptable(const Validation& v, const Score& score) {
-  return !v.at_most_percent || score.rmse_percent_of_span <= *v.at_most_percent;
+  return !score.diverges && !is_above_bound(v, score);
 }
 
 std::string verdict_of(const Validation& v) {

@@ -27,7 +27,8 @@ struct Validation {
 [[nodiscard]] Validation validate_logs(const model::Model& model, const std::vector<Log>& logs,
                                        const RecordOptions& options = {});
 
-/// Whether a log stays within the bound, if there is one. One whose readings have no span does not.
+/// Whether the prediction of a log stays within the bound, if there is one, and does not diverge. One whose
+/// readings have no span does not stay within a bound.
 [[nodiscard]] bool is_acceptable(const Validation& validation, const Score& score);
 
 /// "3 logs predicted with an RMSE of 0.26 to 0.54 mm, at most 1.9 % of a log's span: 1 of them more than

@@ -1,6 +1,7 @@
 // softgrip identify: a model's parameters from logs.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,9 @@
 #include "base/files.h"
 #include "base/numbers.h"
 #include "model/file/model_file.h"
+#include "sysid/diagnosis/residual/wrong_readings.h"
+#include "sysid/fitting/score.h"
+#include "sysid/identification/excitation_limits.h"
 #include "sysid/identification/identify.h"
 #include "sysid/identification/identify_report.h"
 #include "sysid/identification/validate.h"
@@ -87,6 +91,33 @@ std::string source_of(const std::vector<sysid::Log>& logs, double rmse_mm, const
          " (RMSE " + significant(rmse_mm, 3) + " mm), starting from " + start.name;
 }
 
+void append(std::vector<std::string>& list, std::vector<std::string> more) {
+  for (std::string& one : more) list.push_back(std::move(one));
+}
+
+/// What is wrong with the logs before it is with the fit: a unit explains a number out of its range.
+std::string refusal_of(const std::string& error, const std::vector<sysid::Log>& logs) {
+  std::string text = error;
+  for (const std::string& doubt : sysid::doubts_among(logs)) text += "; " + doubt;
+  return text;
+}
+
+bool any_diverges(const std::vector<sysid::Score>& scores) {
+  return std::any_of(scores.begin(), scores.end(), [](const sysid::Score& s) { return s.diverges; });
+}
+
+/// Of the data and of predictions: what puts the numbers of a fit in doubt is said before them.
+std::vector<std::string> warnings_of_data(const sysid::Identification& result,
+                                          const std::vector<sysid::Log>& logs,
+                                          std::vector<std::string> wrong_readings) {
+  std::vector<std::string> warnings = std::move(wrong_readings);
+  append(warnings, sysid::excitation_limits(logs, result.parameters));
+  append(warnings, sysid::doubts_among(logs));
+  append(warnings, sysid::divergences_of(result.scores));
+  append(warnings, sysid::divergences_of(result.held_out));
+  return warnings;
+}
+
 void print_estimates(const std::vector<sysid::Estimate>& list) {
   for (const sysid::Estimate& e : list) {
     const std::string range = e.ci95 ? sysid::text_of(*e.ci95, e.value, " .. ") : "";
@@ -128,7 +159,9 @@ void print_structure(const sysid::StructureEvidence& s) {
 
 void print_summary(const sysid::IdentifyReport& report, const std::string& out) {
   const sysid::Identification& r = report.result;
-  std::printf("%s\n\n", sysid::verdict_of(r).c_str());
+  std::printf("%s\n", sysid::verdict_of(r).c_str());
+  for (const std::string& warning : r.warnings) std::printf("warning: %s\n", warning.c_str());
+  std::puts("");
   print_scores("Fit", r.scores);
   if (r.structure) print_structure(*r.structure);
   print_scores("Held out, continuation", r.held_out);
@@ -138,7 +171,6 @@ void print_summary(const sysid::IdentifyReport& report, const std::string& out) 
   print_estimates(r.starts);
   std::puts("What the finger shows");
   print_estimates(r.combinations);
-  for (const std::string& warning : r.warnings) std::printf("warning: %s\n", warning.c_str());
   std::printf("%.0f %% of %zu starts reached the best fit, %s s; report: %s\n",
               100 * r.multistart.share_at_best, r.multistart.starts, significant(r.wall_s, 3).c_str(),
               (std::filesystem::path(out) / "report.html").c_str());
@@ -153,19 +185,21 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
     return *code;
   LogInput fitted = options.logs;
   fitted.sample_before_command = !question_of(options);
-  const auto logs = read_logs(options.data, fitted);
+  auto logs = read_logs(options.data, fitted);
   if (!logs) return logs.error();
+  std::vector<std::string> wrong_readings = sysid::take_out_wrong_readings(*logs);
   std::vector<sysid::Log> validation_logs;
   if (!options.validate.empty()) {
     auto read = read_logs(options.validate, options.logs);
     if (!read) return read.error();
     validation_logs = std::move(*read);
+    append(wrong_readings, sysid::take_out_wrong_readings(validation_logs));
   }
   auto start = start_model(options, *logs);
   if (!start) return start.error();
   options.fit.record = options.logs.record_options();
   auto result = identified(*logs, *start, options);
-  if (!result) return fail(ExitCode::input_refused, result.error());
+  if (!result) return fail(ExitCode::input_refused, refusal_of(result.error(), *logs));
   if (question_of(options) && !options.start.empty())
     result->warnings.push_back("--structure searches from the data's scale: nothing of " + options.start +
                                " was used");
@@ -175,7 +209,9 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
   } else {
     result->model.name = start->name + "_identified";
   }
-  for (std::string& doubt : sysid::doubts_among(*logs)) result->warnings.push_back(std::move(doubt));
+  std::vector<std::string> warnings = warnings_of_data(*result, *logs, std::move(wrong_readings));
+  append(warnings, std::move(result->warnings));
+  result->warnings = std::move(warnings);
   result->model.source = source_of(*logs, result->rmse_mm, *start);
 
   sysid::IdentifyReport report{*result, *logs, *start, options.fit.seed, {}, {}, nullptr, call};
@@ -213,7 +249,9 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
   } else {
     print_summary(report, options.out);
   }
-  return result->converged ? ExitCode::done : ExitCode::not_acceptable;
+  const bool diverges =
+      any_diverges(result->scores) || any_diverges(result->held_out) || any_diverges(report.validation);
+  return result->converged && !diverges ? ExitCode::done : ExitCode::not_acceptable;
 }
 
 void add_fit_options(CLI::App& command, sysid::IdentifyOptions& fit) {

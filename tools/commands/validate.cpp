@@ -45,7 +45,10 @@ std::string summary_line(const sysid::Validation& v, const sysid::Score& s) {
                                                  " mm, settled " + significant(s.settled_rmse_mm) + " mm"
                                            : "the command does not repeat";
   line += "; driven by the " + name_of(s.drive);
-  if (!is_acceptable(v, s)) line += "; FAILED: above " + significant(*v.at_most_percent) + " %";
+  if (s.diverges)
+    line += "; FAILED: it diverges";
+  else if (!is_acceptable(v, s))
+    line += "; FAILED: above " + significant(*v.at_most_percent) + " %";
   return line;
 }
 

@@ -1,12 +1,15 @@
 // softgrip identify and validate as a user calls them: exit codes, files, nothing written on refusal.
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "model/blocks/kelvin_voigt.h"
 #include "model/file/model_file.h"
+#include "model/named.h"
 #include "tests/sysid/command_fixture.h"
 #include "tests/sysid/simulated.h"
 
@@ -133,6 +136,86 @@ TEST_F(Command, WhatALogProbablyDoesNotMeanIsWarnedOf) {
        {std::pair{0.1, "cm"}, {1 / 25.4, "inch"}, {1e-3, "metres"}, {100.0, "bar"}})
     EXPECT_NE(warned([&, by = factor](Log& l) { scaled(l.displacement_mm, by); }).find(unit),
               std::string::npos);
+}
+
+/// From the last rest before the highest pressure up to it.
+Log loading() {
+  const Log whole = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
+  const std::vector<double>& kpa = whole.pressure_command_kpa;
+  const auto end = static_cast<std::size_t>(std::max_element(kpa.begin(), kpa.end()) - kpa.begin());
+  std::size_t begin = end;
+  while (begin > 0 && kpa[begin - 1] < kpa[begin]) --begin;
+  return slice(whole, begin, end);
+}
+
+/// The first lines of an output, up to an empty one.
+std::string first_lines(const std::string& text) {
+  return text.substr(0, text.find("\n\n"));
+}
+
+TEST_F(Command, IdentifyStatesFirstWhatTheLogsLack) {
+  write("loading.csv", format_log(loading()));
+  ASSERT_EQ(run("identify --starts 2 --data loading.csv --out result"), 0) << read("err.txt");
+  const std::string lines = first_lines(read("out.txt"));
+  EXPECT_NE(lines.find("unloading never seen"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("need it: bouc_wen.beta_mm_per_kpa"), std::string::npos) << lines;
+  EXPECT_NE(nlohmann::json::parse(read("result/identify.json"))["warnings"].dump().find("unloading"),
+            std::string::npos);
+}
+
+TEST_F(Command, OutliersAreNamedFirstAndNotFitted) {
+  Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
+  for (std::size_t i = 0; i < log.size(); i += log.size() / 6) log.displacement_mm[i] = -999;
+  write("codes.csv", format_log(log));
+  ASSERT_EQ(run("identify --starts 5 --data codes.csv --validate codes.csv --out result"), 0)
+      << read("err.txt");
+  const std::string lines = first_lines(read("out.txt"));
+  EXPECT_NE(lines.find("readings are outliers, left out"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("-999 mm at 0 s"), std::string::npos) << lines;
+  const auto json = nlohmann::json::parse(read("result/identify.json"));
+  EXPECT_NEAR(json["rmse_mm"]["codes"].get<double>(), 0.05, 0.005);
+  EXPECT_NEAR(json["validation"]["rmse_mm"]["codes"].get<double>(), 0.05, 0.005);
+}
+
+/// Its creep has next to no end: a short log does not show that, a long one does.
+TEST_F(Command, APredictionThatDivergesIsNotAcceptable) {
+  write_log("tp1.csv", model::SignalName::tp1);
+  write("loading.csv", format_log(loading()));
+  model::Model creeping = loaded("zhang2025");
+  std::vector<double>& values = creeping.blocks[*model::position_of<model::KelvinVoigt>(creeping)].values;
+  values[1] = 1e-6;
+  values[2] = 3;
+  write("creeping.yaml", model::to_yaml(creeping));
+  EXPECT_EQ(run("validate --model creeping.yaml --data tp1.csv --out checked"), 6) << read("out.txt");
+  EXPECT_NE(read("out.txt").find("the prediction of tp1 diverges"), std::string::npos) << read("out.txt");
+  EXPECT_NE(read("out.txt").find("FAILED: it diverges"), std::string::npos) << read("out.txt");
+  const std::string identify =
+      "identify --start creeping.yaml --free bouc_wen.alpha_mm_per_kpa --starts 1 --data loading.csv --out ";
+  EXPECT_EQ(run(identify + "fitted"), 0) << read("out.txt");
+  EXPECT_EQ(run(identify + "predicted --validate tp1.csv"), 6) << read("out.txt");
+  EXPECT_NE(first_lines(read("out.txt")).find("the prediction of tp1 diverges"), std::string::npos)
+      << read("out.txt");
+}
+
+/// 9999 is beyond every displacement in mm, but not because of a unit.
+TEST_F(Command, ALargeCodeIsNoUnit) {
+  Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
+  log.displacement_mm[30] = log.displacement_mm[50] = 9999;
+  write("codes.csv", format_log(log));
+  EXPECT_EQ(run("identify --data codes.csv --out result"), 3);
+  EXPECT_NE(read("err.txt").find("a code of the sensor"), std::string::npos) << read("err.txt");
+  EXPECT_EQ(read("err.txt").find("micrometres"), std::string::npos) << read("err.txt");
+  EXPECT_NE(read("err.txt").find("--missing 9999"), std::string::npos) << read("err.txt");
+}
+
+TEST_F(Command, AUnitIsNamedWhereANumberIsOutOfItsRange) {
+  Log log = simulated(loaded("zhang2025"), model::SignalName::tp1, 20, 0.05, 7);
+  for (double& kpa : log.pressure_command_kpa) kpa *= 1e-3;
+  write("mpa.csv", format_log(log));
+  EXPECT_EQ(run("identify --data mpa.csv --out result"), 3);
+  EXPECT_NE(read("err.txt").find("MPa, bar or V in a column taken for kPa?"), std::string::npos)
+      << read("err.txt");
+  EXPECT_FALSE(fs::exists(folder_ / "result"));
 }
 
 TEST_F(Command, TheSameInputsGiveTheSameReport) {

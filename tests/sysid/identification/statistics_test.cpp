@@ -105,6 +105,24 @@ TEST(Score, OfTheTrueModelIsTheNoise) {
   EXPECT_NEAR(fast_noise_mm(records[0]), 0.05, 0.003);
 }
 
+TEST(Score, AnotherUnitIsNoDivergence) {
+  const model::Model model = loaded("bench_twin");
+  Log log = simulated(model, model::SignalName::sp1, 50, 0.05, 1);
+  const auto diverges_at = [&](double factor, double alternating_mm) {
+    Log other = log;
+    for (std::size_t i = 0; i < other.size(); ++i) {
+      other.displacement_mm[i] *= factor;
+      other.displacement_mm[i] += alternating_mm * static_cast<double>(i % 2);
+    }
+    const std::vector<Record> records = make_records({other}, {});
+    const Score score = score_of(model, records[0], rest_starts(model, records)[0], records[0].reading_mm);
+    EXPECT_EQ(divergences_of({score}).size(), score.diverges ? 1U : 0U);
+    return score.diverges;
+  };
+  for (const double factor : {1.0, -1.0, 1e-3, 0.1, 1e3}) EXPECT_FALSE(diverges_at(factor, 0)) << factor;
+  EXPECT_TRUE(diverges_at(0, 0.1));  // the readings only alternate
+}
+
 TEST(Validate, EstimatesOnlyWhatTheLogLeavesOpen) {
   const model::Model model = loaded("bench_twin");
   std::vector<Log> logs{simulated(model, model::SignalName::sp1, 50, 0.05, 1),
