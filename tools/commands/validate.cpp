@@ -12,6 +12,7 @@
 
 #include "base/files.h"
 #include "base/numbers.h"
+#include "sysid/diagnosis/residual/wrong_readings.h"
 #include "sysid/identification/validate.h"
 #include "tools/client/styled_line.h"
 #include "tools/command_line/call.h"
@@ -73,9 +74,11 @@ ExitCode run(const ValidateOptions& options, const std::vector<std::string>& cal
     return *code;
   const auto model = read_model(options.model);
   if (!model) return model.error();
-  const auto logs = read_logs(options.data, options.logs);
+  auto logs = read_logs(options.data, options.logs);
   if (!logs) return logs.error();
+  const std::vector<std::string> wrong_readings = sysid::take_out_wrong_readings(*logs);
   sysid::Validation v = sysid::validate_logs(*model, *logs, options.logs.record_options());
+  v.warnings.insert(v.warnings.begin(), wrong_readings.begin(), wrong_readings.end());
   v.at_most_percent = options.at_most_percent;
   v.call = call;
   const std::string json = sysid::validate_json(v, *logs);

@@ -170,11 +170,14 @@ TEST_F(Command, OutliersAreNamedFirstAndNotFitted) {
   ASSERT_EQ(run("identify --starts 5 --data codes.csv --validate codes.csv --out result"), 0)
       << read("err.txt");
   const std::string lines = first_lines(read("out.txt"));
-  EXPECT_NE(lines.find("readings are outliers, left out"), std::string::npos) << lines;
-  EXPECT_NE(lines.find("-999 mm at 0 s"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("readings are outliers, left out: -999 mm at 0 s"), std::string::npos) << lines;
   const auto json = nlohmann::json::parse(read("result/identify.json"));
   EXPECT_NEAR(json["rmse_mm"]["codes"].get<double>(), 0.05, 0.005);
   EXPECT_NEAR(json["validation"]["rmse_mm"]["codes"].get<double>(), 0.05, 0.005);
+  ASSERT_EQ(run("validate --model result/model.yaml --data codes.csv --json"), 0) << read("err.txt");
+  const auto validated = nlohmann::json::parse(read("out.txt"));
+  EXPECT_NEAR(validated["rmse_mm"]["codes"].get<double>(), 0.05, 0.005);
+  EXPECT_NE(validated["warnings"].dump().find("are outliers, left out"), std::string::npos);
 }
 
 /// Its creep has next to no end: a short log does not show that, a long one does.
