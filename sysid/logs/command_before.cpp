@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "base/numbers.h"
+#include "base/statistics.h"
 
 namespace softgrip::sysid {
 namespace {
@@ -22,13 +25,22 @@ std::size_t stands_for(const Log& log, double range_kpa) {
   return count;
 }
 
-}  // namespace
+/// Of the displacement's range: creep under a steady pressure moves less.
+constexpr double step_share = 0.2;
+/// Readings at either end of the first command: their median is no outlier.
+constexpr std::size_t at_an_end = 5;
+constexpr std::size_t fewest_samples = 4 * at_an_end;
 
-std::optional<double> pressure_before_kpa(const Log& log) {
-  if (log.pressure_kpa.empty() || log.size() < 2 || !std::isfinite(log.pressure_kpa.front())) return {};
-  const auto [least, most] =
-      std::minmax_element(log.pressure_command_kpa.begin(), log.pressure_command_kpa.end());
-  const double range_kpa = *most - *least;
+/// Median of the readings in [first, last); NaN without one.
+double median_mm(const Log& log, std::size_t first, std::size_t last) {
+  std::vector<double> readings;
+  for (std::size_t i = first; i < last; ++i) {
+    if (std::isfinite(log.displacement_mm[i])) readings.push_back(log.displacement_mm[i]);
+  }
+  return readings.empty() ? std::numeric_limits<double>::quiet_NaN() : median_of(std::span(readings));
+}
+
+std::optional<double> by_pressure(const Log& log, double range_kpa) {
   const double before_kpa = log.pressure_kpa.front();
   const double way_kpa = log.pressure_command_kpa.front() - before_kpa;
   if (!(std::abs(way_kpa) > far * range_kpa)) return {};
@@ -36,6 +48,27 @@ std::optional<double> pressure_before_kpa(const Log& log) {
     if ((log.pressure_kpa[i] - before_kpa) / way_kpa > on_its_way) return before_kpa;
   }
   return {};
+}
+
+std::optional<double> by_displacement(const Log& log, double least_kpa, double most_kpa) {
+  const double range_kpa = most_kpa - least_kpa;
+  const std::size_t standing = stands_for(log, range_kpa);
+  if (standing < fewest_samples || standing == log.size()) return {};
+  const double motion_mm = median_mm(log, standing - at_an_end, standing) - median_mm(log, 0, at_an_end);
+  if (!(std::abs(motion_mm) > step_share * span_mm(log))) return {};
+  const double before_kpa = motion_mm > 0 ? least_kpa : most_kpa;
+  if (!(std::abs(log.pressure_command_kpa.front() - before_kpa) > far * range_kpa)) return {};
+  return before_kpa;
+}
+
+}  // namespace
+
+std::optional<double> pressure_before_kpa(const Log& log) {
+  if (log.size() < 2) return {};
+  const auto [least, most] =
+      std::minmax_element(log.pressure_command_kpa.begin(), log.pressure_command_kpa.end());
+  if (log.pressure_kpa.empty()) return by_displacement(log, *least, *most);
+  return by_pressure(log, *most - *least);
 }
 
 Log with_command_before(const Log& log, double before_kpa) {

@@ -7,10 +7,13 @@
 
 namespace softgrip::sysid {
 
-/// Where the pressure stood when the log began [kPa], if that was not where its first command asks it to be:
-/// the measured pressure lies a tenth of the command's range and more away from it and comes at least half of
-/// the way while the command stands. Nothing without measured pressure, and of a pressure that stays away
-/// (another zero, another unit).
+/// Where the pressure stood when the log began [kPa], if that was not where its first command asks it to be.
+/// The measured pressure lies a tenth of the command's range and more away from it and comes at least half of
+/// the way while the command stands. Nothing of a pressure that stays away (another zero, another unit).
+///
+/// Without a measured pressure the displacement shows it: it moves by a fifth of its range and more while the
+/// first command stands. The pressure then was at the lowest command if the displacement rises, otherwise at
+/// the highest. Nothing if the first command is that one itself, or stands for less than 20 samples.
 [[nodiscard]] std::optional<double> pressure_before_kpa(const Log& log);
 
 /// The log with one sample more before its first, without readings, at the command `before_kpa`. Times still

@@ -184,7 +184,7 @@ ExitCode run(IdentifyOptions options, const std::vector<std::string>& call) {
           replaced_by_report(options.out, options.figures, {"model.yaml", "identify.json"}), inputs))
     return *code;
   LogInput fitted = options.logs;
-  fitted.sample_before_command = !question_of(options);
+  fitted.begins_at_measured_pressure = question_of(options).has_value();
   auto logs = read_logs(options.data, fitted);
   if (!logs) return logs.error();
   std::vector<std::string> wrong_readings = sysid::take_out_wrong_readings(*logs);

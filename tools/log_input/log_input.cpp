@@ -12,8 +12,9 @@
 namespace softgrip::tools {
 namespace {
 
-void begin_before_the_first_command(std::vector<sysid::Log>& logs) {
+void begin_before_the_first_command(std::vector<sysid::Log>& logs, bool measured_too) {
   for (sysid::Log& log : logs) {
+    if (!measured_too && !log.pressure_kpa.empty()) continue;
     if (const auto before_kpa = sysid::pressure_before_kpa(log))
       log = sysid::with_command_before(log, *before_kpa);
   }
@@ -58,7 +59,8 @@ tl::expected<std::vector<sysid::Log>, ExitCode> read_logs(const std::vector<std:
       problems.add({log.path, {1, 1}, {}, "no column 'pressure_kpa', which --drive measured needs", {}});
     }
   }
-  if (input.drive == "command" && input.sample_before_command) begin_before_the_first_command(campaign.logs);
+  if (input.drive == "command")
+    begin_before_the_first_command(campaign.logs, !input.begins_at_measured_pressure);
   if (problems.empty()) return std::move(campaign.logs);
   const ExitCode refused = refuse_logs(problems);
   return tl::unexpected(campaign.unreadable ? ExitCode::io : refused);

@@ -24,9 +24,9 @@ struct LogInput {
   std::string drive = "command";
   std::string begin = "auto";
   bool held = false;
-  /// A log that begins as its command was set gets a sample before it (sysid/logs/command_before.h): not
-  /// where a stage of its own begins at the measured pressure.
-  bool sample_before_command = true;
+  /// A log that begins as its command was set gets a sample before it (sysid/logs/command_before.h). True:
+  /// not if its pressure is measured, because a stage of its own begins at that pressure.
+  bool begins_at_measured_pressure = false;
 
   [[nodiscard]] sysid::RecordOptions record_options() const;
 };

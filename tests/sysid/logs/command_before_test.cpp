@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace softgrip::sysid::command_before_test {
 namespace {
@@ -43,11 +44,46 @@ TEST(CommandBefore, IsWhereTheMeasuredPressureStillWas) {
 TEST(CommandBefore, ALogThatBeginsAtRestHasNone) {
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(60)));
   EXPECT_FALSE(pressure_before_kpa(begun_at_a_step(58))) << "a regulator's error";
-  Log unmeasured = begun_at_a_step(7);
-  unmeasured.pressure_kpa.clear();
-  EXPECT_FALSE(pressure_before_kpa(unmeasured));
   Log unread = begun_at_a_step(7);
   unread.pressure_kpa.front() = std::nan("");
+  EXPECT_FALSE(pressure_before_kpa(unread));
+}
+
+Log unmeasured(Log log) {
+  log.pressure_kpa.clear();
+  return log;
+}
+
+TEST(CommandBefore, WithoutMeasuredPressureTheDisplacementShowsFromWhichEndItCame) {
+  const auto [least, most] = std::pair{20.0, 60.0};  // of the wave behind the hold
+  const auto risen = pressure_before_kpa(unmeasured(begun_at_a_step(7)));
+  ASSERT_TRUE(risen);
+  EXPECT_NEAR(*risen, least, 0.1);
+  Log lowered = begun_at_a_step(60);  // from 60 to 20 kPa as it begins
+  for (std::size_t i = 0; i < lowered.size(); ++i) {
+    lowered.pressure_command_kpa[i] = 80 - lowered.pressure_command_kpa[i];
+    const double settling = std::exp(-interval_s * static_cast<double>(i) / 0.3);
+    lowered.displacement_mm[i] = 0.3 * (lowered.pressure_command_kpa[i] + 40 * settling);
+  }
+  const auto fallen = pressure_before_kpa(unmeasured(lowered));
+  ASSERT_TRUE(fallen);
+  EXPECT_NEAR(*fallen, most, 0.1);
+}
+
+TEST(CommandBefore, WithoutMeasuredPressureALogThatShowsNoStepHasNone) {
+  EXPECT_FALSE(pressure_before_kpa(unmeasured(begun_at_a_step(60)))) << "at rest";
+  Log creeping = unmeasured(begun_at_a_step(60));
+  for (std::size_t i = 0; i < creeping.size(); ++i)
+    creeping.displacement_mm[i] -= 1.5 * std::exp(-interval_s * static_cast<double>(i));
+  EXPECT_FALSE(pressure_before_kpa(creeping)) << "12 % of the span";
+  Log brief = unmeasured(begun_at_a_step(7));
+  for (std::size_t i = 19; i < brief.size(); ++i) brief.pressure_command_kpa[i] = 20;
+  EXPECT_FALSE(pressure_before_kpa(brief)) << "stands for 19 samples";
+  Log lowest = unmeasured(begun_at_a_step(7));
+  for (double& command : lowest.pressure_command_kpa) command = 120 - command;
+  EXPECT_FALSE(pressure_before_kpa(lowest)) << "the displacement rises, and the first command is the lowest";
+  Log unread = unmeasured(begun_at_a_step(7));
+  for (double& reading : unread.displacement_mm) reading = std::nan("");
   EXPECT_FALSE(pressure_before_kpa(unread));
 }
 

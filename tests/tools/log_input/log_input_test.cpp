@@ -13,17 +13,18 @@ namespace {
 constexpr std::size_t samples = 400;
 
 /// A log that begins as its command was set from 5 to 60 kPa; the pressure follows with a lag of 0.3 s.
-std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder) {
+std::string begun_at_a_step(const daemon::testing::TemporaryFolder& folder, bool measured = true) {
   const std::string path = folder.path() + "/step.csv";
   std::ofstream out(path);
-  out << "time_s,pressure_command_kpa,displacement_mm,pressure_kpa\n";
+  out << "time_s,pressure_command_kpa,displacement_mm" << (measured ? ",pressure_kpa\n" : "\n");
   for (std::size_t i = 0; i < samples; ++i) {
     const double t_s = 0.02 * static_cast<double>(i);
     const double command_kpa = t_s < 4 ? 60 : 30;
     const double pressure_kpa =
         t_s < 4 ? 60 - 55 * std::exp(-t_s / 0.3) : 30 + 30 * std::exp(-(t_s - 4) / 0.3);
-    out << t_s << ',' << command_kpa << ',' << 0.3 * pressure_kpa + 0.01 * static_cast<double>(i % 3) << ','
-        << pressure_kpa << '\n';
+    out << t_s << ',' << command_kpa << ',' << 0.3 * pressure_kpa + 0.01 * static_cast<double>(i % 3);
+    if (measured) out << ',' << pressure_kpa;
+    out << '\n';
   }
   return path;
 }
@@ -37,11 +38,21 @@ TEST(LogInput, ALogThatBeginsAsItsCommandWasSetGetsASampleBeforeIt) {
   EXPECT_TRUE(std::isnan(logs->front().displacement_mm.front()));
 }
 
+TEST(LogInput, WithoutAMeasuredPressureAStageOfItsOwnHasNoOtherBeginning) {
+  const daemon::testing::TemporaryFolder folder;
+  LogInput staged;
+  staged.begins_at_measured_pressure = true;
+  const auto logs = read_logs({begun_at_a_step(folder, false)}, staged);
+  ASSERT_TRUE(logs);
+  ASSERT_EQ(logs->front().size(), samples + 1);
+  EXPECT_EQ(logs->front().pressure_command_kpa.front(), 30) << "the lowest command";
+}
+
 TEST(LogInput, NotWhereTheMeasuredPressureDrivesAStageOrAll) {
   const daemon::testing::TemporaryFolder folder;
   const std::string path = begun_at_a_step(folder);
   LogInput staged;
-  staged.sample_before_command = false;
+  staged.begins_at_measured_pressure = true;
   LogInput measured;
   measured.drive = "measured";
   for (const LogInput& input : {staged, measured}) {
