@@ -16,10 +16,12 @@ class Valve {
   Valve(const Record& record, const BaseStructure& structure, const NonlinearNumbers& n, double first_kpa)
       : regulates_(structure.lag && structure.regulator),
         delay_(std::vector<double>{structure.delay ? n.delay_s : 0}, {.sample_time_s = record.sample_time_s}),
+        second_(second_s(structure, n), second_s(structure, n), record.sample_time_s),
         lag_(structure.lag ? n.filling_s : 0, structure.lag ? n.venting_s : 0, record.sample_time_s),
         pilot_(n.pilot_band_kpa / 2),
         regulator_({n.filling_s, n.venting_s, n.overlap_kpa, n.integral_s, n.full_open_kpa}) {
     delay_.reset(first_kpa);
+    second_.reset(first_kpa);
     lag_.reset(first_kpa);
     pilot_.reset(first_kpa);
     regulator_.reset(pilot_.output());
@@ -28,14 +30,21 @@ class Valve {
   template <class Next>
   void step(const Segment& command, Next&& next) {
     delay_.step(command, {}, [&](const Segment& delayed) {
-      if (!regulates_) return lag_.step(delayed, next);
+      if (!regulates_) {
+        return second_.step(delayed, [&](const Segment& slower) { lag_.step(slower, next); });
+      }
       pilot_.step(delayed, [&](const Segment& asked) { regulator_.step(asked, next); });
     });
   }
 
  private:
+  static double second_s(const BaseStructure& structure, const NonlinearNumbers& n) {
+    return structure.lag && structure.second_lag ? n.second_s : 0;
+  }
+
   bool regulates_;
   model::TransportDelay<double> delay_;
+  model::TwoWayLag<double> second_;
   model::TwoWayLag<double> lag_;
   model::Play<double> pilot_;
   model::RegulatedPressure<double> regulator_;

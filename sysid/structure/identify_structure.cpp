@@ -143,12 +143,14 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   StructureChoiceOptions choice_options;
   choice_options.question = question;
   choice_options.drive = record.drive;
+  choice_options.second_lag = true;
   choice_options.starts = options.starts;
   choice_options.seed = options.seed;
   choice_options.threads = options.threads;
   if (options.progress) {
     choice_options.progress = [&](const std::string& stage) { options.progress({0, 0, 0, stage}); };
   }
+  result.records = with_simplest_start(result.records, choice_options);
   const StructureChoice choice = choose_structure(result.records, choice_options);
   const StructureTrial& chosen = choice.trials[choice.chosen];
   if (!std::isfinite(chosen.rmse_mm)) return Failure("the model's answer is not finite from any start");

@@ -24,6 +24,7 @@ std::string description_of(const BaseStructure& s) {
   if (s.delay) text += ", delay";
   if (s.lag && s.regulator) text += ", regulator with overlap";
   if (s.lag && !s.regulator) text += s.two_way ? ", lag (filling and venting)" : ", lag";
+  if (s.lag && s.second_lag && !s.regulator) text += ", second lag";
   if (s.characteristic) text += ", characteristic";
   return text;
 }

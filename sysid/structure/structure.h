@@ -26,6 +26,7 @@ struct BaseStructure {
   bool delay = true;           ///< dead time between the drive and the finger
   bool lag = true;             ///< a first-order lag behind it
   bool two_way = true;         ///< filling and venting have a time constant each
+  bool second_lag = false;     ///< another lag in front of the first, both directions alike
   bool regulator = false;      ///< the lag is that of a regulator with an overlap, see RegulatedPressure
   bool characteristic = true;  ///< a bent, monotone map behind the sum
   bool envelopes = false;      ///< the plays are generalised ones: their envelopes are bent
@@ -59,6 +60,7 @@ struct NonlinearNumbers {
   double delay_s = 0;
   double filling_s = 0;  ///< time constant while the pressure rises; 0: none
   double venting_s = 0;
+  double second_s = 0;        ///< of the second lag
   double pilot_band_kpa = 0;  ///< regulator: of the command, ignored after a reversal
   double overlap_kpa = 0;     ///< regulator: as in RegulatorNumbers, like the next two
   double integral_s = 0;

@@ -9,6 +9,7 @@
 #include "sysid/fitting/held_out.h"
 #include "sysid/fitting/minimise.h"
 #include "sysid/identification/identify.h"
+#include "sysid/structure/bounded_answer.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_fit.h"
 #include "sysid/structure/structure_model.h"
@@ -62,6 +63,7 @@ class Judge {
   /// With a regulator in the place of the lag, from the numbers of a trial with the lag on.
   [[nodiscard]] StructureTrial judge_regulated(BaseStructure structure, const StructureTrial& lagging) const {
     structure.regulator = true;
+    structure.second_lag = false;
     return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
   }
 
@@ -102,6 +104,7 @@ class Judge {
   }
 
   void judge_held_out(StructureTrial& trial, const Refit& refit) const {
+    trial.bounded = stays_bounded(trial.point, records_);
     trial.block_losses_mm2 = held_out_losses(records_, division_, refit);
     trial.heldout_rmse_mm = sysid::rmse_mm(trial.block_losses_mm2);
   }
@@ -174,10 +177,13 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
       s.delay = false;
       break;
     case Ingredient::lag:
-      s.lag = false;
+      s.lag = s.second_lag = false;
+      break;
+    case Ingredient::second_lag:
+      s.second_lag = false;
       break;
     case Ingredient::latency:
-      s.delay = s.lag = false;
+      s.delay = s.lag = s.second_lag = false;
       break;
     case Ingredient::regulator:
       s.regulator = false;
@@ -201,10 +207,15 @@ bool has(const BaseStructure& s, Ingredient ingredient) {
   return without(s, ingredient) != s;
 }
 
+bool may_be_chosen(const StructureTrial& trial) {
+  return trial.invertible && trial.bounded;
+}
+
 std::size_t best_of(const std::vector<StructureTrial>& trials) {
   return static_cast<std::size_t>(std::min_element(trials.begin(), trials.end(),
                                                    [](const StructureTrial& a, const StructureTrial& b) {
-                                                     if (a.invertible != b.invertible) return a.invertible;
+                                                     if (may_be_chosen(a) != may_be_chosen(b))
+                                                       return may_be_chosen(a);
                                                      return a.heldout_rmse_mm < b.heldout_rmse_mm;
                                                    }) -
                                   trials.begin());
@@ -214,11 +225,22 @@ std::size_t best_of(const std::vector<StructureTrial>& trials) {
 std::size_t simplest_of_the_best(const std::vector<StructureTrial>& trials, std::size_t first = 0) {
   const std::size_t best = best_of(trials);
   for (std::size_t i = first; i < best; ++i) {
-    if (!trials[i].invertible) continue;
+    if (!may_be_chosen(trials[i])) continue;
     const LossDifference behind = loss_difference(trials[i].block_losses_mm2, trials[best].block_losses_mm2);
     if (behind.mean_mm2 <= behind.standard_error_mm2) return i;
   }
   return best;
+}
+
+/// The chosen structure with another lag in front of its own.
+void try_second_lag(const Judge& judge, StructureChoice& choice) {
+  const StructureTrial& chosen = choice.trials[choice.chosen];
+  BaseStructure structure = chosen.structure;
+  structure.second_lag = true;
+  StructureTrial slower = judge.judge_near(structure, chosen.ridge, chosen.numbers);
+  if (!may_be_chosen(slower) || !is_clearly_less(slower.block_losses_mm2, chosen.block_losses_mm2)) return;
+  choice.chosen = choice.trials.size();
+  choice.trials.push_back(std::move(slower));
 }
 
 /// The chosen structure with a regulator, and, since creep may have made up for one, with simpler creep.
@@ -231,7 +253,8 @@ void try_regulators(const Judge& judge, unsigned threads, StructureChoice& choic
   parallel_for(structures.size(), threads,
                [&](std::size_t i) { regulated[i] = judge.judge_regulated(structures[i], chosen); });
   StructureTrial& simplest = regulated[simplest_of_the_best(regulated)];
-  if (!is_clearly_less(simplest.block_losses_mm2, chosen.block_losses_mm2)) return;
+  if (!may_be_chosen(simplest) || !is_clearly_less(simplest.block_losses_mm2, chosen.block_losses_mm2))
+    return;
   choice.chosen = choice.trials.size();
   choice.trials.push_back(std::move(simplest));
 }
@@ -255,12 +278,32 @@ std::string_view name_of(Ingredient ingredient) {
       "dependence of creep on pressure",
       "delay",
       "lag",
+      "a second lag",
       "delay and lag",
       "a regulator's overlap (a lag instead)",
       "a time constant of its own for venting",
       "bent characteristic and envelopes",
       "bent envelopes"};
   return names[static_cast<std::size_t>(ingredient)];
+}
+
+std::vector<Record> with_simplest_start(const std::vector<Record>& records,
+                                        const StructureChoiceOptions& options) {
+  std::vector<Record> resting = records;
+  for (Record& record : resting) {
+    if (record.start == Start::automatic) record.start_unknown = false;
+  }
+  if (std::equal(records.begin(), records.end(), resting.begin(),
+                 [](const Record& a, const Record& b) { return a.start_unknown == b.start_unknown; }))
+    return records;
+  if (options.progress) options.progress("does each log begin at rest?");
+  const BaseStructure structure = candidates(options).back();
+  std::array<std::vector<double>, 2> losses;
+  parallel_for(losses.size(), options.threads, [&](std::size_t i) {
+    losses[i] =
+        Judge(i == 0 ? resting : records, options).judge(structure, ridges[first_ridge]).block_losses_mm2;
+  });
+  return is_clearly_less(losses[1], losses[0]) ? records : resting;
 }
 
 StructureChoice choose_structure(const std::vector<Record>& records, const StructureChoiceOptions& options) {
@@ -296,6 +339,10 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
                                           options.published_yields_below * simplest.heldout_rmse_mm)
     choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
   if (options.drive == Drive::command && !choice.trials[choice.chosen].structure.published) {
+    if (options.second_lag) {
+      say("a second lag");
+      try_second_lag(judge, choice);
+    }
     say("a regulator instead of the lag");
     try_regulators(judge, options.threads, choice);
   }

@@ -136,8 +136,7 @@ class Search {
     if (structure_.delay) add_driving(straight(&N::delay_s, 0.2, 0, 0, 5));
     if (structure_.lag) {
       if (structure_.two_way) {
-        add_driving(logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10));
-        add_driving(logarithmic(&N::venting_s, 1.5, 0.1, 1e-4, 10));
+        add_two_ways();
       } else {
         Coordinate both = logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10);
         const auto set = both.set;
@@ -148,6 +147,7 @@ class Search {
         add_driving(std::move(both));
       }
     }
+    if (structure_.lag && structure_.second_lag) add_driving(logarithmic(&N::second_s, 1.5, 0.1, 1e-4, 10));
     if (structure_.lag && structure_.regulator) {
       // A wider one is no regulator's: a backlash would be taken for it.
       const double widest_kpa = widest_of_a_regulator * grid_.largest_kpa;
@@ -177,6 +177,24 @@ class Search {
                               [=](N& n, double t) { n.peak_before_kpa[r] = t * width; }, first / width,
                               first / width, 1});
     }
+  }
+
+  /// Filling, and how much slower than it is the venting: where no log shows that, they are alike.
+  void add_two_ways() {
+    using N = NonlinearNumbers;
+    const auto valid_s = [](double time_constant_s) { return std::clamp(time_constant_s, 1e-4, 10.0); };
+    Coordinate filling = logarithmic(&N::filling_s, 1.5, 0.1, 1e-4, 10);
+    const auto set = filling.set;
+    filling.set = [=](N& n, double t) {
+      const double slower = n.venting_s / n.filling_s;
+      set(n, t);
+      n.venting_s = valid_s(slower * n.filling_s);
+    };
+    add_driving(std::move(filling));
+    const double width = 1.5, widest = std::log(1e4) / width;
+    add_driving({[=](const N& n) { return std::log(n.venting_s / n.filling_s) / width; },
+                 [=](N& n, double t) { n.venting_s = valid_s(n.filling_s * std::exp(t * width)); }, 0,
+                 -widest, widest});
   }
 
   Normal normal_at(const State& state) {
@@ -260,7 +278,13 @@ std::vector<NonlinearNumbers> starts_for(const std::vector<Record>& records, con
                               .growing_per_kpa = 6 / grid.largest_kpa,
                               .trained_kpa = 1.2 * grid.largest_kpa,
                               .peak_before_kpa = peaks};
-  return {quick, late};
+  const NonlinearNumbers slow{.delay_s = 0.1,
+                              .filling_s = 0.5,
+                              .venting_s = 1.5,
+                              .growing_per_kpa = 3 / grid.largest_kpa,
+                              .trained_kpa = 0.5 * grid.largest_kpa,
+                              .peak_before_kpa = peaks};
+  return {quick, late, slow};
 }
 
 }  // namespace
@@ -314,6 +338,7 @@ FittedStructure fit_form(const std::vector<Record>& records, const BaseStructure
     NonlinearNumbers start = starts[i];
     if (!structure.delay) start.delay_s = 0;
     if (!structure.lag) start.filling_s = start.venting_s = 0;
+    if (structure.second_lag && start.second_s == 0) start.second_s = start.filling_s / 2;
     Search look(few, structure, grid, options);
     runs[i].found = look.run(start, runs[i].converged);
   });

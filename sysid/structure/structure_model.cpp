@@ -12,6 +12,7 @@
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/transport_delay.h"
 #include "model/blocks/valve_deadband.h"
+#include "model/blocks/valve_lag.h"
 #include "model/named.h"
 #include "sysid/structure/published_element.h"
 #include "sysid/structure/structure_columns.h"
@@ -55,6 +56,7 @@ class Builder {
       if (n.pilot_band_kpa > 0) add<model::ValveDeadband>({n.pilot_band_kpa});
       add<model::PressureRegulator>({n.filling_s, n.venting_s, n.overlap_kpa, n.integral_s, n.full_open_kpa});
     } else {
+      if (fit_.structure.second_lag) add<model::ValveLag>({n.second_s});
       add<model::AsymmetricValveLag>({n.filling_s, n.venting_s});
     }
   }

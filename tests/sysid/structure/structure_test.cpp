@@ -5,11 +5,13 @@
 #include <random>
 
 #include "base/thread_budget.h"
+#include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/characteristic.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_regulator.h"
 #include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_lag.h"
 #include "model/catalogue.h"
 #include "model/chain.h"
 #include "model/named.h"
@@ -253,6 +255,89 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
     const std::vector<double>& values = found->model.blocks[*position].values;
     EXPECT_NEAR(values[model::parameter_index<model::PressureRegulator>("overlap_kpa")], 0.8, 0.4);
   }
+}
+
+/// A finger behind two lags is not taken for one behind a lag, nor the other way round.
+TEST(IdentifyStructure, FindsASecondLag) {
+  const model::Model slower =
+      model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
+  for (const bool second : {false, true}) {
+    std::vector<Log> logs;
+    for (const SignalName signal : {SignalName::tp1, SignalName::steps})
+      logs.push_back(simulated(second ? slower : play_finger(), signal, 100, 0.03, 15));
+    const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
+    ASSERT_TRUE(found) << found.error();
+    const auto position = model::position_of<model::ValveLag>(found->model);
+    EXPECT_EQ(position.has_value(), second);
+    EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
+    if (!position) continue;
+    EXPECT_NEAR(found->model.blocks[*position].values[0], 0.12, 0.06);
+  }
+}
+
+/// The first 20 s are fitted: one stroke from an idle pressure, which begins with the log.
+TEST(IdentifyStructure, OneStrokeFromAnIdlePressureIsNoUnsettledCreep) {
+  constexpr double idle_kpa = 7;
+  const model::Model finger = play_finger();
+  Log log;
+  log.name = "strokes";
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 0.05);
+  model::Chain<double> chain(finger, {}, 0.02);
+  chain.rest(idle_kpa);
+  for (int i = 0; i < 2000; ++i) {
+    const double command_kpa = i > 0 && (i / 500) % 2 == 0 ? 60 : idle_kpa;
+    log.time_s.push_back(0.02 * i);
+    log.pressure_command_kpa.push_back(command_kpa);
+    log.displacement_mm.push_back((i == 0 ? chain.reading_mm() : chain.step(0.02, command_kpa)) +
+                                  noise(random));
+  }
+  IdentifyOptions options;
+  options.fit_share = 0.5;
+  const auto found = identify_structure({log}, StructureQuestion::automatic, options);
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_FALSE(found->records[0].start_unknown);
+  EXPECT_LT(found->held_out[0].rmse_mm, 0.05 * span_mm(log)) << "the second stroke";
+}
+
+TEST(SimplestStart, WhatTheCallerStatesAndWhatRestDoesNotExplainStays) {
+  const Log whole = simulated(play_finger(), SignalName::tp1, 100, 0.03, 15);
+  Log late;  // without its first 3 s: in the middle of a rise, after others
+  late.name = "late";
+  for (std::size_t i = 300; i < whole.size(); ++i) {
+    late.time_s.push_back(whole.time_s[i] - whole.time_s[300]);
+    late.pressure_command_kpa.push_back(whole.pressure_command_kpa[i]);
+    late.displacement_mm.push_back(whole.displacement_mm[i]);
+  }
+  const std::vector<Record> records = make_records({late}, {});
+  ASSERT_TRUE(records[0].start_unknown);
+  EXPECT_TRUE(with_simplest_start(records, {})[0].start_unknown) << "rest leaves clearly more";
+  RecordOptions stated;
+  stated.start = Start::unknown;
+  EXPECT_TRUE(with_simplest_start(make_records({whole}, stated), {})[0].start_unknown) << "as stated";
+}
+
+/// What no log shows is as usual: a finger vents as fast as it fills.
+TEST(StructureFit, AVentingThatNoLogShowsIsAsFastAsTheFilling) {
+  model::Model finger = play_finger();
+  for (model::BlockSpec& block : finger.blocks) {
+    if (block.type == model::block_type<model::AsymmetricValveLag>()) block.values = {0.6, 0.2};
+  }
+  Log log;
+  log.name = "a rise";
+  model::Chain<double> chain(finger, {}, 0.02);
+  chain.rest(0.0);
+  for (int i = 0; i < 500; ++i) {
+    const double command_kpa = i > 0 ? 60 : 0;
+    log.time_s.push_back(0.02 * i);
+    log.pressure_command_kpa.push_back(command_kpa);
+    log.displacement_mm.push_back(i == 0 ? chain.reading_mm() : chain.step(0.02, command_kpa));
+  }
+  const std::vector<Record> records = make_records({log}, {});
+  const FittedStructure fit =
+      fit_form(records, {.creep = false, .characteristic = false}, grid_for(records), {});
+  EXPECT_GT(fit.numbers.filling_s, 0.2);
+  EXPECT_NEAR(fit.numbers.venting_s, fit.numbers.filling_s, 0.05 * fit.numbers.filling_s);
 }
 
 TEST(IdentifyStructure, TheAnswerDoesNotDependOnTheUnit) {
