@@ -143,7 +143,7 @@ tl::expected<Identification, std::string> identify_structure(const std::vector<L
   StructureChoiceOptions choice_options;
   choice_options.question = question;
   choice_options.drive = record.drive;
-  choice_options.second_lag = true;
+  choice_options.dynamics = true;
   choice_options.starts = options.starts;
   choice_options.seed = options.seed;
   choice_options.threads = options.threads;

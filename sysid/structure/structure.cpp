@@ -26,6 +26,7 @@ std::string description_of(const BaseStructure& s) {
   if (s.lag && !s.regulator) text += s.two_way ? ", lag (filling and venting)" : ", lag";
   if (s.lag && s.second_lag && !s.regulator) text += ", second lag";
   if (s.characteristic) text += ", characteristic";
+  if (s.resonance) text += ", resonance";
   return text;
 }
 

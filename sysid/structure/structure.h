@@ -29,6 +29,7 @@ struct BaseStructure {
   bool second_lag = false;     ///< another lag in front of the first, both directions alike
   bool regulator = false;      ///< the lag is that of a regulator with an overlap, see RegulatedPressure
   bool characteristic = true;  ///< a bent, monotone map behind the sum
+  bool resonance = false;      ///< a second-order mode behind the map, see with_resonance()
   bool envelopes = false;      ///< the plays are generalised ones: their envelopes are bent
   bool hinged_creep = false;   ///< creep that depends on the pressure: a short ladder behind every hinge
   bool wandering = false;      ///< beside it every record's zero wanders as it likes; no part of the finger

@@ -11,6 +11,7 @@
 #include "sysid/identification/identify.h"
 #include "sysid/structure/bounded_answer.h"
 #include "sysid/structure/published_element.h"
+#include "sysid/structure/resonance.h"
 #include "sysid/structure/structure_fit.h"
 #include "sysid/structure/structure_model.h"
 
@@ -65,6 +66,22 @@ class Judge {
     structure.regulator = true;
     structure.second_lag = false;
     return judge_near(structure, lagging.ridge, with_usual_regulator(lagging.numbers, grid_));
+  }
+
+  /// A trial with a resonance behind it. Its other numbers are those that were fitted without one.
+  [[nodiscard]] StructureTrial judge_resonant(const StructureTrial& still) const {
+    StructureTrial trial = still;
+    trial.structure.resonance = true;
+    const ResonantFit ringing = with_resonance(still.point, records_);
+    trial.point = ringing.point;
+    trial.rmse_mm = ringing.rmse_mm;
+    StructureFitOptions options = with(still.ridge);
+    options.most_iterations = fold_iterations;
+    judge_held_out(trial, [&](const std::vector<Record>& rest) {
+      const FittedStructure fit = fit_form(rest, still.structure, grid_, options, &still.numbers);
+      return with_resonance_of(trial.point, point_of(fit, rest, options_.drive), rest);
+    });
+    return trial;
   }
 
   [[nodiscard]] StructureTrial judge(const BaseStructure& structure, double ridge) const {
@@ -194,6 +211,9 @@ BaseStructure without(BaseStructure s, Ingredient ingredient) {
     case Ingredient::characteristic:
       s.characteristic = s.envelopes = false;
       break;
+    case Ingredient::resonance:
+      s.resonance = false;
+      break;
     case Ingredient::envelopes:
       s.envelopes = false;
       break;
@@ -243,6 +263,15 @@ void try_second_lag(const Judge& judge, StructureChoice& choice) {
   choice.trials.push_back(std::move(slower));
 }
 
+/// The chosen structure with a resonance.
+void try_resonance(const Judge& judge, StructureChoice& choice) {
+  const StructureTrial& chosen = choice.trials[choice.chosen];
+  StructureTrial ringing = judge.judge_resonant(chosen);
+  if (!may_be_chosen(ringing) || !is_clearly_less(ringing.block_losses_mm2, chosen.block_losses_mm2)) return;
+  choice.chosen = choice.trials.size();
+  choice.trials.push_back(std::move(ringing));
+}
+
 /// The chosen structure with a regulator, and, since creep may have made up for one, with simpler creep.
 void try_regulators(const Judge& judge, unsigned threads, StructureChoice& choice) {
   const StructureTrial chosen = choice.trials[choice.chosen];
@@ -264,7 +293,10 @@ FitPoint fit_from(const NonlinearNumbers* near, const StructureTrial& trial,
                   const std::vector<Record>& records, Drive drive) {
   if (trial.structure.published) return refit_published(records, trial.point);
   const StructureFitOptions options{.ridge = trial.ridge};
-  return point_of(fit_form(records, trial.structure, grid_for(records), options, near), records, drive);
+  BaseStructure still = trial.structure;
+  still.resonance = false;
+  FitPoint point = point_of(fit_form(records, still, grid_for(records), options, near), records, drive);
+  return trial.structure.resonance ? with_resonance_of(trial.point, std::move(point), records) : point;
 }
 
 }  // namespace
@@ -283,6 +315,7 @@ std::string_view name_of(Ingredient ingredient) {
       "a regulator's overlap (a lag instead)",
       "a time constant of its own for venting",
       "bent characteristic and envelopes",
+      "a resonance",
       "bent envelopes"};
   return names[static_cast<std::size_t>(ingredient)];
 }
@@ -338,13 +371,18 @@ StructureChoice choose_structure(const std::vector<Record>& records, const Struc
   if (simplest.structure.published && choice.trials[best_of(choice.trials)].heldout_rmse_mm <
                                           options.published_yields_below * simplest.heldout_rmse_mm)
     choice.chosen = simplest_of_the_best(choice.trials, choice.chosen + 1);
-  if (options.drive == Drive::command && !choice.trials[choice.chosen].structure.published) {
-    if (options.second_lag) {
+  if (choice.trials[choice.chosen].structure.published) return choice;
+  if (options.drive == Drive::command) {
+    if (options.dynamics) {
       say("a second lag");
       try_second_lag(judge, choice);
     }
     say("a regulator instead of the lag");
     try_regulators(judge, options.threads, choice);
+  }
+  if (options.dynamics) {
+    say("a resonance");
+    try_resonance(judge, choice);
   }
   return choice;
 }
@@ -366,10 +404,11 @@ std::vector<WithoutIngredient> ablation_of(const std::vector<Record>& records, c
   parallel_for(ablation.size(), options.threads, [&](std::size_t i) {
     // A branch of the finger's own between two rungs is made up for by both; the upper one may be slow creep.
     const Judge& fair = ablation[i].ingredient == Ingredient::slow_creep ? among_more_rungs : judge;
-    const BaseStructure& structure = ablation[i].trial.structure;
-    ablation[i].trial = structure.lag && structure.regulator
-                            ? fair.judge_near(structure, choice.ridge, chosen.numbers)
-                            : fair.judge(structure, choice.ridge);
+    BaseStructure still = ablation[i].trial.structure;
+    still.resonance = false;
+    StructureTrial trial = still.lag && still.regulator ? fair.judge_near(still, choice.ridge, chosen.numbers)
+                                                        : fair.judge(still, choice.ridge);
+    ablation[i].trial = ablation[i].trial.structure.resonance ? fair.judge_resonant(trial) : std::move(trial);
   });
   return ablation;
 }

@@ -23,8 +23,8 @@ struct StructureChoiceOptions {
   double published_yields_below = 0;
   StructureQuestion question = StructureQuestion::automatic;
   Drive drive = Drive::command;  ///< with the measured pressure no dead time is looked for
-  /// A second lag is tried too. To the diagnosis it is a cause of its own.
-  bool second_lag = false;
+  /// A second lag and a resonance are tried too. To the diagnosis they are causes of their own.
+  bool dynamics = false;
   std::size_t starts = 20;  ///< of the published element's search
   /// Creep of at least this time constant is slow creep [s]; 0: from a tenth of the longest record on.
   double slow_from_s = 0;
@@ -47,7 +47,8 @@ enum class Ingredient {
   regulator,       ///< instead of it a lag
   venting_lag,     ///< one time constant for both directions
   characteristic,  ///< and the bend of the envelopes: each makes up for most of the other
-  envelopes        ///< plays instead of generalised ones
+  resonance,
+  envelopes  ///< plays instead of generalised ones
 };
 inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::play_operators,
@@ -61,6 +62,7 @@ inline constexpr std::array all_ingredients{Ingredient::hysteresis,
                                             Ingredient::regulator,
                                             Ingredient::venting_lag,
                                             Ingredient::characteristic,
+                                            Ingredient::resonance,
                                             Ingredient::envelopes};
 [[nodiscard]] std::string_view name_of(Ingredient ingredient);
 
@@ -99,8 +101,8 @@ struct WithoutIngredient {
 
 /// The ridge is chosen first, with the richest structure; then the simplest structure whose held-out loss is
 /// within one standard error (of the difference, block by block) of the best (Breiman et al. 1984,
-/// section 3.4.3). From the command a second lag, and then a regulator in the place of the lags, are further
-/// trials, each chosen where it loses clearly less.
+/// section 3.4.3). Further trials, each chosen where it loses clearly less, are a resonance and, from the
+/// command, a second lag and a regulator in the place of the lags.
 [[nodiscard]] StructureChoice choose_structure(const std::vector<Record>& records,
                                                const StructureChoiceOptions& options);
 

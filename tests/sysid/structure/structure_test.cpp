@@ -7,6 +7,7 @@
 #include "base/thread_budget.h"
 #include "model/blocks/asymmetric_valve_lag.h"
 #include "model/blocks/characteristic.h"
+#include "model/blocks/inertia.h"
 #include "model/blocks/kelvin_voigt.h"
 #include "model/blocks/prandtl_ishlinskii.h"
 #include "model/blocks/pressure_regulator.h"
@@ -197,6 +198,8 @@ TEST(IdentifyStructure, FindsAFingerOfPlays) {
   EXPECT_EQ(chosen->structure, "prandtl_ishlinskii");
   EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
   EXPECT_LT(continuation_rmse_mm(play_finger(), found->model, SignalName::tp2, 0), 3 * 0.03) << "another log";
+  EXPECT_FALSE(model::position_of<model::ValveLag>(found->model)) << "no second lag";
+  EXPECT_FALSE(model::position_of<model::Inertia>(found->model)) << "no resonance";
   ASSERT_FALSE(found->structure->ablation.empty());
   for (const auto& without : found->structure->ablation) {
     if (without.without != "hysteresis" && without.without != "creep") continue;
@@ -257,22 +260,36 @@ TEST(IdentifyStructure, FindsTheRegulatorBehindTheCommand) {
   }
 }
 
-/// A finger behind two lags is not taken for one behind a lag, nor the other way round.
+/// A lag more than the plays' finger has, in which FindsAFingerOfPlays finds none.
 TEST(IdentifyStructure, FindsASecondLag) {
   const model::Model slower =
       model::with_block(play_finger(), {model::block_type<model::ValveLag>(), {0.12}});
-  for (const bool second : {false, true}) {
-    std::vector<Log> logs;
-    for (const SignalName signal : {SignalName::tp1, SignalName::steps})
-      logs.push_back(simulated(second ? slower : play_finger(), signal, 100, 0.03, 15));
-    const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
-    ASSERT_TRUE(found) << found.error();
-    const auto position = model::position_of<model::ValveLag>(found->model);
-    EXPECT_EQ(position.has_value(), second);
-    EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
-    if (!position) continue;
-    EXPECT_NEAR(found->model.blocks[*position].values[0], 0.12, 0.06);
-  }
+  std::vector<Log> logs;
+  for (const SignalName signal : {SignalName::tp1, SignalName::steps})
+    logs.push_back(simulated(slower, signal, 100, 0.03, 15));
+  const auto found = identify_structure(logs, StructureQuestion::prandtl_ishlinskii);
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_LT(found->rmse_mm, 1.4 * 0.03);
+  const auto position = model::position_of<model::ValveLag>(found->model);
+  ASSERT_TRUE(position);
+  EXPECT_NEAR(found->model.blocks[*position].values[0], 0.12, 0.06);
+}
+
+TEST(IdentifyStructure, FindsAResonance) {
+  const model::Model ringing =
+      model::with_block(play_finger(), {model::block_type<model::Inertia>(), {0.5, 0.15}});
+  const auto found = identify_structure({simulated(ringing, SignalName::steps, 100, 0.03, 15)},
+                                        StructureQuestion::prandtl_ishlinskii);
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_LT(found->rmse_mm, 2 * 0.03) << "weights and creep are fitted without it";
+  const auto position = model::position_of<model::Inertia>(found->model);
+  ASSERT_TRUE(position);
+  EXPECT_NEAR(found->model.blocks[*position].values[0], 0.5, 0.03);
+  EXPECT_NEAR(found->model.blocks[*position].values[1], 0.15, 0.05);
+  const auto without = std::find_if(found->structure->ablation.begin(), found->structure->ablation.end(),
+                                    [](const auto& each) { return each.without == "a resonance"; });
+  ASSERT_NE(without, found->structure->ablation.end());
+  EXPECT_GT(without->heldout_rmse_mm, 2 * found->rmse_mm);
 }
 
 /// The first 20 s are fitted: one stroke from an idle pressure, which begins with the log.

@@ -1,0 +1,111 @@
+#include "sysid/structure/resonance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "model/blocks/asymmetric_valve_lag.h"
+#include "model/blocks/chamber_lag.h"
+#include "model/blocks/inertia.h"
+#include "model/blocks/transport_delay.h"
+#include "model/blocks/valve_lag.h"
+#include "model/named.h"
+#include "sysid/fitting/minimise.h"
+#include "sysid/fitting/residuals.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid {
+namespace {
+
+constexpr int periods = 8;
+constexpr std::array damping_ratios{0.1, 0.5};
+/// The shortest period that is looked for, in sampling intervals.
+constexpr double shortest_in_intervals = 6;
+/// The longest one, as a share of the longest record.
+constexpr double longest_share = 0.1;
+constexpr double longest_s = 10;
+
+void put(FitPoint& point, double period_s, double damping_ratio) {
+  point.model = model::with_block(
+      std::move(point.model),
+      model::block_of<model::Inertia>({{"period_s", period_s}, {"damping_ratio", damping_ratio}}));
+}
+
+/// Numbers of the resonance and of what else delays the answer.
+std::vector<std::size_t> latencies(const model::Model& model) {
+  constexpr std::array movable{model::block_type<model::TransportDelay>(),
+                               model::block_type<model::ValveLag>(),
+                               model::block_type<model::AsymmetricValveLag>(),
+                               model::block_type<model::ChamberLag>(), model::block_type<model::Inertia>()};
+  std::vector<std::size_t> flat;
+  std::size_t at = 0;
+  for (const model::BlockSpec& block : model.blocks) {
+    for (std::size_t i = 0; i < block.values.size(); ++i, ++at) {
+      if (std::find(movable.begin(), movable.end(), block.type) != movable.end()) flat.push_back(at);
+    }
+  }
+  return flat;
+}
+
+double rmse_of(const FitPoint& point, const std::vector<Record>& records) {
+  double sum = 0;
+  std::size_t readings = 0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const double each = rms(residual(records[r], predict(point.model, records[r], point.starts[r])));
+    sum += each * each * static_cast<double>(records[r].readings);
+    readings += records[r].readings;
+  }
+  const double rmse = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(readings, 1)));
+  return std::isfinite(rmse) ? rmse : std::numeric_limits<double>::infinity();
+}
+
+ResonantFit minimised(const FitPoint& from, const std::vector<Record>& records) {
+  FitSpace space(from.model, records, latencies(from.model));
+  space.hold_starts(from.starts);
+  MinimiseOptions options;
+  options.normal_equations = true;
+  options.most_iterations = 20;
+  options.tolerance = 1e-6;
+  const auto residuals = residuals_for(records, space);
+  const Minimum minimum = minimise(*residuals, space.z(from), options);
+  return {space.point(minimum.z), minimum.rmse_mm};
+}
+
+}  // namespace
+
+ResonantFit with_resonance(const FitPoint& point, const std::vector<Record>& records) {
+  double interval_s = std::numeric_limits<double>::infinity(), length_s = 0;
+  for (const Record& record : records) {
+    interval_s = std::min(interval_s, record.mean_interval_s());
+    length_s = std::max(length_s, record.length_s());
+  }
+  const double from_s = shortest_in_intervals * interval_s;
+  const double to_s = std::clamp(longest_share * length_s, from_s, longest_s);
+  std::array<ResonantFit, damping_ratios.size()> best;  // the best start of either damping
+  for (int i = 0; i < periods; ++i) {
+    const double period_s = from_s * std::pow(to_s / from_s, static_cast<double>(i) / (periods - 1));
+    for (std::size_t d = 0; d < damping_ratios.size(); ++d) {
+      ResonantFit start{point, 0};
+      put(start.point, period_s, damping_ratios[d]);
+      start.rmse_mm = rmse_of(start.point, records);
+      if (start.rmse_mm < best[d].rmse_mm) best[d] = std::move(start);
+    }
+  }
+  ResonantFit found;
+  for (const ResonantFit& start : best) {
+    if (start.point.model.blocks.empty()) continue;
+    ResonantFit end = minimised(start.point, records);
+    if (end.rmse_mm < found.rmse_mm) found = std::move(end);
+  }
+  return found;
+}
+
+FitPoint with_resonance_of(const FitPoint& resonant, FitPoint point, const std::vector<Record>& records) {
+  const model::BlockSpec& mode = *model::find_block<model::Inertia>(resonant.model);
+  put(point, model::value<model::Inertia>(mode, "period_s"),
+      model::value<model::Inertia>(mode, "damping_ratio"));
+  return minimised(point, records).point;
+}
+
+}  // namespace softgrip::sysid

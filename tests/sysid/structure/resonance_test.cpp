@@ -1,0 +1,68 @@
+#include "sysid/structure/resonance.h"
+
+#include <gtest/gtest.h>
+
+#include "model/blocks/bouc_wen.h"
+#include "model/blocks/inertia.h"
+#include "model/blocks/transport_delay.h"
+#include "model/named.h"
+#include "sysid/fitting/trajectory.h"
+
+namespace softgrip::sysid::resonance_test {
+namespace {
+
+model::Model finger(double delay_s) {
+  const model::Model still =
+      model::with_block({}, {model::block_type<model::BoucWen>(), {0.5, 0.3, 0.004, 0.03, 1}});
+  return model::with_block(still, {model::block_type<model::TransportDelay>(), {delay_s}});
+}
+
+model::Model ringing_finger(double period_s) {
+  return model::with_block(finger(0.06), {model::block_type<model::Inertia>(), {period_s, 0.2}});
+}
+
+/// Steps between 0 and 60 kPa, 4 s each, and what the model answers.
+Record steps(const model::Model& model) {
+  Log log;
+  log.name = "steps";
+  for (int i = 0; i <= 1200; ++i) {
+    log.time_s.push_back(0.02 * i);
+    log.pressure_command_kpa.push_back(i / 200 % 2 == 0 ? 0 : 60);
+  }
+  log.displacement_mm.assign(log.size(), 0);
+  Record record = make_records({log}, {})[0];
+  record.reading_mm = predict(model, record, {});
+  return record;
+}
+
+double period_s(const FitPoint& point) {
+  return model::value<model::Inertia>(*model::find_block<model::Inertia>(point.model), "period_s");
+}
+
+TEST(Resonance, PeriodsOverADecadeAreFoundWithTheDelayBesideThem) {
+  for (const double truth_s : {0.2, 0.6, 2.0}) {
+    const std::vector<Record> records{steps(ringing_finger(truth_s))};
+    const ResonantFit fit = with_resonance({finger(0.1), {StartState{}}}, records);
+    EXPECT_NEAR(period_s(fit.point), truth_s, 0.01 * truth_s);
+    EXPECT_LT(fit.rmse_mm, 1e-3) << truth_s;
+    const auto* delay = model::find_block<model::TransportDelay>(fit.point.model);
+    ASSERT_NE(delay, nullptr);
+    EXPECT_NEAR(delay->values[0], 0.06, 0.002) << truth_s;
+  }
+}
+
+TEST(Resonance, FollowsOtherReadingsFromWhereItWas) {
+  const FitPoint before{ringing_finger(0.6), {StartState{}}};
+  const FitPoint after =
+      with_resonance_of(before, {finger(0.06), {StartState{}}}, {steps(ringing_finger(0.66))});
+  EXPECT_NEAR(period_s(after), 0.66, 0.007);
+}
+
+TEST(Resonance, OtherNumbersStay) {
+  const ResonantFit fit = with_resonance({finger(0.1), {StartState{}}}, {steps(ringing_finger(0.6))});
+  EXPECT_EQ(model::find_block<model::BoucWen>(fit.point.model)->values,
+            model::find_block<model::BoucWen>(finger(0.1))->values);
+}
+
+}  // namespace
+}  // namespace softgrip::sysid::resonance_test
